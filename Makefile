@@ -1,0 +1,41 @@
+# Everything a user types. Each target installs and builds what it needs first; with nothing to do that takes no time.
+
+.DEFAULT_GOAL := help
+.PHONY: help setup build demo test unit rostest bench lint format clean
+
+# Scenarios for `make rostest`: parts of their paths (TESTS="lights walk"); how many run at once (JOBS=2).
+TESTS ?=
+JOBS ?= 1
+
+help: ## Show this list
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1|\2/p' Makefile | awk -F'|' '{ printf "%-16s%s\n", $$1, $$2 }'
+
+setup: ## Install the missing Debian packages and the virtual environment .venv
+	@scripts/setup
+
+build: setup ## Build the catkin workspace .ws
+	@scripts/build
+
+demo: build ## Play the demonstration in the simulator; pictures, sound and a table in demo_output
+	@scripts/ros-env python3 nao_library_modules/examples/demo.py --output demo_output
+
+test: build ## Run all tests; closes with "N passed, N failed" (JOBS=2: two scenarios at once)
+	@scripts/test all --jobs $(JOBS)
+
+unit: setup ## Run the unit tests: no ROS master, and no build unless they use messages
+	@scripts/test unit
+
+rostest: build ## Run the ROS scenarios (TESTS="lights walk": some of them; JOBS=2: two at once)
+	@scripts/test rostest --jobs $(JOBS) $(TESTS)
+
+bench: build ## Print the benchmarks: ratios measured side by side
+	@scripts/ros-env python3 test/benchmarks/run.py
+
+lint: setup ## Check the form of Python files, packages and scripts
+	@scripts/lint
+
+format: setup ## Put the form of Python files right
+	@.venv/bin/ruff check --fix --quiet . ; .venv/bin/ruff format .
+
+clean: ## Remove the workspace, the virtual environment and what the demonstration left
+	rm -rf .ws .venv demo_output

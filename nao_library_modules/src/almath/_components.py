@@ -1,0 +1,270 @@
+"""What all values of this package share: named numbers that are read, compared, listed and printed alike."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from numbers import Real
+from typing import ClassVar, TypeVar
+
+from almath.errors import AlmathError
+
+_Value = TypeVar("_Value", bound="Components")
+_Vector = TypeVar("_Vector", bound="Scalable")
+
+
+def as_number(value: object, what: str) -> float:
+    """Return `value` as a float.
+
+    Args:
+        value: What should be a number.
+        what: Name of the value, for the error text.
+
+    Raises:
+        AlmathError: If it is not a number.
+    """
+    if not isinstance(value, Real):
+        raise AlmathError(f"{what} must be a number, got {value!r}")
+    return float(value)
+
+
+def as_numbers(values: object, what: str) -> list[float]:
+    """Return a sequence of numbers as a list of floats.
+
+    Args:
+        values: What should be a flat sequence of numbers.
+        what: Name of the sequence, for the error text.
+
+    Raises:
+        AlmathError: If it is not a sequence, or one of its items is not a number.
+    """
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise AlmathError(f"{what} must be a sequence of numbers, got {values!r}")
+    return [as_number(value, f"{what}[{index}]") for index, value in enumerate(values)]
+
+
+def require(value: object, kind: type, where: str) -> None:
+    """Check the class of an argument.
+
+    Args:
+        value: The argument.
+        kind: The class it must have.
+        where: Function or class that takes it, for the error text.
+
+    Raises:
+        AlmathError: If `value` is not of that class.
+    """
+    if not isinstance(value, kind):
+        raise AlmathError(f"{where} takes a {kind.__name__}, got {value!r}")
+
+
+class Components:
+    """A mutable value made of named numbers.
+
+    A subclass lists the names in `_names`, in the order of `toVector`, and the values of a fresh object in
+    `_defaults`. It can be made from nothing, from all its numbers, from one sequence of them (list, tuple,
+    array) or from another object of its class, which is copied.
+    """
+
+    # numpy would otherwise take `numpy.float64(2) * pose` apart before our __rmul__ is asked.
+    __array_ufunc__ = None
+
+    _names: ClassVar[tuple[str, ...]] = ()
+    _defaults: ClassVar[tuple[float, ...]] = ()
+    _one_number_fills_all: ClassVar[bool] = False
+
+    def __init__(self, *numbers: object) -> None:
+        """Read the numbers; see the class for what is accepted."""
+        self._assign(self._read(numbers))
+
+    @classmethod
+    def _read(cls, arguments: tuple[object, ...]) -> Iterable[float]:
+        """Turn the arguments of the constructor into one number for each name."""
+        if not arguments:
+            return cls._defaults
+        if len(arguments) == 1 and not isinstance(arguments[0], Real):
+            if isinstance(arguments[0], cls):
+                return arguments[0]._values()
+            return cls._checked(as_numbers(arguments[0], cls.__name__))
+        numbers = as_numbers(arguments, cls.__name__)
+        if len(numbers) == 1 and cls._one_number_fills_all:
+            return numbers * len(cls._names)
+        return cls._checked(numbers)
+
+    @classmethod
+    def _checked(cls, numbers: list[float]) -> list[float]:
+        """Return `numbers` if there is one for each name."""
+        if len(numbers) != len(cls._names):
+            names = ", ".join(cls._names)
+            raise AlmathError(
+                f"{cls.__name__} takes {len(cls._names)} numbers ({names}), got {len(numbers)}: {numbers}"
+            )
+        return numbers
+
+    @classmethod
+    def _make(cls: type[_Value], numbers: Iterable[float]) -> _Value:
+        """Build an object from trusted numbers, past the constructor a subclass may have changed."""
+        value = cls.__new__(cls)
+        value._assign(numbers)
+        return value
+
+    def _assign(self, numbers: Iterable[float]) -> None:
+        """Overwrite all components, in the order of `_names`."""
+        for name, number in zip(self._names, list(numbers)):
+            setattr(self, name, number)
+
+    def _values(self) -> list[float]:
+        """List the components in the order of `_names`."""
+        return [getattr(self, name) for name in self._names]
+
+    def _same_kind(self, other: object) -> bool:
+        return isinstance(other, type(self)) or (
+            isinstance(other, Components) and isinstance(self, type(other))
+        )
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Set a component, which must be a number, or any other attribute."""
+        if name in self._names:
+            value = as_number(value, f"{type(self).__name__}.{name}")
+        super().__setattr__(name, value)
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether all components are exactly equal."""
+        if not self._same_kind(other):
+            return NotImplemented
+        return self._values() == other._values()
+
+    def __imul__(self: _Value, other: object) -> _Value:
+        """Multiply in place by whatever `*` accepts and answers with this class."""
+        product = self * other
+        if not self._same_kind(product):
+            raise AlmathError(f"{type(self).__name__} *= {other!r} would not leave a {type(self).__name__}")
+        self._assign(product._values())
+        return self
+
+    # Mutable values compared by content cannot be keys.
+    __hash__ = None
+
+    def isNear(self: _Value, other: _Value, epsilon: float = 0.0001) -> bool:
+        """Tell whether no component differs by more than `epsilon`."""
+        require(other, Components, f"{type(self).__name__}.isNear")
+        if not self._same_kind(other):
+            raise AlmathError(f"{type(self).__name__}.isNear takes a {type(self).__name__}, got {other!r}")
+        return all(abs(mine - theirs) <= epsilon for mine, theirs in zip(self._values(), other._values()))
+
+    def toVector(self, out: list[float] | None = None) -> list[float] | None:
+        """List the components.
+
+        Args:
+            out: A list to fill instead of returning a new one.
+        """
+        if out is None:
+            return self._values()
+        out[:] = self._values()
+        return None
+
+    def __repr__(self) -> str:
+        """Name the class and each component, with six significant digits."""
+        pairs = (f"{name}={value:g}" for name, value in zip(self._names, self._values()))
+        return f"{type(self).__name__}({', '.join(pairs)})"
+
+
+class Scalable(Components):
+    """Components that can be multiplied and divided by a number."""
+
+    def __mul__(self: _Vector, factor: float) -> _Vector:
+        """Multiply each component by a number."""
+        if not isinstance(factor, Real):
+            return NotImplemented
+        return self._make(value * factor for value in self._values())
+
+    def __rmul__(self: _Vector, factor: float) -> _Vector:
+        """Multiply each component by a number."""
+        return Scalable.__mul__(self, factor)
+
+    def __truediv__(self: _Vector, divisor: float) -> _Vector:
+        """Divide each component by a number other than zero."""
+        if not isinstance(divisor, Real):
+            return NotImplemented
+        if divisor == 0.0:
+            raise AlmathError(f"division of {self!r} by zero")
+        return self._make(value / divisor for value in self._values())
+
+    def __itruediv__(self: _Vector, divisor: float) -> _Vector:
+        """Divide in place by a number other than zero."""
+        self._assign((self / divisor)._values())
+        return self
+
+
+class Linear(Scalable):
+    """Components that can also be added to and subtracted from each other."""
+
+    def __add__(self: _Vector, other: _Vector) -> _Vector:
+        """Add component by component."""
+        if not self._same_kind(other):
+            return NotImplemented
+        return self._make(mine + theirs for mine, theirs in zip(self._values(), other._values()))
+
+    def __sub__(self: _Vector, other: _Vector) -> _Vector:
+        """Subtract component by component."""
+        if not self._same_kind(other):
+            return NotImplemented
+        return self._make(mine - theirs for mine, theirs in zip(self._values(), other._values()))
+
+    def __iadd__(self: _Vector, other: _Vector) -> _Vector:
+        """Add in place, component by component."""
+        self._assign((self + other)._values())
+        return self
+
+    def __isub__(self: _Vector, other: _Vector) -> _Vector:
+        """Subtract in place, component by component."""
+        self._assign((self - other)._values())
+        return self
+
+    def __neg__(self: _Vector) -> _Vector:
+        """Negate each component."""
+        return self._make(-value for value in self._values())
+
+    def __pos__(self: _Vector) -> _Vector:
+        """Copy."""
+        return self._make(self._values())
+
+
+def fill(out: _Value, value: _Value, where: str) -> None:
+    """Write a result over the object that the caller passed for it.
+
+    Args:
+        out: What to overwrite.
+        value: The result.
+        where: Function that answers, for the error text.
+    """
+    require(out, type(value), where)
+    out._assign(value._values())
+
+
+def answer(value: _Value, out: _Value | None, where: str) -> _Value | None:
+    """Return a result, or write it over an object that the caller passed for it, as the SDK's functions do.
+
+    Args:
+        value: The result.
+        out: What to overwrite, or None to have the result returned.
+        where: Function that answers, for the error text.
+    """
+    if out is None:
+        return value
+    fill(out, value, where)
+    return None
+
+
+def unit(vector: _Vector, length: float) -> _Vector:
+    """Divide a vector by its length.
+
+    Args:
+        vector: What to scale.
+        length: Its norm.
+
+    Raises:
+        AlmathError: If the length is zero, so that there is no direction to keep.
+    """
+    if length == 0.0:
+        raise AlmathError(f"{vector!r} has no direction: its norm is zero")
+    return vector / length

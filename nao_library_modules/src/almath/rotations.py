@@ -1,0 +1,266 @@
+"""Rotations as a matrix and as three angles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from almath import _matrix
+from almath._components import Components, Linear, as_number, as_numbers, require
+from almath.errors import AlmathError
+from almath.positions import Position3D
+from almath.velocities import Velocity3D
+
+# How far from 1 the square of an axis' length may be before it is refused instead of taken for rounding.
+_AXIS_TOLERANCE = 0.00001
+
+
+class Rotation(Components):
+    """A 3x3 rotation matrix; `r2_c3` is row 2, column 3.
+
+    Made from nothing it is the identity. A sequence of 9 numbers is the matrix row by row; of one of 12 or 16
+    (a Transform as a list) the rotation is taken.
+    """
+
+    _names = tuple(f"r{row}_c{column}" for row in (1, 2, 3) for column in (1, 2, 3))
+    _defaults = tuple(number for row in _matrix.IDENTITY for number in row)
+
+    @classmethod
+    def _read(cls, arguments: tuple[object, ...]) -> Iterable[float]:
+        if not arguments:
+            return cls._defaults
+        if len(arguments) != 1:
+            raise AlmathError(
+                f"Rotation takes one sequence of 9, 12 or 16 numbers, got {len(arguments)} arguments"
+            )
+        if isinstance(arguments[0], Rotation):
+            return arguments[0]._values()
+        numbers = as_numbers(arguments[0], "Rotation")
+        if len(numbers) in (12, 16):
+            return [*numbers[0:3], *numbers[4:7], *numbers[8:11]]
+        if len(numbers) != 9:
+            raise AlmathError(f"Rotation takes 9, 12 or 16 numbers, got {len(numbers)}: {numbers}")
+        return numbers
+
+    @classmethod
+    def _from_rows(cls, rows: _matrix.Matrix) -> Rotation:
+        return cls._make(number for row in rows for number in row)
+
+    def _rows(self) -> _matrix.Matrix:
+        numbers = self._values()
+        return (tuple(numbers[0:3]), tuple(numbers[3:6]), tuple(numbers[6:9]))
+
+    def __mul__(self, other: Rotation | Position3D | Velocity3D) -> Rotation | Position3D | Velocity3D:
+        """Chain two rotations, or turn a point or a velocity."""
+        if isinstance(other, Rotation):
+            return self._from_rows(_matrix.product(self._rows(), other._rows()))
+        if isinstance(other, (Position3D, Velocity3D)):
+            return other._make(_matrix.applied(self._rows(), tuple(other._values())))
+        return NotImplemented
+
+    def isRotation(self, epsilon: float = 0.0001) -> bool:
+        """Tell whether the matrix is orthonormal and right-handed, within `epsilon`."""
+        return _matrix.is_rotation(self._rows(), epsilon)
+
+    def normalizeRotation(self) -> None:
+        """Make the matrix a rotation again; the third column keeps its direction.
+
+        Raises:
+            AlmathError: If the second and third column do not span a plane.
+        """
+        rows = _matrix.orthonormalised(self._rows())
+        if rows is None:
+            raise AlmathError(f"no rotation near {self!r}: its second and third column do not span a plane")
+        self._assign(self._from_rows(rows)._values())
+
+    def transpose(self) -> Rotation:
+        """Swap rows and columns: the inverse of a rotation."""
+        return self._from_rows(_matrix.transposed(self._rows()))
+
+    def determinant(self) -> float:
+        """Determinant: 1 for a rotation."""
+        return _matrix.determinant(self._rows())
+
+    @staticmethod
+    def fromQuaternion(w: float, x: float, y: float, z: float) -> Rotation:
+        """Rotation of the quaternion w + xi + yj + zk, of any length but zero."""
+        rows = _matrix.from_quaternion(w, x, y, z)
+        if rows is None:
+            raise AlmathError("Rotation.fromQuaternion takes a quaternion other than zero")
+        return Rotation._from_rows(rows)
+
+    @staticmethod
+    def fromAngleDirection(angle: float, x: float, y: float, z: float) -> Rotation:
+        """Rotation by `angle` rad about the unit vector (x, y, z)."""
+        square = x * x + y * y + z * z
+        if not abs(square - 1.0) <= _AXIS_TOLERANCE:
+            raise AlmathError(f"the axis of a rotation must have length 1, got ({x}, {y}, {z})")
+        return Rotation._from_rows(_matrix.about_axis((x, y, z), angle))
+
+    @staticmethod
+    def fromRotX(angle: float) -> Rotation:
+        """Rotation about X by `angle`, in rad."""
+        return Rotation._from_rows(_matrix.about_x(angle))
+
+    @staticmethod
+    def fromRotY(angle: float) -> Rotation:
+        """Rotation about Y by `angle`, in rad."""
+        return Rotation._from_rows(_matrix.about_y(angle))
+
+    @staticmethod
+    def fromRotZ(angle: float) -> Rotation:
+        """Rotation about Z by `angle`, in rad."""
+        return Rotation._from_rows(_matrix.about_z(angle))
+
+    # The quarter and half turns are written out because cos(pi / 2) is not exactly 0 in floating point.
+
+    @staticmethod
+    def fromRotXPi() -> Rotation:
+        """Half a turn about X, without rounding."""
+        return Rotation([1, 0, 0, 0, -1, 0, 0, 0, -1])
+
+    @staticmethod
+    def fromRotYPi() -> Rotation:
+        """Half a turn about Y, without rounding."""
+        return Rotation([-1, 0, 0, 0, 1, 0, 0, 0, -1])
+
+    @staticmethod
+    def fromRotZPi() -> Rotation:
+        """Half a turn about Z, without rounding."""
+        return Rotation([-1, 0, 0, 0, -1, 0, 0, 0, 1])
+
+    @staticmethod
+    def fromRotZHalfPi() -> Rotation:
+        """Quarter of a turn about Z, without rounding."""
+        return Rotation([0, -1, 0, 1, 0, 0, 0, 0, 1])
+
+    @staticmethod
+    def from3DRotation(wx: float, wy: float, wz: float) -> Rotation:
+        """Rz(wz) Ry(wy) Rx(wx), angles in rad."""
+        return Rotation._from_rows(_matrix.from_angles(wx, wy, wz))
+
+    def __str__(self) -> str:
+        """Write the matrix, one row a line."""
+        rows = ("[" + ", ".join(f"{number:g}" for number in row) + "]" for row in self._rows())
+        return "[" + "\n ".join(rows) + "]"
+
+    def __repr__(self) -> str:
+        """Write the matrix as the sequence it could be made from."""
+        rows = (", ".join(f"{number:g}" for number in row) for row in self._rows())
+        return f"{type(self).__name__}([" + ",\n          ".join(rows) + "])"
+
+
+class Rotation3D(Linear):
+    """Three angles that stand for R = Rz(wz) Ry(wy) Rx(wx).
+
+    Sums and multiples are those of the numbers, not of the rotations.
+
+    Attributes:
+        wx: In rad.
+        wy: In rad.
+        wz: In rad.
+    """
+
+    wx: float
+    wy: float
+    wz: float
+
+    _names = ("wx", "wy", "wz")
+    _defaults = (0.0, 0.0, 0.0)
+    _one_number_fills_all = True
+
+    def norm(self) -> float:
+        """Root of the sum of the squares, in rad; not the angle of the rotation."""
+        return math.sqrt(sum(value * value for value in self._values()))
+
+
+def rotationFromRotX(angle: float) -> Rotation:
+    """Rotation about X by `angle`, in rad."""
+    return Rotation.fromRotX(angle)
+
+
+def rotationFromRotY(angle: float) -> Rotation:
+    """Rotation about Y by `angle`, in rad."""
+    return Rotation.fromRotY(angle)
+
+
+def rotationFromRotZ(angle: float) -> Rotation:
+    """Rotation about Z by `angle`, in rad."""
+    return Rotation.fromRotZ(angle)
+
+
+def rotationFrom3DRotation(wx: float, wy: float, wz: float) -> Rotation:
+    """Rz(wz) Ry(wy) Rx(wx), angles in rad."""
+    return Rotation.from3DRotation(wx, wy, wz)
+
+
+def rotationFromAngleDirection(angle: float, *axis: float | Position3D) -> Rotation:
+    """Rotation by `angle` rad about a unit vector, given as a Position3D or as three numbers."""
+    if len(axis) == 1 and isinstance(axis[0], Position3D):
+        axis = tuple(axis[0]._values())
+    if len(axis) != 3:
+        raise AlmathError(
+            f"rotationFromAngleDirection takes an angle and a Position3D or three numbers, got {axis!r}"
+        )
+    return Rotation.fromAngleDirection(angle, *axis)
+
+
+def normalizeRotation(rotation: Rotation) -> None:
+    """Make a matrix a rotation again, in place; its third column keeps its direction."""
+    require(rotation, Rotation, "normalizeRotation")
+    rotation.normalizeRotation()
+
+
+def applyRotation(rotation: Rotation, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Turn a point.
+
+    In C++ this overwrites three numbers, which Python cannot do; they are returned.
+
+    Args:
+        rotation: How to turn.
+        x: First coordinate of the point.
+        y: Second coordinate of the point.
+        z: Third coordinate of the point.
+
+    Returns:
+        The coordinates of the turned point.
+    """
+    require(rotation, Rotation, "applyRotation")
+    point = tuple(as_number(value, f"applyRotation {name}") for name, value in zip("xyz", (x, y, z)))
+    return _matrix.applied(rotation._rows(), point)
+
+
+def rotationFromAxesXYZ(x_axis: Position3D, y_axis: Position3D, z_axis: Position3D) -> Rotation:
+    """Rotation whose columns are three given unit vectors.
+
+    Raises:
+        AlmathError: If they are not of length 1, at right angles and right-handed.
+    """
+    for axis in (x_axis, y_axis, z_axis):
+        require(axis, Position3D, "rotationFromAxesXYZ")
+    rotation = Rotation._from_rows(
+        _matrix.transposed(tuple(tuple(a._values()) for a in (x_axis, y_axis, z_axis)))
+    )
+    if not rotation.isRotation(0.001):
+        raise AlmathError(
+            f"{x_axis!r}, {y_axis!r}, {z_axis!r} are not three right-handed unit vectors at right angles"
+        )
+    return rotation
+
+
+def rotationFromAxesXY(x_axis: Position3D, y_axis: Position3D) -> Rotation:
+    """Rotation whose first two columns are given unit vectors at right angles."""
+    require(x_axis, Position3D, "rotationFromAxesXY")
+    return rotationFromAxesXYZ(x_axis, y_axis, x_axis.crossProduct(y_axis))
+
+
+def rotationFromAxesXZ(x_axis: Position3D, z_axis: Position3D) -> Rotation:
+    """Rotation whose first and third columns are given unit vectors at right angles."""
+    require(z_axis, Position3D, "rotationFromAxesXZ")
+    return rotationFromAxesXYZ(x_axis, z_axis.crossProduct(x_axis), z_axis)
+
+
+def rotationFromAxesYZ(y_axis: Position3D, z_axis: Position3D) -> Rotation:
+    """Rotation whose last two columns are given unit vectors at right angles."""
+    require(y_axis, Position3D, "rotationFromAxesYZ")
+    return rotationFromAxesXYZ(y_axis.crossProduct(z_axis), y_axis, z_axis)

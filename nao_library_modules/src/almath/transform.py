@@ -1,0 +1,253 @@
+"""Homogeneous transforms: a rotation and a translation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from numbers import Real
+
+from almath import _matrix
+from almath._components import Components, answer, as_number, as_numbers, fill, require
+from almath.errors import AlmathError
+from almath.positions import Position2D, Position3D
+
+_LAST_ROW = (0.0, 0.0, 0.0, 1.0)
+
+
+class Transform(Components):
+    """Rotation and translation of one frame in another; `r2_c3` is row 2, column 3, and column 4 is in m.
+
+    Made from nothing it is the identity, from three numbers a translation. A sequence of 12 or 16 numbers is
+    the matrix row by row, as ALMotion.getTransform returns it; a rotation that is off by rounding is made
+    orthonormal.
+    """
+
+    _names = tuple(f"r{row}_c{column}" for row in (1, 2, 3) for column in (1, 2, 3, 4))
+    _defaults = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+
+    @classmethod
+    def _read(cls, arguments: tuple[object, ...]) -> Iterable[float]:
+        if not arguments:
+            return cls._defaults
+        if len(arguments) == 3:
+            position = [as_number(value, f"Transform {name}") for name, value in zip("xyz", arguments)]
+            return cls._from_parts(_matrix.IDENTITY, position)._values()
+        if len(arguments) != 1 or isinstance(arguments[0], Real):
+            raise AlmathError(
+                f"Transform takes 3 numbers or a sequence of 12 or 16, got {len(arguments)} arguments"
+            )
+        if isinstance(arguments[0], Transform):
+            return arguments[0]._values()
+        numbers = as_numbers(arguments[0], "Transform")
+        if len(numbers) not in (12, 16):
+            raise AlmathError(f"Transform takes 12 or 16 numbers, got {len(numbers)}: {numbers}")
+        transform = cls._make(numbers[:12])
+        if not transform.isTransform():
+            transform.normalizeTransform()
+        return transform._values()
+
+    @classmethod
+    def _from_parts(cls, rows: _matrix.Matrix, position: Iterable[float]) -> Transform:
+        return cls._make(number for row, offset in zip(rows, position) for number in (*row, offset))
+
+    def _rows(self) -> _matrix.Matrix:
+        numbers = self._values()
+        return (tuple(numbers[0:3]), tuple(numbers[4:7]), tuple(numbers[8:11]))
+
+    def _position(self) -> _matrix.Triple:
+        return (self.r1_c4, self.r2_c4, self.r3_c4)
+
+    def _placed(self, point: _matrix.Triple) -> _matrix.Triple:
+        return tuple(a + b for a, b in zip(_matrix.applied(self._rows(), point), self._position()))
+
+    def __mul__(self, other: Transform | Position3D | Position2D) -> Transform | Position3D:
+        """Chain two transforms, or place a point; one of the plane is taken at z = 0."""
+        if isinstance(other, Transform):
+            rows = _matrix.product(self._rows(), other._rows())
+            return self._from_parts(rows, self._placed(other._position()))
+        if isinstance(other, Position3D):
+            return Position3D(*self._placed((other.x, other.y, other.z)))
+        if isinstance(other, Position2D):
+            return Position3D(*self._placed((other.x, other.y, 0.0)))
+        return NotImplemented
+
+    def isTransform(self, epsilon: float = 0.0001) -> bool:
+        """Tell whether the rotation is orthonormal and right-handed, within `epsilon`."""
+        return _matrix.is_rotation(self._rows(), epsilon)
+
+    def normalizeTransform(self) -> None:
+        """Make the rotation one again; its third column keeps its direction.
+
+        Raises:
+            AlmathError: If the second and third column do not span a plane.
+        """
+        rows = _matrix.orthonormalised(self._rows())
+        if rows is None:
+            raise AlmathError(f"no rotation near {self!r}: its second and third column do not span a plane")
+        self._assign(self._from_parts(rows, self._position())._values())
+
+    def norm(self) -> float:
+        """Length of the translation, in m."""
+        return math.sqrt(_matrix.dot(self._position(), self._position()))
+
+    def determinant(self) -> float:
+        """Determinant of the rotation: 1."""
+        return _matrix.determinant(self._rows())
+
+    def inverse(self) -> Transform:
+        """Transform that undoes this one."""
+        rows = _matrix.transposed(self._rows())
+        return self._from_parts(rows, _matrix.scaled(_matrix.applied(rows, self._position()), -1.0))
+
+    def diff(self, other: Transform) -> Transform:
+        """Transform that leads from here to `other`, in this frame."""
+        require(other, Transform, "Transform.diff")
+        return self.inverse() * other
+
+    def distanceSquared(self, other: Transform) -> float:
+        """Square of the distance between the two origins, in m^2."""
+        require(other, Transform, "Transform.distanceSquared")
+        return sum((a - b) ** 2 for a, b in zip(self._position(), other._position()))
+
+    def distance(self, other: Transform) -> float:
+        """Distance between the two origins, in m."""
+        return math.sqrt(self.distanceSquared(other))
+
+    def toVector(self, out: list[float] | None = None) -> list[float] | None:
+        """List the 16 numbers of the 4x4 matrix, row by row.
+
+        Args:
+            out: A list to fill instead of returning a new one.
+        """
+        numbers = [*self._values(), *_LAST_ROW]
+        if out is None:
+            return numbers
+        out[:] = numbers
+        return None
+
+    @staticmethod
+    def fromRotX(angle: float) -> Transform:
+        """Rotation about X by `angle`, in rad."""
+        return Transform._from_parts(_matrix.about_x(angle), (0.0, 0.0, 0.0))
+
+    @staticmethod
+    def fromRotY(angle: float) -> Transform:
+        """Rotation about Y by `angle`, in rad."""
+        return Transform._from_parts(_matrix.about_y(angle), (0.0, 0.0, 0.0))
+
+    @staticmethod
+    def fromRotZ(angle: float) -> Transform:
+        """Rotation about Z by `angle`, in rad."""
+        return Transform._from_parts(_matrix.about_z(angle), (0.0, 0.0, 0.0))
+
+    @staticmethod
+    def from3DRotation(wx: float, wy: float, wz: float) -> Transform:
+        """Rz(wz) Ry(wy) Rx(wx), angles in rad, without translation."""
+        return Transform._from_parts(_matrix.from_angles(wx, wy, wz), (0.0, 0.0, 0.0))
+
+    @staticmethod
+    def fromPosition(
+        x: float, y: float, z: float, wx: float = 0.0, wy: float = 0.0, wz: float = 0.0
+    ) -> Transform:
+        """Translation in m and, if given, rotation Rz(wz) Ry(wy) Rx(wx) in rad."""
+        return Transform._from_parts(_matrix.from_angles(wx, wy, wz), (x, y, z))
+
+    def __str__(self) -> str:
+        """Write the upper three rows, one a line."""
+        return "[" + "\n ".join(f"[{row}]" for row in self._lines()) + "]"
+
+    def __repr__(self) -> str:
+        """Write the upper three rows as the sequence it could be made from."""
+        return f"{type(self).__name__}([" + ",\n           ".join(self._lines()) + "])"
+
+    def _lines(self) -> list[str]:
+        numbers = self._values()
+        return [", ".join(f"{number:g}" for number in numbers[start : start + 4]) for start in (0, 4, 8)]
+
+
+def transformFromRotX(angle: float) -> Transform:
+    """Rotation about X by `angle`, in rad."""
+    return Transform.fromRotX(angle)
+
+
+def transformFromRotY(angle: float) -> Transform:
+    """Rotation about Y by `angle`, in rad."""
+    return Transform.fromRotY(angle)
+
+
+def transformFromRotZ(angle: float) -> Transform:
+    """Rotation about Z by `angle`, in rad."""
+    return Transform.fromRotZ(angle)
+
+
+def transformFrom3DRotation(wx: float, wy: float, wz: float) -> Transform:
+    """Rz(wz) Ry(wy) Rx(wx), angles in rad, without translation."""
+    return Transform.from3DRotation(wx, wy, wz)
+
+
+def transformFromPosition(
+    x: float, y: float, z: float, wx: float = 0.0, wy: float = 0.0, wz: float = 0.0
+) -> Transform:
+    """Translation in m and, if given, rotation Rz(wz) Ry(wy) Rx(wx) in rad."""
+    return Transform.fromPosition(x, y, z, wx, wy, wz)
+
+
+def transformInverse(transform: Transform, out: Transform | None = None) -> Transform | None:
+    """Invert a transform.
+
+    Args:
+        transform: What to invert.
+        out: A transform to overwrite instead of returning a new one.
+    """
+    require(transform, Transform, "transformInverse")
+    return answer(transform.inverse(), out, "transformInverse")
+
+
+def transformInvertInPlace(transform: Transform) -> None:
+    """Replace a transform by its inverse."""
+    transformInverse(transform, transform)
+
+
+def transformPreMultiply(left: Transform, right: Transform) -> None:
+    """Replace `right` by `left * right`."""
+    require(left, Transform, "transformPreMultiply")
+    require(right, Transform, "transformPreMultiply")
+    fill(right, left * right, "transformPreMultiply")
+
+
+def transformDiff(start: Transform, end: Transform) -> Transform:
+    """Transform that leads from `start` to `end`, in the frame of `start`."""
+    require(start, Transform, "transformDiff")
+    return start.diff(end)
+
+
+def transformDistanceSquared(a: Transform, b: Transform) -> float:
+    """Square of the distance between two origins, in m^2."""
+    require(a, Transform, "transformDistanceSquared")
+    return a.distanceSquared(b)
+
+
+def transformDistance(a: Transform, b: Transform) -> float:
+    """Distance between two origins, in m."""
+    require(a, Transform, "transformDistance")
+    return a.distance(b)
+
+
+def normalizeTransform(transform: Transform) -> None:
+    """Make the rotation of a transform orthonormal, in place; its third column keeps its direction."""
+    require(transform, Transform, "normalizeTransform")
+    transform.normalizeTransform()
+
+
+def transformToFloatVector(transform: Transform, out: list[float] | None = None) -> list[float] | None:
+    """List the upper three rows, 12 numbers. `Transform.toVector` lists all 16.
+
+    Args:
+        transform: What to list.
+        out: A list to fill instead of returning a new one.
+    """
+    require(transform, Transform, "transformToFloatVector")
+    if out is None:
+        return transform._values()
+    out[:] = transform._values()
+    return None

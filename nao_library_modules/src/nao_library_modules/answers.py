@@ -1,0 +1,59 @@
+"""What functions answer, as the strings that a result message carries."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+_SCALARS = (bool, int, float)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A function of a chain that was done.
+
+    Attributes:
+        position: Place in the chain, counted from 1.
+        function: Its name.
+        values: Its answers as strings.
+        elapsed: s it took, without the wait after it.
+    """
+
+    position: int
+    function: str
+    values: list[str]
+    elapsed: float
+
+
+def text_of(value: Any) -> str:
+    """One value as a string: text as it is, scalars as Python prints them, anything else as JSON."""
+    if isinstance(value, str):
+        return value
+    if value is None or isinstance(value, _SCALARS):
+        return str(value)
+    return json_of(value)
+
+
+def json_of(value: Any) -> str:
+    """A value as JSON; what JSON does not know (bytes, objects) becomes its text."""
+    return json.dumps(value, default=_plain)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, (bytes, bytearray)):
+        return value.hex()
+    to_list = getattr(value, "tolist", None)  # arrays and scalars of numpy
+    return str(value) if to_list is None else to_list()
+
+
+def values_of(answer: Any) -> list[str]:
+    """The answer of a function as a list of strings: nothing for None, one string a member of a list.
+
+    A function that answers one value which is itself a list returns it inside a list: `[[1, 2]]`.
+    """
+    if answer is None:
+        return []
+    if isinstance(answer, (list, tuple)):
+        return [text_of(value) for value in answer]
+    return [text_of(answer)]

@@ -1,0 +1,27 @@
+"""Wall-clock time whose waits can be interrupted; ros_clock has the same for ROS time."""
+
+from __future__ import annotations
+
+import time
+
+from .interrupt import Interrupt
+
+
+class WallClock:
+    """Time of the computer."""
+
+    def now(self) -> float:
+        """Seconds since some fixed moment; never goes backwards."""
+        return time.monotonic()
+
+    def wait(self, duration: float, interrupt: Interrupt) -> bool:
+        """Wait, unless interrupted.
+
+        Args:
+            duration: s, >= 0.
+            interrupt: Ends the wait.
+
+        Returns:
+            Whether the whole duration passed.
+        """
+        return not interrupt.wait(duration)

@@ -1,0 +1,57 @@
+"""Reports of a module on /diagnostics, once a second."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+
+from diagnostic_updater import DiagnosticStatusWrapper, Updater
+
+from .health import Report
+
+PERIOD = 1.0
+
+
+class DiagnosticsPublisher:
+    """Publishes reports from a thread of its own, in wall-clock time.
+
+    A thread, not a ROS timer: with simulated time that would stand still exactly when the simulator is gone.
+
+    ROS API:
+        Publishes `/diagnostics` (diagnostic_msgs/DiagnosticArray).
+    """
+
+    def __init__(self, hardware_id: str, reports: Mapping[str, Callable[[], Report]]) -> None:
+        """Start publishing.
+
+        Args:
+            hardware_id: What the reports are about, `ip:port`.
+            reports: Name -> function that gives the report of this moment.
+        """
+        self._updater = Updater()
+        self._updater.setHardwareID(hardware_id)
+        for name, report in reports.items():
+            self._updater.add(name, _task(report))
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="diagnostics", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Publish no more."""
+        self._ended.set()
+
+    def _run(self) -> None:
+        while not self._ended.is_set():
+            self._updater.force_update()
+            self._ended.wait(PERIOD)
+
+
+def _task(report: Callable[[], Report]) -> Callable[[DiagnosticStatusWrapper], DiagnosticStatusWrapper]:
+    def run(status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
+        facts = report()
+        status.summary(int(facts.level), facts.message)
+        for name, value in facts.values.items():
+            status.add(name, value)
+        return status
+
+    return run

@@ -1,0 +1,1 @@
+"""Driver nodes: topics, services and actions under the names that nao_robot gave them."""

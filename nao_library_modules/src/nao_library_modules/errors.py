@@ -1,0 +1,97 @@
+"""Errors of the modules. They belong to the family of the proxy layer.
+
+NaoError                 (naoqi.errors) root of everything that can go wrong with a robot or a goal
+    BadGoal              a field of a function message is wrong: field, value, allowed
+    UnknownFunction      no such function in the table: name, known
+    FunctionFailed       function k of a chain failed: position, function, cause
+    RobotLost            the robot went away while a goal was waiting
+
+Preempted                no error but a signal: a new goal, a cancel or the end of the node interrupts the
+function
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from naoqi.errors import NaoError
+
+from .suggestion import did_you_mean
+
+
+class BadGoal(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """A field of a function message has a value that the function cannot take.
+
+    Attributes:
+        field: Name of the field.
+        value: What it holds.
+        allowed: What it may hold, in words.
+    """
+
+    def __init__(self, field: str, value: object, allowed: str, problem: str = "") -> None:
+        """Compose the text from the facts.
+
+        Args:
+            field: Name of the field.
+            value: What it holds.
+            allowed: What it may hold, in words.
+            problem: What is wrong, where "<value> is not allowed" says too little.
+        """
+        super().__init__(f"field {field}: {problem or f'{value!r} is not allowed'}: {allowed}")
+        self.field = field
+        self.value = value
+        self.allowed = allowed
+
+
+class UnknownFunction(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """A goal names a function that the module does not have.
+
+    Attributes:
+        name: The name that was asked for.
+        known: The names there are, sorted.
+    """
+
+    def __init__(self, name: str, known: Iterable[str]) -> None:
+        """Compose the text: the closest names first, then all of them."""
+        self.name = name
+        self.known = sorted(known)
+        super().__init__(
+            f"unknown function {name!r}{did_you_mean(name, self.known)}; known are {', '.join(self.known)}"
+        )
+
+
+class FunctionFailed(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """A function of a chain is wrong or failed; the text opens with its place and name.
+
+    Attributes:
+        position: Place in the chain, counted from 1.
+        function: Name of the function.
+        cause: What was wrong.
+    """
+
+    def __init__(self, position: int, function: str, cause: Exception) -> None:
+        """Put place and name before the text of the cause."""
+        problem = str(cause) if isinstance(cause, NaoError) else f"{type(cause).__name__}: {cause}"
+        super().__init__(f"function {position} ({function}): {problem}")
+        self.position = position
+        self.function = function
+        self.cause = cause
+
+
+class RobotLost(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """The connection to the robot broke while a goal was waiting.
+
+    Attributes:
+        address: `ip:port` of the robot.
+        reason: What the connection says about it.
+    """
+
+    def __init__(self, address: str, reason: str) -> None:
+        """Compose the text."""
+        super().__init__(f"the robot at {address} went away: {reason}")
+        self.address = address
+        self.reason = reason
+
+
+class Preempted(Exception):  # noqa: N818  a signal that stops a chain, not an error
+    """A new goal, a cancel or the end of the node interrupts what is running."""

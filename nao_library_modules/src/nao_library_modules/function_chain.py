@@ -1,0 +1,186 @@
+"""From function messages to calls: look-up, binding of fields to parameters by name, checks. No ROS.
+
+A library function takes the fields it needs by their names: `def set_color(self, lights, i_values)` is called
+with the fields `lights` and `i_values` of the message. A check beside it sees the same fields before anything
+of the chain runs:
+
+    def check_volume(self, i_values):
+        if any(value < 0 for value in i_values):
+            raise BadGoal("i_values", i_values, "0 or more")
+
+    @checked_by(check_volume)
+    def set_volume(self, i_values): ...
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from naoqi.errors import NaoError
+
+from .errors import BadGoal, FunctionFailed, UnknownFunction
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+CHECK_ATTRIBUTE = "goal_check"
+CONTEXT = "context"
+
+
+def checked_by(check: Callable[..., None]) -> Callable[[Function], Function]:
+    """Declare the check of a library function.
+
+    Args:
+        check: Called before the chain runs with `self` and the fields it names; raises BadGoal when they
+            will not do. A parameter `context` is a dict that lives as long as the check of one chain: what
+            an earlier function will define can be left there for the checks of later ones.
+    """
+
+    def declare(function: Function) -> Function:
+        setattr(function, CHECK_ATTRIBUTE, check)
+        return function
+
+    return declare
+
+
+@dataclass(frozen=True)
+class Step:
+    """One function of a chain, ready to run.
+
+    Attributes:
+        position: Place in the chain, counted from 1.
+        function: Name in the function table.
+        args: Arguments in the order of the function's parameters.
+        sleep_time: s to wait afterwards.
+    """
+
+    position: int
+    function: str
+    args: tuple[Any, ...]
+    sleep_time: float
+
+
+def seconds(duration: Any) -> float:
+    """A duration in s, from a ROS duration or a number."""
+    to_sec = getattr(duration, "to_sec", None)
+    return float(duration if to_sec is None else to_sec())
+
+
+class _Signature:
+    """Parameters of one callable as fields of one message type, worked out once."""
+
+    def __init__(
+        self, function: Callable[..., Any], message_type: type, bound_self: object | None = None
+    ) -> None:
+        fields = frozenset(message_type.__slots__)
+        self._values: list[tuple[str | None, Any]] = []
+        parameters = list(inspect.signature(function).parameters.values())
+        if bound_self is not None:
+            parameters = parameters[1:]
+        self._bound_self = bound_self
+        for parameter in parameters:
+            if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
+                continue
+            if parameter.name in fields or parameter.name == CONTEXT:
+                self._values.append((parameter.name, None))
+            elif parameter.default is not parameter.empty:
+                self._values.append((None, parameter.default))
+            else:
+                raise BadGoal(
+                    parameter.name,
+                    None,
+                    f"the fields are {', '.join(message_type.__slots__)}",
+                    problem=f"a parameter of the function, but no field of {message_type.__name__}",
+                )
+
+    def arguments(self, message: Any, context: dict[str, Any]) -> tuple[Any, ...]:
+        """Values of the parameters, taken from a message."""
+        values = tuple(
+            context if name == CONTEXT else default if name is None else getattr(message, name)
+            for name, default in self._values
+        )
+        return values if self._bound_self is None else (self._bound_self, *values)
+
+
+class _Binding:
+    """A table entry bound to a message type: its arguments, and its check with the check's arguments."""
+
+    def __init__(self, function: Callable[..., Any], message_type: type) -> None:
+        self.function = function
+        self.arguments = _Signature(function, message_type).arguments
+        self.check: Callable[..., None] | None = getattr(function, CHECK_ATTRIBUTE, None)
+        if self.check is not None:
+            bound_self = getattr(function, "__self__", None)
+            self.check_arguments = _Signature(self.check, message_type, bound_self).arguments
+
+
+class FunctionChain:
+    """Reads chains of function messages for one function table.
+
+    The table stays a plain dict that anybody may change at any time: a binding is kept only as long as the
+    table holds the same callable.
+    """
+
+    def __init__(self, function_table: Mapping[str, Callable[..., Any]]) -> None:
+        """Keep the table.
+
+        Args:
+            function_table: NAOqi function name -> callable.
+        """
+        self._table = function_table
+        self._bindings: dict[tuple[str, type], _Binding] = {}
+
+    def look_up(self, name: str) -> Callable[..., Any]:
+        """The callable of a name.
+
+        Raises:
+            UnknownFunction: With the closest names and the list of all.
+        """
+        try:
+            return self._table[name]
+        except KeyError:
+            raise UnknownFunction(name, self._table) from None
+
+    def read(self, messages: Sequence[Any]) -> list[Step]:
+        """Check a whole chain and bind it; nothing runs.
+
+        Args:
+            messages: Function messages with at least the fields `function` and `time`.
+
+        Raises:
+            BadGoal: If the chain is empty.
+            FunctionFailed: Names the first function that is wrong and says why.
+        """
+        if not messages:
+            raise BadGoal("functions", list(messages), "at least one function", problem="the chain is empty")
+        context: dict[str, Any] = {}
+        # Two passes: what can be told without the robot is told without it.
+        bindings = [self._guarded(i, message, self._bind) for i, message in enumerate(messages, start=1)]
+        steps = []
+        for i, (message, binding) in enumerate(zip(messages, bindings), start=1):
+            step = Step(i, message.function, binding.arguments(message, context), seconds(message.time))
+            if binding.check is not None:
+                self._guarded(i, message, lambda m, b=binding: b.check(*b.check_arguments(m, context)))
+            steps.append(step)
+        return steps
+
+    @staticmethod
+    def _guarded(position: int, message: Any, action: Callable[[Any], Any]) -> Any:
+        try:
+            return action(message)
+        except NaoError as error:
+            raise FunctionFailed(position, message.function, error) from error
+
+    def _bind(self, message: Any) -> _Binding:
+        sleep_time = seconds(message.time)
+        if not (math.isfinite(sleep_time) and sleep_time >= 0.0):
+            raise BadGoal("time", sleep_time, "0 s or more")
+        function = self.look_up(message.function)
+        key = (message.function, type(message))
+        binding = self._bindings.get(key)
+        if binding is None or binding.function is not function:
+            binding = self._bindings[key] = _Binding(function, type(message))
+        return binding

@@ -1,0 +1,105 @@
+"""What a module has to say about itself: connection, goals, launch file. Plain facts; no ROS."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Any
+
+from .supervisor import State, Supervisor
+
+SLOW_ANSWER = 0.5
+"""A robot that takes longer than this (s) to answer is reported as slow."""
+
+
+class Level(IntEnum):
+    """Severity, with the numbers of diagnostic_msgs/DiagnosticStatus."""
+
+    OK = 0
+    WARN = 1
+    ERROR = 2
+
+
+@dataclass(frozen=True)
+class Report:
+    """One line of diagnostics.
+
+    Attributes:
+        level: Severity.
+        message: What is the matter, in words.
+        values: Facts by name.
+    """
+
+    level: Level
+    message: str
+    values: dict[str, str] = field(default_factory=dict)
+
+
+class GoalCounter:
+    """Counts goals by how they ended. Written by the thread that executes goals, read by the diagnostics."""
+
+    def __init__(self) -> None:
+        """Begin at zero."""
+        self._lock = threading.Lock()
+        self._counts = {"succeeded": 0, "preempted": 0, "aborted": 0}
+        self._last_error = ""
+
+    def ended(self, end: str, text: str) -> None:
+        """Count a goal.
+
+        Args:
+            end: succeeded, preempted or aborted.
+            text: Why, for an aborted one.
+        """
+        with self._lock:
+            self._counts[end] += 1
+            if end == "aborted":
+                self._last_error = text
+
+    def report(self) -> Report:
+        """Counts, and why the last goal was aborted; always OK, for a bad goal is its sender's matter."""
+        with self._lock:
+            values = {name: str(count) for name, count in self._counts.items()}
+            values["last error"] = self._last_error
+        return Report(Level.OK, "ready for goals", values)
+
+
+def connection_report(address: str, connection: Any) -> Report:
+    """State of the connection to the robot.
+
+    Args:
+        address: `ip:port`.
+        connection: Connection of the proxy layer.
+    """
+    latency = connection.latency
+    values = {
+        "address": address,
+        "state": str(connection.state),
+        "latency (ms)": "" if latency is None else f"{1000.0 * latency:.1f}",
+        "connections made": str(connection.generation),
+        "last error": connection.last_error or "",
+    }
+    if values["state"] != "connected":
+        return Report(Level.ERROR, f"{values['state']}: {values['last error'] or 'no answer yet'}", values)
+    if latency is not None and latency > SLOW_ANSWER:
+        return Report(Level.WARN, f"connected, but answers take {latency:.1f} s", values)
+    return Report(Level.OK, "connected", values)
+
+
+def launch_report(supervisor: Supervisor | None) -> Report:
+    """State of the launch file that belongs to a module; None when the module has not started it."""
+    if supervisor is None:
+        return Report(Level.OK, "left to others")
+    status = supervisor.status
+    values = {
+        "state": status.state.value,
+        "process": "" if status.pid is None else str(status.pid),
+        "restarts": str(status.restarts),
+        "last end": status.last_end,
+    }
+    if status.state is State.RUNNING:
+        return Report(Level.WARN if status.restarts else Level.OK, "running", values)
+    if status.state is State.WAITING:
+        return Report(Level.ERROR, f"{status.last_end}; it is started again", values)
+    return Report(Level.WARN, status.last_end or "not started", values)

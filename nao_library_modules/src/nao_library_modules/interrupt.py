@@ -1,0 +1,94 @@
+"""One flag that ends waiting: preemption, a lost robot, the end of the node. No polling, no ROS."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from .errors import Preempted
+
+
+class Interrupt:
+    """Tells whoever waits to stop waiting.
+
+    Triggering wakes the wait of this object and calls the wakers, so that a thread may wait on something else
+    (a call to the robot, simulated time) and still be interrupted. Any thread may trigger; the lock is held
+    for bookkeeping only, never while a waker runs, so triggering under a foreign lock (actionlib's) is safe.
+    """
+
+    def __init__(self) -> None:
+        """Start untriggered."""
+        self._lock = threading.Lock()
+        self._event = threading.Event()
+        self._wakers: list[Callable[[], None]] = []
+        self._reason: Exception | None = None
+        self._stopped = False
+
+    def trigger(self, reason: Exception | None = None) -> None:
+        """End the present wait and all later ones until `clear`.
+
+        Args:
+            reason: What `check` raises; Preempted if none is given. The first reason counts.
+        """
+        with self._lock:
+            if self._reason is None:
+                self._reason = reason or Preempted()
+            self._event.set()
+            wakers = list(self._wakers)
+        for wake in wakers:
+            wake()
+
+    def stop(self) -> None:
+        """Trigger for good: the node ends, `clear` has no effect any more."""
+        with self._lock:
+            self._stopped = True
+        self.trigger()
+
+    def clear(self) -> None:
+        """Forget the trigger, unless stopped."""
+        with self._lock:
+            if not self._stopped:
+                self._reason = None
+                self._event.clear()
+
+    def is_set(self) -> bool:
+        """Whether it is triggered."""
+        return self._event.is_set()
+
+    def check(self) -> None:
+        """Raise the reason if triggered.
+
+        Raises:
+            Preempted: Or another reason that was given to `trigger`.
+        """
+        if self._event.is_set():
+            with self._lock:
+                reason = self._reason
+            if reason is not None:
+                raise reason
+
+    def wait(self, timeout: float) -> bool:
+        """Wait for the trigger.
+
+        Args:
+            timeout: s of wall-clock time.
+
+        Returns:
+            Whether it was triggered.
+        """
+        return self._event.wait(timeout)
+
+    @contextmanager
+    def waking(self, wake: Callable[[], None]) -> Iterator[None]:
+        """Call `wake` on a trigger while the block runs; at once if it is triggered already."""
+        with self._lock:
+            self._wakers.append(wake)
+            triggered = self._event.is_set()
+        if triggered:
+            wake()
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._wakers.remove(wake)

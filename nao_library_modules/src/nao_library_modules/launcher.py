@@ -1,0 +1,94 @@
+"""The launch file that a module brings along, as a supervised roslaunch process."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Tuple
+
+from naoqi.errors import NaoError
+
+from .supervisor import Supervisor
+
+LaunchPath = Tuple[str, str]
+
+
+class BadLaunchPath(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """A launch path names no launch file that can be read.
+
+    Attributes:
+        launchpath: `(package, launchfile)` as given.
+    """
+
+    def __init__(self, launchpath: object, problem: str) -> None:
+        """Compose the text."""
+        super().__init__(f"launchpath {launchpath!r}: {problem}: it is (package, launchfile)")
+        self.launchpath = launchpath
+
+
+def find_launch_file(launchpath: LaunchPath) -> Path:
+    """Path of a launch file, found as roslaunch finds it.
+
+    Raises:
+        BadLaunchPath: If it is not there.
+    """
+    from roslaunch.core import RLException
+    from roslaunch.rlutil import resolve_launch_arguments
+
+    try:
+        package, launchfile = launchpath
+        return Path(resolve_launch_arguments([package, launchfile])[0])
+    except (TypeError, ValueError):
+        raise BadLaunchPath(launchpath, "not a pair of names") from None
+    except RLException as error:
+        raise BadLaunchPath(launchpath, str(error)) from error
+
+
+def declared_arguments(launch_file: Path) -> set[str]:
+    """Names of the arguments that a launch file takes: those it declares without a fixed value.
+
+    Raises:
+        BadLaunchPath: If the file is no XML.
+    """
+    try:
+        root = ElementTree.parse(launch_file).getroot()
+    except (OSError, ElementTree.ParseError) as error:
+        raise BadLaunchPath(str(launch_file), str(error)) from error
+    return {arg.get("name", "") for arg in root.findall("arg") if arg.get("value") is None}
+
+
+def launch_command(launchpath: LaunchPath, declared: set[str], ip: str, port: int) -> list[str]:
+    """The command that starts a launch file for a robot.
+
+    Args:
+        launchpath: Package and launch file.
+        declared: Arguments that the file takes.
+        ip: Address of the robot, passed as `nao_ip` to a file that declares it.
+        port: Port of its NAOqi, passed as `nao_port` likewise.
+    """
+    robot = {"nao_ip": ip, "nao_port": str(port)}
+    return [
+        "roslaunch",
+        *launchpath,
+        *(f"{name}:={value}" for name, value in robot.items() if name in declared),
+    ]
+
+
+def launch_supervisor(launchpath: LaunchPath, ip: str, port: int, namespace: str) -> Supervisor:
+    """A supervisor for a launch file; not started.
+
+    Args:
+        launchpath: Package and launch file.
+        ip: Address of the robot.
+        port: Port of its NAOqi.
+        namespace: ROS namespace that the nodes of the file start in.
+
+    Raises:
+        BadLaunchPath: If there is no such file.
+    """
+    declared = declared_arguments(find_launch_file(launchpath))
+    return Supervisor(
+        launch_command(launchpath, declared, ip, port),
+        name=" ".join(("roslaunch", *launchpath)),
+        environment={"ROS_NAMESPACE": namespace},
+    )

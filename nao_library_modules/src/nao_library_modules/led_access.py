@@ -1,0 +1,147 @@
+"""ALLeds and the LED values in ALMemory of one robot, as the light functions use them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from .light_names import LightNames
+from .light_state import Values, light_intensity, memory_keys, restoring_calls
+from .memory_functions import MEMORY
+from .robot import CLEAN_UP_LIMIT
+
+LEDS = "ALLeds"
+
+
+class LedAccess:
+    """Names, values and calls of the LEDs. Used from the thread that executes goals only.
+
+    The names are read from the robot when they are first needed and after each reconnection, for the robot
+    behind a new connection may be another one, and does not know the groups that were made on the last one.
+    """
+
+    def __init__(
+        self,
+        robot: Any,
+        call: Callable[..., Any],
+        call_all: Callable[..., list[Any]],
+        call_now: Callable[..., Any],
+    ) -> None:
+        """Keep the ways to call.
+
+        Args:
+            robot: Proxies and connection.
+            call: Calls a method; preemption interrupts it.
+            call_all: Calls a method several times at once; preemption interrupts them.
+            call_now: Calls a quick method whatever happens.
+        """
+        self._robot = robot
+        self._call = call
+        self._call_all = call_all
+        self._call_now = call_now
+        self._names: LightNames | None = None
+        self._generation: int | None = None
+
+    @property
+    def names(self) -> LightNames:
+        """Names of lights and groups, read from the robot when they are not known yet.
+
+        Raises:
+            NaoError: If the robot cannot be asked.
+        """
+        if self._names is None or self._generation != self._robot.connection.generation:
+            return self.read_names()
+        return self._names
+
+    @property
+    def groups(self) -> Mapping[str, tuple[str, ...]]:
+        """Name of each group -> names of the lights in it."""
+        return self.names.groups
+
+    def read_names(self) -> LightNames:
+        """Read the names of lights and groups from the robot.
+
+        Raises:
+            NaoError: If the robot cannot be asked.
+        """
+        generation = self._robot.connection.generation
+        proxy = self._proxy()
+        short_names = self._call(proxy, "listLEDs")
+        group_names = self._call(proxy, "listGroups")
+        # All at once: one after the other, well over a hundred calls take a second on a wireless network.
+        devices = self._call_all(proxy, "listLED", [(name,) for name in short_names])
+        members = self._call_all(proxy, "listGroup", [(name,) for name in group_names])
+        self._names = LightNames.from_listings(
+            dict(zip(short_names, devices)), dict(zip(group_names, members))
+        )
+        self._generation = generation
+        return self._names
+
+    def create_group(self, name: str, lights: Sequence[str]) -> None:
+        """Make a group on the robot; groups in it are resolved, for ALLeds promises to take lights only."""
+        names = self.names.with_group(name, lights)
+        self._call(self._proxy(), "createGroup", name, list(names.groups[name]))
+        self._names = names
+
+    def call(self, method: str, arguments: Sequence[tuple[Any, ...]], together: bool) -> None:
+        """Call ALLeds once for each tuple of arguments, in order or at the same time."""
+        if together:
+            self._call_all(self._proxy(), method, arguments)
+        else:
+            for values in arguments:
+                self._call(self._proxy(), method, *values)
+
+    def list_names(self, method: str) -> list[str]:
+        """Names as the robot lists them.
+
+        Args:
+            method: listLEDs or listGroups.
+        """
+        return list(self._call(self._proxy(), method))
+
+    def read(self, lights: Iterable[str]) -> Values:
+        """Values of the LEDs behind lights and groups, 0..1.
+
+        Raises:
+            NaoError: If the robot cannot be asked or does not tell the value of an LED.
+        """
+        return self._read(self.names.devices(lights), self._call)
+
+    def intensities_now(self, lights: Iterable[str]) -> dict[str, float]:
+        """Intensities of the single lights behind lights and groups; preemption does not interrupt this.
+
+        Raises:
+            NaoError: If the robot cannot be asked or does not tell the value of an LED.
+        """
+        names = self._names  # not read again: that could be interrupted
+        if names is None:
+            return {}
+        values = self._read(names.devices(lights), self._call_now)
+        return {light: light_intensity(names, light, values) for light in names.expand(lights)}
+
+    def _read(self, devices: Sequence[str], call: Callable[..., Any]) -> Values:
+        values = call(self._robot.proxy(MEMORY), "getListData", memory_keys(devices))
+        for device, value in zip(devices, values):
+            if not isinstance(value, (int, float)):
+                raise NaoError(f"the robot's memory holds {value!r} as the value of LED {device!r}")
+        return dict(zip(devices, values))
+
+    def restorer(self, lights: Sequence[str]) -> Callable[[], None]:
+        """A function that gives lights and groups the values back that they have now."""
+        names = self.names
+        values = self.read(lights)
+
+        def restore() -> None:
+            proxy = self._proxy()
+            pending = [
+                proxy.call_async(method, *args) for method, args in restoring_calls(names, lights, values)
+            ]
+            for call in pending:
+                call.result(timeout=CLEAN_UP_LIMIT)
+
+        return restore
+
+    def _proxy(self) -> Any:
+        return self._robot.proxy(LEDS)

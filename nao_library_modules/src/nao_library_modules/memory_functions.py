@@ -1,0 +1,149 @@
+"""The robot's memory for every module: functions with `str_param` as argument and texts as answers."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+from .errors import BadGoal
+from .function_chain import checked_by
+
+MEMORY = "ALMemory"
+
+
+def parse_assignment(text: str) -> tuple[str, Any]:
+    """Split `key=value`; the value is JSON, or plain text where it is not.
+
+    Raises:
+        BadGoal: If there is no key or no equals sign.
+    """
+    key, equals, value = text.partition("=")
+    key = key.strip()
+    if not equals or not key:
+        raise BadGoal("str_param", text, "'key=value', the value as JSON or plain text")
+    try:
+        return key, json.loads(value)
+    except ValueError:
+        return key, value
+
+
+def parse_keys(text: str) -> list[str]:
+    """Split keys at commas."""
+    return [key.strip() for key in text.split(",") if key.strip()]
+
+
+def _check_assignment(_self: MemoryFunctions, str_param: str) -> None:
+    parse_assignment(str_param)
+
+
+def _check_key(_self: MemoryFunctions, str_param: str) -> None:
+    if not str_param.strip():
+        raise BadGoal("str_param", str_param, "the name of a key or an event", problem="it is empty")
+
+
+def _check_keys(_self: MemoryFunctions, str_param: str) -> None:
+    if not parse_keys(str_param):
+        raise BadGoal("str_param", str_param, "keys, separated by commas", problem="it names no key")
+
+
+class MemoryFunctions:
+    """Functions of ALMemory. To be mixed into a class with `robot`, `call` and `events`."""
+
+    robot: Any  # Robot
+    call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts
+    events: Any  # EventRelay
+
+    def memory_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "getData": self.get_data,
+            "getListData": self.get_list_data,
+            "getDataList": self.get_data_list,
+            "getEventList": self.get_event_list,
+            "getMicroEventList": self.get_micro_event_list,
+            "getEventHistory": self.get_event_history,
+            "getType": self.get_type,
+            "getTimestamp": self.get_timestamp,
+            "insertData": self.insert_data,
+            "removeData": self.remove_data,
+            "raiseEvent": self.raise_event,
+            "raiseMicroEvent": self.raise_micro_event,
+            "subscribeToEvent": self.subscribe_to_event,
+            "unsubscribeToEvent": self.unsubscribe_to_event,
+            "ping": self.ping,
+        }
+
+    def _memory(self, method: str, *args: Any) -> Any:
+        return self.call(self.robot.proxy(MEMORY), method, *args)
+
+    @checked_by(_check_key)
+    def get_data(self, str_param: str) -> list[Any]:
+        """The value of one key."""
+        return [self._memory("getData", str_param.strip())]
+
+    @checked_by(_check_keys)
+    def get_list_data(self, str_param: str) -> list[Any]:
+        """The values of several keys, in order; None for a key that is not there."""
+        return list(self._memory("getListData", parse_keys(str_param)))
+
+    def get_data_list(self, str_param: str) -> list[str]:
+        """The keys whose name contains a text; all keys for an empty text."""
+        return list(self._memory("getDataList", str_param))
+
+    def get_event_list(self) -> list[str]:
+        """The names of all events."""
+        return list(self._memory("getEventList"))
+
+    def get_micro_event_list(self) -> list[str]:
+        """The names of all micro events."""
+        return list(self._memory("getMicroEventList"))
+
+    @checked_by(_check_key)
+    def get_event_history(self, str_param: str) -> list[Any]:
+        """The past values of a key, each with its time in s and us."""
+        return list(self._memory("getEventHistory", str_param.strip()))
+
+    @checked_by(_check_key)
+    def get_type(self, str_param: str) -> list[str]:
+        """The kind of a key: Data, Event or MicroEvent."""
+        return [self._memory("getType", str_param.strip())]
+
+    @checked_by(_check_key)
+    def get_timestamp(self, str_param: str) -> list[Any]:
+        """The value of a key and when it was written, in s and us."""
+        return list(self._memory("getTimestamp", str_param.strip()))
+
+    @checked_by(_check_assignment)
+    def insert_data(self, str_param: str) -> None:
+        """Write a key: `key=value`."""
+        self._memory("insertData", *parse_assignment(str_param))
+
+    @checked_by(_check_key)
+    def remove_data(self, str_param: str) -> None:
+        """Delete a key."""
+        self._memory("removeData", str_param.strip())
+
+    @checked_by(_check_assignment)
+    def raise_event(self, str_param: str) -> None:
+        """Write an event and tell its subscribers: `name=value`."""
+        self._memory("raiseEvent", *parse_assignment(str_param))
+
+    @checked_by(_check_assignment)
+    def raise_micro_event(self, str_param: str) -> None:
+        """Write a micro event and tell its subscribers: `name=value`."""
+        self._memory("raiseMicroEvent", *parse_assignment(str_param))
+
+    @checked_by(_check_key)
+    def subscribe_to_event(self, str_param: str) -> None:
+        """Republish an event on the topic `memory_events` from now on."""
+        self.events.subscribe(str_param.strip())
+
+    @checked_by(_check_key)
+    def unsubscribe_to_event(self, str_param: str) -> None:
+        """Stop republishing an event."""
+        self.events.unsubscribe(str_param.strip())
+
+    def ping(self) -> list[bool]:
+        """Whether the robot's memory answers."""
+        return [bool(self._memory("ping"))]

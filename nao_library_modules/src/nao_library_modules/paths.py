@@ -1,0 +1,29 @@
+"""Where the configuration files of this package are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+PACKAGE = "nao_library_modules"
+
+
+def config_file(name: str) -> Path:
+    """Path of a file in `config`: beside the sources, or in the share directory of an installation.
+
+    Raises:
+        FileNotFoundError: If it is in neither place.
+    """
+    beside = Path(__file__).resolve().parents[2] / "config" / name
+    if beside.is_file():
+        return beside
+    import rospkg  # only an installation gets here, and it has ROS
+
+    try:
+        installed = Path(rospkg.RosPack().get_path(PACKAGE)) / "config" / name
+    except rospkg.ResourceNotFound:
+        installed = None
+    if installed is not None and installed.is_file():
+        return installed
+    raise FileNotFoundError(
+        f"no configuration file {name}: looked beside the sources and in package {PACKAGE}"
+    )

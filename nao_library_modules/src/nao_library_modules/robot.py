@@ -1,0 +1,115 @@
+"""The robot as a module sees it: its proxies by name, its connection, calls that can be interrupted."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import naoqi
+from naoqi.errors import NaoError
+
+from .interrupt import Interrupt
+
+# A cancelled call ends at once on a robot that knows cancellation. One that does not must not hold up
+# preemption.
+CANCEL_LIMIT = 0.5
+# Clean-up calls cannot be interrupted, so they are bounded.
+CLEAN_UP_LIMIT = 2.0
+
+
+class Robot:
+    """Proxies of one robot. Made before the robot can be reached; calls fail clearly until it can.
+
+    Attributes:
+        connection: The connection that all proxies share.
+        address: `ip:port`, for texts.
+    """
+
+    def __init__(self, ip: str, port: int) -> None:
+        """Begin to connect in the background.
+
+        Args:
+            ip: Address or host name of the robot.
+            port: Port of its NAOqi.
+        """
+        self.address = f"{ip}:{port}"
+        self.connection = naoqi.connection(ip, port, wait=False)
+        self._ip = ip
+        self._port = port
+        self._proxies: dict[str, Any] = {}
+        self._lock = threading.Lock()
+
+    def proxy(self, name: str) -> Any:
+        """Proxy of a NAOqi module, the same object every time."""
+        proxy = self._proxies.get(name)
+        if proxy is None:
+            with self._lock:
+                proxy = self._proxies.setdefault(name, naoqi.ALProxy(name, self._ip, self._port, lazy=True))
+        return proxy
+
+
+class _Countdown:
+    """Wakes a waiter when all calls are done, one failed, or the interrupt came."""
+
+    def __init__(self, count: int) -> None:
+        self._lock = threading.Lock()
+        self._left = count
+        self.event = threading.Event()
+
+    def call_done(self, call: Any) -> None:
+        """Count a call; runs in a thread of libqi."""
+        with self._lock:
+            self._left -= 1
+            last = self._left == 0
+        # Asking a finished call for its result does not block.
+        if last or _error_of(call) is not None:
+            self.event.set()
+
+
+def _error_of(call: Any) -> NaoError | None:
+    try:
+        call.result(timeout=0)
+    except NaoError as error:
+        return error
+    return None
+
+
+def wait_for_calls(calls: Sequence[Any], interrupt: Interrupt) -> list[Any]:
+    """Wait until all calls are done, one fails, or an interrupt comes; then cancel those still running.
+
+    Args:
+        calls: What `proxy.call_async` returned.
+        interrupt: Ends the wait.
+
+    Returns:
+        The results, in order.
+
+    Raises:
+        NaoError: Of the first call that failed.
+        Preempted: Or whatever reason the interrupt has.
+    """
+    if not calls:
+        return []
+    countdown = _Countdown(len(calls))
+    for call in calls:
+        call.add_done_callback(countdown.call_done)
+    with interrupt.waking(countdown.event.set):
+        countdown.event.wait()  # no limit: the proxy layer fails calls to a lost robot
+    running = [call for call in calls if not call.done()]
+    if running:
+        _cancel(running)
+        interrupt.check()
+        raise next(error for call in calls if call not in running for error in [_error_of(call)] if error)
+    return [call.result(timeout=0) for call in calls]
+
+
+def _cancel(calls: Iterable[Any]) -> None:
+    """Cancel calls and see them end, so that they change nothing any more when clean-up begins."""
+    calls = list(calls)
+    ended = [threading.Event() for _ in calls]
+    for call, event in zip(calls, ended):
+        call.add_done_callback(lambda _, event=event: event.set())
+        call.cancel()
+    for event in ended:
+        event.wait(CANCEL_LIMIT)

@@ -1,0 +1,120 @@
+"""Everything a module needs of a running ROS node, in one place that tests can replace."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import actionlib
+import rospy
+
+from nao_library_msgs.msg import MemoryEvent
+
+from .answers import json_of
+from .diagnostics import DiagnosticsPublisher
+from .health import Report
+from .ros_clock import RosClock
+
+EVENT_TOPIC = "memory_events"
+
+
+class RosEdge:
+    """The ROS side of a module. Needs `rospy.init_node` before.
+
+    Attributes:
+        clock: ROS time.
+
+    ROS API:
+        Publishes `memory_events` (nao_library_msgs/MemoryEvent) and `/diagnostics`.
+    """
+
+    def __init__(self) -> None:
+        """Make nothing yet: what a module does not use is not made."""
+        self.clock = RosClock()
+
+    @property
+    def namespace(self) -> str:
+        """Namespace of the node."""
+        return rospy.get_namespace()
+
+    def action_server(
+        self, name: str, action: type, execute: Callable[[Any], None], on_preempt: Callable[[], None]
+    ) -> actionlib.SimpleActionServer:
+        """Make an action server; it is not started.
+
+        Args:
+            name: Relative name of the action.
+            action: Its type.
+            execute: Carries out a goal, in the server's own thread.
+            on_preempt: Called under actionlib's lock: it must do no more than set a flag.
+        """
+        server = actionlib.SimpleActionServer(name, action, execute_cb=execute, auto_start=False)
+        server.register_preempt_callback(on_preempt)
+        return server
+
+    def event_sink(self) -> Callable[[str, Any], None]:
+        """A function that publishes an event of the robot's memory: name and value."""
+        publisher = rospy.Publisher(EVENT_TOPIC, MemoryEvent, queue_size=100)
+
+        def publish(name: str, value: Any) -> None:
+            event = MemoryEvent(name=name, value=json_of(value), type=_json_type(value))
+            event.header.stamp = rospy.Time.now()
+            publisher.publish(event)
+
+        return publish
+
+    def publish_diagnostics(
+        self, hardware_id: str, reports: Mapping[str, Callable[[], Report]]
+    ) -> DiagnosticsPublisher:
+        """Begin to publish reports."""
+        return DiagnosticsPublisher(hardware_id, reports)
+
+    def on_shutdown(self, action: Callable[[], None]) -> None:
+        """Call `action` when the node ends, while it can still publish."""
+        rospy.on_shutdown(action)
+
+
+def _json_type(value: Any) -> str:
+    if value is None:
+        return "null"
+    for kind, name in (
+        (bool, "bool"),
+        (int, "int"),
+        (float, "float"),
+        (dict, "object"),
+        ((list, tuple), "list"),
+    ):
+        if isinstance(value, kind):
+            return name
+    return "string"
+
+
+class RosoutHandler(logging.Handler):
+    """Passes on what the loggers of plain Python modules say to the log of the node."""
+
+    _LEVELS = (
+        (logging.CRITICAL, rospy.logfatal),
+        (logging.ERROR, rospy.logerr),
+        (logging.WARNING, rospy.logwarn),
+        (logging.INFO, rospy.loginfo),
+    )
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Log one record, at the same level."""
+        text = self.format(record)
+        for level, write in self._LEVELS:
+            if record.levelno >= level:
+                write("%s", text)
+                return
+        rospy.logdebug("%s", text)
+
+
+def forward_logs(*names: str) -> None:
+    """Pass on what these loggers say to the log of the node."""
+    handler = RosoutHandler()
+    for name in names:
+        logger = logging.getLogger(name)
+        logger.addHandler(handler)
+        logger.setLevel(logging.INFO)
+        logger.propagate = False

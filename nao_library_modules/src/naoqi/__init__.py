@@ -1,0 +1,54 @@
+"""NAOqi for Python 3: the face of the robot maker's SDK over libqi, for a robot or the simulator alike.
+
+    from naoqi import ALProxy
+
+    speech = ALProxy("ALTextToSpeech", "nao.local", 9559)
+    speech.say("Hello")
+
+Beyond the SDK: calls without waiting (`proxy.call_async`), time limits, connections that come back by
+themselves (`naoqi.connection`), and errors that say what to do about them (`naoqi.errors`).
+"""
+
+from __future__ import annotations
+
+from .broker import ALBroker
+from .calls import Call
+from .errors import (
+    BadArguments,
+    BrokerError,
+    CallCanceled,
+    CallTimeout,
+    ConnectionLost,
+    NaoError,
+    RobotError,
+    RobotUnreachable,
+    UnknownMethod,
+    UnknownModule,
+)
+from .module import ALModule
+from .proxy import ALProxy
+from .registry import close_all, connection
+from .robot_connection import Connection
+from .state import State, Timing
+
+__all__ = [
+    "ALBroker",
+    "ALModule",
+    "ALProxy",
+    "BadArguments",
+    "BrokerError",
+    "Call",
+    "CallCanceled",
+    "CallTimeout",
+    "Connection",
+    "ConnectionLost",
+    "NaoError",
+    "RobotError",
+    "RobotUnreachable",
+    "State",
+    "Timing",
+    "UnknownMethod",
+    "UnknownModule",
+    "close_all",
+    "connection",
+]

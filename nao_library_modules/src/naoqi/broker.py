@@ -1,0 +1,280 @@
+"""ALBroker: serves modules of this process to the robot."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from typing import Any, Dict, List
+
+from .errors import BrokerError, NaoError, RobotUnreachable
+from .registry import CONNECT_TIMEOUT, connection
+from .session import answered, connect_session, new_session
+from .state import State
+from .worker import Worker
+
+logger = logging.getLogger("naoqi")
+
+ANY_ADDRESS = ("", "0.0.0.0")
+STEP_LIMIT = 5.0
+"""Time limit of each step of registering a module, in s."""
+NAME_IN_USE = "already registered"
+
+_open_brokers: List[ALBroker] = []
+_open_brokers_lock = threading.Lock()
+
+
+class ALBroker:
+    """Listens for the robot, so that it can call the modules (`ALModule`) of this process.
+
+    The newest broker that is not shut down is the one that `ALProxy(name)` and `ALModule(name)` use. It has a
+    session of its own, so that shutting it down frees its port and the names of its modules. After a loss of
+    the connection, or of that session, it registers its modules again.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        listen_ip: str,
+        listen_port: int,
+        robot_ip: str,
+        robot_port: int,
+        *,
+        connect_timeout: float = CONNECT_TIMEOUT,
+    ) -> None:
+        """Connect to the robot and listen.
+
+        Args:
+            name: Name of the broker.
+            listen_ip: Own address on which the robot can call back. `""` and `0.0.0.0` mean any; a robot that
+                runs on this computer is served on the loopback address only.
+            listen_port: Own TCP port; 0 takes a free one.
+            robot_ip: Name or address of the robot.
+            robot_port: TCP port of NAOqi.
+            connect_timeout: Limit of the wait for the robot, in s.
+
+        Raises:
+            RobotUnreachable: If the robot is not there.
+            BrokerError: If the own port is not free.
+        """
+        self._name = name
+        self._listen_ip = listen_ip
+        self._listen_port = listen_port
+        self._lock = threading.RLock()  # guards session and modules, and keeps two restorations apart
+        self._session: Any = None
+        self._modules: Dict[str, Any] = {}
+        self._service_ids: Dict[str, int] = {}
+        self._down = threading.Event()
+        self._worker = Worker(f"naoqi broker {name}")
+        self.connection = connection(robot_ip, robot_port, connect_timeout=connect_timeout)
+        try:
+            with self._lock:
+                self._open(self._listen_port)
+        except NaoError:
+            self._close_session()
+            raise
+        self.connection.add_listener(self._on_state)
+        with _open_brokers_lock:
+            _open_brokers.append(self)
+
+    def __repr__(self) -> str:
+        """Name and robot."""
+        return f"<ALBroker {self._name} of {self.connection.address}>"
+
+    def getName(self) -> str:
+        """Name of the broker."""
+        return self._name
+
+    def getIP(self) -> str:
+        """Address on which it listens."""
+        return self._host_to_listen_on()
+
+    def getPort(self) -> int:
+        """TCP port on which it listens; 0 while it does not."""
+        with self._lock:
+            endpoints = self._session.endpoints() if self._session is not None else []
+        return int(endpoints[0].rsplit(":", 1)[1]) if endpoints else 0
+
+    def isModulePresent(self, name: str) -> bool:
+        """Whether the robot, or this broker, has a module of that name."""
+        return name in self._modules or name in self.connection.module_names()
+
+    def shutdown(self) -> None:
+        """Serve nothing more; a second time does nothing."""
+        self._down.set()  # first, because a restoration under way holds the lock
+        with _open_brokers_lock:
+            if self in _open_brokers:
+                _open_brokers.remove(self)
+        self.connection.remove_listener(self._on_state)
+        self._worker.close()
+        self._close_session()
+        with self._lock:
+            names = list(self._modules)
+            self._modules.clear()
+        for each in names:
+            self.connection.subscriptions.forget_module(each)
+
+    def serve(self, name: str, served: Any) -> None:
+        """Register a module with the robot.
+
+        Args:
+            name: Name of the module.
+            served: The object whose methods libqi serves.
+
+        Raises:
+            BrokerError: If the name is taken, or the broker is shut down.
+            RobotUnreachable: If there is no connection.
+        """
+        with self._lock:
+            if self._down.is_set():
+                raise BrokerError(self._name, "it has been shut down")
+            if name in self._modules:
+                raise BrokerError(self._name, f"it serves a module {name!r} already")
+            if self._session is None:
+                raise self.connection.unreachable()
+            self._register(name, served, patience=0.0)
+            self._modules[name] = served
+            self.connection.subscriptions.own(name)
+
+    def exchange(self, name: str, served: Any) -> None:
+        """Serve another object under the name of a module that is served; its events stay subscribed.
+
+        Raises:
+            NaoError: As `serve` does; then the module is served no more.
+        """
+        subscriptions = self.connection.subscriptions
+        with self._lock:
+            self._withdraw(name)
+            self.serve(name, served)
+        subscriptions.renew([name])
+
+    def withdraw(self, name: str) -> None:
+        """Take a module back; one that is not served is no error."""
+        with self._lock:
+            self._withdraw(name)
+        self.connection.subscriptions.forget_module(name)
+
+    # Called with the lock held.
+
+    def _open(self, port: int) -> None:
+        session = new_session()
+        host = self._host_to_listen_on()
+        try:
+            session.listen(f"tcp://{host}:{port}")
+        except RuntimeError as error:
+            session.close()
+            raise BrokerError(self._name, f"cannot listen on {host}:{port} ({str(error).strip()})") from error
+        robot = self.connection
+        try:
+            connect_session(session, robot.host, robot.port, robot.timing.connect_limit)
+        except RobotUnreachable:
+            session.close()
+            raise
+        session.disconnected.connect(lambda _reason: self._worker.submit(self._restore))
+        self._session = session
+
+    def _withdraw(self, name: str) -> None:
+        self._modules.pop(name, None)
+        service_id = self._service_ids.pop(name, None)
+        if service_id is not None and self._session is not None:
+            answered(self._session.unregisterService(service_id, _async=True), STEP_LIMIT)
+
+    def _register(self, name: str, served: Any, patience: float) -> None:
+        """Register one module; a name in use is tried again until the patience (s) is over.
+
+        A robot that was silent for a while may learn late that our former session is gone.
+        """
+        end, delay = time.monotonic() + patience, 0.05
+        while True:
+            future = self._session.registerService(name, served, _async=True)
+            if not answered(future, STEP_LIMIT):
+                reason = f"no answer to the registration of {name}"
+                raise RobotUnreachable(self.connection.host, self.connection.port, reason)
+            if not future.hasError():
+                self._service_ids[name] = future.value()
+                return
+            text = future.error().strip()
+            if NAME_IN_USE not in text:
+                raise BrokerError(self._name, f"module {name!r} cannot be registered: {text}")
+            if time.monotonic() >= end or self._down.wait(delay):
+                raise BrokerError(self._name, f"the robot has a module {name!r} already; choose another name")
+            delay = min(2.0 * delay, 0.5)
+
+    def _host_to_listen_on(self) -> str:
+        if self._listen_ip not in ANY_ADDRESS:
+            return self._listen_ip
+        robot = self.connection.host
+        return "127.0.0.1" if robot == "localhost" or robot.startswith("127.") else "0.0.0.0"
+
+    def _close_session(self) -> None:
+        with self._lock:
+            session, self._session = self._session, None
+            self._service_ids.clear()
+        if session is not None:
+            session.close()
+
+    # Called by the connection and by libqi; the work is done in the thread of the broker.
+
+    def _on_state(self, state: State) -> None:
+        if state is State.CONNECTED:
+            self._worker.submit(self._restore)
+        elif state is State.LOST:
+            self._worker.submit(self._close_session)
+        elif state is State.CLOSED:
+            self.shutdown()
+
+    def _restore(self) -> None:
+        """If the session is gone, open it again, register the modules and subscribe them to their events."""
+        delay = 0.2
+        while not self._down.is_set() and self.connection.state is State.CONNECTED:
+            with self._lock:
+                if self._session is not None and self._session.isConnected():
+                    return
+                self._close_session()
+                try:
+                    self._reopen()
+                    break
+                except NaoError as error:
+                    logger.error("broker %s cannot serve again yet: %s", self._name, error)
+            self._down.wait(delay)
+            delay = min(2.0 * delay, 2.0)
+        else:
+            return
+        self._register_again()
+
+    def _reopen(self) -> None:
+        try:
+            self._open(self._listen_port)
+        except BrokerError as error:
+            # Our own former connections may keep a fixed port busy for a minute; the robot is told.
+            logger.warning("%s; taking another port", error)
+            self._open(0)
+
+    def _register_again(self) -> None:
+        done = []
+        with self._lock:
+            for name, served in self._modules.items():
+                try:
+                    self._register(name, served, patience=STEP_LIMIT)
+                    done.append(name)
+                except NaoError as error:
+                    logger.error("%s", error)
+        if done:
+            logger.warning("broker %s: modules registered again: %s", self._name, ", ".join(done))
+            self.connection.subscriptions.renew(done)
+
+
+def current_broker() -> ALBroker:
+    """The newest broker that is not shut down.
+
+    Raises:
+        BrokerError: If there is none.
+    """
+    with _open_brokers_lock:
+        if _open_brokers:
+            return _open_brokers[-1]
+    raise BrokerError(
+        "",
+        "there is no broker: create ALBroker(name, listen_ip, listen_port, robot_ip, robot_port) first, "
+        "or give the address of the robot as in ALProxy(module, ip, port)",
+    )

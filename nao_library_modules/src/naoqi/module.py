@@ -1,0 +1,83 @@
+"""ALModule: a module of this process that the robot can call."""
+
+from __future__ import annotations
+
+from typing import Any, List
+
+from .broker import ALBroker, current_broker
+from .errors import UnknownMethod
+from .served import public_methods, served_object
+from .translate import closest_names
+from .worker import Worker
+
+
+class ALModule:
+    """Base class of modules: the public methods of a subclass are served under its name.
+
+        class Buttons(ALModule):
+            def on_touch(self, event, value, message):
+                print(event, value)
+
+        broker = ALBroker("broker", "0.0.0.0", 0, "nao.local", 9559)
+        buttons = Buttons("Buttons")
+        ALProxy("ALMemory").subscribeToEvent("FrontTactilTouched", "Buttons", "on_touch")
+
+    All calls of one module run one after the other, in a thread of the module: events keep their order, and a
+    callback may take its time and call the robot. A callback of an event may take fewer than the three
+    arguments. What a callback raises is logged with its trace and returned to the caller as an error.
+    """
+
+    def __init__(self, name: str) -> None:
+        """Register the module with the newest broker.
+
+        Args:
+            name: Name under which the robot finds it.
+
+        Raises:
+            BrokerError: If there is no broker, or if the name is taken.
+            RobotUnreachable: If there is no connection.
+        """
+        self.__name = name
+        self.__broker: ALBroker = current_broker()
+        self.__worker = Worker(f"naoqi module {name}")
+        self.__methods: List[str] = public_methods(self, ALModule)
+        self.__broker.serve(name, self.__served())
+
+    def getName(self) -> str:
+        """Name of the module."""
+        return self.__name
+
+    def getBrokerName(self) -> str:
+        """Name of the broker that serves it."""
+        return self.__broker.getName()
+
+    def ping(self) -> bool:
+        """True, as proof that calls arrive."""
+        return True
+
+    def exit(self) -> None:
+        """Take the module back from the robot; it is not called any more."""
+        self.__broker.withdraw(self.__name)
+        self.__worker.close()
+
+    def BIND_PYTHON(self, module_name: str, method: str, _parameters: int = -1) -> None:
+        """Serve a method that is not served by itself: one with a leading underscore, or one added later.
+
+        Args:
+            module_name: Name of this module.
+            method: Name of the method.
+
+        Raises:
+            UnknownMethod: If the module has no such method.
+        """
+        if not callable(getattr(self, method, None)):
+            known = [
+                each for each in dir(self) if not each.startswith("__") and callable(getattr(self, each))
+            ]
+            raise UnknownMethod(module_name, method, closest_names(method, known), known)
+        if method not in self.__methods:
+            self.__methods.append(method)
+            self.__broker.exchange(self.__name, self.__served())
+
+    def __served(self) -> Any:
+        return served_object(self, self.__name, self.__methods, self.__worker)

@@ -1,0 +1,233 @@
+"""ALProxy: the face of a remote module, as the maker's SDK has it."""
+
+from __future__ import annotations
+
+from typing import Any, List, Optional
+
+from . import introspection
+from .broker import current_broker
+from .calls import Call
+from .errors import BadArguments
+from .registry import CONNECT_TIMEOUT, connection
+from .remote import RemoteMethod, RemoteModule
+from .robot_connection import Connection
+
+
+class ALProxy:
+    """A module of the robot; its methods are attributes of this object.
+
+        motion = ALProxy("ALMotion", "nao.local", 9559)
+        motion.setStiffnesses("Head", 1.0)
+        task = motion.post.angleInterpolation("HeadYaw", 0.5, 1.0, True)
+        motion.wait(task, 0)
+
+    A proxy outlives the loss of its connection: once the robot is back, it works again. It may be used from
+    any thread. What can go wrong is listed in `naoqi.errors`.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        ip: Optional[str] = None,
+        port: Optional[int] = None,
+        *,
+        timeout: Optional[float] = None,
+        connect_timeout: float = CONNECT_TIMEOUT,
+        lazy: bool = False,
+    ) -> None:
+        """Find the module.
+
+        Args:
+            name: Name of the module, such as `ALMotion`.
+            ip: Name or address of the robot; without, the one of the newest ALBroker.
+            port: TCP port of NAOqi.
+            timeout: Limit of each waiting call, in s. None waits as long as the connection lives.
+            connect_timeout: Limit of the wait for the robot, in s.
+            lazy: Do not wait for the robot: it is looked for in the background, and calls fail at once
+                until it is there.
+
+        Raises:
+            RobotUnreachable: If the robot is not there (unless lazy).
+            UnknownModule: If it has no such module (unless lazy).
+            BrokerError: If no address is given and there is no ALBroker.
+        """
+        if not isinstance(name, str) or not name:
+            reason = "the first is the name of a module"
+            raise BadArguments("naoqi", "ALProxy", (name, ip, port), reason=reason)
+        if ip is None:
+            robot = current_broker().connection
+        elif port is None:
+            robot = connection(ip, wait=not lazy, connect_timeout=connect_timeout)
+        else:
+            robot = connection(ip, port, wait=not lazy, connect_timeout=connect_timeout)
+        self._remote = RemoteModule(name, robot, timeout)
+        self.post = Post(self._remote)
+        if not lazy:
+            self._remote.service()
+
+    def __getattr__(self, name: str) -> Any:
+        """Find a remote method, signal or property; methods are found only once.
+
+        Raises:
+            UnknownMethod: If the module has nothing of that name.
+        """
+        if name.startswith("__") or name == "_remote":
+            raise AttributeError(name)  # Python asking for its own protocols, or an object half made
+        found = self._remote.attribute(name)
+        if isinstance(found, RemoteMethod) and self._remote.connection.live is not None:
+            self.__dict__[name] = found
+        return found
+
+    def __dir__(self) -> List[str]:
+        """Own and remote names."""
+        remote = self._remote.method_names() if self._remote.connection.live is not None else []
+        return sorted({*super().__dir__(), *remote})
+
+    def __repr__(self) -> str:
+        """Module, address and state."""
+        robot = self._remote.connection
+        return f"<ALProxy {self._remote.name} at {robot.address} ({robot.state})>"
+
+    @property
+    def connection(self) -> Connection:
+        """The connection to the robot: its state, latency and last error."""
+        return self._remote.connection
+
+    def call(self, method: str, *arguments: Any) -> Any:
+        """Call a method by its name, and wait for what it returns."""
+        return getattr(self, method)(*arguments)
+
+    def call_async(self, method: str, *arguments: Any) -> Call:
+        """Call a method by its name without waiting.
+
+        Raises:
+            RobotUnreachable: If there is no connection now.
+            UnknownMethod: If the module does not have it.
+            BadArguments: If an argument cannot travel.
+        """
+        return self._method(method).start(*arguments)
+
+    def pCall(self, method: str, *arguments: Any) -> int:
+        """Post a call by its name, as `post.method` does."""
+        return getattr(self.post, method)(*arguments)
+
+    # What every NAOqi module has.
+
+    def wait(self, task: int, timeout_ms: int = 0) -> bool:
+        """Wait for the end of a posted call.
+
+        Args:
+            task: What `post.method()` returned.
+            timeout_ms: Limit in ms; 0 waits for ever.
+
+        Returns:
+            True if the limit was over first.
+
+        Raises:
+            NaoError: The error of the call, if it failed.
+        """
+        tasks = self._remote.connection.tasks
+        if self._is_the_robots(task, "wait"):
+            return self._remote.method("wait")(task, timeout_ms)
+        return tasks.wait(task, timeout_ms / 1000.0 if timeout_ms > 0 else None)
+
+    def stop(self, *arguments: Any) -> Any:
+        """Cancel a posted call, given its number; one that is finished already is no error.
+
+        A module may have a `stop` of its own: it gets the call if the arguments are no number of ours.
+        """
+        task = arguments[0] if len(arguments) == 1 else None
+        if self._is_the_robots(task, "stop"):
+            return self._remote.method("stop")(*arguments)
+        return self._remote.connection.tasks.stop(task)
+
+    def isRunning(self, task: int) -> bool:
+        """Whether a posted call is still under way."""
+        if self._is_the_robots(task, "isRunning"):
+            return self._remote.method("isRunning")(task)
+        return self._remote.connection.tasks.is_running(task)
+
+    def ping(self) -> bool:
+        """True if the module answers.
+
+        Raises:
+            RobotUnreachable: If there is no connection.
+        """
+        if self._remote.offers("ping"):
+            return self._remote.method("ping")()
+        self._remote.method("isStatsEnabled")()  # libqi answers that for every object
+        return True
+
+    def getMethodList(self) -> List[str]:
+        """Names of the methods of the module."""
+        if self._remote.offers("getMethodList"):
+            return self._remote.method("getMethodList")()
+        return self._remote.method_names()
+
+    def getMethodHelp(self, method: str) -> List[Any]:
+        """`[name, [[parameter, description], ...], return name, return description]` of a method."""
+        if self._remote.offers("getMethodHelp"):
+            return self._remote.method("getMethodHelp")(method)
+        return introspection.method_help(self._remote, method)
+
+    def getModuleHelp(self) -> List[Any]:
+        """`[description, [[language, example], ...]]` of the module."""
+        if self._remote.offers("getModuleHelp"):
+            return self._remote.method("getModuleHelp")()
+        return introspection.module_help(self._remote)
+
+    def getUsage(self, method: str) -> str:
+        """How to call a method."""
+        if self._remote.offers("getUsage"):
+            return self._remote.method("getUsage")(method)
+        return introspection.usage(self._remote, method)
+
+    def _method(self, name: str) -> RemoteMethod:
+        """A remote method, also where this class has one of the same name."""
+        found = self.__dict__.get(name)
+        if not isinstance(found, RemoteMethod):
+            found = self._remote.attribute(name) if hasattr(type(self), name) else getattr(self, name)
+        if not isinstance(found, RemoteMethod):
+            raise BadArguments(self._remote.name, name, (), reason="it is no method, so it cannot be called")
+        return found
+
+    def _is_the_robots(self, task: Any, method: str) -> bool:
+        """Whether a number is none of ours, so that the module of the robot has to know it.
+
+        Raises:
+            BadArguments: If nobody can know it.
+        """
+        if self._remote.connection.tasks.knows(task):
+            return False
+        if self._remote.offers(method):
+            return True
+        reason = "the first must be the number of a posted call, as post.method() returns it"
+        raise BadArguments(self._remote.name, method, (task,), reason=reason)
+
+
+class Post:
+    """`proxy.post.method(...)` calls a method without waiting and returns the number of the call."""
+
+    def __init__(self, remote: RemoteModule) -> None:
+        """Post to this module."""
+        self._remote = remote
+
+    def __getattr__(self, name: str) -> Any:
+        """Find a remote method.
+
+        Raises:
+            UnknownMethod: If the module does not have it.
+        """
+        if name.startswith("__") or name == "_remote":
+            raise AttributeError(name)
+        remote = self._remote
+        found = remote.attribute(name)
+        if not isinstance(found, RemoteMethod):
+            raise BadArguments(remote.name, name, (), reason="it is no method, so it cannot be posted")
+
+        def post(*arguments: Any) -> int:
+            return remote.connection.tasks.add(found.start(*arguments))
+
+        if remote.connection.live is not None:
+            self.__dict__[name] = post
+        return post

@@ -1,0 +1,101 @@
+"""The connections of this process: one for each address, shared by all who ask for it."""
+
+from __future__ import annotations
+
+import atexit
+import threading
+from typing import Dict, Tuple
+
+from .errors import BadArguments, RobotUnreachable
+from .robot_connection import Connection
+from .state import State, Timing
+
+DEFAULT_PORT = 9559
+CONNECT_TIMEOUT = 5.0
+"""Limit of the wait for a robot, in s."""
+
+
+class Registry:
+    """Connections by address."""
+
+    def __init__(self) -> None:
+        """Make an empty registry."""
+        self._lock = threading.Lock()  # guards both tables
+        self._connections: Dict[Tuple[str, int], Connection] = {}
+        self._wanted: Dict[Connection, int] = {}
+        self._closed_at_exit = False
+
+    def get(self, host: str, port: int, wait: bool, limit: float) -> Connection:
+        """The connection to an address; see `connection`."""
+        with self._lock:
+            if not self._closed_at_exit:
+                self._closed_at_exit = True
+                # libqi's threads must not meet an interpreter that is being taken down.
+                atexit.register(self.close_all)
+            found = self._connections.get((host, port))
+            if found is None or found.state is State.CLOSED:
+                found = Connection(host, port, Timing(connect_limit=max(limit, 0.1)))
+                self._connections[host, port] = found
+                self._wanted = {each: count for each, count in self._wanted.items() if each is not found}
+            self._wanted[found] = self._wanted.get(found, 0) + 1
+        if wait:
+            try:
+                found.connect(limit)
+            except RobotUnreachable:
+                self._give_up(found)
+                raise
+        return found
+
+    def close_all(self) -> None:
+        """Close every connection."""
+        with self._lock:
+            connections = list(self._connections.values())
+            self._connections.clear()
+            self._wanted.clear()
+        for each in connections:
+            each.close()
+
+    def _give_up(self, connection: Connection) -> None:
+        """Close a connection that was never made and that nobody else waits for."""
+        with self._lock:
+            self._wanted[connection] = self._wanted.get(connection, 1) - 1
+            unwanted = self._wanted[connection] <= 0 and connection.generation == 0
+            if unwanted:
+                del self._wanted[connection]
+                self._connections.pop((connection.host, connection.port), None)
+        if unwanted:
+            connection.close()
+
+
+_registry = Registry()
+
+
+def connection(
+    ip: str, port: int = DEFAULT_PORT, *, wait: bool = True, connect_timeout: float = CONNECT_TIMEOUT
+) -> Connection:
+    """The connection to the NAOqi at an address, opened by the first who asks.
+
+    Args:
+        ip: Name or IPv4 address of the robot.
+        port: TCP port of NAOqi.
+        wait: Whether to wait until it stands. Without, it is opened in the background, again and again until
+            the robot is there; calls made before then fail at once.
+        connect_timeout: Limit of the wait, in s.
+
+    Raises:
+        BadArguments: If this is no address.
+        RobotUnreachable: If the robot is not there (only with `wait`).
+    """
+    reason = ""
+    if not isinstance(ip, str) or not ip.strip():
+        reason = "the first must be the name or IPv4 address of the robot"
+    elif isinstance(port, bool) or not isinstance(port, int) or not 0 < port < 65536:
+        reason = "the port must be a number from 1 to 65535"
+    if reason:
+        raise BadArguments("naoqi", "connection", (ip, port), reason=reason)
+    return _registry.get(ip.strip(), port, wait, connect_timeout)
+
+
+def close_all() -> None:
+    """Close every connection of this process, as happens by itself at its end."""
+    _registry.close_all()

@@ -1,0 +1,228 @@
+"""Remote modules and their methods, without any magic: what the proxies are made of."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple
+
+import qi
+
+from . import wire
+from .calls import Call
+from .errors import BadArguments, CallTimeout, NaoError, RobotUnreachable
+from .session import Live
+from .signatures import mentions_raw, readable_call
+from .translate import NOT_SENT, CallSite, call_error, unknown_method
+
+if TYPE_CHECKING:
+    from .robot_connection import Connection
+
+FIRST_OWN_UID = 100
+"""libqi numbers the methods of the module itself from here; those below it adds to every object."""
+LOCAL_NAMES = frozenset(("isValid", "metaObject"))
+"""What libqi's own object can do without asking the robot; passed through as it is."""
+
+
+class RemoteModule:
+    """One module of one robot, across losses of the connection.
+
+    Attributes:
+        name: Name of the module.
+        connection: The way to it.
+        timeout: Limit of each waiting call, in s; None for none.
+    """
+
+    def __init__(self, name: str, connection: Connection, timeout: Optional[float] = None) -> None:
+        """Name a module; nothing is sent yet."""
+        self.name = name
+        self.connection = connection
+        self.timeout = timeout
+
+    def service(self) -> Any:
+        """The remote object of the present session.
+
+        Raises:
+            RobotUnreachable: If there is no session.
+            UnknownModule: If the robot does not have the module.
+        """
+        return self.connection.service(self.name)
+
+    def method(self, name: str) -> RemoteMethod:
+        """A method of the module; whether it is there shows when it is called."""
+        kind = SubscribingMethod if self.connection.subscriptions.concerns(self.name, name) else RemoteMethod
+        return kind(self, name)
+
+    def attribute(self, name: str) -> Any:
+        """What the module has under a name: a method, or libqi's own object for a signal or property.
+
+        While there is no connection everything is taken for a method.
+
+        Raises:
+            UnknownMethod: If there is nothing of that name.
+            UnknownModule: If the robot does not have the module.
+        """
+        try:
+            found = self.find(name)
+        except RobotUnreachable:
+            return self.method(name)
+        if isinstance(found, (qi.Signal, qi.Property)) or name in LOCAL_NAMES:
+            return found
+        return self.method(name)
+
+    def find(self, name: str) -> Any:
+        """What libqi has under a name in the present session.
+
+        Raises:
+            RobotUnreachable: If there is no session.
+            UnknownMethod: If there is nothing of that name.
+            UnknownModule: If the robot does not have the module.
+        """
+        service = self.service()
+        found = getattr(service, name, None)
+        if found is not None:
+            return found
+        methods = service.metaObject()["methods"].values()
+        if any(each["name"] == name for each in methods):  # libqi hides what every object has
+            return functools.partial(service.call, name)
+        raise unknown_method(self.name, name, self.method_names())
+
+    def offers(self, name: str) -> bool:
+        """Whether the module itself has a method of that name.
+
+        Raises:
+            RobotUnreachable: If there is no session.
+            UnknownModule: If the robot does not have the module.
+        """
+        return bool(self.overloads(name))
+
+    def descriptions(self) -> List[Dict[str, Any]]:
+        """What the module says of its methods, one dictionary for each overload, as libqi gives it."""
+        methods = self.service().metaObject()["methods"]
+        return [methods[uid] for uid in sorted(methods) if uid >= FIRST_OWN_UID]
+
+    def method_names(self) -> List[str]:
+        """Names of the methods, each once, in the order of the module."""
+        return list(dict.fromkeys(each["name"] for each in self.descriptions()))
+
+    def overloads(self, method: str) -> List[Dict[str, Any]]:
+        """The descriptions of one method."""
+        return [each for each in self.descriptions() if each["name"] == method]
+
+
+class RemoteMethod:
+    """A method of a remote module. It may be kept: after a loss it works again with the next session."""
+
+    __slots__ = ("_bound", "_live", "module", "name")
+
+    def __init__(self, module: RemoteModule, name: str) -> None:
+        """Name a method; nothing is sent yet."""
+        self.module = module
+        self.name = name
+        self._live: Optional[Live] = None
+        self._bound: Any = None
+
+    def __repr__(self) -> str:
+        """`Module.method`."""
+        return f"{self.module.name}.{self.name}"
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call it and wait for what it returns.
+
+        Raises:
+            NaoError: If anything goes wrong, see `naoqi.errors`. A call that runs into the time limit, or
+                that is interrupted from the keyboard, is cancelled on the robot too.
+        """
+        call = self._send(arguments)
+        try:
+            return call.result(self.module.timeout)
+        except (CallTimeout, KeyboardInterrupt):
+            call.cancel()
+            raise
+
+    def start(self, *arguments: Any) -> Call:
+        """Call it without waiting.
+
+        Raises:
+            RobotUnreachable: If there is no session now.
+            UnknownMethod: If the module does not have it.
+            UnknownModule: If the robot does not have the module.
+            BadArguments: If an argument cannot travel.
+        """
+        return self._send(arguments)
+
+    def _send(self, arguments: Tuple[Any, ...]) -> Call:
+        live = self.module.connection.live
+        bound = self._bound if live is self._live and live is not None else self._bind(live)
+        try:
+            sent = wire.to_wire(arguments, self._takes_raw)
+        except wire.UnsendableError as error:
+            raise BadArguments(self.module.name, self.name, arguments, self._readable(), str(error)) from None
+        future = bound(*sent, _async=True)
+        if future.isFinished() and future.hasError() and future.error() in NOT_SENT:
+            # The remote object is stale: its module has left and perhaps come back. Nothing was sent, so that
+            # sending it again is safe.
+            self.module.connection.forget_service(live, self.module.name)
+            future = self._bind(self.module.connection.live)(*sent, _async=True)
+        return Call(future, self, arguments)
+
+    def translate(self, raised: Exception, call: Call) -> NaoError:
+        """The error for what libqi raised at the end of a call."""
+        connection = self.module.connection
+        site = CallSite(
+            connection.host,
+            connection.port,
+            self.module.name,
+            self.name,
+            call.arguments,
+            self._readable,
+            self._method_names,
+        )
+        return call_error(raised, site)
+
+    def _bind(self, live: Optional[Live]) -> Any:
+        self._bound = self.module.find(self.name)
+        self._live = live
+        return self._bound
+
+    def _takes_raw(self) -> bool:
+        return any(mentions_raw(each["parametersSignature"]) for each in self.module.overloads(self.name))
+
+    def _readable(self) -> List[str]:
+        """Signatures in words; none if the connection does not let us ask."""
+        try:
+            overloads = self.module.overloads(self.name)
+        except NaoError:
+            return []
+        return [readable_call(self.name, each["parametersSignature"]) for each in overloads]
+
+    def _method_names(self) -> List[str]:
+        try:
+            return self.module.method_names()
+        except NaoError:
+            return []
+
+
+class SubscribingMethod(RemoteMethod):
+    """A method of ALMemory that begins or ends an event subscription: the connection remembers it."""
+
+    __slots__ = ()
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call it and wait; it is taken down before anybody can go on to the next."""
+        value = super().__call__(*arguments)
+        self.module.connection.subscriptions.note(self.name, arguments)
+        return value
+
+    def start(self, *arguments: Any) -> Call:
+        """Call it without waiting; it is taken down when it has succeeded."""
+
+        def note(call: Call) -> None:
+            try:
+                call.result()
+            except NaoError:
+                return  # whoever made the call hears of it
+            self.module.connection.subscriptions.note(self.name, arguments)
+
+        call = self._send(arguments)
+        call.add_done_callback(note)
+        return call

@@ -1,0 +1,290 @@
+"""The connection to one robot: opened, watched, and opened again for as long as the program wants it.
+
+Threads: a watching thread opens the session, measures its heartbeat and closes it when the robot is silent.
+A second one calls the listeners, so that a slow listener cannot delay the heartbeat. `live` is the one thing
+that calls read, a single reference that changes in one step; everything else is guarded by one condition.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from typing import Any, Callable, List, Optional
+
+from .errors import NaoError, RobotUnreachable
+from .session import Live, answered, open_live
+from .state import Listener, Listeners, State, Timing
+from .subscriptions import EventSubscriptions
+from .tasks import TaskTable
+from .translate import connect_reason, is_unknown_service, unknown_module
+
+logger = logging.getLogger("naoqi")
+
+
+class Connection:
+    """The connection to the NAOqi at one address. Get it from `naoqi.connection`, which shares them.
+
+    Attributes:
+        host: Name or address of the robot.
+        port: TCP port of NAOqi.
+        live: The session while there is one, else None.
+        generation: How many sessions there have been.
+        latency: Round trip of the last heartbeat in s; None while not connected.
+        last_error: What went wrong last, empty if nothing ever did.
+        tasks: The posted calls of all proxies on this connection.
+        subscriptions: Event subscriptions to make again after a loss.
+    """
+
+    def __init__(self, host: str, port: int, timing: Timing = Timing()) -> None:  # noqa: B008  it is frozen
+        """Start connecting in the background."""
+        self.host = host
+        self.port = port
+        self.timing = timing
+        self.live: Optional[Live] = None
+        self.generation = 0
+        self.latency: Optional[float] = None
+        self.last_error = ""
+        self.tasks = TaskTable()
+        self._condition = threading.Condition()
+        self._state = State.CONNECTING
+        self._since = time.monotonic()
+        self._failed_attempts = 0
+        self._check = ""
+        self._opening: Any = None
+        self._closing = threading.Event()
+        self._listeners = Listeners(f"naoqi listeners {self.address}")
+        self.subscriptions = EventSubscriptions(self)
+        self._watcher = threading.Thread(target=self._run, name=f"naoqi {self.address}", daemon=True)
+        self._watcher.start()
+
+    def __repr__(self) -> str:
+        """Address and state."""
+        return f"<Connection {self.address} {self._state}>"
+
+    @property
+    def address(self) -> str:
+        """`host:port`."""
+        return f"{self.host}:{self.port}"
+
+    @property
+    def state(self) -> State:
+        """Where the connection stands."""
+        return self._state
+
+    def add_listener(self, listener: Listener) -> None:
+        """Have a function called with the new state at each change, from a thread of this connection.
+
+        Listeners are called one after the other, in the order in which they were added. They may make remote
+        calls; what they raise is logged.
+        """
+        self._listeners.add(listener)
+
+    def remove_listener(self, listener: Listener) -> None:
+        """Call this function no more; one that was never added is no error."""
+        self._listeners.remove(listener)
+
+    def in_background(self, job: Callable[[], None]) -> None:
+        """Have a job done in the thread of the listeners, after the changes they still have to hear of."""
+        self._listeners.in_background(job)
+
+    def wait_connected(self, timeout: Optional[float] = None) -> bool:
+        """Wait for the robot.
+
+        Args:
+            timeout: Limit in s; None waits until there is a connection or it is closed.
+
+        Returns:
+            Whether it is connected.
+        """
+        with self._condition:
+            self._condition.wait_for(lambda: self._state in (State.CONNECTED, State.CLOSED), timeout)
+            return self._state is State.CONNECTED
+
+    def connect(self, limit: float) -> None:
+        """Wait until the robot is there, or until an attempt has failed from now on.
+
+        Args:
+            limit: Longest wait, in s.
+
+        Raises:
+            RobotUnreachable: If it is not there.
+        """
+        with self._condition:
+            failed_before = self._failed_attempts
+
+            def decided() -> bool:
+                waiting = self._state in (State.CONNECTING, State.LOST)
+                return not waiting or self._failed_attempts > failed_before
+
+            if not self._condition.wait_for(decided, limit):
+                reason = f"no answer within {limit:g} s"
+                raise RobotUnreachable(self.host, self.port, reason, connect_reason("timed out")[1])
+            if self._state is State.CONNECTED:
+                return
+            if self.generation == 0 and self._state is State.CONNECTING:
+                raise RobotUnreachable(self.host, self.port, self.last_error, self._check)
+        raise self.unreachable()
+
+    def unreachable(self) -> RobotUnreachable:
+        """The error of a call that cannot be sent now: since when, why, and what is being done about it."""
+        with self._condition:
+            state, seconds, cause = self._state, time.monotonic() - self._since, self.last_error
+            attempts, check = self._failed_attempts, self._check
+        if state is State.CLOSED:
+            return RobotUnreachable(self.host, self.port, "this program has closed the connection")
+        if state is State.LOST:
+            reason = f"connection lost {seconds:.1f} s ago ({cause}); reconnecting in the background"
+            return RobotUnreachable(self.host, self.port, reason)
+        if state is State.CONNECTED:  # the session broke a moment ago, the watching thread is about to see it
+            return RobotUnreachable(self.host, self.port, "the connection has just broken; reconnecting")
+        reason = f"not reached for {seconds:.1f} s, {attempts} failed attempts"
+        reason += f" ({cause})" if cause else ""
+        return RobotUnreachable(self.host, self.port, f"{reason}; trying on in the background", check)
+
+    def service(self, name: str) -> Any:
+        """The remote object of a module, in the present session.
+
+        Raises:
+            RobotUnreachable: If there is no session.
+            UnknownModule: If the robot has no module of that name.
+        """
+        live = self.live
+        if live is None:
+            raise self.unreachable()
+        found = live.services.get(name)
+        if found is None:
+            found = live.services[name] = self._ask_for(live, name)
+        return found
+
+    def forget_service(self, live: Live, name: str) -> None:
+        """Look a module up afresh the next time, because its remote object has gone stale."""
+        live.services.pop(name, None)
+
+    def module_names(self) -> List[str]:
+        """Names of all modules the robot has.
+
+        Raises:
+            RobotUnreachable: If there is no session.
+        """
+        live = self.live
+        if live is None:
+            raise self.unreachable()
+        future = live.session.services(_async=True)
+        if not answered(future, self.timing.connect_limit) or future.hasError():
+            raise self.unreachable()
+        return [each["name"] for each in future.value()]
+
+    def close(self) -> None:
+        """End the connection for good. Calls under way fail; posted calls have been handed to the robot."""
+        with self._condition:
+            if self._closing.is_set():
+                return
+            self._closing.set()
+            live, opening = self.live, self._opening
+        if live is not None:
+            if self.tasks.any_running():
+                # Requests leave in order, so an answered one proves that those before it have arrived.
+                live.heartbeat(_async=True).wait(500)
+            live.broken.set()
+        if opening is not None:
+            opening.close()
+        if threading.current_thread() is not self._watcher:
+            self._watcher.join(self.timing.heartbeat_limit + 1.0)
+        self._listeners.close()
+
+    # From here on the watching thread.
+
+    def _run(self) -> None:
+        delay = self.timing.first_delay
+        while not self._closing.is_set():
+            try:
+                live = self._open()
+            except RobotUnreachable as error:
+                self._note_failed_attempt(error)
+                if not self._closing.wait(delay) and self.generation == 0 and self._failed_attempts == 1:
+                    logger.warning("%s; trying on in the background", str(error).rstrip("."))
+                delay = min(2.0 * delay, self.timing.longest_delay)
+                continue
+            delay = self.timing.first_delay
+            self._enter(live)
+            reason = self._watch(live)
+            self._leave(live, reason)
+        self._change(State.CLOSED)
+
+    def _open(self) -> Live:
+        try:
+            return open_live(self.host, self.port, self.timing.connect_limit, self._announce)
+        finally:
+            with self._condition:
+                self._opening = None
+
+    def _announce(self, session: Any) -> None:
+        """Let `close` break an attempt off; if it has been called already, do so here."""
+        with self._condition:
+            self._opening = session
+            if self._closing.is_set():
+                raise RobotUnreachable(self.host, self.port, "this program has closed the connection")
+
+    def _enter(self, live: Live) -> None:
+        was_lost, seconds = self._state is State.LOST, time.monotonic() - self._since
+        if was_lost:
+            logger.warning("connection to NAOqi at %s is back after %.1f s", self.address, seconds)
+        else:
+            logger.info("connected to NAOqi at %s", self.address)
+        self._change(State.CONNECTED, live)
+
+    def _watch(self, live: Live) -> str:
+        """Exchange heartbeats until the session ends; return why it did."""
+        while True:
+            sent = time.monotonic()
+            future = live.heartbeat(_async=True)
+            if not answered(future, self.timing.heartbeat_limit):
+                return f"no heartbeat for {self.timing.heartbeat_limit:g} s"
+            if future.hasError():
+                return future.error().rstrip(".").lower()
+            self.latency = time.monotonic() - sent
+            if self._closing.is_set() or live.broken.wait(self.timing.heartbeat_period):
+                return "closed by the robot"
+
+    def _leave(self, live: Live, reason: str) -> None:
+        self.latency = None
+        if self._closing.is_set():
+            self.live = None
+        else:
+            self.last_error = reason
+            self._change(State.LOST)
+        live.session.close()  # makes the calls under way fail, also when the robot is silent
+        if not self._closing.is_set():
+            logger.warning("connection to NAOqi at %s lost (%s); reconnecting", self.address, reason)
+
+    def _note_failed_attempt(self, error: RobotUnreachable) -> None:
+        if self._closing.is_set():
+            return
+        with self._condition:
+            self.last_error, self._check = error.reason, error.check
+            self._failed_attempts += 1
+            self._condition.notify_all()
+
+    def _change(self, state: State, live: Optional[Live] = None) -> None:
+        with self._condition:
+            self.live = live
+            self._state = state
+            self._since = time.monotonic()
+            self._failed_attempts = 0
+            self.generation += live is not None
+            self._condition.notify_all()
+        self._listeners.tell(state)
+
+    def _ask_for(self, live: Live, name: str) -> Any:
+        future = live.session.service(name, _async=True)
+        if not answered(future, self.timing.connect_limit):
+            raise RobotUnreachable(self.host, self.port, f"no answer to the question where module {name} is")
+        if not future.hasError():
+            return future.value()
+        text = future.error()
+        if is_unknown_service(text):
+            raise unknown_module(name, self.host, self.port, self.module_names())
+        if live is not self.live or not live.session.isConnected():
+            raise self.unreachable()
+        raise NaoError(f"NAOqi at {self.address} gave no access to module {name}: {text}")

@@ -1,0 +1,94 @@
+"""Event subscriptions made through ALMemory, so that they can be made again after a loss."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from typing import TYPE_CHECKING, Any, Collection, Dict, Set, Tuple
+
+from .errors import NaoError
+from .remote import RemoteMethod, RemoteModule
+
+if TYPE_CHECKING:
+    from .robot_connection import Connection, State
+
+logger = logging.getLogger("naoqi")
+
+MEMORY = "ALMemory"
+ENDED_BY = {"unsubscribeToEvent": "subscribeToEvent", "unsubscribeToMicroEvent": "subscribeToMicroEvent"}
+OBSERVED_METHODS = frozenset(ENDED_BY) | frozenset(ENDED_BY.values())
+RENEWAL_LIMIT = 5.0
+"""Time limit of each renewed subscription, in s."""
+
+Key = Tuple[str, str, str]
+"""Subscribing method, event, module."""
+
+
+class EventSubscriptions:
+    """What this process has subscribed to over one connection: a robot that comes back has forgotten it.
+
+    Those of the modules of this process are renewed by the broker that serves the module, after it has
+    registered it; all others as soon as the robot is back.
+    """
+
+    def __init__(self, connection: Connection) -> None:
+        """Make an empty list for a connection."""
+        self._connection = connection
+        self._memory = RemoteModule(MEMORY, connection, RENEWAL_LIMIT)
+        self._lock = threading.Lock()  # guards the table
+        self._arguments: Dict[Key, Tuple[Any, ...]] = {}
+        self._owned: Set[str] = set()
+        connection.add_listener(self._on_state)
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self._arguments)
+
+    def concerns(self, module: str, method: str) -> bool:
+        """Whether calls of this method are to be taken down."""
+        return module == MEMORY and method in OBSERVED_METHODS
+
+    def note(self, method: str, arguments: Tuple[Any, ...]) -> None:
+        """Take down a call that succeeded.
+
+        Args:
+            method: One of `OBSERVED_METHODS`.
+            arguments: Event, module, and for a subscription what else it had.
+        """
+        event, module = arguments[:2]
+        with self._lock:
+            if method in ENDED_BY:
+                self._arguments.pop((ENDED_BY[method], event, module), None)
+                return
+            self._arguments[method, event, module] = arguments
+
+    def own(self, module: str) -> None:
+        """Leave the subscriptions of this module to the broker that serves it."""
+        with self._lock:
+            self._owned.add(module)
+
+    def forget_module(self, module: str) -> None:
+        """Drop the subscriptions of a module that is served no more."""
+        with self._lock:
+            self._arguments = {key: value for key, value in self._arguments.items() if key[2] != module}
+            self._owned.discard(module)
+
+    def renew(self, modules: Collection[str]) -> None:
+        """Subscribe these modules again; what fails is logged, and tried again after the next loss."""
+        with self._lock:
+            entries = [item for item in self._arguments.items() if item[0][2] in modules]
+        done = 0
+        for (method, event, module), arguments in entries:
+            try:
+                RemoteMethod(self._memory, method)(*arguments)
+                done += 1
+            except NaoError as error:
+                logger.error("event %s is not subscribed again for module %s: %s", event, module, error)
+        if done:
+            logger.warning("NAOqi at %s: %d event subscriptions made again", self._connection.address, done)
+
+    def _on_state(self, state: State) -> None:
+        if state == "connected" and self._connection.generation > 1:
+            with self._lock:
+                foreign = {key[2] for key in self._arguments} - self._owned
+            self.renew(foreign)

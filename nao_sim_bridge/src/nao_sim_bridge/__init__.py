@@ -1,0 +1,1 @@
+"""A simulated NAO that speaks NAOqi over libqi."""

@@ -1,0 +1,37 @@
+"""`python -m nao_sim_bridge`: the simulator without ROS."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import sys
+
+from nao_sim_bridge.cli import parse, server_options
+from nao_sim_bridge.server import SimulatorServer
+from nao_sim_bridge.sim.errors import SimulationError
+
+
+def main() -> int:
+    """Run until a signal, a client's shutdown or a failure; returns the exit status."""
+    arguments = parse("python -m nao_sim_bridge")
+    logging.basicConfig(
+        level=logging.DEBUG if arguments.verbose else logging.INFO, format="[nao_sim] %(levelname)s %(message)s"
+    )
+    try:
+        server = SimulatorServer(server_options(arguments))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: server.ended.set())
+        server.start()
+    except (SimulationError, RuntimeError) as error:
+        logging.getLogger("nao_sim").error("%s", error)
+        return 1
+    while not server.ended.wait(0.5):
+        if not server.runner.running:
+            server.stop()
+            return 1
+    server.stop()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

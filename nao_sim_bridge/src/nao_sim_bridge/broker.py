@@ -1,0 +1,127 @@
+"""The simulator's side of libqi: listens as a robot does, registers services, calls modules of clients."""
+
+from __future__ import annotations
+
+import logging
+import os
+import socket
+import struct
+import threading
+import time
+from typing import Any, Callable
+
+import qi
+
+log = logging.getLogger("nao_sim.broker")
+
+# A port may still be held by connections of a simulator that has just ended: how long to keep trying, s.
+BIND_PATIENCE = 65.0
+BIND_PAUSE = 0.5
+
+
+class Broker:
+    """A libqi session that listens on one address and serves modules.
+
+    Attributes:
+        name: Name that modules report as their broker.
+        port: Port it listens on, known after `listen`.
+
+    Args:
+        name: See above.
+    """
+
+    def __init__(self, name: str = "nao_sim") -> None:
+        self.name = name
+        self.port = 0
+        self._session = qi.Session()
+        self._services: dict[str, tuple[int, Any]] = {}
+        self._lock = threading.Lock()
+
+    def listen(self, address: str, port: int, still_wanted: Callable[[], bool] = lambda: True) -> None:
+        """Listen on `address`:`port`; port 0 takes a free one. Waits for a port that is just being freed.
+
+        Raises:
+            RuntimeError: The address cannot be had.
+        """
+        give_up = time.monotonic() + BIND_PATIENCE
+        warned = False
+        while True:
+            try:
+                self._session.listenStandalone(f"tcp://{address}:{port}")
+                break
+            except RuntimeError as error:
+                in_use = "Address already in use" in str(error)
+                if not in_use or _somebody_listens(address, port) or time.monotonic() > give_up:
+                    hint = "another program listens there" if in_use else str(error).strip()
+                    raise RuntimeError(f"cannot listen on {address}:{port}: {hint}") from error
+                if not warned:
+                    log.warning("port %d is still held by closed connections, waiting for it", port)
+                    warned = True
+                if not still_wanted():
+                    raise
+                time.sleep(BIND_PAUSE)
+                self._session = qi.Session()
+        self.port = int(self._session.endpoints()[0].rsplit(":", 1)[1])
+        _free_port_on_exit(self.port)
+
+    def register(self, module: str, service: Any) -> None:
+        """Serve an object under a name."""
+        with self._lock:
+            self._services[module] = (self._session.registerService(module, service), service)
+
+    def unregister(self, module: str) -> None:
+        """Serve it no more."""
+        with self._lock:
+            entry = self._services.pop(module, None)
+        if entry is not None:
+            self._session.unregisterService(entry[0])
+
+    def service(self, module: str) -> Any:
+        """The service of that name, of the simulator or of a client."""
+        return self._session.service(module)
+
+    def call(self, module: str, method: str, arguments: list) -> None:
+        """Call a module of a client without waiting; failures are logged."""
+
+        def called(future: Any) -> None:
+            if future.hasError():
+                log.warning("callback %s.%s failed: %s", module, method, future.error())
+
+        def found(future: Any) -> None:
+            if future.hasError():
+                log.warning("callback %s.%s lost: no such module: %s", module, method, future.error())
+            else:
+                future.value().call(method, *arguments, _async=True).addCallback(called)
+
+        self._session.service(module, _async=True).addCallback(found)
+
+    def close(self) -> None:
+        """Stop listening and drop all connections."""
+        self._session.close()
+
+
+def _somebody_listens(address: str, port: int) -> bool:
+    with socket.socket() as probe:
+        probe.settimeout(0.5)
+        return probe.connect_ex((address if address != "0.0.0.0" else "127.0.0.1", port)) == 0
+
+
+def _free_port_on_exit(port: int) -> None:
+    """Let the port be taken again at once after this process ends, however it ends.
+
+    libqi binds without SO_REUSEADDR, so connections in TIME_WAIT would keep a killed simulator's port for a minute.
+    With a linger time of 0, which accepted sockets inherit from the listening one, they are reset instead.
+    """
+    folder = "/proc/self/fd"
+    if not os.path.isdir(folder):
+        return
+    for descriptor in os.listdir(folder):
+        try:
+            if not os.readlink(f"{folder}/{descriptor}").startswith("socket:"):
+                continue
+            with socket.socket(fileno=os.dup(int(descriptor))) as candidate:
+                listens = candidate.getsockopt(socket.SOL_SOCKET, socket.SO_ACCEPTCONN)
+                if listens and candidate.getsockname()[1] == port:
+                    candidate.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        except OSError:
+            continue  # a descriptor that closed meanwhile, or no network socket

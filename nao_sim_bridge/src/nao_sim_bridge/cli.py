@@ -1,0 +1,68 @@
+"""Command line of the simulator, with and without ROS."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import Sequence
+
+from nao_sim_bridge.server import ServerOptions
+from nao_sim_bridge.sim.model import VERSIONS
+from nao_sim_bridge.sim.postures import load_postures
+from nao_sim_bridge.sim.simulation import Scene
+from nao_sim_bridge.sim.world import world_names
+
+
+def parser(prog: str) -> argparse.ArgumentParser:
+    """The options of `nao_sim` and of `python -m nao_sim_bridge`."""
+    options = argparse.ArgumentParser(
+        prog=prog,
+        description="A physically simulated NAO that serves NAOqi's modules over libqi.",
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+    )
+    options.add_argument("--port", type=_port, default=9559, help="port to listen on; 0 takes a free one")
+    options.add_argument("--listen", default="127.0.0.1", help="address to listen on; 0.0.0.0 for the whole network")
+    options.add_argument(
+        "--speed", type=_speed, default=1.0, help="simulated seconds per second; 0 or max: as fast as possible"
+    )
+    options.add_argument("--gui", action="store_true", help="show the robot in a window")
+    options.add_argument("--world", default="empty", help=f"world file, or one of: {', '.join(world_names())}")
+    options.add_argument("--seed", type=int, default=0, help="seed of all random numbers")
+    options.add_argument("--robot", choices=VERSIONS, default="V6", help="robot version")
+    options.add_argument(
+        "--posture", choices=sorted(load_postures().by_name), default="Crouch", help="posture at the start"
+    )
+    options.add_argument("--paused", action="store_true", help="start without time passing")
+    options.add_argument("--verbose", action="store_true", help="log more")
+    return options
+
+
+def server_options(arguments: argparse.Namespace) -> ServerOptions:
+    """Options of the server from parsed arguments."""
+    scene = Scene(arguments.world, arguments.robot, arguments.posture, arguments.seed)
+    return ServerOptions(scene, arguments.listen, arguments.port, arguments.speed, arguments.paused)
+
+
+def parse(prog: str, arguments: Sequence[str] | None = None) -> argparse.Namespace:
+    """Parsed command line; ends the program with a clear text when it is wrong."""
+    return parser(prog).parse_args(arguments)
+
+
+def _speed(text: str) -> float:
+    if text in ("max", "0"):
+        return math.inf
+    try:
+        speed = float(text)
+    except ValueError:
+        speed = math.nan
+    if speed == 0.0:
+        return math.inf
+    if not speed > 0.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a speed: a number above 0, or max")
+    return speed
+
+
+def _port(text: str) -> int:
+    if not text.isdigit() or int(text) > 65535:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a port: 0 to 65535")
+    return int(text)

@@ -1,0 +1,136 @@
+"""Turns a plain Python class into a libqi service with NAOqi's exact signatures.
+
+libqi resolves overloads by signature, and a Python method has only one. So for every overload in NAOqi's table the
+published object gets a function of its own, all under the same remote name, and all of them end in the one method of
+the implementation. Wrong arguments are then refused by libqi itself with the list of candidates, as on the robot.
+"""
+
+from __future__ import annotations
+
+import inspect
+import logging
+from typing import Any, Callable, Iterable
+
+import qi
+
+from nao_sim_bridge.services.api import Method, Overload, module_methods, qi_type
+from nao_sim_bridge.services.common import CommonModule
+from nao_sim_bridge.sim.tasks import Task
+
+log = logging.getLogger("nao_sim.services")
+
+# Every libqi object has these by itself.
+NATIVE = frozenset({"isStatsEnabled", "clearStats", "isTraceEnabled"})
+
+
+def make_service(module: str, implementation: Any, broker: Any) -> Any:
+    """The object to register under the name `module`.
+
+    Args:
+        module: NAOqi name, a key of the API table.
+        implementation: Object whose methods do the work; those with the names of the table are published.
+        broker: What the methods that every module has need to know: its `name` and `unregister(module)`.
+    """
+    table = module_methods(module)
+    common = CommonModule(module, table, broker)
+    body: dict[str, Any] = {}
+    for name, method in table.items():
+        if name in NATIVE:
+            continue
+        target = getattr(implementation, name, None) or getattr(common, name, None)
+        if target is None:
+            continue
+        common.targets[name] = target
+        for position, overload in enumerate(method.overloads):
+            attribute = name if position == 0 else f"{name}_{position}"
+            body[attribute] = _bound(module, method, overload, target)
+    body["pCall"] = _bound_any(module, "pCall", common.pCall)
+    for name, signal in getattr(implementation, "signals", dict)().items():
+        body[name] = signal
+    return type(module, (), body)()
+
+
+def offered(module: str, implementation: Any) -> tuple[list[str], list[str]]:
+    """Names of the table's methods that a service of this implementation answers, and those it does not."""
+    table = module_methods(module)
+    answers = [n for n in table if n in NATIVE or hasattr(implementation, n) or hasattr(CommonModule, n)]
+    return answers, [n for n in table if n not in answers]
+
+
+def answer(module: str, method: str, call: Callable[..., Any], args: Iterable[Any]) -> Any:
+    """What libqi sends back for a call: a value, or a future for what takes simulated time.
+
+    Errors go back as failed futures: raised through libqi they would carry a Python traceback in their text.
+    """
+    try:
+        result = call(*args)
+    except Exception as error:
+        return _failed(_text(module, method, error))
+    if isinstance(result, Task):
+        return as_future(result, f"{module}::{method}")
+    return result
+
+
+def as_future(task: Task, label: str) -> Any:
+    """A libqi future that ends with the task; cancelling it kills the task.
+
+    Args:
+        task: A command of the simulation thread, whose value may be a further task that takes simulated time, or such
+            a task itself.
+        label: "Module::method", for error texts.
+    """
+    following = [task]
+    cancelled = []
+
+    def cancel(_: Any) -> None:
+        cancelled.append(True)
+        following[-1].request_kill()
+
+    def settle(done: Task) -> None:
+        if done.error is not None:
+            promise.setError(f"{label} {done.error}")
+        elif isinstance(done.value, Task):
+            following.append(done.value)
+            done.value.add_done_callback(settle)
+        elif done.killed and cancelled:
+            promise.setCanceled()
+        else:
+            promise.setValue(done.value)
+
+    promise = qi.Promise(cancel)
+    task.add_done_callback(settle)
+    return promise.future()
+
+
+def _bound(module: str, method: Method, overload: Overload, target: Callable[..., Any]) -> Callable[..., Any]:
+    name = method.name
+
+    def published(self: Any, *args: Any) -> Any:
+        return answer(module, name, target, args)
+
+    published.__doc__ = method.summary
+    published.__name__ = name
+    bind = qi.bind(qi_type(method.returns), None, name)
+    bind(published)
+    published.__qi_signature__ = overload.signature
+    return published
+
+
+def _bound_any(module: str, name: str, target: Callable[..., Any]) -> Callable[..., Any]:
+    def published(self: Any, *args: Any) -> Any:
+        return answer(module, name, target, args)
+
+    published.__doc__ = inspect.getdoc(target)
+    return qi.bind(qi.Dynamic, qi.AnyArguments, name)(published)
+
+
+def _failed(text: str) -> Any:
+    promise = qi.Promise()
+    promise.setError(text)
+    return promise.future()
+
+
+def _text(module: str, method: str, error: Exception) -> str:
+    if not isinstance(error, (RuntimeError, ValueError, TypeError, KeyError)):
+        log.error("%s::%s failed", module, method, exc_info=error)
+    return f"{module}::{method} {error}"

@@ -1,0 +1,121 @@
+"""The methods that every NAOqi module has: help about itself, and posted calls with an id."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from collections import OrderedDict
+from typing import Any, Callable, Mapping
+
+from nao_sim_bridge.services.api import Method
+from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.tasks import Task
+
+VERSION = "2.8.5"
+# Finished posted calls that `wait` and `isRunning` still know.
+REMEMBERED = 1000
+
+
+class CommonModule:
+    """What NAOqi's module base class offers.
+
+    Args:
+        module: NAOqi name.
+        table: The methods of the module.
+        broker: Object with `name` and `unregister(module)`.
+    """
+
+    def __init__(self, module: str, table: Mapping[str, Method], broker: Any) -> None:
+        self.targets: dict[str, Callable[..., Any]] = {}
+        self._module = module
+        self._table = table
+        self._broker = broker
+        self._ids = itertools.count(1)
+        self._posted: OrderedDict[int, Task | None] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def ping(self) -> bool:
+        """Always true."""
+        return True
+
+    def version(self) -> str:
+        """Version of the NAOqi whose interface is served."""
+        return VERSION
+
+    def getBrokerName(self) -> str:
+        """Name of the broker that the module belongs to."""
+        return self._broker.name
+
+    def exit(self) -> None:
+        """Take the module off the network."""
+        self._broker.unregister(self._module)
+
+    def getMethodList(self) -> list[str]:
+        """Names of the methods that can be called."""
+        return sorted(self.targets)
+
+    def getMethodHelp(self, name: str) -> list:
+        """[name, [[parameter, type], ...], return type, summary] of a method; the overload with most parameters."""
+        method = self._method(name)
+        longest = max(method.overloads, key=lambda o: len(o.types))
+        return [method.name, [list(p) for p in zip(longest.names, longest.types)], method.returns, method.summary]
+
+    def getModuleHelp(self) -> list:
+        """[description, [[language, example], ...]]."""
+        example = f'ALProxy("{self._module}", "127.0.0.1", 9559).ping()'
+        return [f"{self._module} of the simulated NAO, {len(self.targets)} methods", [["python", example]]]
+
+    def getUsage(self, name: str) -> str:
+        """All ways to call a method."""
+        return self._method(name).usage()
+
+    def pCall(self, name: str, *args: Any) -> int:
+        """Call a method without waiting; the id returned is for `wait`, `isRunning` and `stop`."""
+        self._method(name)
+        result = self.targets[name](*args)
+        with self._lock:
+            call_id = next(self._ids)
+            self._posted[call_id] = result if isinstance(result, Task) else None
+            while len(self._posted) > REMEMBERED:
+                self._posted.popitem(last=False)
+        return call_id
+
+    def isRunning(self, call_id: int) -> bool:
+        """True while the posted call has not ended."""
+        task = self._task(call_id)
+        return task is not None and not task.finished
+
+    def stop(self, call_id: int) -> None:
+        """End a posted call before its time."""
+        task = self._task(call_id)
+        if task is not None:
+            task.request_kill()
+
+    def wait(self, call_id: int, timeout: int = 0) -> Any:
+        """Wait for a posted call, at most `timeout` ms (0: for ever); true when the time was up first."""
+        task = self._task(call_id)
+        if task is None or task.finished:
+            return False
+        ended = Task("wait", call_id)
+        task.add_done_callback(lambda _: ended.finish(False))
+        if timeout > 0:
+            timer = threading.Timer(timeout / 1000.0, ended.finish, [True])
+            timer.daemon = True
+            timer.start()
+        return ended
+
+    def _method(self, name: str) -> Method:
+        if name not in self.targets:
+            raise UnknownName("method", name, self.targets)
+        return self._table[name]
+
+    def _task(self, call_id: int) -> Task | None:
+        """The task at the end of the chain that a posted call started."""
+        with self._lock:
+            if call_id not in self._posted:
+                raise NaoqiError(f"no posted call has the id {call_id}")
+            task = self._posted[call_id]
+        while task is not None and task.finished and isinstance(task.value, Task):
+            task = task.value
+        return task

@@ -1,0 +1,182 @@
+"""ALMemory of the simulated robot. Only NAOqi methods live here; the keys and events are in `memory_store`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import qi
+
+from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.services.memory_store import EVENT, MICRO_EVENT, MemoryStore
+from nao_sim_bridge.sim.tasks import Task
+
+
+class EventSubscriber:
+    """What `ALMemory.subscriber` returns: an object whose member `signal` fires with each value of the event."""
+
+    def __init__(self) -> None:
+        self.signal = qi.Signal("m")
+
+
+class ALMemory:
+    """ALMemory as the simulated robot offers it.
+
+    Args:
+        store: Keys and events.
+        broker: Road to modules of clients: `call(module, method, arguments)` without waiting, and `service(name)`.
+    """
+
+    def __init__(self, store: MemoryStore, broker: Any) -> None:
+        self._store = store
+        self._broker = broker
+        self._signals: dict[str, EventSubscriber] = {}
+
+    def getData(self, key: str, *_deprecated: Any) -> Any:
+        return self._store.get(key)
+
+    def getListData(self, keys: Any) -> list:
+        return self._store.get_many(_strings(keys, "keyList"))
+
+    def getDataList(self, text: str) -> list[str]:
+        return self._store.names(containing=text)
+
+    def getDataListName(self) -> list[str]:
+        return self._store.names()
+
+    def getDataOnChange(self, key: str, _deprecated: int) -> Task:
+        self._store.kind(key)
+        change = Task("getDataOnChange", 0)
+        self._store.on_next_change(key, change.finish)
+        return change
+
+    def getDataPtr(self, key: str) -> None:
+        self._no_pointer(key)
+
+    def getFloatPtr(self, key: str) -> None:
+        self._no_pointer(key)
+
+    def getIntPtr(self, key: str) -> None:
+        self._no_pointer(key)
+
+    def getDescriptionList(self, keys: list[str]) -> list:
+        return self._store.describe(keys)
+
+    def setDescription(self, key: str, description: str) -> None:
+        self._store.set_description(key, description)
+
+    def getType(self, key: str) -> str:
+        return self._store.kind(key)
+
+    def getTimestamp(self, key: str) -> list:
+        value, seconds = self._store.timestamp(key)
+        return [value, *_split_time(seconds)]
+
+    def insertData(self, key: str, value: Any) -> None:
+        self._store.insert(_name(key), value)
+
+    def insertListData(self, pairs: Any) -> None:
+        for pair in pairs:
+            if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not isinstance(pair[0], str):
+                raise NaoqiError(f"list holds {pair!r}, allowed is [[key, value], ...]")
+        for key, value in pairs:
+            self._store.insert(_name(key), value)
+
+    def removeData(self, key: str) -> None:
+        self._store.remove(key)
+
+    def declareEvent(self, name: str, extractor: str = "") -> None:
+        self._store.declare_event(_name(name), extractor)
+
+    def raiseEvent(self, name: str, value: Any) -> None:
+        self._store.raise_event(_name(name), value)
+
+    def raiseMicroEvent(self, name: str, value: Any) -> None:
+        self._store.raise_micro_event(_name(name), value)
+
+    def removeEvent(self, name: str) -> None:
+        self._signals.pop(name, None)
+        self._store.remove(name, EVENT)
+
+    def removeMicroEvent(self, name: str) -> None:
+        self._signals.pop(name, None)
+        self._store.remove(name, MICRO_EVENT)
+
+    def getEventList(self) -> list[str]:
+        return self._store.names(EVENT)
+
+    def getMicroEventList(self) -> list[str]:
+        return self._store.names(MICRO_EVENT)
+
+    def getExtractorEvent(self, extractor: str) -> list[str]:
+        return self._store.events_of(extractor)
+
+    def getEventHistory(self, name: str) -> list:
+        return [[value, *_split_time(seconds)] for value, seconds in self._store.history(name)]
+
+    def getSubscribers(self, name: str) -> list[str]:
+        return self._store.subscribers(name)
+
+    def subscriber(self, name: str) -> EventSubscriber:
+        if name not in self._signals:
+            self._signals[name] = subscriber = EventSubscriber()
+            self._store.listen(name, subscriber.signal)
+        return self._signals[name]
+
+    def subscribeToEvent(self, name: str, module: str, *rest: str) -> None:
+        message, method = rest if len(rest) == 2 else ("", rest[0])
+        self._subscribe(name, module, message, method, EVENT)
+
+    def unsubscribeToEvent(self, name: str, module: str) -> None:
+        self._store.unsubscribe(name, module)
+
+    def subscribeToMicroEvent(self, name: str, module: str, message: str, method: str) -> None:
+        self._subscribe(name, module, message, method, MICRO_EVENT)
+
+    def unsubscribeToMicroEvent(self, name: str, module: str) -> None:
+        self._store.unsubscribe(name, module)
+
+    def unregisterModuleReference(self, module: str) -> None:
+        self._store.forget_module(module)
+
+    def addMapping(self, service: str, *rest: Any) -> None:
+        pairs = rest[0] if len(rest) == 1 else {rest[0]: rest[1]}
+        for signal, event in pairs.items():
+            self._connect_signal(service, signal, event)
+
+    def _subscribe(self, name: str, module: str, message: str, method: str, kind: str) -> None:
+        def notify(event: str, value: Any, text: str) -> None:
+            self._broker.call(module, method, [event, value, text])
+
+        self._store.subscribe(_name(name), module, notify, message, kind)
+
+    def _connect_signal(self, service: str, signal: str, event: str) -> None:
+        source = self._broker.service(service)
+        if not hasattr(source, signal):
+            raise NaoqiError(f"service {service!r} has no signal {signal!r}")
+        self._store.declare_event(event)
+        getattr(source, signal).connect(lambda *values: self._store.raise_event(event, _one(values)))
+
+    def _no_pointer(self, key: str) -> None:
+        self._store.kind(key)
+        raise NaoqiError("pointers are for modules inside the robot's own process; use getData")
+
+
+def _one(values: tuple) -> Any:
+    return values[0] if len(values) == 1 else list(values)
+
+
+def _name(key: str) -> str:
+    if not key:
+        raise NaoqiError("the key is empty")
+    return key
+
+
+def _strings(values: Any, field: str) -> list[str]:
+    if not isinstance(values, (list, tuple)) or not all(isinstance(v, str) for v in values):
+        raise NaoqiError(f"{field} is {values!r}, allowed is a list of strings")
+    return list(values)
+
+
+def _split_time(seconds: float) -> tuple[int, int]:
+    whole = int(seconds)
+    return whole, int((seconds - whole) * 1e6)

@@ -1,0 +1,255 @@
+"""What ALMemory keeps: data, events and micro events, their descriptions, history and subscribers. No libqi here.
+
+Keys of sensors and motors are *live*: nothing is written for them, a reader computes the value when it is asked for.
+Any thread may call anything; subscribers are called outside the lock, in the thread that raised the event.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from dataclasses import dataclass, field
+from typing import Any, Callable, Iterable, Mapping
+
+from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.sim.errors import UnknownName
+
+log = logging.getLogger("nao_sim.memory")
+
+DATA, EVENT, MICRO_EVENT = "Data", "Event", "MicroEvent"
+HISTORY_LENGTH = 32
+KEY_ADDED, KEY_REMOVED = "ALMemory/KeyAdded", "ALMemory/KeyRemoved"
+
+Subscriber = Callable[[str, Any, str], None]
+Reader = Callable[[], Any]
+
+
+@dataclass
+class _Entry:
+    kind: str
+    value: Any = None
+    time: float = 0.0
+    exists: bool = False
+    description: str = ""
+    extractor: str = ""
+    history: deque = field(default_factory=lambda: deque(maxlen=HISTORY_LENGTH))
+
+
+class MemoryStore:
+    """Keys and what they hold.
+
+    Args:
+        clock: Time for time stamps, s since 1970 (or since the start of the simulation).
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._lock = threading.RLock()
+        self._entries: dict[str, _Entry] = {}
+        self._live: dict[str, tuple[Reader, Callable[[Any], None] | None]] = {}
+        self._subscribers: dict[str, dict[str, tuple[Subscriber, str]]] = {}
+        self._listeners: dict[str, list[Callable[[Any], None]]] = {}
+        self._changes: dict[str, list[Callable[[Any], None]]] = {}
+
+    # --- data -----------------------------------------------------------------------------------------------------
+
+    def add_live(self, readers: Mapping[str, Reader], writers: Mapping[str, Callable[[Any], None]] = {}) -> None:
+        """Keys whose value is computed when read; `writers` take values for those that may be written."""
+        with self._lock:
+            for key, reader in readers.items():
+                self._live[key] = (reader, writers.get(key))
+                self._entries.setdefault(key, _Entry(DATA, exists=True))
+
+    def get(self, key: str) -> Any:
+        """Value of a key.
+
+        Raises:
+            UnknownName: The key holds nothing.
+        """
+        live = self._live.get(key)
+        if live is not None:
+            return live[0]()
+        with self._lock:
+            return self._entry(key).value
+
+    def get_many(self, keys: Iterable[str]) -> list[Any]:
+        """Values of several keys; None for a key that holds nothing."""
+        with self._lock:
+            return [self.get(k) if self._holds(k) else None for k in keys]
+
+    def insert(self, key: str, value: Any) -> None:
+        """Write one key, creating it when needed.
+
+        Raises:
+            NaoqiError: The key belongs to a sensor.
+        """
+        if key in self._live:
+            writer = self._live[key][1]
+            if writer is None:
+                raise NaoqiError(f"{key} is a sensor of the robot and cannot be written")
+            writer(value)
+            return
+        self._write(key, value, DATA)
+
+    def remove(self, key: str, kind: str | None = None) -> None:
+        """Delete a key, its description and its subscribers.
+
+        Raises:
+            UnknownName: There is no such key (of that kind).
+        """
+        with self._lock:
+            if key in self._live:
+                raise NaoqiError(f"{key} belongs to the robot and cannot be removed")
+            entry = self._entries.get(key)
+            if entry is None or (kind is not None and entry.kind != kind):
+                raise UnknownName(kind or "key", key, self._names(kind))
+            del self._entries[key]
+            self._subscribers.pop(key, None)
+            self._listeners.pop(key, None)
+        self._announce(KEY_REMOVED, key)
+
+    def kind(self, key: str) -> str:
+        """Data, Event or MicroEvent."""
+        with self._lock:
+            if key not in self._entries:
+                raise UnknownName("key", key, self._entries)
+            return self._entries[key].kind
+
+    def timestamp(self, key: str) -> tuple[Any, float]:
+        """Value of a key and the time it was written, s; a live key was written just now."""
+        if key in self._live:
+            return self.get(key), self._clock()
+        with self._lock:
+            entry = self._entry(key)
+            return entry.value, entry.time
+
+    def names(self, kind: str | None = None, containing: str = "") -> list[str]:
+        """Sorted names of the keys of one kind, or of all."""
+        with self._lock:
+            return sorted(n for n in self._names(kind) if containing in n)
+
+    def set_description(self, key: str, text: str) -> None:
+        """Attach a text to a key."""
+        with self._lock:
+            if key not in self._entries:
+                raise UnknownName("key", key, self._entries)
+            self._entries[key].description = text
+
+    def describe(self, keys: Iterable[str]) -> list[list[str]]:
+        """[key, kind, description] of the keys, of all when there are none."""
+        with self._lock:
+            chosen = list(keys) or sorted(self._entries)
+            return [[k, self.kind(k), self._entries[k].description] for k in chosen]
+
+    def on_next_change(self, key: str, callback: Callable[[Any], None]) -> None:
+        """Call `callback(value)` once when the key is written next."""
+        with self._lock:
+            self._changes.setdefault(key, []).append(callback)
+
+    # --- events ---------------------------------------------------------------------------------------------------
+
+    def declare_event(self, name: str, extractor: str = "") -> None:
+        """Make an event known, which becomes a key without a value yet."""
+        with self._lock:
+            entry = self._entries.setdefault(name, _Entry(EVENT))
+            entry.kind = EVENT
+            entry.extractor = extractor or entry.extractor
+
+    def raise_event(self, name: str, value: Any) -> None:
+        """Write an event and tell its subscribers."""
+        self._write(name, value, EVENT)
+
+    def raise_micro_event(self, name: str, value: Any) -> None:
+        """Write a micro event and tell its subscribers."""
+        self._write(name, value, MICRO_EVENT)
+
+    def events_of(self, extractor: str) -> list[str]:
+        """Events that an extractor declared."""
+        with self._lock:
+            return sorted(n for n, e in self._entries.items() if e.kind == EVENT and e.extractor == extractor)
+
+    def history(self, name: str) -> list[tuple[Any, float]]:
+        """The last values of an event or key with their times, oldest first."""
+        with self._lock:
+            if name not in self._entries:
+                raise UnknownName("event", name, self._names(EVENT))
+            return list(self._entries[name].history)
+
+    def subscribe(self, name: str, module: str, callback: Subscriber, message: str = "", kind: str = EVENT) -> None:
+        """Call `callback(name, value, message)` at each event; one subscription for each module and event."""
+        with self._lock:
+            entry = self._entries.setdefault(name, _Entry(kind))
+            if entry.kind == DATA:
+                entry.kind = kind
+            self._subscribers.setdefault(name, {})[module] = (callback, message)
+
+    def unsubscribe(self, name: str, module: str) -> None:
+        """End a subscription.
+
+        Raises:
+            NaoqiError: The module is not subscribed.
+        """
+        with self._lock:
+            if module not in self._subscribers.get(name, {}):
+                known = ", ".join(self.subscribers(name)) or "nobody"
+                raise NaoqiError(f"module {module!r} is not subscribed to {name!r}; subscribed is {known}")
+            del self._subscribers[name][module]
+
+    def forget_module(self, module: str) -> None:
+        """End every subscription of a module that is gone."""
+        with self._lock:
+            for modules in self._subscribers.values():
+                modules.pop(module, None)
+
+    def subscribers(self, name: str) -> list[str]:
+        """Modules subscribed to an event."""
+        with self._lock:
+            return sorted(self._subscribers.get(name, {}))
+
+    def listen(self, name: str, listener: Callable[[Any], None]) -> None:
+        """Call `listener(value)` at each event; for the signals of qi-style subscribers."""
+        with self._lock:
+            self._entries.setdefault(name, _Entry(EVENT))
+            self._listeners.setdefault(name, []).append(listener)
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _write(self, key: str, value: Any, kind: str) -> None:
+        now = self._clock()
+        with self._lock:
+            entry = self._entries.setdefault(key, _Entry(kind))
+            if kind != DATA:
+                entry.kind = kind
+            is_new = not entry.exists
+            entry.value, entry.time, entry.exists = value, now, True
+            entry.history.append((value, now))
+            changes = self._changes.pop(key, [])
+            listeners = list(self._listeners.get(key, ())) if entry.kind != DATA else []
+            subscribers = list(self._subscribers.get(key, {}).values()) if entry.kind != DATA else []
+        for callback in [*changes, *listeners]:
+            callback(value)
+        for subscriber, message in subscribers:
+            try:
+                subscriber(key, value, message)
+            except Exception:
+                log.exception("a subscriber of %s failed", key)
+        if is_new:
+            self._announce(KEY_ADDED, key)
+
+    def _announce(self, event: str, key: str) -> None:
+        """Tell who wants to know that keys come and go; nothing is kept when nobody does."""
+        if self._subscribers.get(event) or self._listeners.get(event):
+            self._write(event, key, EVENT)
+
+    def _holds(self, key: str) -> bool:
+        return key in self._live or (key in self._entries and self._entries[key].exists)
+
+    def _entry(self, key: str) -> _Entry:
+        entry = self._entries.get(key)
+        if entry is None or not entry.exists:
+            raise UnknownName("key", key, self._entries)
+        return entry
+
+    def _names(self, kind: str | None) -> list[str]:
+        return [n for n, e in self._entries.items() if kind is None or e.kind == kind]

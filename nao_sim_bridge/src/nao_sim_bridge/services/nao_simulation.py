@@ -1,0 +1,108 @@
+"""NaoSimulation: what only a simulator has. Time, reset, pushes, fingers, ground truth. Not a NAOqi module."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Sequence
+
+import qi
+
+from nao_sim_bridge.services.arguments import number, numbers
+from nao_sim_bridge.services.binding import answer, as_future
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.runner import FASTEST, SimulationRunner
+from nao_sim_bridge.sim.simulation import Simulation
+
+NAME = "NaoSimulation"
+
+
+class NaoSimulation:
+    """Control of the simulation over libqi; a real robot has no such service.
+
+    Args:
+        simulation: Touched in the simulation thread only.
+        runner: That thread.
+        on_reset: Called in that thread after a reset.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, on_reset: Callable[[], None]) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._on_reset = on_reset
+
+    @qi.bind(qi.Float, [])
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self._runner.snapshot.time
+
+    @qi.bind(qi.Float, [])
+    def speed(self) -> float:
+        """Simulated seconds per wall second that are asked for; 0 when as fast as possible."""
+        return 0.0 if self._runner.speed == FASTEST else self._runner.speed
+
+    @qi.bind(qi.Void, [qi.Float])
+    def setSpeed(self, speed: float) -> Any:
+        """Simulated seconds per wall second; 0 for as fast as possible."""
+        return answer(NAME, "setSpeed", lambda: self._runner.set_speed(speed if speed else FASTEST), ())
+
+    @qi.bind(qi.Void, [])
+    def pause(self) -> None:
+        """Let time stand still; calls are still answered."""
+        self._runner.pause()
+
+    @qi.bind(qi.Void, [])
+    def resume(self) -> None:
+        """Let time pass again."""
+        self._runner.resume()
+
+    @qi.bind(qi.Bool, [])
+    def isPaused(self) -> bool:
+        """Whether time stands still."""
+        return self._runner.paused
+
+    @qi.bind(qi.Float, [qi.Float])
+    def advance(self, seconds: float) -> Any:
+        """Let `seconds` of simulated time pass as fast as possible; returns the time after it, s."""
+        return answer(NAME, "advance", lambda: self._runner.advance(seconds).then(lambda s: s.time), ())
+
+    @qi.bind(qi.Void, [])
+    def reset(self) -> Any:
+        """Put robot and world to where they started; tasks are killed, time goes on."""
+
+        def reset() -> None:
+            self._simulation.reset()
+            self._on_reset()
+
+        return as_future(self._runner.execute(reset, "reset"), f"{NAME}::reset")
+
+    @qi.bind(qi.Void, [qi.List(qi.Float), qi.Float, qi.String])
+    def push(self, force: Sequence[float], duration: float, link: str) -> Any:
+        """Push a link ("torso", "Head", "l_wrist"...) with `force` [x, y, z] N in world for `duration` s."""
+
+        def push() -> Any:
+            vector = numbers(force, "force")
+            if len(vector) != 3:
+                raise BadValue("force", force, "[x, y, z] in N")
+            lasting = number(duration, "duration", 0.0, 60.0)
+            return self._runner.execute(
+                lambda: self._simulation.robot.push(tuple(vector), self._simulation.time + lasting, link), "push"
+            )
+
+        return answer(NAME, "push", push, ())
+
+    @qi.bind(qi.Void, [qi.List(qi.String)])
+    def press(self, sensors: Sequence[str]) -> Any:
+        """Simulated fingers on these touch sensors ("Head/Touch/Front"...) and no others; an empty list lets go."""
+        return answer(
+            NAME, "press", lambda: self._runner.execute(lambda: self._simulation.robot.touch.press(sensors)), ()
+        )
+
+    @qi.bind(qi.List(qi.Float), [])
+    def torsoPose(self) -> list[float]:
+        """True pose of the torso in world: x, y, z in m, quaternion x, y, z, w."""
+        pose = self._runner.snapshot.torso
+        return [*pose.position, *pose.orientation]
+
+    @qi.bind(qi.Map(qi.String, qi.List(qi.Float)), [])
+    def objectPoses(self) -> dict[str, list[float]]:
+        """True poses of the movable objects of the world, as `torsoPose`."""
+        return {n: [*p.position, *p.orientation] for n, p in self._runner.snapshot.objects.items()}

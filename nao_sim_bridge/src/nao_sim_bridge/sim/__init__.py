@@ -1,0 +1,1 @@
+"""The simulation core: PyBullet and NumPy only, no ROS and no libqi."""

@@ -1,0 +1,73 @@
+"""Errors of the simulation core.
+
+SimulationError (RuntimeError)
+├── ConfigError        a data file that does not hold what it should
+├── UnknownName        a joint, LED, key... that the robot does not have
+├── BadValue           an argument outside what is allowed
+├── TaskKilled         a task ended before its time
+└── SimulationStopped  the simulation thread ended while somebody waited for it
+"""
+
+from __future__ import annotations
+
+import difflib
+from typing import Any, Iterable
+
+
+class SimulationError(RuntimeError):
+    """Root of everything the simulation core raises on purpose."""
+
+
+class ConfigError(SimulationError):
+    """A data file that does not hold what it should.
+
+    Attributes:
+        where: File and place in it.
+        problem: What is wrong there.
+    """
+
+    def __init__(self, where: str, problem: str) -> None:
+        self.where = where
+        self.problem = problem
+        super().__init__(f"{where}: {problem}")
+
+
+class UnknownName(SimulationError):
+    """A name that the simulated robot does not have.
+
+    Attributes:
+        kind: What was looked for, for example "joint".
+        name: The name as given.
+        close: The closest names there are, best first.
+    """
+
+    def __init__(self, kind: str, name: Any, known: Iterable[str]) -> None:
+        self.kind = kind
+        self.name = name
+        self.close = difflib.get_close_matches(str(name), list(known), n=3, cutoff=0.5)
+        hint = f": did you mean {' or '.join(repr(c) for c in self.close)}?" if self.close else ""
+        super().__init__(f"unknown {kind} {name!r}{hint}")
+
+
+class BadValue(SimulationError):
+    """An argument outside what is allowed.
+
+    Attributes:
+        field: Name of the argument.
+        value: The value as given.
+        allowed: What would have been right, in words.
+    """
+
+    def __init__(self, field: str, value: Any, allowed: str) -> None:
+        self.field = field
+        self.value = value
+        self.allowed = allowed
+        super().__init__(f"{field} is {value!r}, allowed is {allowed}")
+
+
+class TaskKilled(SimulationError):
+    """A task ended before its time because somebody killed it."""
+
+
+class SimulationStopped(SimulationError):
+    """The simulation thread ended while somebody waited for it."""

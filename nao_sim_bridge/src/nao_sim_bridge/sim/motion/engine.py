@@ -1,0 +1,183 @@
+"""The motion engine: every task that moves or stiffens joints, advanced once a tick.
+
+Two kinds of motion share the joints, as in ALMotion:
+
+- a *task* (angleInterpolation and kin) owns its joints from start to end. A second task that wants one of them waits
+  in line until it is free;
+- a *target* (setAngles and kin) is no task: a newer one replaces it at any time. It gives way to a task that starts on
+  its joint, and one set while a task holds the joint is taken up when that task ends.
+
+Only the simulation thread calls anything here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Callable, Iterable, Mapping, Sequence, Union
+
+from nao_sim_bridge.sim.motion.curves import Ramp, SmoothCurve
+from nao_sim_bridge.sim.motion.joints import JointCommands
+from nao_sim_bridge.sim.tasks import Task, TaskIds
+
+Curve = Union[Ramp, SmoothCurve]
+CurveBuilder = Callable[[Sequence[float]], Mapping[int, Curve]]
+
+# A command is "there" when it is this close; float rounding only, commands are exact.
+REACHED = 1e-9
+
+
+@dataclass(eq=False)
+class _Job:
+    """A task, the curves it follows once started, and what it holds."""
+
+    task: Task
+    indices: frozenset[int]
+    build: CurveBuilder
+    stiffness: bool
+    started: float | None = None
+    curves: Mapping[int, Curve] = field(default_factory=dict)
+
+    def conflicts(self, other: _Job) -> bool:
+        return self.stiffness == other.stiffness and bool(self.indices & other.indices)
+
+
+class MotionEngine:
+    """Advances all joint motion.
+
+    Args:
+        joints: Where commands and stiffnesses go.
+        task_ids: Source of the tasks' numbers.
+    """
+
+    def __init__(self, joints: JointCommands, task_ids: TaskIds) -> None:
+        self._joints = joints
+        self._ids = task_ids
+        self._jobs: list[_Job] = []
+        self._targets: dict[int, tuple[float, float]] = {}
+        self._ramps: dict[int, tuple[Ramp, float]] = {}
+        self._now = 0.0
+
+    # --- what callers ask for -------------------------------------------------------------------------------------
+
+    def follow(self, name: str, indices: Iterable[int], build: CurveBuilder) -> Task:
+        """Start a task that moves `indices` along the curves that `build(commands)` makes when its turn comes."""
+        return self._add(name, indices, build, stiffness=False)
+
+    def stiffen(self, name: str, indices: Iterable[int], build: CurveBuilder) -> Task:
+        """Start a task that changes stiffnesses (0..1) along the curves of `build(stiffnesses)`."""
+        return self._add(name, indices, build, stiffness=True)
+
+    def set_targets(self, targets: Mapping[int, float], speeds: Mapping[int, float]) -> None:
+        """Move joints to `targets` (rad) at `speeds` (rad/s) from now on; replaces older targets."""
+        for index, target in targets.items():
+            self._targets[index] = (self._joints.clamp(index, target), speeds[index])
+            self._ramps.pop(index, None)
+
+    def target_of(self, index: int) -> float:
+        """Where a joint is heading by `set_targets`, else its command, in rad."""
+        target = self._targets.get(index)
+        return self._joints.commands[index] if target is None else target[0]
+
+    def set_stiffness_now(self, values: Mapping[int, float]) -> None:
+        """Set stiffnesses at once; ends stiffness tasks on these joints."""
+        for job in [j for j in self._jobs if j.stiffness and j.indices & values.keys()]:
+            job.task.kill()
+        self._joints.set_stiffness(dict(values))
+
+    # --- looking and killing --------------------------------------------------------------------------------------
+
+    def tasks(self) -> list[Task]:
+        """Tasks that run or wait, oldest first."""
+        return [job.task for job in self._jobs]
+
+    def busy(self, indices: Iterable[int]) -> bool:
+        """True when a task runs or waits on one of the joints."""
+        wanted = set(indices)
+        return any(not job.stiffness and wanted & job.indices for job in self._jobs)
+
+    def kill_using(self, indices: Iterable[int]) -> None:
+        """Kill every motion task on these joints and drop their targets: they stay where they are."""
+        wanted = set(indices)
+        for job in [j for j in self._jobs if not j.stiffness and j.indices & wanted]:
+            job.task.kill()
+        for index in wanted:
+            self._targets.pop(index, None)
+            self._ramps.pop(index, None)
+
+    def kill_all(self) -> None:
+        """Kill every task and drop every target."""
+        for job in list(self._jobs):
+            job.task.kill()
+        self._targets.clear()
+        self._ramps.clear()
+
+    # --- the tick -------------------------------------------------------------------------------------------------
+
+    def tick(self, now: float, dt: float) -> None:
+        """Advance everything to time `now` (s), `dt` seconds after the last tick."""
+        self._now = now
+        if not (self._jobs or self._targets):
+            self._joints.step({}, dt)
+            return
+        self._start_jobs(now - dt)
+        wanted: dict[int, float] = {}
+        self._advance_targets(wanted, now, dt)
+        for job in self._jobs:
+            if job.started is None:
+                continue
+            elapsed = now - job.started
+            values = {index: curve.value(elapsed) for index, curve in job.curves.items()}
+            if job.stiffness:
+                self._joints.set_stiffness(values)
+            else:
+                wanted.update(values)
+        self._joints.step(wanted, dt)
+        self._finish_jobs(now)
+
+    def _add(self, name: str, indices: Iterable[int], build: CurveBuilder, stiffness: bool) -> Task:
+        task = self._ids.make(name, on_kill=self._drop)
+        self._jobs.append(_Job(task, frozenset(indices), build, stiffness))
+        return task
+
+    def _drop(self, task: Task) -> None:
+        self._jobs = [job for job in self._jobs if job.task is not task]
+
+    def _start_jobs(self, now: float) -> None:
+        for position, job in enumerate(self._jobs):
+            if job.started is not None or any(job.conflicts(older) for older in self._jobs[:position]):
+                continue
+            job.started = now
+            job.curves = job.build(self._joints.stiffnesses if job.stiffness else self._joints.commands)
+            if not job.stiffness:
+                for index in job.indices:
+                    self._targets.pop(index, None)
+                    self._ramps.pop(index, None)
+
+    def _advance_targets(self, wanted: dict[int, float], now: float, dt: float) -> None:
+        held = {i for job in self._jobs if job.started is not None and not job.stiffness for i in job.indices}
+        for index, (target, speed) in list(self._targets.items()):
+            if index in held:
+                continue
+            if index not in self._ramps:
+                self._ramps[index] = (Ramp(self._joints.commands[index], target, speed), now - dt)
+            ramp, started = self._ramps[index]
+            wanted[index] = ramp.value(now - started)
+            if now - started >= ramp.duration:
+                del self._targets[index], self._ramps[index]
+
+    def _finish_jobs(self, now: float) -> None:
+        for job in [j for j in self._jobs if j.started is not None]:
+            # Half a nanosecond of slack: sums of ticks are not exact.
+            if any(now - job.started < curve.duration - REACHED for curve in job.curves.values()):
+                continue
+            if job.stiffness or self._commands_reached(job):
+                self._drop(job.task)
+                job.task.finish()
+
+    def _commands_reached(self, job: _Job) -> bool:
+        """False while a motor's speed limit still keeps a command from the end of its curve."""
+        commands = self._joints.commands
+        return all(
+            abs(commands[i] - self._joints.clamp(i, curve.value(curve.duration))) <= REACHED
+            for i, curve in job.curves.items()
+        )

@@ -1,0 +1,112 @@
+"""Motions made of several steps, as one task that can be killed at any point. Simulation thread only."""
+
+from __future__ import annotations
+
+from typing import Callable, Iterable, Iterator, Optional, Sequence
+
+from nao_sim_bridge.sim.motion.curves import Ramp, SmoothCurve
+from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.sim.robot import SimulatedRobot
+from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.tasks import Task
+
+Step = Callable[[], Optional[Task]]
+
+AWAKE_POSTURE = "Stand"
+REST_POSTURE = "Crouch"
+# Time to stiffen or release the body, s, and to move between standing and crouching.
+STIFFEN_TIME = 0.2
+POSTURE_TIME = 2.0
+# Beyond this lean (rad) the robot lies: getting up is more than one motion.
+MAX_LEAN = 0.8
+
+
+def run_steps(robot: SimulatedRobot, name: str, steps: Iterable[Step]) -> Task:
+    """Run steps one after the other; each returns the task to wait for, or None.
+
+    Args:
+        robot: Whose task numbers are used.
+        name: NAOqi name of the whole.
+        steps: Called in order, each when the one before has ended; a killed step ends the whole.
+    """
+    remaining: Iterator[Step] = iter(steps)
+    running: list[Task] = []
+
+    def stop(_: Task) -> None:
+        for task in running:
+            task.kill()
+
+    whole = robot.task_ids.make(name, on_kill=stop)
+
+    def proceed(done: Task | None = None) -> None:
+        if whole.finished or whole.killed:
+            return
+        if done is not None and done.killed:
+            whole.kill()
+            return
+        for step in remaining:
+            task = step()
+            if task is not None:
+                running[:] = [task]
+                task.add_done_callback(proceed)
+                return
+        whole.finish()
+
+    proceed()
+    return whole
+
+
+def is_upright(snapshot: Snapshot) -> bool:
+    """Whether the torso leans so little that the robot is on its feet or its seat."""
+    roll, pitch, _ = snapshot.imu.angles
+    return abs(roll) < MAX_LEAN and abs(pitch) < MAX_LEAN
+
+
+def wake_up(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
+    """Stiffen the body where it is and, when upright, stand up; `on_end` is called after the last step."""
+    body = range(len(robot.model.joints))
+
+    def stiffen() -> Task:
+        now = snapshot()
+        limp = [i for i in body if robot.joints.stiffnesses[i] == 0.0]
+        robot.joints.hold(now.positions, limp)
+        return stiffness_task(robot, "wakeUp", body, 1.0, STIFFEN_TIME)
+
+    def stand() -> Task | None:
+        return posture_task(robot, "wakeUp", AWAKE_POSTURE) if is_upright(snapshot()) else None
+
+    return run_steps(robot, "wakeUp", [stiffen, stand, on_end])
+
+
+def rest(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
+    """Crouch when upright and stiff, then release all motors; `on_end` is called after the last step."""
+    body = range(len(robot.model.joints))
+
+    def crouch() -> Task | None:
+        standing = is_upright(snapshot()) and min(robot.joints.stiffnesses) > 0.0
+        return posture_task(robot, "rest", REST_POSTURE) if standing else None
+
+    def release() -> Task:
+        return stiffness_task(robot, "rest", body, 0.0, STIFFEN_TIME)
+
+    return run_steps(robot, "rest", [crouch, release, on_end])
+
+
+def posture_task(robot: SimulatedRobot, name: str, target: str, duration: float = POSTURE_TIME) -> Task:
+    """Move the whole body to a posture in `duration` s."""
+    goal = posture(robot.model, target)
+
+    def curves(commands: Sequence[float]) -> dict[int, SmoothCurve]:
+        return {i: SmoothCurve((0.0, duration), (commands[i], angle)) for i, angle in enumerate(goal)}
+
+    return robot.motion.follow(name, range(len(goal)), curves)
+
+
+def stiffness_task(robot: SimulatedRobot, name: str, indices: Iterable[int], target: float, duration: float) -> Task:
+    """Change stiffness of joints to `target` in `duration` s."""
+    indices = list(indices)
+
+    def ramps(now: Sequence[float]) -> dict[int, Ramp]:
+        return {i: Ramp(now[i], target, max(abs(target - now[i]), 1e-6) / duration) for i in indices}
+
+    return robot.motion.stiffen(name, indices, ramps)

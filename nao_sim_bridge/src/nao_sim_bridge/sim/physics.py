@@ -1,0 +1,288 @@
+"""The PyBullet world with one NAO in it: motors in, raw readings out. Nothing here knows NAOqi.
+
+Whoever calls this owns the world: one thread only. Readings are plain tuples in ALMotion's Body order.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import dataclass
+from typing import Mapping, Sequence
+
+import numpy as np
+import pybullet
+
+from nao_sim_bridge.sim.model import RobotModel
+from nao_sim_bridge.sim.motion.joints import JointCommands
+from nao_sim_bridge.sim.settings import Settings
+from nao_sim_bridge.sim.snapshot import Pose, Vector3
+from nao_sim_bridge.sim.urdf import physics_urdf
+from nao_sim_bridge.sim.world import World, build_world
+
+# Columns of PyBullet's joint info and contact point tuples.
+JOINT_NAME, LINK_NAME, PARENT_FRAME_POSITION = 1, 12, 14
+LINK_A, POSITION_ON_A, NORMAL_ON_B, NORMAL_FORCE = 3, 5, 7, 9
+NO_PUSHES: Mapping[str, Vector3] = {}
+
+
+@dataclass(frozen=True)
+class JointReadings:
+    """What the joints measure: (26,) angles in rad (hands 0..1), speeds in rad/s, motor torques in N m."""
+
+    positions: tuple[float, ...]
+    velocities: tuple[float, ...]
+    torques: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class BodyReadings:
+    """True motion of the torso frame in world: pose, velocity in m/s, angular velocity in rad/s."""
+
+    pose: Pose
+    linear_velocity: Vector3
+    angular_velocity: Vector3
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One point where something presses on the robot.
+
+    Attributes:
+        link: Link index of PyBullet (-1 is the torso).
+        position: In world, m.
+        normal: Unit vector in world, towards the robot.
+        force: N, along the normal.
+    """
+
+    link: int
+    position: Vector3
+    normal: Vector3
+    force: float
+
+
+class Physics:
+    """A world, a free NAO, and gravity.
+
+    Args:
+        model: The robot.
+        world: What else there is.
+        settings: Time step, gains, friction.
+        angles: (26,) joint angles to start with, rad (hands 0..1).
+    """
+
+    def __init__(self, model: RobotModel, world: World, settings: Settings, angles: Sequence[float]) -> None:
+        self._model = model
+        self._settings = settings
+        self.client = pybullet.connect(pybullet.DIRECT)
+        pybullet.setGravity(0, 0, -settings.gravity_m_s2, physicsClientId=self.client)
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=settings.time_step_s,
+            numSolverIterations=settings.solver_iterations,
+            deterministicOverlappingPairs=1,
+            physicsClientId=self.client,
+        )
+        self.objects = build_world(world, self.client, visual=False)
+        self.robot = self._load_robot()
+        self.links = self._index(LINK_NAME)
+        joints = self._index(JOINT_NAME)
+        self._indices = [joints[j.name] for j in model.joints]
+        self._travel = model.simulated_hand.travel
+        self._hands = [i for i, j in enumerate(model.joints) if j.is_hand]
+        self._torques = np.array([j.max_torque for j in model.joints])
+        self._set_friction()
+        self._couple_hips(joints)
+        local_position, local_orientation = pybullet.getDynamicsInfo(self.robot, -1, physicsClientId=self.client)[3:5]
+        self._torso_to_com = (local_position, local_orientation)
+        self._com_to_torso = pybullet.invertTransform(local_position, local_orientation)
+        self.place(angles)
+
+    def close(self) -> None:
+        """Free the engine's memory; the object is of no use afterwards."""
+        pybullet.disconnect(physicsClientId=self.client)
+
+    # --- moving ---------------------------------------------------------------------------------------------------
+
+    def place(self, angles: Sequence[float], yaw: float = 0.0, xy: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Put the robot at rest with these joint angles, its left sole flat on the floor below the torso's origin."""
+        for index, angle in zip(self._indices, self._to_engine(angles)):
+            pybullet.resetJointState(self.robot, index, angle, 0.0, physicsClientId=self.client)
+        self._reset_base((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+        foot_orientation = self.link_pose("l_ankle").orientation
+        upright = pybullet.invertTransform((0, 0, 0), foot_orientation)[1]
+        heading = pybullet.getEulerFromQuaternion(upright)[2]
+        turn = pybullet.getQuaternionFromEuler((0, 0, yaw - heading))
+        orientation = pybullet.multiplyTransforms((0, 0, 0), turn, (0, 0, 0), upright)[1]
+        self._reset_base((0.0, 0.0, 0.0), orientation)
+        soles = [self.link_pose(f).position[2] - self._model.sole_height for f in ("l_ankle", "r_ankle")]
+        self._reset_base((xy[0], xy[1], -min(soles)), orientation)
+
+    def drive(self, joints: JointCommands) -> None:
+        """Tell the motors commands and stiffnesses; a limp joint has only the friction of its gears."""
+        motor = self._settings.motor
+        stiffness = np.array(joints.stiffnesses)
+        stiff = stiffness > 0.0
+        targets = np.where(stiff, self._to_engine(joints.commands), self._to_engine(joints.rests))
+        velocities = np.array(self._to_engine_speeds(joints.velocities)) * motor.feed_forward
+        pybullet.setJointMotorControlArray(
+            self.robot,
+            self._indices,
+            pybullet.POSITION_CONTROL,
+            targetPositions=targets.tolist(),
+            targetVelocities=np.where(stiff, velocities, 0.0).tolist(),
+            forces=(self._torques * np.maximum(stiffness, motor.limp_friction)).tolist(),
+            positionGains=[motor.position_gain] * len(self._indices),
+            velocityGains=[motor.velocity_gain] * len(self._indices),
+            physicsClientId=self.client,
+        )
+
+    def step(self, pushes: Mapping[str, Vector3] = NO_PUSHES) -> None:
+        """Advance by one tick while `pushes` (link name -> force in N, in world) act on the links' centres of mass."""
+        for _ in range(self._settings.steps_per_tick):
+            for link, force in pushes.items():
+                self._push(link, force)
+            pybullet.stepSimulation(physicsClientId=self.client)
+
+    def _push(self, link: str, force: Vector3) -> None:
+        index = self.links.get(link, -1)
+        position = (
+            pybullet.getBasePositionAndOrientation(self.robot, physicsClientId=self.client)[0]
+            if index < 0
+            else pybullet.getLinkState(self.robot, index, physicsClientId=self.client)[0]
+        )
+        pybullet.applyExternalForce(
+            self.robot, index, force, position, pybullet.WORLD_FRAME, physicsClientId=self.client
+        )
+
+    # --- reading --------------------------------------------------------------------------------------------------
+
+    def read_joints(self) -> JointReadings:
+        """Angles, speeds and torques of the 26 joints."""
+        states = pybullet.getJointStates(self.robot, self._indices, physicsClientId=self.client)
+        positions, velocities, _, torques = map(list, zip(*states))
+        for index in self._hands:
+            positions[index] = positions[index] / self._travel + 1.0
+            velocities[index] /= self._travel
+        return JointReadings(tuple(positions), tuple(velocities), tuple(torques))
+
+    def read_body(self) -> BodyReadings:
+        """Pose and velocities of the torso frame."""
+        com, orientation = pybullet.getBasePositionAndOrientation(self.robot, physicsClientId=self.client)
+        position, orientation = pybullet.multiplyTransforms(com, orientation, *self._com_to_torso)
+        velocity, angular = pybullet.getBaseVelocity(self.robot, physicsClientId=self.client)
+        rx, ry, rz = position[0] - com[0], position[1] - com[1], position[2] - com[2]
+        wx, wy, wz = angular
+        linear = (
+            velocity[0] + wy * rz - wz * ry,
+            velocity[1] + wz * rx - wx * rz,
+            velocity[2] + wx * ry - wy * rx,
+        )
+        return BodyReadings(Pose(position, orientation), linear, angular)
+
+    def read_contacts(self) -> list[Contact]:
+        """Every point where another body presses on the robot."""
+        points = pybullet.getContactPoints(self.robot, physicsClientId=self.client)
+        return [
+            Contact(c[LINK_A], c[POSITION_ON_A], c[NORMAL_ON_B], c[NORMAL_FORCE])
+            for c in points
+            if c[2] != self.robot and c[NORMAL_FORCE] > 0.0
+        ]
+
+    def read_objects(self) -> Mapping[str, Pose]:
+        """Poses of the movable objects of the world."""
+        poses = {}
+        for name, body in self.objects.items():
+            if pybullet.getDynamicsInfo(body, -1, physicsClientId=self.client)[0] > 0.0:
+                poses[name] = Pose(*pybullet.getBasePositionAndOrientation(body, physicsClientId=self.client))
+        return poses
+
+    def link_pose(self, name: str) -> Pose:
+        """Pose of a link frame (not of its centre of mass) in world."""
+        state = pybullet.getLinkState(
+            self.robot, self.links[name], computeForwardKinematics=True, physicsClientId=self.client
+        )
+        return Pose(state[4], state[5])
+
+    def nearest_hits(self, start: Vector3, ends: Sequence[Vector3]) -> list[float]:
+        """Share 0..1 of the way from `start` to each of `ends` that is free; the robot itself does not count."""
+        hits = pybullet.rayTestBatch([start] * len(ends), list(ends), physicsClientId=self.client)
+        return [1.0 if hit[0] == self.robot else hit[2] for hit in hits]
+
+    # --- building -------------------------------------------------------------------------------------------------
+
+    def _load_robot(self) -> int:
+        descriptor, path = tempfile.mkstemp(suffix=".urdf")
+        try:
+            with os.fdopen(descriptor, "w", encoding="utf-8") as file:
+                file.write(physics_urdf(self._model))
+            flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
+            return pybullet.loadURDF(path, flags=flags, physicsClientId=self.client)
+        finally:
+            os.remove(path)
+
+    def _index(self, column: int) -> dict[str, int]:
+        count = pybullet.getNumJoints(self.robot, physicsClientId=self.client)
+        infos = [pybullet.getJointInfo(self.robot, i, physicsClientId=self.client) for i in range(count)]
+        return {info[column].decode(): info[0] for info in infos}
+
+    def _set_friction(self) -> None:
+        contact = self._settings.contact
+        for index in [-1, *self.links.values()]:
+            pybullet.changeDynamics(
+                self.robot,
+                index,
+                lateralFriction=contact.body_friction,
+                linearDamping=0.0,
+                angularDamping=0.0,
+                jointDamping=0.0,
+                physicsClientId=self.client,
+            )
+        for foot in ("l_ankle", "r_ankle"):
+            # Without friction anchors a standing robot creeps tens of degrees a minute.
+            pybullet.changeDynamics(
+                self.robot,
+                self.links[foot],
+                lateralFriction=contact.sole_friction,
+                frictionAnchor=1,
+                contactStiffness=contact.sole_stiffness,
+                contactDamping=contact.sole_damping,
+                physicsClientId=self.client,
+            )
+
+    def _couple_hips(self, joints: Mapping[str, int]) -> None:
+        """Both HipYawPitch joints turn with one motor: a gear of ratio 1 between the two."""
+        gear = pybullet.createConstraint(
+            self.robot,
+            joints["LHipYawPitch"],
+            self.robot,
+            joints["RHipYawPitch"],
+            pybullet.JOINT_GEAR,
+            (0, 1, 0),
+            (0, 0, 0),
+            (0, 0, 0),
+            physicsClientId=self.client,
+        )
+        pybullet.changeConstraint(
+            gear,
+            gearRatio=-1,
+            erp=0.2,
+            maxForce=self._settings.motor.coupling_force_n,
+            physicsClientId=self.client,
+        )
+
+    def _reset_base(self, position: Vector3, orientation: Sequence[float]) -> None:
+        com, turn = pybullet.multiplyTransforms(position, orientation, *self._torso_to_com)
+        pybullet.resetBasePositionAndOrientation(self.robot, com, turn, physicsClientId=self.client)
+        pybullet.resetBaseVelocity(self.robot, (0, 0, 0), (0, 0, 0), physicsClientId=self.client)
+
+    def _to_engine(self, angles: Sequence[float]) -> list[float]:
+        angles = list(angles)
+        for index in self._hands:
+            angles[index] = (angles[index] - 1.0) * self._travel
+        return angles
+
+    def _to_engine_speeds(self, speeds: Sequence[float]) -> list[float]:
+        speeds = list(speeds)
+        for index in self._hands:
+            speeds[index] *= self._travel
+        return speeds

@@ -1,0 +1,18 @@
+"""Pictures of the simulation, made in a process of their own so that the physics never waits for them."""
+
+from __future__ import annotations
+
+from nao_sim_bridge.sim.render.client import RenderError, Renderer, Viewer
+from nao_sim_bridge.sim.render.scene import PRESETS, Camera, RenderState, preset_camera
+from nao_sim_bridge.sim.render.png import write_png
+
+__all__ = [
+    "PRESETS",
+    "Camera",
+    "RenderError",
+    "RenderState",
+    "Renderer",
+    "Viewer",
+    "preset_camera",
+    "write_png",
+]

@@ -1,0 +1,125 @@
+"""What a picture shows: the state of robot and objects, and where the camera is. Small values that can be sent."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.sim.model import RobotModel
+from nao_sim_bridge.sim.snapshot import Pose, Quaternion, Vector3
+
+
+@dataclass(frozen=True)
+class RenderState:
+    """Everything that can change between two pictures of one world.
+
+    Attributes:
+        base_position: Torso frame in world, m.
+        base_orientation: Of the torso frame in world, quaternion (x, y, z, w).
+        joint_positions: (26,) in Body order, rad (hands 0..1).
+        led_values: (89,) intensities 0..1 in the order of the LED layout's devices.
+        objects: Poses of movable objects of the world, by name; others stay where they are.
+    """
+
+    base_position: Vector3
+    base_orientation: Quaternion
+    joint_positions: tuple[float, ...]
+    led_values: tuple[float, ...]
+    objects: Mapping[str, Pose] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera in world.
+
+    Attributes:
+        eye: Where it is, m.
+        target: What it looks at, m.
+        up: Direction that is up in the picture.
+        fov: Vertical field of view, rad.
+        width: Of the picture, in pixels.
+        height: Of the picture, in pixels.
+        supersampling: 1 is fastest; 2 draws four pixels for each and has smooth edges.
+    """
+
+    eye: Vector3
+    target: Vector3
+    up: Vector3 = (0.0, 0.0, 1.0)
+    fov: float = math.radians(40.0)
+    width: int = 640
+    height: int = 480
+    supersampling: int = 1
+
+
+@dataclass(frozen=True)
+class _View:
+    """A preset: eye and target in the frame of what it follows, m."""
+
+    follows: str
+    eye: Vector3
+    target: Vector3
+    fov_deg: float
+
+
+PRESETS: Mapping[str, _View] = {
+    "front": _View("body", (1.05, 0.0, 0.06), (0.0, 0.0, -0.045), 38.0),
+    "three_quarter": _View("body", (0.86, 0.52, 0.22), (0.0, 0.0, -0.05), 38.0),
+    "side": _View("body", (0.02, 1.05, 0.06), (0.02, 0.0, -0.045), 38.0),
+    "back": _View("body", (-1.0, -0.3, 0.2), (0.0, 0.0, -0.05), 38.0),
+    "far": _View("body", (2.4, 1.5, 0.9), (0.0, 0.0, -0.1), 38.0),
+    "face": _View("head", (0.36, 0.09, 0.07), (0.0, 0.0, 0.056), 26.0),
+}
+"""Views by name. Those of the body turn with its heading only; the view of the face with the head."""
+
+
+def preset_camera(
+    name: str, model: RobotModel, state: RenderState, width: int = 640, height: int = 480, supersampling: int = 2
+) -> Camera:
+    """A camera that shows the robot where it is.
+
+    Args:
+        name: One of `PRESETS`.
+        model: The robot.
+        state: Where it is.
+        width: Of the picture, in pixels.
+        height: Of the picture, in pixels.
+        supersampling: See `Camera`.
+
+    Raises:
+        UnknownName: If there is no such view.
+    """
+    if name not in PRESETS:
+        raise UnknownName("view", name, PRESETS)
+    view = PRESETS[name]
+    base = transform(quaternion_matrix(state.base_orientation), state.base_position)
+    frame = base @ link_transforms(model, state.joint_positions)["HeadPitch"] if view.follows == "head" else base
+    if view.follows == "body":
+        frame = _upright(base)
+    eye, target = (frame @ np.append(point, 1.0) for point in (view.eye, view.target))
+    up = frame[:3, 2] if view.follows == "head" else np.array((0.0, 0.0, 1.0))
+    return Camera(
+        eye=_vector3(eye),
+        target=_vector3(target),
+        up=_vector3(up),
+        fov=math.radians(view.fov_deg),
+        width=width,
+        height=height,
+        supersampling=supersampling,
+    )
+
+
+def _upright(base: np.ndarray) -> np.ndarray:
+    """The frame of the torso turned upright; a lying robot's heading is that of its Z axis."""
+    forward = base[:3, 0] if abs(base[2, 0]) < 0.9 else base[:3, 2]
+    yaw = math.atan2(forward[1], forward[0])
+    c, s = math.cos(yaw), math.sin(yaw)
+    return transform(np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]), base[:3, 3])
+
+
+def _vector3(values: np.ndarray) -> Vector3:
+    return float(values[0]), float(values[1]), float(values[2])

@@ -1,0 +1,170 @@
+"""Takes pictures: a PyBullet world with the robot and the objects of a world, a lamp and a camera."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pybullet
+
+from nao_sim_bridge.sim.appearance import load_appearance
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.render.backdrop import Shadow, blur, draw_backdrop
+from nao_sim_bridge.sim.render.figure import Figure
+from nao_sim_bridge.sim.render.scene import Camera, RenderState
+from nao_sim_bridge.sim.world import FLOOR, World, build_world
+
+NEAR, FAR = 0.02, 30.0
+LAMP_DISTANCE = 15.0
+"""Of the lamp that throws the shadow, m; far enough for straight rays."""
+SHADOW_REACH = 0.75
+"""Half the width of what the lamp sees around the robot, m."""
+SHADOW_PIXELS = 192
+DIFFUSE, SPECULAR = 0.62, 0.12
+CORE_WHITE = 0.12
+"""Share of white in the light of a lamp: a saturated colour alone looks like paint, not like light."""
+GLOW = 0.9
+
+
+class Studio:
+    """Where pictures are taken; one thread only.
+
+    Args:
+        world: Floor, light, background and objects.
+        version: Robot version.
+    """
+
+    def __init__(self, world: World, version: str) -> None:
+        self._world = world
+        self._model = load_model(version)
+        self._client = pybullet.connect(pybullet.DIRECT)
+        self._objects = build_world(world, self._client, visual=True)
+        # The floor is drawn as part of the backdrop.
+        pybullet.removeBody(self._objects.pop(FLOOR), physicsClientId=self._client)
+        self._figure = Figure(self._client, self._model, load_appearance(version), paint_lamps=False)
+        self._shadow: Shadow | None = None
+        self._shadow_of: tuple = ()
+
+    def close(self) -> None:
+        """Free the engine."""
+        pybullet.disconnect(physicsClientId=self._client)
+
+    def take(self, state: RenderState, camera: Camera) -> np.ndarray:
+        """The (h, w, 3) uint8 picture of a state."""
+        self._figure.show(state)
+        for name, pose in state.objects.items():
+            pybullet.resetBasePositionAndOrientation(
+                self._objects[name], pose.position, pose.orientation, physicsClientId=self._client
+            )
+        factor = camera.supersampling
+        fine = replace(camera, width=camera.width * factor, height=camera.height * factor)
+        picture = self._draw(state, fine)
+        if factor > 1:
+            shape = (camera.height, factor, camera.width, factor, 3)
+            picture = picture.reshape(shape).mean(axis=(1, 3))
+        return (picture * 255.0 + 0.5).astype(np.uint8)
+
+    def _draw(self, state: RenderState, camera: Camera) -> np.ndarray:
+        """(h, w, 3) float32 picture in 0..1, one ray a pixel."""
+        view = pybullet.computeViewMatrix(camera.eye, camera.target, camera.up)
+        projection = pybullet.computeProjectionMatrixFOV(
+            math.degrees(camera.fov), camera.width / camera.height, NEAR, FAR
+        )
+        light = self._world.light
+        colors, bodies = self._capture(
+            camera.width,
+            camera.height,
+            view,
+            projection,
+            shadow=1,
+            lightDirection=light.direction,
+            lightColor=light.color,
+            lightAmbientCoeff=light.ambient,
+            lightDiffuseCoeff=DIFFUSE,
+            lightSpecularCoeff=SPECULAR,
+        )
+        picture = draw_backdrop(camera, self._world, self._floor_shadow(state))
+        seen = bodies >= 0
+        picture[seen] = colors[seen].astype(np.float32) / np.float32(255.0)
+        self._light_up(picture, bodies)
+        return np.clip(picture, 0.0, 1.0)
+
+    def _capture(self, width: int, height: int, view: tuple, projection: tuple, **light: object) -> tuple:
+        """Colours (h, w, 3) and body ids (h, w), -1 where nothing is."""
+        _, _, rgba, _, bodies = pybullet.getCameraImage(
+            width,
+            height,
+            view,
+            projection,
+            renderer=pybullet.ER_TINY_RENDERER,
+            physicsClientId=self._client,
+            **light,
+        )
+        colors = np.asarray(rgba, dtype=np.uint8).reshape(height, width, 4)[..., :3]
+        return colors, np.asarray(bodies).reshape(height, width)
+
+    def _light_up(self, picture: np.ndarray, bodies: np.ndarray) -> None:
+        """Let lit lamps shine: their pixels take the colour of the light, and some of it spills around them."""
+        light = self._figure.lamp_light
+        level = light.max(axis=1)
+        if not np.any(level > 0.0):
+            return
+        table = np.zeros((bodies.max() + 2, 4), dtype=np.float32)
+        for body, rgb, strength in zip(self._figure.lamp_bodies, light, level):
+            if strength > 0.0 and body + 1 < len(table):
+                full = rgb / strength
+                table[body + 1, :3] = full * (1.0 - CORE_WHITE) + CORE_WHITE
+                table[body + 1, 3] = strength
+        rows, columns = np.nonzero(table[:, 3][bodies + 1])
+        if len(rows) == 0:
+            return
+        entry = table[bodies[rows, columns] + 1]
+        strength = entry[:, 3:]
+        picture[rows, columns] = picture[rows, columns] * (1.0 - strength) + entry[:, :3] * strength
+        self._add_glow(picture, rows, columns, entry)
+
+    def _add_glow(self, picture: np.ndarray, rows: np.ndarray, columns: np.ndarray, entry: np.ndarray) -> None:
+        """Spill light around lit pixels, within the part of the picture that it can reach."""
+        height, width = picture.shape[:2]
+        radius = max(1, round(height * 0.006))
+        margin = 4 * radius
+        top, bottom = max(rows.min() - margin, 0), min(rows.max() + margin + 1, height)
+        left, right = max(columns.min() - margin, 0), min(columns.max() + margin + 1, width)
+        spill = np.zeros((bottom - top, right - left, 3), dtype=np.float32)
+        spill[rows - top, columns - left] = entry[:, :3] * entry[:, 3:]
+        spill = blur(spill, radius, passes=3) * np.float32(GLOW)
+        part = picture[top:bottom, left:right]
+        # Screen blending: bright stays below one and keeps its colour.
+        part[...] = 1.0 - (1.0 - np.clip(part, 0.0, 1.0)) * (1.0 - np.clip(spill, 0.0, 1.0))
+
+    def _floor_shadow(self, state: RenderState) -> Shadow:
+        """The shadow of everything, drawn again only when something has moved."""
+        key = (state.base_position, state.base_orientation, state.joint_positions, tuple(state.objects.items()))
+        if self._shadow is None or key != self._shadow_of:
+            self._shadow, self._shadow_of = self._cast_shadow(state), key
+        return self._shadow
+
+    def _cast_shadow(self, state: RenderState) -> Shadow:
+        direction = np.array(self._world.light.direction)
+        direction /= np.linalg.norm(direction)
+        x, y, z = state.base_position
+        center = np.array((x, y, max(z, 0.0) / 2.0))
+        reach = SHADOW_REACH
+        for pose in self._object_positions():
+            distance = float(np.linalg.norm(pose - center))
+            if distance < 3.0:
+                reach = max(reach, distance + 0.3)
+        view = pybullet.computeViewMatrix(center + direction * LAMP_DISTANCE, center, (0.0, 1.0, 0.001))
+        angle = 2.0 * math.degrees(math.atan(reach / LAMP_DISTANCE))
+        projection = pybullet.computeProjectionMatrixFOV(angle, 1.0, LAMP_DISTANCE - 5.0, LAMP_DISTANCE + 5.0)
+        _, bodies = self._capture(SHADOW_PIXELS, SHADOW_PIXELS, view, projection, shadow=0)
+        matrices = (np.array(m).reshape(4, 4).T for m in (projection, view))
+        to_clip, to_lamp = matrices
+        return Shadow(bodies >= 0, to_clip @ to_lamp)
+
+    def _object_positions(self) -> list[np.ndarray]:
+        return [
+            np.array(pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client)[0])
+            for body in self._objects.values()
+        ]

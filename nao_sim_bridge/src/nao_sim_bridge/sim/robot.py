@@ -1,0 +1,148 @@
+"""The simulated NAO as one thing: commands in, physics, sensors out. One thread only."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Sequence
+
+from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.led_animations import power_on
+from nao_sim_bridge.sim.leds import LedBank
+from nao_sim_bridge.sim.leds_layout import LedLayout
+from nao_sim_bridge.sim.model import RobotModel
+from nao_sim_bridge.sim.motion.engine import MotionEngine
+from nao_sim_bridge.sim.motion.joints import JointCommands
+from nao_sim_bridge.sim.physics import Contact, Physics
+from nao_sim_bridge.sim.sensors.feet import FootSensors
+from nao_sim_bridge.sim.sensors.inertial import InertialUnit
+from nao_sim_bridge.sim.sensors.power import PowerSystem
+from nao_sim_bridge.sim.sensors.sonar import Sonars
+from nao_sim_bridge.sim.sensors.touch import TouchSensors
+from nao_sim_bridge.sim.settings import Settings
+from nao_sim_bridge.sim.snapshot import Pose, Snapshot, Vector3
+from nao_sim_bridge.sim.tasks import TaskIds
+
+
+@dataclass(frozen=True)
+class _Push:
+    link: str
+    force: Vector3
+    until: float
+
+
+class SimulatedRobot:
+    """Motors, LEDs and sensors of one NAO around its physics.
+
+    Attributes:
+        model: Its tables.
+        joints: Command angles and stiffnesses.
+        motion: Tasks and targets of the joints.
+        leds: The LEDs.
+        touch: Touch sensors.
+        random: The only source of chance, so that a seed decides everything.
+
+    Args:
+        model: The robot.
+        leds: Layout of its LEDs.
+        settings: Physics settings.
+        physics: The world with the robot in it.
+        angles: (26,) joint angles it was placed with, rad (hands 0..1).
+        seed: Of the random numbers.
+        task_ids: Source of the tasks' numbers.
+    """
+
+    def __init__(
+        self,
+        model: RobotModel,
+        leds: LedLayout,
+        settings: Settings,
+        physics: Physics,
+        angles: Sequence[float],
+        seed: int,
+        task_ids: TaskIds,
+    ) -> None:
+        self.model = model
+        self.led_layout = leds
+        self.random = random.Random(seed)
+        self.joints = JointCommands(model, angles)
+        self.motion = MotionEngine(self.joints, task_ids)
+        self.leds = LedBank(len(leds.devices), task_ids)
+        self.task_ids = task_ids
+        self.leds.set(power_on(leds))
+        self.touch = TouchSensors(model, lambda name: _link_index(physics, model, name))
+        self._physics = physics
+        self._imu = InertialUnit(model.imu["Accelerometer"].position, settings.gravity_m_s2)
+        self._feet = {side: FootSensors(model, side) for side in "LR"}
+        self._ankles = {side: physics.links[f"{side.lower()}_ankle"] for side in "LR"}
+        self._sonars = Sonars(model)
+        self._power = PowerSystem(model, settings)
+        self._pushes: list[_Push] = []
+        self._link_names = {index: name for name, index in physics.links.items()}
+        self._measured = tuple(angles)
+        self._dt = settings.tick_s
+
+    def push(self, force: Vector3, until: float, link: str = "torso") -> None:
+        """Push a link with `force` (N, in world) until simulated time `until` (s)."""
+        if link != "torso" and link not in self._physics.links:
+            raise UnknownName("link", link, ["torso", *self._physics.links])
+        self._pushes.append(_Push(link, force, until))
+
+    def act(self, now: float) -> None:
+        """First half of a tick: LEDs, motion and motors up to time `now` (s), then physics."""
+        self.leds.tick(now)
+        self.motion.tick(now, self._dt)
+        self.joints.slip(self._measured)
+        if self.joints.changed:
+            self._physics.drive(self.joints)
+            self.joints.changed = False
+        if not self._pushes:
+            self._physics.step()
+            return
+        self._physics.step({push.link: push.force for push in self._pushes})
+        self._pushes = [push for push in self._pushes if push.until > now + 1e-9]
+
+    def sense(self, tick: int, now: float) -> Snapshot:
+        """Second half of a tick: read every sensor."""
+        joints = self._physics.read_joints()
+        self._measured = joints.positions
+        body = self._physics.read_body()
+        contacts: dict[int, list[Contact]] = {}
+        for contact in self._physics.read_contacts():
+            contacts.setdefault(contact.link, []).append(contact)
+        poses = {link: self._pose_of(link) for link in contacts if link >= 0}
+        poses[-1] = body.pose
+        feet = {
+            side: self._feet[side].read(contacts.get(link, ()), poses[link] if link in contacts else body.pose)
+            for side, link in self._ankles.items()
+        }
+        return Snapshot(
+            tick=tick,
+            time=now,
+            positions=joints.positions,
+            velocities=joints.velocities,
+            torques=joints.torques,
+            currents=self._power.advance(joints.torques, self._dt),
+            temperatures=self._power.temperatures,
+            commands=self.joints.commands,
+            stiffnesses=self.joints.stiffnesses,
+            torso=body.pose,
+            linear_velocity=body.linear_velocity,
+            angular_velocity=body.angular_velocity,
+            imu=self._imu.read(body, self._dt),
+            left_foot=feet["L"],
+            right_foot=feet["R"],
+            touched=self.touch.read(contacts, poses.__getitem__),
+            sonars=self._sonars.read(now, body.pose, self._physics.nearest_hits),
+            battery_charge=self._power.charge,
+            battery_current=self._power.current,
+            objects=self._physics.read_objects() if self._physics.objects else {},
+        )
+
+    def _pose_of(self, link: int) -> Pose:
+        return self._physics.link_pose(self._link_names[link])
+
+
+def _link_index(physics: Physics, model: RobotModel, name: str) -> int:
+    alt_name = model.link(name).alt_name
+    return physics.links.get(alt_name, -1)

@@ -1,0 +1,231 @@
+"""The one thread that owns a simulation: it runs commands, ticks, and keeps pace with the wall clock.
+
+Other threads never touch the simulation. They hand in commands with `execute` (run between two ticks, at once when
+the thread is only waiting for the next tick to be due) and read `snapshot`.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import threading
+import time
+from collections import deque
+from typing import Any, Callable
+
+from nao_sim_bridge.sim.errors import BadValue, SimulationStopped
+from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.tasks import Task, TaskIds, stopped_error
+
+log = logging.getLogger("nao_sim.runner")
+
+# When the machine cannot keep the pace, this much lag (s of wall time) is made up for; the rest is given up.
+MAX_LAG = 0.1
+FASTEST = math.inf
+
+
+class SimulationRunner:
+    """Runs a simulation in its own thread.
+
+    Args:
+        simulation: What to run; from `start` on it belongs to the thread.
+        speed: Simulated seconds per wall second; `FASTEST` (infinity) for as fast as possible.
+        paused: Start without time passing.
+    """
+
+    def __init__(self, simulation: Simulation, speed: float = 1.0, paused: bool = False) -> None:
+        self._simulation = simulation
+        self._speed = _checked_speed(speed)
+        self._paused = paused
+        self._ids = TaskIds()
+        self._commands: deque[tuple[Task, Callable[[], Any]]] = deque()
+        self._advances: deque[tuple[Task, int]] = deque()
+        self._wake = threading.Condition()
+        self._ticked = threading.Condition()
+        self._stopping = False
+        self._pace_wall = 0.0
+        self._pace_time = 0.0
+        simulation.task_ids.ask = self._kill_later
+        self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
+
+    # --- from any thread ------------------------------------------------------------------------------------------
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """What the robot sensed at the last tick."""
+        return self._simulation.snapshot
+
+    @property
+    def speed(self) -> float:
+        """Simulated seconds per wall second that are asked for."""
+        return self._speed
+
+    @property
+    def paused(self) -> bool:
+        """True while time stands still but for `advance`."""
+        return self._paused
+
+    @property
+    def running(self) -> bool:
+        """True from `start` until the thread has ended."""
+        return self._thread.is_alive()
+
+    def start(self) -> None:
+        """Start the thread."""
+        self._thread.start()
+
+    def stop(self, timeout: float = 5.0) -> None:
+        """End the thread, wait for it (wall time, s) and free the simulation; everybody who waits gets an error."""
+        with self._wake:
+            self._stopping = True
+            self._wake.notify()
+        if self._thread.is_alive() and threading.current_thread() is not self._thread:
+            self._thread.join(timeout)
+
+    def execute(self, command: Callable[[], Any], name: str = "command") -> Task:
+        """Run `command()` in the simulation thread; the task ends with what it returns or raises."""
+        task = self._ids.make(name)
+        with self._wake:
+            if self._stopping:
+                raise stopped_error()
+            self._commands.append((task, command))
+            self._wake.notify()
+        return task
+
+    def call(self, command: Callable[[], Any], timeout: float = 5.0) -> Any:
+        """Run `command()` in the simulation thread and wait for its result (wall time, s)."""
+        return self.execute(command).result(timeout)
+
+    def set_speed(self, speed: float) -> None:
+        """Change the pace; see `speed` of the constructor."""
+        speed = _checked_speed(speed)
+        with self._wake:
+            self._speed = speed
+            self._restart_pace()
+            self._wake.notify()
+
+    def pause(self) -> None:
+        """Let time stand still; commands are still taken."""
+        with self._wake:
+            self._paused = True
+
+    def resume(self) -> None:
+        """Let time pass again."""
+        with self._wake:
+            self._paused = False
+            self._restart_pace()
+            self._wake.notify()
+
+    def advance(self, seconds: float) -> Task:
+        """Let `seconds` of simulated time pass as fast as possible; the task ends with the snapshot after it."""
+        if not 0.0 <= seconds < math.inf:
+            raise BadValue("seconds", seconds, "0 or more, finite")
+        task = self._ids.make("advance")
+        with self._wake:
+            if self._stopping:
+                raise stopped_error()
+            self._advances.append((task, round(seconds / self._simulation.settings.tick_s)))
+            self._wake.notify()
+        return task
+
+    def wait_for_tick(self, after: int, timeout: float) -> Snapshot | None:
+        """The first snapshot with a tick number above `after`, None when none came within `timeout` (wall time, s)."""
+        with self._ticked:
+            if not self._ticked.wait_for(lambda: self.snapshot.tick > after or self._stopping, timeout):
+                return None
+        return self.snapshot if self.snapshot.tick > after else None
+
+    def _kill_later(self, task: Task) -> None:
+        with self._wake:
+            if not self._stopping:  # else the end of the simulation ends the task
+                self._commands.append((self._ids.make("kill"), task.kill))
+                self._wake.notify()
+
+    # --- in the simulation thread ---------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        error: Exception = SimulationStopped("the simulation has stopped")
+        try:
+            with self._wake:
+                self._restart_pace()
+            while self._next_work():
+                pass
+        except Exception as failure:
+            log.exception("the simulation failed at tick %d", self._simulation.ticks)
+            error = SimulationStopped(f"the simulation failed: {failure}")
+        with self._wake:
+            self._stopping = True
+            waiting = [task for task, _ in self._commands] + [task for task, _ in self._advances]
+        for task in waiting:
+            task.finish(error=error)
+        self._simulation.close()
+        with self._ticked:
+            self._ticked.notify_all()
+
+    def _next_work(self) -> bool:
+        """Wait for a command or a tick that is due and do it. Returns False when it is time to stop."""
+        with self._wake:
+            delay = self._delay()
+            while not (self._stopping or self._commands or delay <= 0.0):
+                self._wake.wait(None if delay == math.inf else delay)
+                delay = self._delay()
+            if self._stopping:
+                return False
+        while self._commands:
+            self._run_command(*self._commands.popleft())
+        if self._delay() <= 0.0:
+            self._tick()
+        return True
+
+    def _run_command(self, task: Task, command: Callable[[], Any]) -> None:
+        try:
+            result = command()
+        except Exception as error:
+            task.finish(error=error)
+        else:
+            task.finish(result)
+
+    def _tick(self) -> None:
+        snapshot = self._simulation.tick()
+        with self._ticked:
+            self._ticked.notify_all()
+        if self._advances:
+            task, left = self._advances[0]
+            if left > 1:
+                self._advances[0] = (task, left - 1)
+            else:
+                self._finish_advance(snapshot)
+
+    def _finish_advance(self, snapshot: Snapshot) -> None:
+        task, _ = self._advances.popleft()
+        if not self._advances:
+            self._restart_pace()
+        task.finish(snapshot)
+
+    def _delay(self) -> float:
+        """Wall time in s until the next tick is due; infinite while time stands still."""
+        if self._advances:
+            if self._advances[0][1] == 0:
+                self._finish_advance(self.snapshot)
+                return self._delay()
+            return 0.0
+        if self._paused:
+            return math.inf
+        if self._speed == FASTEST:
+            return 0.0
+        due = self._pace_wall + (self._simulation.time + self._simulation.settings.tick_s - self._pace_time) / self._speed
+        delay = due - time.monotonic()
+        if delay < -MAX_LAG:
+            self._restart_pace()
+        return delay
+
+    def _restart_pace(self) -> None:
+        self._pace_wall = time.monotonic()
+        self._pace_time = self._simulation.time
+
+
+def _checked_speed(speed: float) -> float:
+    if not speed > 0.0:
+        raise BadValue("speed", speed, "above 0; infinity for as fast as possible")
+    return float(speed)

@@ -1,0 +1,39 @@
+"""The inertial unit in the torso: what accelerometer and gyroscope of the chest board feel."""
+
+from __future__ import annotations
+
+from typing import Sequence
+
+from nao_sim_bridge.sim.physics import BodyReadings
+from nao_sim_bridge.sim.rotations import cross, roll_pitch_yaw, rotate, rotate_back
+from nao_sim_bridge.sim.snapshot import Imu, Vector3
+
+
+class InertialUnit:
+    """Accelerometer and gyroscope at a fixed place of the torso.
+
+    Args:
+        place: (3,) of the accelerometer in the torso frame, m.
+        gravity: m/s2.
+    """
+
+    def __init__(self, place: Sequence[float], gravity: float) -> None:
+        self._place = tuple(float(p) for p in place)
+        self._gravity = gravity
+        self._velocity: Vector3 | None = None
+
+    def reset(self) -> None:
+        """Forget the last velocity: the robot was put somewhere else."""
+        self._velocity = None
+
+    def read(self, body: BodyReadings, dt: float) -> Imu:
+        """Reading after `dt` seconds since the last one."""
+        turn = body.pose.orientation
+        swing = cross(body.angular_velocity, rotate(turn, self._place))
+        velocity = tuple(v + s for v, s in zip(body.linear_velocity, swing))
+        before = self._velocity if self._velocity is not None else velocity
+        self._velocity = velocity
+        ax, ay, az = ((v - b) / dt for v, b in zip(velocity, before))
+        # An accelerometer feels what holds it up, so gravity counts upwards.
+        felt = rotate_back(turn, (ax, ay, az + self._gravity))
+        return Imu(felt, rotate_back(turn, body.angular_velocity), roll_pitch_yaw(turn))

@@ -1,0 +1,102 @@
+"""A world with one NAO, advanced tick by tick. No thread and no wall clock: whoever calls `tick` is in charge of both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from nao_sim_bridge.sim.leds_layout import load_leds
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.physics import Physics
+from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.sim.robot import SimulatedRobot
+from nao_sim_bridge.sim.settings import Settings, load_settings
+from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.tasks import TaskIds
+from nao_sim_bridge.sim.world import load_world
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a simulation starts with.
+
+    Attributes:
+        world: Name of a world file, or its path.
+        version: Robot version, "V6" or "V5".
+        posture: Posture the robot starts in; all joints limp, as after boot.
+        seed: Of all random numbers.
+    """
+
+    world: str = "empty"
+    version: str = "V6"
+    posture: str = "Crouch"
+    seed: int = 0
+
+
+class Simulation:
+    """Owner of the physics and of simulated time.
+
+    Time never goes back: `reset` puts everything to the start but the clock.
+
+    Attributes:
+        scene: What it started with.
+        robot: The robot; replaced at a reset.
+        task_ids: Source of the numbers of all tasks.
+        snapshot: What was sensed at the last tick; any thread may read it.
+    """
+
+    def __init__(self, scene: Scene = Scene(), settings: Settings | None = None) -> None:
+        self.scene = scene
+        self.settings = settings or load_settings()
+        self.model = load_model(scene.version)
+        self.led_layout = load_leds(scene.version)
+        self._world = load_world(scene.world)
+        self._physics: Physics | None = None
+        self._tick = 0
+        self.task_ids = TaskIds()
+        self.robot: SimulatedRobot
+        self.snapshot: Snapshot
+        self.reset()
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self._tick * self.settings.tick_s
+
+    @property
+    def ticks(self) -> int:
+        """Ticks since the start."""
+        return self._tick
+
+    def reset(self) -> None:
+        """Put robot and world to where they started; running tasks are killed."""
+        if self._physics is not None:
+            self.robot.motion.kill_all()
+            self.robot.leds.kill_all()
+            self._physics.close()
+        angles = posture(self.model, self.scene.posture)
+        self._physics = Physics(self.model, self._world, self.settings, angles)
+        self.robot = SimulatedRobot(
+            self.model, self.led_layout, self.settings, self._physics, angles, self.scene.seed, self.task_ids
+        )
+        self.snapshot = self.robot.sense(self._tick, self.time)
+
+    def tick(self) -> Snapshot:
+        """Advance by one tick: LEDs, motion, motors, physics, sensors, in this order."""
+        self._tick += 1
+        self.robot.act(self.time)
+        self.snapshot = self.robot.sense(self._tick, self.time)
+        return self.snapshot
+
+    def run(self, seconds: float) -> Snapshot:
+        """Advance by `seconds` of simulated time, rounded to ticks."""
+        for _ in range(round(seconds / self.settings.tick_s)):
+            self.tick()
+        return self.snapshot
+
+    def close(self) -> None:
+        """Free the engine."""
+        if self._physics is not None:
+            self.robot.motion.kill_all()
+            self.robot.leds.kill_all()
+            self._physics.close()
+            self._physics = None

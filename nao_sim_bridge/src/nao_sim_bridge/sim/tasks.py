@@ -1,0 +1,150 @@
+"""Tasks: work that takes simulated time and that somebody may wait for, cancel or kill.
+
+A task is finished by the simulation thread. Everything else (a libqi service, a test) only looks at it, adds a
+callback, or asks for its end; the callback runs in the thread that finishes the task and must not block.
+"""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from typing import Any, Callable
+
+from nao_sim_bridge.sim.errors import SimulationStopped, TaskKilled
+
+
+class Task:
+    """One piece of work in simulated time.
+
+    Attributes:
+        name: NAOqi name of the call that made it, for example "angleInterpolation".
+        task_id: Positive number, unique within its `TaskIds`.
+        killed: True when it ended by `kill` and not by itself.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        task_id: int,
+        on_kill: Callable[[Task], None] | None = None,
+        ask: Callable[[Task], None] | None = None,
+    ) -> None:
+        self.name = name
+        self.task_id = task_id
+        self.killed = False
+        self._on_kill = on_kill
+        self._ask = ask
+        self._lock = threading.Lock()
+        self._finished = threading.Event()
+        self._callbacks: list[Callable[[Task], None]] = []
+        self._result: Any = None
+        self._error: Exception | None = None
+
+    @property
+    def finished(self) -> bool:
+        """True once the task has ended, in whatever way."""
+        return self._finished.is_set()
+
+    @property
+    def error(self) -> Exception | None:
+        """The error that ended the task, None when there was none."""
+        return self._error
+
+    def finish(self, result: Any = None, error: Exception | None = None) -> bool:
+        """End the task. Returns False when it had ended before."""
+        with self._lock:
+            if self._finished.is_set():
+                return False
+            self._result, self._error = result, error
+            self._finished.set()
+            callbacks, self._callbacks = self._callbacks, []
+        for callback in callbacks:
+            callback(self)
+        return True
+
+    @property
+    def value(self) -> Any:
+        """The result of a finished task; None before, and after an error."""
+        return self._result
+
+    def request_kill(self) -> None:
+        """Ask for the end of the task from any thread; see `TaskIds.make` for who hears it."""
+        if self._ask is not None:
+            self._ask(self)
+
+    def kill(self) -> bool:
+        """End the task before its time; whoever owns the work drops it. Simulation thread only."""
+        with self._lock:
+            if self._finished.is_set():
+                return False
+            self.killed = True
+        if self._on_kill is not None:
+            self._on_kill(self)
+        self.finish()
+        return True
+
+    def add_done_callback(self, callback: Callable[[Task], None]) -> None:
+        """Call `callback(task)` at the end of the task, at once when it has ended already."""
+        with self._lock:
+            if not self._finished.is_set():
+                self._callbacks.append(callback)
+                return
+        callback(self)
+
+    def then(self, change: Callable[[Any], Any]) -> Task:
+        """A task that ends with this one, its result passed through `change`."""
+        after = Task(self.name, self.task_id, ask=lambda _: self.request_kill())
+
+        def settle(done: Task) -> None:
+            if done.error is not None:
+                after.finish(error=done.error)
+            else:
+                after.finish(change(done.value))
+
+        self.add_done_callback(settle)
+        return after
+
+    def result(self, timeout: float | None = None) -> Any:
+        """Wait for the end (wall time, s) and return the result.
+
+        Raises:
+            TimeoutError: The task has not ended within `timeout`.
+            Exception: Whatever error ended the task.
+        """
+        if not self._finished.wait(timeout):
+            raise TimeoutError(f"task {self.name} ({self.task_id}) has not ended within {timeout} s")
+        if self._error is not None:
+            raise self._error
+        return self._result
+
+
+class TaskIds:
+    """Source of task numbers; a fresh simulation starts at 1, so that equal runs number equally.
+
+    Attributes:
+        ask: Called with a task whose end another thread requests; who runs the simulation in a thread sets it to
+            something that kills the task there.
+    """
+
+    def __init__(self) -> None:
+        self._count = itertools.count(1)
+        self.ask: Callable[[Task], None] | None = None
+
+    def make(self, name: str, on_kill: Callable[[Task], None] | None = None) -> Task:
+        """A new task of the next number.
+
+        Args:
+            name: NAOqi name of the call.
+            on_kill: Called in the simulation thread when the task is killed, to drop the work.
+        """
+        return Task(name, next(self._count), on_kill, lambda task: self.ask(task) if self.ask else None)
+
+
+def killed_error(task: Task) -> TaskKilled:
+    """The error for callers that must know that `task` was killed."""
+    return TaskKilled(f"task {task.name} ({task.task_id}) was killed")
+
+
+def stopped_error() -> SimulationStopped:
+    """The error for everything that waits when the simulation ends."""
+    return SimulationStopped("the simulation has stopped")

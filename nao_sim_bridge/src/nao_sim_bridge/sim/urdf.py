@@ -1,0 +1,7 @@
+"""The two URDF texts of the robot, generated from the same tables."""
+
+from __future__ import annotations
+
+from nao_sim_bridge.sim.urdf_physics import physics_urdf
+
+__all__ = ["physics_urdf"]

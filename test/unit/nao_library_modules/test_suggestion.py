@@ -1,0 +1,29 @@
+"""Closest names to a mistyped one."""
+
+from __future__ import annotations
+
+import pytest
+
+from nao_library_modules.suggestion import closest, did_you_mean
+
+KNOWN = ["setIntensity", "setColor", "getColor", "LeftFaceLeds", "LeftFaceLed1"]
+
+
+@pytest.mark.parametrize(
+    "typed, best", [("setColour", "setColor"), ("SETCOLOR", "setColor"), ("LeftFaceLed", "LeftFaceLeds")]
+)
+def test_the_closest_name_comes_first(typed, best):
+    assert closest(typed, KNOWN)[0] == best
+
+
+def test_names_that_look_like_nothing_get_no_suggestion():
+    assert closest("zzz", KNOWN) == []
+    assert did_you_mean("zzz", KNOWN) == ""
+
+
+def test_no_more_names_than_asked_for():
+    assert len(closest("getColor", KNOWN, count=1)) == 1
+
+
+def test_text_quotes_the_names():
+    assert did_you_mean("LeftFaceLed", ["LeftFaceLeds"]) == ": did you mean 'LeftFaceLeds'?"

@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+
+import pytest
+from run_rostests import MARGIN, MARK, free_port, processes_of, time_limit
+
+
+@pytest.mark.parametrize(
+    "text, seconds",
+    [
+        ('<launch><test time-limit="20"/><node/></launch>', 20.0),
+        ('<launch><test/><group><test time-limit="5" retry="1"/></group></launch>', 70.0),
+        ('<launch><test time-limit="$(arg limit)"/></launch>', 60.0),
+        ("<launch><test", 0.0),
+    ],
+)
+def test_a_scenario_may_take_as_long_as_its_tests_and_a_margin(tmp_path, text, seconds):
+    scenario = tmp_path / "lights.test"
+    scenario.write_text(text)
+    assert time_limit(scenario) == MARGIN + seconds
+
+
+def test_a_free_port_can_be_listened_on():
+    port = free_port()
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", port))
+        assert server.getsockname() == ("127.0.0.1", port)
+
+
+def test_processes_are_known_by_their_mark_until_they_end():
+    mark = f"test-{os.getpid()}"
+    program = "print('up', flush=True); import signal; signal.pause()"
+    child = subprocess.Popen(
+        [sys.executable, "-c", program], env={**os.environ, MARK: mark}, stdout=subprocess.PIPE, text=True
+    )
+    with child:
+        assert child.stdout.readline() == "up\n"
+        assert list(processes_of(mark)) == [child.pid]
+        assert processes_of(mark + "0") == {}
+        child.send_signal(signal.SIGTERM)
+        child.wait(timeout=10)
+        assert processes_of(mark) == {}
