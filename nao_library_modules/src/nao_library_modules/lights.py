@@ -8,133 +8,29 @@ from typing import Any
 from nao_library_actions.msg import NaoLedAction
 
 from .colours import to_integer
-from .errors import BadGoal
 from .function_chain import checked_by
 from .led_access import LedAccess
-from .light_goals import (
-    colour_steps,
-    colours,
-    intensities,
-    one_colour,
-    require_angle,
-    require_coloured,
-    require_lights,
-    require_seconds,
-    require_times,
+from .light_checks import (
+    check_animation,
+    check_colours,
+    check_ear_angle,
+    check_fade,
+    check_fade_list,
+    check_fade_rgb,
+    check_group,
+    check_intensities,
+    check_lights,
+    check_new_group,
+    check_readable_colours,
+    check_rotation,
 )
-from .light_names import LightNames
+from .light_goals import colour_steps, colours, intensities, one_colour
 from .light_state import mean_colour, mean_intensity
 from .nao_basic import NaoBasic
 
 EYES = "FaceLeds"
 EARS = "EarLeds"
 ALL = "AllLeds"
-
-
-def _names(lights_module: NaoLights, lights: Sequence[str], context: dict[str, Any]) -> LightNames:
-    """The names as a check sees them: the robot's, and groups that earlier functions of the chain make."""
-
-    def with_new_groups(names: LightNames) -> LightNames:
-        for group, members in context.get("groups", {}).items():
-            names = names.with_group(group, members)
-        return names
-
-    names = with_new_groups(lights_module.leds.names)
-    if all(names.knows(light) for light in lights) or context.get("names read again"):
-        return names
-    # Another program may have made a group since the names were read; one look a chain is enough.
-    context["names read again"] = True
-    return with_new_groups(lights_module.leds.read_names())
-
-
-def _check_lights(self: NaoLights, lights: Sequence[str], context: dict[str, Any]) -> None:
-    require_lights(_names(self, lights, context), lights)
-
-
-def _check_intensities(
-    self: NaoLights, lights: Sequence[str], i_values: Sequence[float], context: dict[str, Any]
-) -> None:
-    _check_lights(self, lights, context)
-    intensities(lights, i_values)
-
-
-def _check_fade(
-    self: NaoLights,
-    lights: Sequence[str],
-    i_values: Sequence[float],
-    duration: float,
-    context: dict[str, Any],
-) -> None:
-    _check_intensities(self, lights, i_values, context)
-    require_seconds("duration", duration, zero=True)
-
-
-def _check_colours(
-    self: NaoLights, lights: Sequence[str], i_values: Sequence[float], str_param: str, context: dict[str, Any]
-) -> None:
-    require_coloured(_names(self, lights, context), lights)
-    colours(lights, i_values, str_param)
-
-
-def _check_readable_colours(self: NaoLights, lights: Sequence[str], context: dict[str, Any]) -> None:
-    require_coloured(_names(self, lights, context), lights)
-
-
-def _check_fade_rgb(
-    self: NaoLights,
-    lights: Sequence[str],
-    i_values: Sequence[float],
-    str_param: str,
-    duration: float,
-    context: dict[str, Any],
-) -> None:
-    _check_colours(self, lights, i_values, str_param, context)
-    require_seconds("duration", duration, zero=True)
-
-
-def _check_fade_list(
-    self: NaoLights,
-    lights: Sequence[str],
-    i_values: Sequence[float],
-    str_param: str,
-    times: Sequence[float],
-    context: dict[str, Any],
-) -> None:
-    require_coloured(_names(self, lights, context), lights)
-    require_times(times)
-    colour_steps(times, i_values, str_param)
-
-
-def _check_animation(_self: NaoLights, duration: float) -> None:
-    require_seconds("duration", duration, zero=False)
-
-
-def _check_rotation(
-    _self: NaoLights, i_values: Sequence[float], str_param: str, rotation_time: float, duration: float
-) -> None:
-    one_colour(i_values, str_param)
-    require_seconds("rotation_time", rotation_time, zero=False)
-    require_seconds("duration", duration, zero=False)
-
-
-def _check_ear_angle(_self: NaoLights, angle: int, duration: float) -> None:
-    require_angle(angle)
-    require_seconds("duration", duration, zero=False)
-
-
-def _check_new_group(self: NaoLights, str_param: str, lights: Sequence[str], context: dict[str, Any]) -> None:
-    name = str_param.strip()
-    names = _names(self, lights, context)
-    if not name:
-        raise BadGoal("str_param", str_param, "the name of the new group", problem="it is empty")
-    if name in names.lights:
-        raise BadGoal("str_param", name, "a name that is no single light", problem=f"{name!r} is a light")
-    require_lights(names, lights)
-    context.setdefault("groups", {})[name] = tuple(names.expand(lights))
-
-
-def _check_group(self: NaoLights, str_param: str, context: dict[str, Any]) -> None:
-    _check_lights(self, [str_param.strip()], context)
 
 
 class NaoLights(NaoBasic):
@@ -188,54 +84,54 @@ class NaoLights(NaoBasic):
 
     # Functions: parameters are fields of LedFunction
 
-    @checked_by(_check_lights)
+    @checked_by(check_lights)
     def on(self, lights: Sequence[str], revert: bool) -> None:
         """Light up fully."""
         self._act(lights, revert, "on", [(light,) for light in lights])
 
-    @checked_by(_check_lights)
+    @checked_by(check_lights)
     def off(self, lights: Sequence[str], revert: bool) -> None:
         """Switch off."""
         self._act(lights, revert, "off", [(light,) for light in lights])
 
-    @checked_by(_check_lights)
+    @checked_by(check_lights)
     def reset(self, lights: Sequence[str], revert: bool) -> None:
         """Bring lights to the robot's default."""
         self._act(lights, revert, "reset", [(light,) for light in lights])
 
-    @checked_by(_check_intensities)
+    @checked_by(check_intensities)
     def set_intensity(self, lights: Sequence[str], i_values: Sequence[float], revert: bool) -> None:
         """Set intensities at once; one value for all lights, or one a light."""
         self._act(lights, revert, "setIntensity", list(zip(lights, intensities(lights, i_values))))
 
-    @checked_by(_check_lights)
+    @checked_by(check_lights)
     def get_intensity(self, lights: Sequence[str]) -> list[float]:
         """Intensity of each light: of a coloured one its strongest LED, of a group the mean of its lights."""
-        self._touched.update(dict.fromkeys(lights))
+        self._touch(lights)
         values = self.leds.read(lights)
         return [mean_intensity(self.leds.names, light, values) for light in lights]
 
-    @checked_by(_check_colours)
+    @checked_by(check_colours)
     def set_color(
         self, lights: Sequence[str], i_values: Sequence[float], str_param: str, revert: bool
     ) -> None:
         """Set colours at once; one for all lights, or one a light."""
         self.fade_rgb(lights, i_values, str_param, 0.0, revert)
 
-    @checked_by(_check_readable_colours)
+    @checked_by(check_readable_colours)
     def get_color(self, lights: Sequence[str]) -> list[list[float]]:
         """Red, green and blue of each light, of a group the mean of its lights."""
-        self._touched.update(dict.fromkeys(lights))
+        self._touch(lights)
         values = self.leds.read(lights)
         return [mean_colour(self.leds.names, light, values) for light in lights]
 
-    @checked_by(_check_fade)
+    @checked_by(check_fade)
     def fade(self, lights: Sequence[str], i_values: Sequence[float], duration: float, revert: bool) -> None:
         """Fade to intensities, all lights together."""
         arguments = [(light, value, duration) for light, value in zip(lights, intensities(lights, i_values))]
         self._act(lights, revert, "fade", arguments, together=duration > 0.0)
 
-    @checked_by(_check_fade_rgb)
+    @checked_by(check_fade_rgb)
     def fade_rgb(
         self, lights: Sequence[str], i_values: Sequence[float], str_param: str, duration: float, revert: bool
     ) -> None:
@@ -245,7 +141,7 @@ class NaoLights(NaoBasic):
         ]
         self._act(lights, revert, "fadeRGB", arguments, together=duration > 0.0)
 
-    @checked_by(_check_fade_list)
+    @checked_by(check_fade_list)
     def fade_list_rgb(
         self,
         lights: Sequence[str],
@@ -260,17 +156,17 @@ class NaoLights(NaoBasic):
             lights, revert, "fadeListRGB", [(light, steps, list(times)) for light in lights], together=True
         )
 
-    @checked_by(_check_animation)
+    @checked_by(check_animation)
     def random_eyes(self, duration: float, revert: bool) -> None:
         """Random colours in the eyes."""
         self._act([EYES], revert, "randomEyes", [(duration,)])
 
-    @checked_by(_check_animation)
+    @checked_by(check_animation)
     def rasta(self, duration: float, revert: bool) -> None:
         """Green, yellow and red all over the body."""
         self._act([ALL], revert, "rasta", [(duration,)])
 
-    @checked_by(_check_rotation)
+    @checked_by(check_rotation)
     def rotate_eyes(
         self,
         i_values: Sequence[float],
@@ -283,12 +179,12 @@ class NaoLights(NaoBasic):
         rgb = to_integer(one_colour(i_values, str_param))
         self._act([EYES], revert, "rotateEyes", [(rgb, rotation_time, duration)])
 
-    @checked_by(_check_ear_angle)
+    @checked_by(check_ear_angle)
     def ear_leds_set_angle(self, angle: int, duration: float, leave_on: bool, revert: bool) -> None:
         """Show a direction on the ears."""
         self._act([EARS], revert, "earLedsSetAngle", [(angle, duration, leave_on)])
 
-    @checked_by(_check_new_group)
+    @checked_by(check_new_group)
     def create_group(self, str_param: str, lights: Sequence[str]) -> None:
         """Make a group of lights and groups, used like any other."""
         self.leds.create_group(str_param.strip(), lights)
@@ -297,7 +193,7 @@ class NaoLights(NaoBasic):
         """Names of the single lights."""
         return self.leds.list_names("listLEDs")
 
-    @checked_by(_check_group)
+    @checked_by(check_group)
     def list_group(self, str_param: str) -> list[str]:
         """Names of the lights in a group."""
         return self.leds.names.expand([str_param.strip()])
@@ -305,6 +201,11 @@ class NaoLights(NaoBasic):
     def list_groups(self) -> list[str]:
         """Names of the groups."""
         return self.leds.list_names("listGroups")
+
+    def _touch(self, lights: Sequence[str]) -> None:
+        """Note lights for the result; their names are read now if need be, for at its end nothing waits."""
+        self.leds.names.expand(lights)
+        self._touched.update(dict.fromkeys(lights))
 
     def _act(
         self,
@@ -324,7 +225,7 @@ class NaoLights(NaoBasic):
             together: Whether the calls run at the same time. Calls that take no time are made in order, so
                 that of two that set the same LED the later one counts.
         """
-        self._touched.update(dict.fromkeys(lights))
+        self._touch(lights)
         if revert:
             self.after_wait(self.leds.restorer(lights))
         self.leds.call(method, arguments, together)

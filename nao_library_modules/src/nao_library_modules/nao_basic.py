@@ -15,12 +15,11 @@ from naoqi.errors import NaoError
 from .answers import Outcome, values_of
 from .errors import FunctionFailed, Preempted, RobotLost
 from .event_relay import EventRelay
-from .function_chain import FunctionChain, seconds
+from .function_runner import FunctionRunner
 from .health import GoalCounter, connection_report, launch_report
-from .interrupt import Interrupt
 from .launcher import LaunchPath, launch_supervisor
 from .memory_functions import MEMORY, MemoryFunctions
-from .robot import CLEAN_UP_LIMIT, Robot, wait_for_calls
+from .robot import Robot
 from .supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -29,7 +28,7 @@ SHUTDOWN_LIMIT = 3.0
 """s that the end of the node waits for the running function to be interrupted and cleaned up."""
 
 
-class NaoBasic(MemoryFunctions):
+class NaoBasic(FunctionRunner, MemoryFunctions):
     """Base of the modules: carries out goals that are chains of function messages.
 
     A module fills `function_table` and ends its constructor with `self.serve(...)`. A library function takes
@@ -86,21 +85,17 @@ class NaoBasic(MemoryFunctions):
         self.port = port
         self.launchpath = launchpath
         self.robot = robot or Robot(ip, port)
-        self.clock = edge.clock
-        self.interrupt = Interrupt()
         self.server: Any = None
         self.function_table: dict[str, Callable[..., Any]] = {}
+        super().__init__(self.function_table, edge.clock)
         self.events = EventRelay(lambda: self.robot.proxy(MEMORY), edge.event_sink())
         self.function_table.update(self.memory_functions())
-        self._chain = FunctionChain(self.function_table)
         self._edge = edge
         self._goals = GoalCounter()
         self._idle = threading.Event()
         self._idle.set()
-        self._clean_up = threading.local()
         self._launch: Supervisor | None = None
         self._diagnostics: Any = None
-        self._connected_before = False
         self.robot.connection.add_listener(self._connection_changed)
         edge.on_shutdown(self.shut_down)
         if autostart:
@@ -151,117 +146,6 @@ class NaoBasic(MemoryFunctions):
         self.stop_launch()
         if self._diagnostics is not None:
             self._diagnostics.close()
-
-    # For library functions
-
-    def call(self, proxy: Any, method: str, *args: Any) -> Any:
-        """Call a method of the robot; preemption ends the wait and cancels the method.
-
-        Raises:
-            NaoError: If the call fails.
-            Preempted: If a new goal, a cancel or the end of the node came first.
-        """
-        return self.call_all(proxy, method, [args])[0]
-
-    def call_all(self, proxy: Any, method: str, arguments: Sequence[Sequence[Any]]) -> list[Any]:
-        """Call a method several times at once and wait for all, as `call` does for one.
-
-        Args:
-            proxy: Proxy of the module.
-            method: Name of the method.
-            arguments: Arguments of each call.
-
-        Returns:
-            The results, in the order of the arguments.
-        """
-        self.interrupt.check()
-        return wait_for_calls([proxy.call_async(method, *args) for args in arguments], self.interrupt)
-
-    def call_now(self, proxy: Any, method: str, *args: Any) -> Any:
-        """Call a quick method that preemption must not end, as clean-up needs it.
-
-        Raises:
-            NaoError: If the call fails or takes longer than two seconds.
-        """
-        return proxy.call_async(method, *args).result(timeout=CLEAN_UP_LIMIT)
-
-    def after_wait(self, action: Callable[[], None]) -> None:
-        """Have something done when the running function and the wait after it are over, however they end.
-
-        The last one left is done first.
-
-        Raises:
-            RuntimeError: If no function runs.
-        """
-        actions = getattr(self._clean_up, "actions", None)
-        if actions is None:
-            raise RuntimeError("after_wait is for functions that run() runs")
-        actions.append(action)
-
-    # Chains
-
-    def run(
-        self,
-        function: str,
-        args: Sequence[Any],
-        sleep_time: Any,
-        on_answer: Callable[[Any], None] | None = None,
-    ) -> Any:
-        """Run one function, wait, and clean up.
-
-        Args:
-            function: Name in the function table.
-            args: Arguments, in the order of its parameters.
-            sleep_time: Wait afterwards, in s or as a ROS duration.
-            on_answer: Told the answer as soon as it is there, before the wait.
-
-        Returns:
-            What the function answers.
-
-        Raises:
-            UnknownFunction: If there is no such function.
-            Preempted: If a new goal, a cancel or the end of the node interrupts it.
-        """
-        callable_ = self._chain.look_up(function)
-        outer = getattr(self._clean_up, "actions", None)  # a function may run another one
-        actions: list[Callable[[], None]] = []
-        self._clean_up.actions = actions
-        try:
-            answer = callable_(*args)
-            if on_answer is not None:
-                on_answer(answer)
-            self.wait(seconds(sleep_time))
-        except BaseException:
-            self._undo(actions, quietly=True)
-            raise
-        else:
-            self._undo(actions, quietly=False)
-        finally:
-            self._clean_up.actions = outer
-        return answer
-
-    def wait(self, duration: float) -> None:
-        """Wait on ROS time.
-
-        Args:
-            duration: s.
-
-        Raises:
-            Preempted: If it is interrupted.
-        """
-        if duration > 0.0 and not self.clock.wait(duration, self.interrupt):
-            self.interrupt.check()
-
-    def _undo(self, actions: list[Callable[[], None]], quietly: bool) -> None:
-        while actions:
-            action = actions.pop()
-            try:
-                action()
-            except NaoError as error:
-                # The error that ended the function is the one to tell; this one would hide it.
-                if not quietly:
-                    raise
-                log.warning("clean-up failed: %s", error)
 
     # Goals
 
@@ -315,7 +199,7 @@ class NaoBasic(MemoryFunctions):
         position, function = 0, ""
         try:
             self.interrupt.check()
-            steps = self._chain.read(messages)
+            steps = self.chain.read(messages)
             for step in steps:
                 position, function = step.position, step.function
                 self.interrupt.check()
@@ -342,12 +226,11 @@ class NaoBasic(MemoryFunctions):
     # The connection
 
     def _connection_changed(self, *_: Any) -> None:
-        """Called from the connection's own thread, which must not wait for the robot."""
+        """Called from the thread that the connection has for its listeners; they may call the robot."""
         connection = self.robot.connection
         if connection.state == "connected":
-            if self._connected_before:
-                threading.Thread(target=self.events.renew, name="event renewal", daemon=True).start()
-            self._connected_before = True
+            if connection.generation > 1:
+                self.events.renew()
         elif connection.state == "lost":
             # A function that only waits would otherwise not notice.
             self.interrupt.trigger(RobotLost(self.robot.address, connection.last_error or "no answer"))

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 logger = logging.getLogger("naoqi")
 
 RUNNING = qi.FutureState.Running
+NOT_YET = "Future timeout."
+FIRST_SLICE_MS = 100
 INTERRUPTIBLE_MS = 200
 """A wait inside libqi hides Ctrl-C from Python, so the main thread comes up for air this often, in ms."""
 LONGEST_WAIT_MS = 2**31 - 2  # libqi takes a 32-bit integer, and its largest value as "for ever"
@@ -57,12 +59,12 @@ class Call:
             CallTimeout: If the call still runs when the limit is over. It goes on; `cancel` ends it.
             NaoError: Whatever else went wrong, see `naoqi.errors`.
         """
-        if not self.wait(timeout):
-            raise CallTimeout(self.method.module.name, self.method.name, timeout or 0.0)
+        # Most answers come within the first slice, and then this is all that is done.
+        first_ms = FIRST_SLICE_MS if timeout is None else max(0, min(FIRST_SLICE_MS, int(1000.0 * timeout)))
         try:
-            value = self._future.value()
+            value = self._future.value(first_ms)
         except RuntimeError as error:
-            raise self.method.translate(error, self) from error
+            value = self._late_value(error, timeout, first_ms)
         return wire.from_wire(value)
 
     def wait(self, timeout: Optional[float] = None) -> bool:
@@ -119,3 +121,14 @@ class Call:
                 logger.exception("the done-callback %r of a call failed", callback)
 
         self._future.addCallback(run)
+
+    def _late_value(self, error: RuntimeError, timeout: Optional[float], waited_ms: int) -> Any:
+        """The value, after the first look at the future has raised: the call failed, or only takes longer."""
+        if str(error) == NOT_YET:
+            if not self.wait(None if timeout is None else max(0.0, timeout - 0.001 * waited_ms)):
+                raise CallTimeout(self.method.module.name, self.method.name, timeout or 0.0) from None
+            try:
+                return self._future.value()
+            except RuntimeError as late_error:
+                error = late_error
+        raise self.method.translate(error, self) from error

@@ -8,21 +8,21 @@ from __future__ import annotations
 from typing import Any, Dict, List
 
 from .remote import RemoteModule
-from .signatures import readable_call, readable_type
+from .signatures import readable_call, readable_parameters, readable_type
 
 
 def method_help(module: RemoteModule, method: str) -> List[Any]:
     """What is known of a method: `[name, [[parameter, description], ...], return type, return description]`.
 
-    Overloads differ in their parameters; the last one with the most says the most.
+    Of several overloads, the one with the most parameters. Parameters without a name are named by their type.
 
     Raises:
         UnknownMethod: If the module has no such method.
     """
-    description = max(_overloads(module, method), key=lambda each: len(each["parameters"]))
+    description = max(_overloads(module, method), key=lambda each: len(each["parametersSignature"]))
     parameters = [[name, text] for name, text in map(_pair, description["parameters"])]
     if not parameters:
-        parameters = [[readable_type(description["parametersSignature"]), ""]]
+        parameters = [[words, ""] for words in readable_parameters(description["parametersSignature"])]
     returned = readable_type(description["returnSignature"])
     return [method, parameters, returned, description["returnDescription"]]
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import functools
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple
 
-import qi
-
 from . import wire
 from .calls import Call
 from .errors import BadArguments, CallTimeout, NaoError, RobotUnreachable
@@ -65,7 +63,7 @@ class RemoteModule:
             found = self.find(name)
         except RobotUnreachable:
             return self.method(name)
-        if isinstance(found, (qi.Signal, qi.Property)) or name in LOCAL_NAMES:
+        if hasattr(found, "connect") or name in LOCAL_NAMES:  # signals and properties can be connected to
             return found
         return self.method(name)
 
@@ -112,13 +110,14 @@ class RemoteModule:
 class RemoteMethod:
     """A method of a remote module. It may be kept: after a loss it works again with the next session."""
 
-    __slots__ = ("_bound", "_live", "module", "name")
+    __slots__ = ("_bound", "_live", "_service", "module", "name")
 
     def __init__(self, module: RemoteModule, name: str) -> None:
         """Name a method; nothing is sent yet."""
         self.module = module
         self.name = name
         self._live: Optional[Live] = None
+        self._service: Any = None
         self._bound: Any = None
 
     def __repr__(self) -> str:
@@ -132,12 +131,13 @@ class RemoteMethod:
             NaoError: If anything goes wrong, see `naoqi.errors`. A call that runs into the time limit, or
                 that is interrupted from the keyboard, is cancelled on the robot too.
         """
-        call = self._send(arguments)
         try:
-            return call.result(self.module.timeout)
-        except (CallTimeout, KeyboardInterrupt):
-            call.cancel()
-            raise
+            return self._wait_for(self._send(arguments))
+        except RobotUnreachable as error:
+            if str(error.__cause__) not in NOT_SENT or self.module.connection.live is None:
+                raise
+        # The module had left and perhaps come back. Nothing had been sent, so that sending it again is safe.
+        return self._wait_for(self._send(arguments))
 
     def start(self, *arguments: Any) -> Call:
         """Call it without waiting.
@@ -152,22 +152,26 @@ class RemoteMethod:
 
     def _send(self, arguments: Tuple[Any, ...]) -> Call:
         live = self.module.connection.live
-        bound = self._bound if live is self._live and live is not None else self._bind(live)
+        if live is None or live is not self._live or live.services.get(self.module.name) is not self._service:
+            self._bind(live)
         try:
             sent = wire.to_wire(arguments, self._takes_raw)
         except wire.UnsendableError as error:
             raise BadArguments(self.module.name, self.name, arguments, self._readable(), str(error)) from None
-        future = bound(*sent, _async=True)
-        if future.isFinished() and future.hasError() and future.error() in NOT_SENT:
-            # The remote object is stale: its module has left and perhaps come back. Nothing was sent, so that
-            # sending it again is safe.
-            self.module.connection.forget_service(live, self.module.name)
-            future = self._bind(self.module.connection.live)(*sent, _async=True)
-        return Call(future, self, arguments)
+        return Call(self._bound(*sent, _async=True), self, arguments)
+
+    def _wait_for(self, call: Call) -> Any:
+        try:
+            return call.result(self.module.timeout)
+        except (CallTimeout, KeyboardInterrupt):
+            call.cancel()
+            raise
 
     def translate(self, raised: Exception, call: Call) -> NaoError:
         """The error for what libqi raised at the end of a call."""
         connection = self.module.connection
+        if str(raised) in NOT_SENT:
+            connection.forget_service(self.module.name)  # the next call looks the module up afresh
         site = CallSite(
             connection.host,
             connection.port,
@@ -179,10 +183,10 @@ class RemoteMethod:
         )
         return call_error(raised, site)
 
-    def _bind(self, live: Optional[Live]) -> Any:
+    def _bind(self, live: Optional[Live]) -> None:
+        service = self.module.service()
         self._bound = self.module.find(self.name)
-        self._live = live
-        return self._bound
+        self._live, self._service = live, service
 
     def _takes_raw(self) -> bool:
         return any(mentions_raw(each["parametersSignature"]) for each in self.module.overloads(self.name))

@@ -157,9 +157,11 @@ class Connection:
             found = live.services[name] = self._ask_for(live, name)
         return found
 
-    def forget_service(self, live: Live, name: str) -> None:
+    def forget_service(self, name: str) -> None:
         """Look a module up afresh the next time, because its remote object has gone stale."""
-        live.services.pop(name, None)
+        live = self.live
+        if live is not None:
+            live.services.pop(name, None)
 
     def module_names(self) -> List[str]:
         """Names of all modules the robot has.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Tuple
+from typing import List, Tuple
 
 WORDS = {
     "v": "nothing",
@@ -55,10 +55,21 @@ def readable_call(method: str, parameters: str) -> str:
     Returns:
         Text such as `setIntensity(string, float)`.
     """
+    try:
+        return f"{method}({', '.join(readable_parameters(parameters))})"
+    except (IndexError, KeyError):
+        return f"{method}{parameters}"
+
+
+def readable_parameters(parameters: str) -> List[str]:
+    """Words for each parameter of a method; `...` stands for any number of any values."""
     if parameters == ANY_ARGUMENTS:
-        return f"{method}(...)"
-    text = readable_type(parameters)
-    return f"{method}{text if text.startswith('(') else f'({text})'}"
+        return ["..."]
+    words, rest = [], parameters[1:-1]
+    while rest:
+        text, rest = _read_type(rest)
+        words.append(text)
+    return words
 
 
 def mentions_raw(signature: str) -> bool:

@@ -18,20 +18,19 @@ from .errors import (
     ConnectionLost,
     NaoError,
     RobotError,
+    RobotUnreachable,
     UnknownMethod,
     UnknownModule,
 )
-from .signatures import readable_call, readable_type
+from .signatures import readable_call
 
 NOT_SENT = ("Socket is not connected", "Session not connected.")
-BROKEN_UNDER_WAY = ("Session closed", "Endpoint disconnected", "Socket disconnected")
-CANCELED = "Future canceled."
+BROKEN_UNDER_WAY = ("Session closed", "Session disconnected", "Socket Disconnected", "Service removed")
+CANCELED = ("Future canceled.", "Call has been canceled.")
 PYTHON_SERVICE = re.compile(
     r"(?P<kind>[A-Za-z_][\w.]*)(?:: (?P<text>.*?))?\n+(?P<trace>At:\n.*)\Z", re.DOTALL
 )
-CONVERSION_FAILED = re.compile(
-    r"Setvalue\(\): failed to convert effective value (\S+) to expected type (\S+?)\("
-)
+CONVERSION_FAILED = re.compile(r"Call argument number \d+ (conversion failure from .* to [^.]*)")
 
 Reason = Tuple[str, str]
 """What went wrong with a connection, and what to check."""
@@ -88,9 +87,12 @@ def call_error(raised: Exception, site: CallSite) -> NaoError:
         The error to raise, with `raised` as its cause.
     """
     text = str(raised).strip()
-    if text in BROKEN_UNDER_WAY or text in NOT_SENT:
+    if text in NOT_SENT:
+        reason = f"{site.module}.{site.method} was not sent: the module, or the connection, has just gone"
+        return RobotUnreachable(site.host, site.port, reason)
+    if text in BROKEN_UNDER_WAY:
         return ConnectionLost(site.host, site.port, text.rstrip("."), f"{site.module}.{site.method}")
-    if text == CANCELED:
+    if text in CANCELED:
         return CallCanceled(site.module, site.method)
     unsendable = _unsendable(site.arguments)
     if unsendable:
@@ -135,9 +137,8 @@ def _refused(text: str, site: CallSite) -> NaoError | None:
         return BadArguments(site.module, site.method, site.arguments, words)
     conversion = CONVERSION_FAILED.match(text)
     if conversion:
-        reason = "{} cannot become {}".format(*map(readable_type, conversion.groups()))
-        return BadArguments(site.module, site.method, site.arguments, site.overloads(), reason)
-    if re.match(rf"Can't find method: {re.escape(site.method)}\b", text):
+        return BadArguments(site.module, site.method, site.arguments, site.overloads(), conversion[1])
+    if re.match(rf"Can't find method(?: or signal)?: {re.escape(site.method)}\b", text):
         return unknown_method(site.module, site.method, site.methods())
     return None
 

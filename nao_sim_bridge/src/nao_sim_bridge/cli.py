@@ -40,7 +40,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
 def server_options(arguments: argparse.Namespace) -> ServerOptions:
     """Options of the server from parsed arguments."""
     scene = Scene(arguments.world, arguments.robot, arguments.posture, arguments.seed)
-    return ServerOptions(scene, arguments.listen, arguments.port, arguments.speed, arguments.paused)
+    return ServerOptions(scene, arguments.listen, arguments.port, arguments.speed, arguments.paused, arguments.gui)
 
 
 def parse(prog: str, arguments: Sequence[str] | None = None) -> argparse.Namespace:

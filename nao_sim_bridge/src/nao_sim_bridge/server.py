@@ -5,20 +5,26 @@ from __future__ import annotations
 import logging
 import threading
 from dataclasses import dataclass, field
+from typing import Sequence
 
 from nao_sim_bridge.broker import Broker
+from nao_sim_bridge.pictures import Pictures
+from nao_sim_bridge.services.arguments import number, numbers
 from nao_sim_bridge.services.binding import make_service
 from nao_sim_bridge.services.leds import ALLeds
 from nao_sim_bridge.services.live_keys import constants, live_keys
 from nao_sim_bridge.services.memory import ALMemory
 from nao_sim_bridge.services.memory_store import MemoryStore
-from nao_sim_bridge.services.motion import ALMotion, AWAKE
+from nao_sim_bridge.services.motion import AWAKE, ALMotion
 from nao_sim_bridge.services.nao_simulation import NAME as NAO_SIMULATION
 from nao_sim_bridge.services.nao_simulation import NaoSimulation
 from nao_sim_bridge.services.system import ALSystem
+from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Scene, Simulation
+from nao_sim_bridge.sim.tasks import Task
 
+MAX_PUSH = 60.0
 log = logging.getLogger("nao_sim.server")
 
 
@@ -32,6 +38,7 @@ class ServerOptions:
         port: Port; 0 takes a free one.
         speed: Simulated seconds per wall second, infinity for as fast as possible.
         paused: Start without time passing.
+        gui: Show the robot in a window.
     """
 
     scene: Scene = field(default_factory=Scene)
@@ -39,6 +46,7 @@ class ServerOptions:
     port: int = 9559
     speed: float = 1.0
     paused: bool = False
+    gui: bool = False
 
 
 class SimulatorServer:
@@ -49,6 +57,7 @@ class SimulatorServer:
         runner: That thread.
         memory: What ALMemory keeps.
         broker: The libqi side.
+        pictures: Drawings of the robot.
         ended: Set when a client shut the robot down or the simulation failed.
     """
 
@@ -59,6 +68,7 @@ class SimulatorServer:
         self.runner = SimulationRunner(self.simulation, options.speed, options.paused)
         self.memory = MemoryStore(lambda: self.runner.snapshot.time)
         self.broker = Broker()
+        self.pictures = Pictures(self.simulation, self.runner)
 
     def start(self) -> None:
         """Listen, register the modules and let time pass.
@@ -76,12 +86,14 @@ class SimulatorServer:
             "ALMemory": ALMemory(self.memory, self.broker),
             "ALLeds": ALLeds(self.simulation, self.runner),
             "ALMotion": ALMotion(self.simulation, self.runner, self.memory),
-            "ALSystem": ALSystem(self.memory, self._reboot, self.ended.set),
+            "ALSystem": ALSystem(self.memory, self.reset_task, self.ended.set),
         }
         for name, module in modules.items():
             self.broker.register(name, make_service(name, module, self.broker))
-        self.broker.register(NAO_SIMULATION, NaoSimulation(self.simulation, self.runner, self._after_reset))
+        self.broker.register(NAO_SIMULATION, NaoSimulation(self))
         self.memory.raise_event("NAOqiReady", None)
+        if self.options.gui:
+            self.pictures.open_window()
         log.info("simulated NAO listens on %s:%d", self.options.address, self.broker.port)
 
     def stop(self) -> None:
@@ -89,13 +101,35 @@ class SimulatorServer:
         self.ended.set()
         self.broker.close()
         self.runner.stop()
+        self.pictures.close()
 
-    def _reboot(self):
-        def reboot() -> None:
+    # --- what only a simulator can do; for any thread, blocking until it is done -----------------------------------
+
+    def reset(self) -> None:
+        """Put robot and world to where they started; tasks are killed, time goes on."""
+        self.reset_task().result()
+
+    def push(self, force: Sequence[float], duration: float, link: str) -> None:
+        """Push a link with `force` (N, in world) for `duration` s of simulated time from now on."""
+        vector = tuple(numbers(force, "force"))
+        if len(vector) != 3:
+            raise BadValue("force", force, "[x, y, z] in N")
+        lasting = number(duration, "duration", 0.0, MAX_PUSH)
+        self.runner.call(lambda: self.simulation.robot.push(vector, self.simulation.time + lasting, link))
+
+    def press(self, sensors: Sequence[str]) -> None:
+        """Simulated fingers on these touch sensors and on no others."""
+        self.runner.call(lambda: self.simulation.robot.touch.press(sensors))
+
+    def picture(self, view: str, width: int, height: int) -> bytes:
+        """A PNG picture of the robot; see `Pictures.png`."""
+        return self.pictures.png(view, width, height)
+
+    def reset_task(self) -> Task:
+        """As `reset`, without waiting."""
+
+        def reset() -> None:
             self.simulation.reset()
-            self._after_reset()
+            self.memory.raise_event(AWAKE, False)
 
-        return self.runner.execute(reboot, "reboot")
-
-    def _after_reset(self) -> None:
-        self.memory.raise_event(AWAKE, False)
+        return self.runner.execute(reset, "reset")

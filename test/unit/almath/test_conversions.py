@@ -102,6 +102,8 @@ def test_displacement_is_a_transform_in_other_numbers(random_transforms):
         first *= second
         assert first.isNear(almath.displacementFromTransform(a * b), 1e-9)
     assert almath.transformFromDisplacement(almath.Displacement()) == almath.Transform()
+    assert not first.isNear(almath.Displacement(first.P))
+    assert not first.isNear(almath.Displacement(None, first.Q))
 
 
 def test_points_poses_and_positions_keep_what_they_share():

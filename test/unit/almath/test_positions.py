@@ -52,8 +52,8 @@ def test_distance_is_the_norm_of_the_difference(rng):
 
 def test_distance_of_positions_with_angles_ignores_the_angles():
     a = almath.Position6D(1.0, 2.0, 3.0, 0.5, 0.5, 0.5)
-    assert a.distance(almath.Position6D(1.0, 2.0, 7.0, 0.0, 0.0, 0.0)) == 4.0
-    assert a.distanceSquared(almath.Position6D(1.0, 2.0, 7.0, 0.0, 0.0, 0.0)) == 16.0
+    assert a.distance(almath.Position6D(3.0, 5.0, 9.0, 0.0, 0.0, 0.0)) == 7.0
+    assert a.distanceSquared(almath.Position6D(3.0, 5.0, 9.0, 0.0, 0.0, 0.0)) == 49.0
 
 
 def test_products_of_vectors_agree_with_numpy(rng):

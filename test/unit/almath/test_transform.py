@@ -47,6 +47,7 @@ def test_translation_and_angles_turn_about_the_moved_origin():
     )
     assert almath.transformFromPosition(1.0, 2.0, 3.0, 0.1, 0.2, 0.3).isNear(chained, 1e-12)
     assert almath.Transform_fromPosition(1.0, 2.0, 3.0) == almath.Transform(1.0, 2.0, 3.0)
+    assert almath.transformFromPosition(1.0, 2.0, 3.0) == almath.Transform(1.0, 2.0, 3.0)
     assert almath.transformFrom3DRotation(0.1, 0.2, 0.3) == almath.Transform_from3DRotation(0.1, 0.2, 0.3)
 
 

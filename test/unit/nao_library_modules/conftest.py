@@ -6,9 +6,9 @@ import threading
 from types import SimpleNamespace
 
 import pytest
-from naoqi.errors import CallCanceled, RobotError
 
 from nao_library_modules.clock import WallClock
+from naoqi.errors import CallCanceled, RobotError
 
 PREFIX = "Device/SubDeviceList/"
 
@@ -106,7 +106,9 @@ class FakeLeds:
 
     @staticmethod
     def _rgb(side, n):
-        return [f"Face/Led/{part}/{side}/{45 * (n - 1)}Deg/Actuator/Value" for part in ("Red", "Green", "Blue")]
+        return [
+            f"Face/Led/{part}/{side}/{45 * (n - 1)}Deg/Actuator/Value" for part in ("Red", "Green", "Blue")
+        ]
 
     def devices(self, name):
         if name in self.groups:
@@ -261,10 +263,12 @@ class FakeRobot:
         self.connection = FakeConnection()
         self.leds = FakeLeds()
         self.memory = FakeMemory(self.leds)
-        self._proxies = {
-            "ALLeds": FakeProxy("ALLeds", self.leds),
-            "ALMemory": FakeProxy("ALMemory", self.memory),
-        }
+        self._proxies = {}
+        self.add("ALLeds", self.leds)
+        self.add("ALMemory", self.memory)
+
+    def add(self, name, service):
+        self._proxies[name] = FakeProxy(name, service)
 
     def proxy(self, name):
         return self._proxies[name]

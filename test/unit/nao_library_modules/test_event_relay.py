@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from naoqi.errors import RobotError
 
 from nao_library_modules.event_relay import EventRelay
+from naoqi.errors import RobotError
 
 
 @pytest.fixture

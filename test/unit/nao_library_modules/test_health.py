@@ -11,7 +11,9 @@ from nao_library_modules.supervisor import State, Status
 
 
 def connection(**facts):
-    return SimpleNamespace(**{"state": "connected", "latency": 0.002, "generation": 1, "last_error": None, **facts})
+    return SimpleNamespace(
+        **{"state": "connected", "latency": 0.002, "generation": 1, "last_error": None, **facts}
+    )
 
 
 @pytest.mark.parametrize(
@@ -56,7 +58,11 @@ def test_goals_are_counted_by_their_end_and_the_last_error_is_kept():
     [
         (Status(State.RUNNING, 7, 0, ""), Level.OK, "running"),
         (Status(State.RUNNING, 7, 2, "ended"), Level.WARN, "running"),
-        (Status(State.WAITING, None, 0, "ended by itself"), Level.ERROR, "ended by itself; it is started again"),
+        (
+            Status(State.WAITING, None, 0, "ended by itself"),
+            Level.ERROR,
+            "ended by itself; it is started again",
+        ),
         (Status(State.STOPPED, None, 0, ""), Level.WARN, "not started"),
     ],
 )

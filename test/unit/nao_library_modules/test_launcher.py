@@ -58,7 +58,8 @@ def test_the_launch_file_of_this_stack_is_found_and_takes_a_robot():
 
 
 @pytest.mark.parametrize(
-    "launchpath", [("nao_library", "nonexistent.launch"), ("nonexistent_package", "nao.launch"), ("one",), None]
+    "launchpath",
+    [("nao_library", "nonexistent.launch"), ("nonexistent_package", "nao.launch"), ("one",), None],
 )
 def test_a_launch_path_that_leads_nowhere_is_refused_with_its_text(launchpath):
     with pytest.raises(BadLaunchPath, match=r"it is \(package, launchfile\)"):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from naoqi.errors import NaoError
 
 from nao_library_modules.node import launch_path, robot_address, robot_parser
+from naoqi.errors import NaoError
 
 
 def address(arguments, parameters):
@@ -33,7 +33,12 @@ def test_a_port_that_is_none_is_refused(port):
 
 @pytest.mark.parametrize(
     "value, path",
-    [("", None), ([], None), ("nao_library nao.launch", ("nao_library", "nao.launch")), (["a", "b"], ("a", "b"))],
+    [
+        ("", None),
+        ([], None),
+        ("nao_library nao.launch", ("nao_library", "nao.launch")),
+        (["a", "b"], ("a", "b")),
+    ],
 )
 def test_a_launch_path_is_a_text_or_a_list(value, path):
     assert launch_path(value) == path

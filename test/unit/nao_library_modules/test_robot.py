@@ -5,11 +5,11 @@ from __future__ import annotations
 import threading
 
 import pytest
-from naoqi.errors import RobotError
 
 from nao_library_modules.errors import Preempted
 from nao_library_modules.interrupt import Interrupt
 from nao_library_modules.robot import wait_for_calls
+from naoqi.errors import RobotError
 
 
 def in_background(calls, interrupt):

@@ -9,8 +9,9 @@ import threading
 import time
 from pathlib import Path
 
-import naoqi
 import pytest
+
+import naoqi
 
 SERVER = Path(__file__).with_name("robot_server.py")
 PATIENCE = 20.0
@@ -60,6 +61,7 @@ class Robot:
 def shared_robot():
     robot = Robot()
     yield robot
+    naoqi.connection(*robot.address, wait=False).close()
     robot.kill()
 
 
@@ -101,6 +103,11 @@ class States:
         with self._condition:
             self._condition.wait_for(lambda: len(self.seen) >= len(states), PATIENCE)
             assert self.seen == list(states)
+
+
+@pytest.fixture
+def patience():
+    return PATIENCE
 
 
 @pytest.fixture

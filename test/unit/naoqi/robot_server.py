@@ -66,7 +66,7 @@ class Module:
     """What a module may do, good and bad."""
 
     def __init__(self):
-        self._promises = []
+        self._begun = []
         self._cancelled = 0
         self.changed = qi.Signal("(m)")
         self.volume = qi.Property("i")
@@ -126,22 +126,23 @@ class Module:
     def begin(self):
         """Runs until `finish`, or until it is cancelled."""
 
-        def cancel(promise):
+        def cancel(cancelled):
             self._cancelled += 1
-            promise.setCanceled()
+            self._begun.remove(entry)
+            cancelled.setCanceled()
 
-        promise = qi.Promise(cancel)
-        self._promises.append(promise)
-        return promise.future()
+        entry = [qi.Promise(cancel)]
+        self._begun.append(entry)
+        return entry[0].future()
 
     def finish(self, value):
-        self._promises.pop(0).setValue(value)
+        self._begun.pop(0)[0].setValue(value)
 
     def breakDown(self, text):
-        self._promises.pop(0).setError(text)
+        self._begun.pop(0)[0].setError(text)
 
     def begun(self):
-        return len(self._promises)
+        return len(self._begun)
 
     def cancellations(self):
         return self._cancelled

@@ -1,4 +1,4 @@
-"""NaoSimulation: what only a simulator has. Time, reset, pushes, fingers, ground truth. Not a NAOqi module."""
+"""NaoSimulation: what only a simulator has. Time, reset, pushes, fingers, ground truth, pictures. No NAOqi module."""
 
 from __future__ import annotations
 
@@ -6,11 +6,8 @@ from typing import Any, Callable, Sequence
 
 import qi
 
-from nao_sim_bridge.services.arguments import number, numbers
 from nao_sim_bridge.services.binding import answer, as_future
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.runner import FASTEST, SimulationRunner
-from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.runner import FASTEST
 
 NAME = "NaoSimulation"
 
@@ -19,15 +16,12 @@ class NaoSimulation:
     """Control of the simulation over libqi; a real robot has no such service.
 
     Args:
-        simulation: Touched in the simulation thread only.
-        runner: That thread.
-        on_reset: Called in that thread after a reset.
+        host: The server: its `runner`, and its methods `push`, `press`, `picture` and `reset_task`.
     """
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, on_reset: Callable[[], None]) -> None:
-        self._simulation = simulation
-        self._runner = runner
-        self._on_reset = on_reset
+    def __init__(self, host: Any) -> None:
+        self._host = host
+        self._runner = host.runner
 
     @qi.bind(qi.Float, [])
     def time(self) -> float:
@@ -42,7 +36,7 @@ class NaoSimulation:
     @qi.bind(qi.Void, [qi.Float])
     def setSpeed(self, speed: float) -> Any:
         """Simulated seconds per wall second; 0 for as fast as possible."""
-        return answer(NAME, "setSpeed", lambda: self._runner.set_speed(speed if speed else FASTEST), ())
+        return _answer("setSpeed", lambda: self._runner.set_speed(speed if speed else FASTEST))
 
     @qi.bind(qi.Void, [])
     def pause(self) -> None:
@@ -62,39 +56,27 @@ class NaoSimulation:
     @qi.bind(qi.Float, [qi.Float])
     def advance(self, seconds: float) -> Any:
         """Let `seconds` of simulated time pass as fast as possible; returns the time after it, s."""
-        return answer(NAME, "advance", lambda: self._runner.advance(seconds).then(lambda s: s.time), ())
+        return _answer("advance", lambda: self._runner.advance(seconds).then(lambda snapshot: snapshot.time))
 
     @qi.bind(qi.Void, [])
     def reset(self) -> Any:
         """Put robot and world to where they started; tasks are killed, time goes on."""
-
-        def reset() -> None:
-            self._simulation.reset()
-            self._on_reset()
-
-        return as_future(self._runner.execute(reset, "reset"), f"{NAME}::reset")
+        return as_future(self._host.reset_task(), f"{NAME}::reset")
 
     @qi.bind(qi.Void, [qi.List(qi.Float), qi.Float, qi.String])
     def push(self, force: Sequence[float], duration: float, link: str) -> Any:
         """Push a link ("torso", "Head", "l_wrist"...) with `force` [x, y, z] N in world for `duration` s."""
-
-        def push() -> Any:
-            vector = numbers(force, "force")
-            if len(vector) != 3:
-                raise BadValue("force", force, "[x, y, z] in N")
-            lasting = number(duration, "duration", 0.0, 60.0)
-            return self._runner.execute(
-                lambda: self._simulation.robot.push(tuple(vector), self._simulation.time + lasting, link), "push"
-            )
-
-        return answer(NAME, "push", push, ())
+        return _answer("push", lambda: self._host.push(force, duration, link))
 
     @qi.bind(qi.Void, [qi.List(qi.String)])
     def press(self, sensors: Sequence[str]) -> Any:
         """Simulated fingers on these touch sensors ("Head/Touch/Front"...) and no others; an empty list lets go."""
-        return answer(
-            NAME, "press", lambda: self._runner.execute(lambda: self._simulation.robot.touch.press(sensors)), ()
-        )
+        return _answer("press", lambda: self._host.press(sensors))
+
+    @qi.bind("r", [qi.String, qi.Int32, qi.Int32])
+    def picture(self, view: str, width: int, height: int) -> Any:
+        """A PNG picture of the robot from a view ("front", "three_quarter", "side", "back", "face")."""
+        return _answer("picture", lambda: self._host.picture(view, width, height))
 
     @qi.bind(qi.List(qi.Float), [])
     def torsoPose(self) -> list[float]:
@@ -106,3 +88,7 @@ class NaoSimulation:
     def objectPoses(self) -> dict[str, list[float]]:
         """True poses of the movable objects of the world, as `torsoPose`."""
         return {n: [*p.position, *p.orientation] for n, p in self._runner.snapshot.objects.items()}
+
+
+def _answer(method: str, call: Callable[[], Any]) -> Any:
+    return answer(NAME, method, call, ())

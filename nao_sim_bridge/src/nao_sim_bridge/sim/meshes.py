@@ -11,7 +11,7 @@ import numpy as np
 from nao_sim_bridge.sim.kinematics import rpy_matrix
 from nao_sim_bridge.sim.shapes import Shape
 
-AROUND, ALONG = 32, 16
+AROUND, ALONG = 28, 14
 """Steps of longitude and latitude of round shapes."""
 PILLOW_EXPONENT = 0.35
 """1 would make the pillow an ellipsoid, 0 a box."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Sequence
+from typing import Sequence, Tuple
 
-from nao_sim_bridge.sim.snapshot import Vector3
+Vector3 = Tuple[float, float, float]
+Quaternion = Tuple[float, float, float, float]
 
 
 def rotate(quaternion: Sequence[float], vector: Sequence[float]) -> Vector3:
@@ -31,7 +32,7 @@ def roll_pitch_yaw(quaternion: Sequence[float]) -> Vector3:
     return (roll, pitch, yaw)
 
 
-def from_roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
+def from_roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Quaternion:
     """Quaternion of the rotation Rz(yaw) Ry(pitch) Rx(roll)."""
     cr, sr = math.cos(roll / 2), math.sin(roll / 2)
     cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)

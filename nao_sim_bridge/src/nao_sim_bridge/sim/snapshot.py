@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Mapping, Tuple
 
-Vector3 = Tuple[float, float, float]
-Quaternion = Tuple[float, float, float, float]
+from nao_sim_bridge.sim.rotations import Quaternion, Vector3, rotate_back
 
 
 @dataclass(frozen=True)
@@ -94,3 +93,8 @@ class Snapshot:
     battery_charge: float = 1.0
     battery_current: float = 0.0
     objects: Mapping[str, Pose] = field(default_factory=dict)
+
+    @property
+    def velocity_in_torso(self) -> Vector3:
+        """True velocity of the torso in its own frame, m/s."""
+        return rotate_back(self.torso.orientation, self.linear_velocity)

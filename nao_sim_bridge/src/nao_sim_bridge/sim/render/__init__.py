@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from nao_sim_bridge.sim.render.client import RenderError, Renderer, Viewer
-from nao_sim_bridge.sim.render.scene import PRESETS, Camera, RenderState, preset_camera
+from nao_sim_bridge.sim.render.client import Renderer, RenderError, Viewer
 from nao_sim_bridge.sim.render.png import write_png
+from nao_sim_bridge.sim.render.scene import PRESETS, Camera, RenderState, preset_camera
 
 __all__ = [
     "PRESETS",

@@ -1,10 +1,12 @@
 """Floor, shadow and horizon of a picture, drawn with arrays instead of triangles.
 
-The software renderer spends most of its time on the many pixels of a floor, and has neither tiles nor soft shadows.
-A plane needs no triangles: each pixel's ray meets it where a little arithmetic says.
+The software renderer spends most of its time on the many pixels of a floor, and has neither tiles nor soft
+shadows. A plane needs no triangles: each pixel's ray meets it where a little arithmetic says.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -32,37 +34,65 @@ def pixel_rays(camera: Camera) -> np.ndarray:
     return rays.astype(np.float32)
 
 
-def draw_backdrop(camera: Camera, world: World, shadow: Shadow | None) -> np.ndarray:
-    """(h, w, 3) float32 picture in 0..1 of the world without robot and objects."""
-    rays = pixel_rays(camera)
-    slope = rays[..., 2]
-    height = np.float32(camera.eye[2])
-    horizon = np.array(world.background.horizon, dtype=np.float32)
-    top = np.array(world.background.top, dtype=np.float32)
-    share = np.clip(slope * np.float32(1.6), 0.0, 1.0)[..., None]
-    picture = horizon * (1.0 - share) + top * share
-    if height <= 0.0:
+class Backdrop:
+    """A world without robot and objects; drawn once for a camera that stays where it is.
+
+    Args:
+        world: Floor and background colours.
+    """
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._camera: Camera | None = None
+        self._bright: np.ndarray
+        self._shaded: np.ndarray
+        self._floor: tuple[np.ndarray, np.ndarray]
+        self._points: tuple[np.ndarray, np.ndarray]
+
+    def draw(self, camera: Camera, shadow: Shadow | None) -> np.ndarray:
+        """(h, w, 3) float32 picture in 0..1; the caller may write into it."""
+        if camera != self._camera:
+            self._look_from(camera)
+            self._camera = camera
+        picture = self._bright.copy()
+        if shadow is None:
+            return picture
+        (rows, columns), (x, y) = self._floor, self._points
+        near = shadow.reaches(x, y)
+        if len(near):
+            dark = shadow.at(x[near], y[near])[:, None]
+            rows, columns = rows[near], columns[near]
+            picture[rows, columns] -= dark * self._shaded[near]
         return picture
-    rows, columns = np.nonzero(slope < -1e-4)
-    ray = rays[rows, columns]
-    scale = -height / ray[:, 2]
-    x = np.float32(camera.eye[0]) + scale * ray[:, 0]
-    y = np.float32(camera.eye[1]) + scale * ray[:, 1]
-    # The width of a pixel on the floor in tiles: where tiles get smaller than pixels they fade into one colour.
-    tile = np.float32(world.floor.tile_size)
-    pixel = np.float32(2.0 * np.tan(camera.fov / 2.0) / camera.height)
-    blurred = scale * scale * pixel / (height * tile)
-    contrast = np.clip(1.6 - 3.0 * blurred, 0.0, 1.0)
-    odd = ((np.floor(x / tile) + np.floor(y / tile)) % 2.0).astype(np.float32)
-    mix = (0.5 + (odd - 0.5) * contrast)[:, None]
-    color = np.array(world.floor.color, dtype=np.float32)
-    tile_color = np.array(world.floor.tile_color, dtype=np.float32)
-    ground = color * (1.0 - mix) + tile_color * mix
-    if shadow is not None:
-        ground *= (1.0 - np.float32(SHADE) * shadow.at(x, y))[:, None]
-    haze = (1.0 - np.exp(-((scale / HAZE_DISTANCE) ** 2)))[:, None]
-    picture[rows, columns] = ground * (1.0 - haze) + horizon * haze
-    return picture
+
+    def _look_from(self, camera: Camera) -> None:
+        """Prepare sky, lit floor, and what a full shadow takes from each floor pixel."""
+        world = self._world
+        rays = pixel_rays(camera)
+        slope = rays[..., 2]
+        horizon = np.array(world.background.horizon, dtype=np.float32)
+        top = np.array(world.background.top, dtype=np.float32)
+        share = np.clip(slope * np.float32(1.6), 0.0, 1.0)[..., None]
+        self._bright = horizon * (1.0 - share) + top * share
+        height = np.float32(camera.eye[2])
+        rows, columns = np.nonzero(slope < (-1e-4 if height > 0.0 else -np.inf))
+        ray = rays[rows, columns]
+        scale = -height / ray[:, 2]
+        x = np.float32(camera.eye[0]) + scale * ray[:, 0]
+        y = np.float32(camera.eye[1]) + scale * ray[:, 1]
+        # The width of a pixel on the floor in tiles: tiles smaller than pixels fade into one colour.
+        tile = np.float32(world.floor.tile_size)
+        pixel = np.float32(2.0 * np.tan(camera.fov / 2.0) / camera.height)
+        contrast = np.clip(1.6 - 3.0 * scale * scale * pixel / (height * tile), 0.0, 1.0)
+        odd = (np.floor(x / tile) + np.floor(y / tile)).astype(np.int32) & 1
+        mix = (0.5 + (odd - np.float32(0.5)) * contrast)[:, None]
+        color = np.array(world.floor.color, dtype=np.float32)
+        tile_color = np.array(world.floor.tile_color, dtype=np.float32)
+        ground = color + (tile_color - color) * mix
+        haze = (1.0 - np.exp(-np.square(scale / np.float32(HAZE_DISTANCE))))[:, None]
+        self._bright[rows, columns] = ground + (horizon - ground) * haze
+        self._shaded = ground * (np.float32(SHADE) * (1.0 - haze))
+        self._floor, self._points = (rows, columns), (x, y)
 
 
 class Shadow:
@@ -71,12 +101,29 @@ class Shadow:
     Args:
         covered: (n, n) whether something is in the way, seen from the lamp, first row on top.
         view_projection: (4, 4) from world to the lamp's clip coordinates.
+        center: (2,) middle of the area it knows, m.
+        reach: Half the width of that area, m.
         softness: Radius of the blur, in pixels of `covered`.
     """
 
-    def __init__(self, covered: np.ndarray, view_projection: np.ndarray, softness: int = 2) -> None:
+    def __init__(
+        self,
+        covered: np.ndarray,
+        view_projection: np.ndarray,
+        center: Sequence[float],
+        reach: float,
+        softness: int = 2,
+    ) -> None:
         self._map = blur(covered.astype(np.float32), softness)
         self._matrix = view_projection.astype(np.float32)
+        self._center = np.float32(center[0]), np.float32(center[1])
+        self._reach = np.float32(reach)
+
+    def reaches(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Indices of the floor points (m, in world) that may lie in shadow."""
+        # A low lamp throws shadows farther than what it sees is wide.
+        far = 3.0 * self._reach
+        return np.flatnonzero((np.abs(x - self._center[0]) < far) & (np.abs(y - self._center[1]) < far))
 
     def at(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Darkness in 0..1 of floor points (m, in world)."""

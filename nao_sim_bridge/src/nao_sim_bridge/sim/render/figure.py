@@ -1,8 +1,8 @@
 """The robot as bodies of a PyBullet world that are only there to be seen.
 
-Each link is one body a colour, each lamp a body of its own. The engine knows no joints between them: poses come
-from the forward kinematics here, so a picture needs no physics. Meshes are made by ourselves because PyBullet draws
-spheres of a URDF with a few dozen flat triangles.
+Each link is one body a colour, each lamp a body of its own. The engine knows no joints between them: poses
+come from forward kinematics, so a picture needs no physics. Meshes are made by ourselves because PyBullet
+draws the spheres of a URDF with a few dozen flat triangles.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ class Figure:
         client: PyBullet's physics client.
         model: The robot.
         appearance: Its looks.
-        paint_lamps: Change the colour of lamp bodies in the engine (a window needs it; pictures light them up later).
+        paint_lamps: Change the colour of lamp bodies in the engine. A window needs it; pictures light them up
+            later.
     """
 
     def __init__(self, client: int, model: RobotModel, appearance: Appearance, paint_lamps: bool) -> None:
@@ -54,7 +55,9 @@ class Figure:
         self._model = model
         self._appearance = appearance
         self._paint_lamps = paint_lamps
-        self._hands = [(joint.parent_link, joint.name[0], i) for i, joint in enumerate(model.joints) if joint.is_hand]
+        self._hands = [
+            (joint.parent_link, joint.name[0], i) for i, joint in enumerate(model.joints) if joint.is_hand
+        ]
         self._parts = self._build_links()
         self.lamp_bodies = tuple(self._build_lamps())
         self.lamp_light = np.zeros((len(self.lamp_bodies), 3))
@@ -76,11 +79,15 @@ class Figure:
 
     def _place(self, state: RenderState) -> None:
         base = transform(quaternion_matrix(state.base_orientation), state.base_position)
-        poses = {name: base @ pose for name, pose in link_transforms(self._model, state.joint_positions).items()}
+        poses = {
+            name: base @ pose for name, pose in link_transforms(self._model, state.joint_positions).items()
+        }
         for wrist, side, index in self._hands:
             for phalanx, pose in finger_transforms(self._model, state.joint_positions[index]).items():
                 poses[side + phalanx] = poses[wrist] @ pose
-        placed = {name: (pose[:3, 3].tolist(), matrix_quaternion(pose[:3, :3])) for name, pose in poses.items()}
+        placed = {
+            name: (pose[:3, 3].tolist(), matrix_quaternion(pose[:3, :3])) for name, pose in poses.items()
+        }
         for part in self._parts:
             position, orientation = placed[part.frame]
             pybullet.resetBasePositionAndOrientation(

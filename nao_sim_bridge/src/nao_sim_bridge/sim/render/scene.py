@@ -1,4 +1,4 @@
-"""What a picture shows: the state of robot and objects, and where the camera is. Small values that can be sent."""
+"""What a picture shows, and where the camera is: small values that can be sent to another process."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.snapshot import Pose, Quaternion, Vector3
@@ -45,6 +45,7 @@ class Camera:
         width: Of the picture, in pixels.
         height: Of the picture, in pixels.
         supersampling: 1 is fastest; 2 draws four pixels for each and has smooth edges.
+        shadows: Whether things throw shadows; a third faster without.
     """
 
     eye: Vector3
@@ -54,6 +55,16 @@ class Camera:
     width: int = 640
     height: int = 480
     supersampling: int = 1
+    shadows: bool = True
+
+    def __post_init__(self) -> None:
+        if self.eye == self.target:
+            raise BadValue("camera target", self.target, "any point but the eye")
+        if not 0.0 < self.fov < math.pi:
+            raise BadValue("camera fov", self.fov, "above 0 and below pi rad")
+        if self.width < 1 or self.height < 1 or not 1 <= self.supersampling <= 4:
+            size = (self.width, self.height, self.supersampling)
+            raise BadValue("camera size and supersampling", size, "1 or more pixels, supersampling 1..4")
 
 
 @dataclass(frozen=True)
@@ -78,7 +89,12 @@ PRESETS: Mapping[str, _View] = {
 
 
 def preset_camera(
-    name: str, model: RobotModel, state: RenderState, width: int = 640, height: int = 480, supersampling: int = 2
+    name: str,
+    model: RobotModel,
+    state: RenderState,
+    width: int = 640,
+    height: int = 480,
+    supersampling: int = 2,
 ) -> Camera:
     """A camera that shows the robot where it is.
 
@@ -97,7 +113,9 @@ def preset_camera(
         raise UnknownName("view", name, PRESETS)
     view = PRESETS[name]
     base = transform(quaternion_matrix(state.base_orientation), state.base_position)
-    frame = base @ link_transforms(model, state.joint_positions)["HeadPitch"] if view.follows == "head" else base
+    frame = (
+        base @ link_transforms(model, state.joint_positions)["HeadPitch"] if view.follows == "head" else base
+    )
     if view.follows == "body":
         frame = _upright(base)
     eye, target = (frame @ np.append(point, 1.0) for point in (view.eye, view.target))

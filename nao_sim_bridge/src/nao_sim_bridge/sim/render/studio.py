@@ -9,8 +9,9 @@ import numpy as np
 import pybullet
 
 from nao_sim_bridge.sim.appearance import load_appearance
+from nao_sim_bridge.sim.errors import UnknownName
 from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.render.backdrop import Shadow, blur, draw_backdrop
+from nao_sim_bridge.sim.render.backdrop import Backdrop, Shadow, blur
 from nao_sim_bridge.sim.render.figure import Figure
 from nao_sim_bridge.sim.render.scene import Camera, RenderState
 from nao_sim_bridge.sim.world import FLOOR, World, build_world
@@ -43,6 +44,7 @@ class Studio:
         # The floor is drawn as part of the backdrop.
         pybullet.removeBody(self._objects.pop(FLOOR), physicsClientId=self._client)
         self._figure = Figure(self._client, self._model, load_appearance(version), paint_lamps=False)
+        self._backdrop = Backdrop(world)
         self._shadow: Shadow | None = None
         self._shadow_of: tuple = ()
 
@@ -54,6 +56,8 @@ class Studio:
         """The (h, w, 3) uint8 picture of a state."""
         self._figure.show(state)
         for name, pose in state.objects.items():
+            if name not in self._objects:
+                raise UnknownName("object", name, self._objects)
             pybullet.resetBasePositionAndOrientation(
                 self._objects[name], pose.position, pose.orientation, physicsClientId=self._client
             )
@@ -77,14 +81,14 @@ class Studio:
             camera.height,
             view,
             projection,
-            shadow=1,
+            shadow=int(camera.shadows),
             lightDirection=light.direction,
             lightColor=light.color,
             lightAmbientCoeff=light.ambient,
             lightDiffuseCoeff=DIFFUSE,
             lightSpecularCoeff=SPECULAR,
         )
-        picture = draw_backdrop(camera, self._world, self._floor_shadow(state))
+        picture = self._backdrop.draw(camera, self._floor_shadow(state) if camera.shadows else None)
         seen = bodies >= 0
         picture[seen] = colors[seen].astype(np.float32) / np.float32(255.0)
         self._light_up(picture, bodies)
@@ -124,7 +128,9 @@ class Studio:
         picture[rows, columns] = picture[rows, columns] * (1.0 - strength) + entry[:, :3] * strength
         self._add_glow(picture, rows, columns, entry)
 
-    def _add_glow(self, picture: np.ndarray, rows: np.ndarray, columns: np.ndarray, entry: np.ndarray) -> None:
+    def _add_glow(
+        self, picture: np.ndarray, rows: np.ndarray, columns: np.ndarray, entry: np.ndarray
+    ) -> None:
         """Spill light around lit pixels, within the part of the picture that it can reach."""
         height, width = picture.shape[:2]
         radius = max(1, round(height * 0.006))
@@ -140,7 +146,12 @@ class Studio:
 
     def _floor_shadow(self, state: RenderState) -> Shadow:
         """The shadow of everything, drawn again only when something has moved."""
-        key = (state.base_position, state.base_orientation, state.joint_positions, tuple(state.objects.items()))
+        key = (
+            state.base_position,
+            state.base_orientation,
+            state.joint_positions,
+            tuple(state.objects.items()),
+        )
         if self._shadow is None or key != self._shadow_of:
             self._shadow, self._shadow_of = self._cast_shadow(state), key
         return self._shadow
@@ -161,7 +172,7 @@ class Studio:
         _, bodies = self._capture(SHADOW_PIXELS, SHADOW_PIXELS, view, projection, shadow=0)
         matrices = (np.array(m).reshape(4, 4).T for m in (projection, view))
         to_clip, to_lamp = matrices
-        return Shadow(bodies >= 0, to_clip @ to_lamp)
+        return Shadow(bodies >= 0, to_clip @ to_lamp, center[:2], reach)
 
     def _object_positions(self) -> list[np.ndarray]:
         return [

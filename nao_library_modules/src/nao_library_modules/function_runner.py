@@ -1,0 +1,146 @@
+"""Running one library function: its calls to the robot, the wait afterwards, and clean-up."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from .function_chain import FunctionChain, seconds
+from .interrupt import Interrupt
+from .robot import CLEAN_UP_LIMIT, wait_for_calls
+
+log = logging.getLogger(__name__)
+
+
+class FunctionRunner:
+    """What library functions build on.
+
+    Attributes:
+        clock: Time for waits.
+        interrupt: Ends whatever is waited for. Any thread may trigger it.
+        chain: Reads chains for the function table.
+    """
+
+    def __init__(self, function_table: Mapping[str, Callable[..., Any]], clock: Any) -> None:
+        """Keep table and clock.
+
+        Args:
+            function_table: NAOqi function name -> callable; it may change later.
+            clock: WallClock or RosClock.
+        """
+        self.clock = clock
+        self.interrupt = Interrupt()
+        self.chain = FunctionChain(function_table)
+        # Of each thread its own, so that functions may also be run outside of a goal.
+        self._clean_up = threading.local()
+
+    def call(self, proxy: Any, method: str, *args: Any) -> Any:
+        """Call a method of the robot; preemption ends the wait and cancels the method.
+
+        Raises:
+            NaoError: If the call fails.
+            Preempted: If a new goal, a cancel or the end of the node came first.
+        """
+        return self.call_all(proxy, method, [args])[0]
+
+    def call_all(self, proxy: Any, method: str, arguments: Sequence[Sequence[Any]]) -> list[Any]:
+        """Call a method several times at once and wait for all, as `call` does for one.
+
+        Args:
+            proxy: Proxy of the module.
+            method: Name of the method.
+            arguments: Arguments of each call.
+
+        Returns:
+            The results, in the order of the arguments.
+        """
+        self.interrupt.check()
+        return wait_for_calls([proxy.call_async(method, *args) for args in arguments], self.interrupt)
+
+    def call_now(self, proxy: Any, method: str, *args: Any) -> Any:
+        """Call a quick method that preemption must not end, as clean-up needs it.
+
+        Raises:
+            NaoError: If the call fails or takes longer than two seconds.
+        """
+        return proxy.call_async(method, *args).result(timeout=CLEAN_UP_LIMIT)
+
+    def after_wait(self, action: Callable[[], None]) -> None:
+        """Have something done when the running function and the wait after it are over, however they end.
+
+        The last one left is done first.
+
+        Raises:
+            RuntimeError: If no function runs.
+        """
+        actions = getattr(self._clean_up, "actions", None)
+        if actions is None:
+            raise RuntimeError("after_wait is for functions that run() runs")
+        actions.append(action)
+
+    def run(
+        self,
+        function: str,
+        args: Sequence[Any],
+        sleep_time: Any,
+        on_answer: Callable[[Any], None] | None = None,
+    ) -> Any:
+        """Run one function, wait, and clean up.
+
+        Args:
+            function: Name in the function table.
+            args: Arguments, in the order of its parameters.
+            sleep_time: Wait afterwards, in s or as a ROS duration.
+            on_answer: Told the answer as soon as it is there, before the wait.
+
+        Returns:
+            What the function answers.
+
+        Raises:
+            UnknownFunction: If there is no such function.
+            Preempted: If a new goal, a cancel or the end of the node interrupts it.
+        """
+        callable_ = self.chain.look_up(function)
+        outer = getattr(self._clean_up, "actions", None)  # a function may run another one
+        actions: list[Callable[[], None]] = []
+        self._clean_up.actions = actions
+        try:
+            answer = callable_(*args)
+            if on_answer is not None:
+                on_answer(answer)
+            self.wait(seconds(sleep_time))
+        except BaseException:
+            self._undo(actions, quietly=True)
+            raise
+        else:
+            self._undo(actions, quietly=False)
+        finally:
+            self._clean_up.actions = outer
+        return answer
+
+    def wait(self, duration: float) -> None:
+        """Wait on ROS time.
+
+        Args:
+            duration: s.
+
+        Raises:
+            Preempted: If it is interrupted.
+        """
+        if duration > 0.0 and not self.clock.wait(duration, self.interrupt):
+            self.interrupt.check()
+
+    def _undo(self, actions: list[Callable[[], None]], quietly: bool) -> None:
+        while actions:
+            action = actions.pop()
+            try:
+                action()
+            except NaoError as error:
+                # The error that ended the function is the one to tell; this one would hide it.
+                if not quietly:
+                    raise
+                log.warning("clean-up failed: %s", error)

@@ -1,0 +1,145 @@
+"""Checks of the light functions, made before a chain begins. Parameters are fields of LedFunction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from .errors import BadGoal
+from .led_access import LedAccess
+from .light_goals import (
+    colour_steps,
+    colours,
+    intensities,
+    one_colour,
+    require_angle,
+    require_coloured,
+    require_lights,
+    require_seconds,
+    require_times,
+)
+from .light_names import LightNames
+
+
+class HasLeds(Protocol):
+    """The module, as far as the checks need it."""
+
+    leds: LedAccess
+
+
+def _names(lights_module: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> LightNames:
+    """The names as a check sees them: the robot's, and groups that earlier functions of the chain make."""
+
+    def with_new_groups(names: LightNames) -> LightNames:
+        for group, members in context.get("groups", {}).items():
+            names = names.with_group(group, members)
+        return names
+
+    names = with_new_groups(lights_module.leds.names)
+    if all(names.knows(light) for light in lights) or context.get("names read again"):
+        return names
+    # Another program may have made a group since the names were read; one look a chain is enough.
+    context["names read again"] = True
+    return with_new_groups(lights_module.leds.read_names())
+
+
+def check_lights(self: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> None:
+    """Known lights, at least one."""
+    require_lights(_names(self, lights, context), lights)
+
+
+def check_intensities(
+    self: HasLeds, lights: Sequence[str], i_values: Sequence[float], context: dict[str, Any]
+) -> None:
+    """Known lights, one intensity for all or one each."""
+    check_lights(self, lights, context)
+    intensities(lights, i_values)
+
+
+def check_fade(
+    self: HasLeds,
+    lights: Sequence[str],
+    i_values: Sequence[float],
+    duration: float,
+    context: dict[str, Any],
+) -> None:
+    """As setIntensity, and a duration."""
+    check_intensities(self, lights, i_values, context)
+    require_seconds("duration", duration, zero=True)
+
+
+def check_colours(
+    self: HasLeds, lights: Sequence[str], i_values: Sequence[float], str_param: str, context: dict[str, Any]
+) -> None:
+    """Coloured lights, one colour for all or one each."""
+    require_coloured(_names(self, lights, context), lights)
+    colours(lights, i_values, str_param)
+
+
+def check_readable_colours(self: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> None:
+    """Coloured lights."""
+    require_coloured(_names(self, lights, context), lights)
+
+
+def check_fade_rgb(
+    self: HasLeds,
+    lights: Sequence[str],
+    i_values: Sequence[float],
+    str_param: str,
+    duration: float,
+    context: dict[str, Any],
+) -> None:
+    """As setColor, and a duration."""
+    check_colours(self, lights, i_values, str_param, context)
+    require_seconds("duration", duration, zero=True)
+
+
+def check_fade_list(
+    self: HasLeds,
+    lights: Sequence[str],
+    i_values: Sequence[float],
+    str_param: str,
+    times: Sequence[float],
+    context: dict[str, Any],
+) -> None:
+    """Coloured lights, rising times, one colour a time."""
+    require_coloured(_names(self, lights, context), lights)
+    require_times(times)
+    colour_steps(times, i_values, str_param)
+
+
+def check_animation(_self: object, duration: float) -> None:
+    """A duration."""
+    require_seconds("duration", duration, zero=False)
+
+
+def check_rotation(
+    _self: object, i_values: Sequence[float], str_param: str, rotation_time: float, duration: float
+) -> None:
+    """One colour, the time of a turn, and a duration."""
+    one_colour(i_values, str_param)
+    require_seconds("rotation_time", rotation_time, zero=False)
+    require_seconds("duration", duration, zero=False)
+
+
+def check_ear_angle(_self: object, angle: int, duration: float) -> None:
+    """An angle and a duration."""
+    require_angle(angle)
+    require_seconds("duration", duration, zero=False)
+
+
+def check_new_group(self: HasLeds, str_param: str, lights: Sequence[str], context: dict[str, Any]) -> None:
+    """A free name and known lights; later functions of the chain may use the group."""
+    name = str_param.strip()
+    names = _names(self, lights, context)
+    if not name:
+        raise BadGoal("str_param", str_param, "the name of the new group", problem="it is empty")
+    if name in names.lights:
+        raise BadGoal("str_param", name, "a name that is no single light", problem=f"{name!r} is a light")
+    require_lights(names, lights)
+    context.setdefault("groups", {})[name] = tuple(names.expand(lights))
+
+
+def check_group(self: HasLeds, str_param: str, context: dict[str, Any]) -> None:
+    """A known group or light."""
+    check_lights(self, [str_param.strip()], context)

@@ -1,0 +1,89 @@
+"""Pictures of a running simulation, and the window of `--gui`: snapshots in, drawings out, physics never waits."""
+
+from __future__ import annotations
+
+import io
+import logging
+import threading
+
+from PIL import Image
+
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.render.client import Renderer, RenderError, Viewer
+from nao_sim_bridge.sim.render.scene import RenderState, preset_camera
+from nao_sim_bridge.sim.runner import SimulationRunner
+from nao_sim_bridge.sim.simulation import Simulation
+
+log = logging.getLogger("nao_sim.pictures")
+
+MAX_PIXELS = 4096
+TIMEOUT = 30.0
+WINDOW_PERIOD = 1.0 / 30.0
+
+
+class Pictures:
+    """Draws the simulated robot from outside.
+
+    Args:
+        simulation: What to draw; only its published values are read.
+        runner: Where snapshots come from.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._renderer = Renderer(simulation.scene.world, simulation.scene.version)
+        self._viewer: Viewer | None = None
+        self._closing = threading.Event()
+
+    def state(self) -> RenderState:
+        """What is to be seen now."""
+        snapshot = self._runner.snapshot
+        return RenderState(
+            snapshot.torso.position,
+            snapshot.torso.orientation,
+            snapshot.positions,
+            self._simulation.robot.leds.values,
+            snapshot.objects,
+        )
+
+    def png(self, view: str, width: int, height: int) -> bytes:
+        """A PNG picture of the robot from a named view.
+
+        Raises:
+            UnknownName: There is no such view.
+            BadValue: The size is out of range.
+            RenderError: The picture process failed.
+        """
+        if not (1 <= width <= MAX_PIXELS and 1 <= height <= MAX_PIXELS):
+            raise BadValue("picture size", (width, height), f"1 to {MAX_PIXELS} pixels each way")
+        state = self.state()
+        camera = preset_camera(view, self._simulation.model, state, width, height)
+        buffer = io.BytesIO()
+        Image.fromarray(self._renderer.render(state, camera, TIMEOUT), "RGB").save(buffer, "PNG")
+        return buffer.getvalue()
+
+    def open_window(self) -> None:
+        """Show the simulation in a window from now on.
+
+        Raises:
+            RenderError: There is no display.
+        """
+        self._viewer = Viewer(self._simulation.scene.world, self._simulation.scene.version).start()
+        threading.Thread(target=self._mirror, args=(self._viewer,), name="window", daemon=True).start()
+
+    def close(self) -> None:
+        """End the picture processes."""
+        self._closing.set()
+        self._renderer.close()
+        if self._viewer is not None:
+            self._viewer.close()
+
+    def _mirror(self, viewer: Viewer) -> None:
+        while not self._closing.wait(WINDOW_PERIOD):
+            try:
+                viewer.show(self.state())
+            except RenderError as error:
+                if not self._closing.is_set():
+                    log.warning("the window is gone: %s", error)
+                return

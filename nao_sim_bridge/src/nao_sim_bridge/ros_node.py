@@ -1,0 +1,59 @@
+"""The node `nao_sim`: reads parameters, builds server and ROS side, and spins."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import rospy
+
+from nao_sim_bridge.cli import parser, server_options
+from nao_sim_bridge.ros_side import RosSide
+from nao_sim_bridge.server import SimulatorServer
+from nao_sim_bridge.sim.errors import SimulationError
+
+# Parameters of the node that stand for options of the command line; the command line wins.
+PARAMETERS = ("port", "listen", "speed", "gui", "world", "seed", "robot", "posture", "paused", "verbose")
+
+
+def main() -> int:
+    """Run until ROS shuts down, a client shuts the robot down, or the simulation fails; returns the exit status."""
+    arguments = rospy.myargv(sys.argv)[1:]
+    options = parser("rosrun nao_sim_bridge nao_sim")
+    options.add_argument("--record-dir", default="recordings", help="folder for pictures and recordings")
+    options.add_argument("--publish-clock", choices=("auto", "yes", "no"), default="auto", help="publish /clock")
+    parsed = options.parse_args(arguments)
+    rospy.init_node("nao_sim", disable_signals=False)
+    try:
+        parsed = options.parse_args([*_from_parameters(options), *arguments])
+        server = SimulatorServer(server_options(parsed))
+        rospy.on_shutdown(server.ended.set)
+        server.start()
+    except (SimulationError, RuntimeError) as error:
+        rospy.logfatal("%s", error)
+        return 1
+    wants_clock = {"auto": parsed.speed != 1.0, "yes": True, "no": False}[parsed.publish_clock]
+    ros_side = RosSide(server, Path(parsed.record_dir).expanduser(), wants_clock)
+    rospy.loginfo("simulated NAO ready on port %d, world %s, speed %g", server.broker.port, parsed.world, parsed.speed)
+    rospy.set_param("~bound_port", server.broker.port)
+    failed = False
+    while not server.ended.wait(0.5):
+        failed = not server.runner.running
+        if failed:
+            rospy.logfatal("the simulation has failed; see the log above")
+            break
+    ros_side.close()
+    server.stop()
+    return int(failed)
+
+
+def _from_parameters(options) -> list[str]:
+    """Command line words for the node's private parameters that are set."""
+    words: list[str] = []
+    for name in (*PARAMETERS, "record_dir", "publish_clock"):
+        value = rospy.get_param(f"~{name}", None)
+        if value is None or value is False:
+            continue
+        option = "--" + name.replace("_", "-")
+        words += [option] if value is True else [option, str(value)]
+    return words

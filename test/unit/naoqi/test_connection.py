@@ -1,0 +1,215 @@
+"""A connection notices its loss in time, says so, and comes back by itself."""
+
+from __future__ import annotations
+
+import logging
+import socket
+import threading
+import time
+
+import pytest
+
+import naoqi
+from naoqi import errors
+
+PROMISED = 2.0
+"""A call under way fails within this time after the robot fell silent, in s."""
+
+
+@pytest.fixture
+def robot(fragile_robot):
+    return fragile_robot
+
+
+@pytest.fixture
+def call_under_way(robot, in_thread, eventually):
+    """A call that waits for its answer in another thread; has arrived at the robot."""
+    proxy = robot.proxy()
+    finish = in_thread(proxy.begin)
+    eventually(lambda: proxy.begun() == 1, "the call arrives")
+    return finish
+
+
+def test_a_connection_knows_how_it_is(robot, eventually):
+    connection = robot.proxy().connection
+    eventually(lambda: connection.latency is not None, "the first heartbeat is answered")
+    assert connection.state == "connected"
+    assert 0.0 < connection.latency < PROMISED
+    assert (connection.generation, connection.last_error) == (1, "")
+
+
+def test_a_killed_robot_fails_the_call_under_way_at_once(robot, call_under_way):
+    start = time.monotonic()
+    robot.kill()
+    outcome = call_under_way()
+    assert type(outcome["error"]) is errors.ConnectionLost
+    assert outcome["error"].call == "ALTest.begin"
+    assert outcome["ended"] - start < PROMISED
+
+
+def test_a_silent_robot_fails_the_call_under_way_within_two_seconds(robot, call_under_way):
+    robot.silence()
+    start = time.monotonic()
+    outcome = call_under_way()
+    assert type(outcome["error"]) is errors.ConnectionLost
+    assert outcome["ended"] - start < PROMISED
+    assert "heartbeat" in naoqi.connection(*robot.address, wait=False).last_error
+    robot.speak()
+
+
+def test_a_posted_call_fails_too(robot):
+    proxy = robot.proxy()
+    task = proxy.post.begin()
+    robot.kill()
+    with pytest.raises(errors.NaoError):
+        proxy.wait(task, 0)
+
+
+@pytest.mark.parametrize("harm, repair", [("kill", "start"), ("silence", "speak")])
+def test_the_same_proxy_works_again_when_the_robot_is_back(robot, states, harm, repair):
+    proxy = robot.proxy()
+    method = proxy.add
+    followed = states(proxy.connection)
+    getattr(robot, harm)()
+    followed.wait_for("connected", "lost")
+    with pytest.raises(errors.RobotUnreachable, match="lost .* s ago .*reconnecting") as caught:
+        proxy.add(1, 2)
+    assert type(caught.value) is errors.RobotUnreachable
+    getattr(robot, repair)()
+    followed.wait_for("connected", "lost", "connected")
+    assert proxy.add(1, 2) == 3
+    assert method(3, 4) == 7
+    assert proxy.post.add(1, 1) > 0
+    assert proxy.connection.generation == 2
+
+
+def test_loss_and_return_are_one_line_each_in_the_log(robot, states, caplog):
+    caplog.set_level(logging.INFO, "naoqi")
+    connection = robot.proxy().connection
+    followed = states(connection)
+    robot.kill()
+    followed.wait_for("connected", "lost")
+    robot.start()
+    followed.wait_for("connected", "lost", "connected")
+    lines = [each.getMessage() for each in caplog.records if each.levelno >= logging.WARNING]
+    assert len(lines) == 2
+    assert "lost" in lines[0] and connection.address in lines[0]
+    assert "is back after" in lines[1] and connection.address in lines[1]
+
+
+def test_losses_may_follow_one_another(robot, states):
+    proxy = robot.proxy()
+    followed = states(proxy.connection)
+    expected = ["connected"]
+    for _ in range(3):
+        robot.kill()
+        expected.append("lost")
+        followed.wait_for(*expected)
+        robot.start()
+        expected.append("connected")
+        followed.wait_for(*expected)
+        assert proxy.add(1, 1) == 2
+
+
+def test_a_robot_that_is_not_there_is_reported_at_once(robot):
+    robot.kill()
+    start = time.monotonic()
+    with pytest.raises(errors.RobotUnreachable, match="refused.*Check") as caught:
+        robot.proxy()
+    assert time.monotonic() - start < 2.0
+    assert (caught.value.host, caught.value.port) == robot.address
+
+
+def test_a_port_that_accepts_and_says_nothing_is_reported_in_time():
+    with socket.create_server(("127.0.0.1", 0)) as mute:
+        start = time.monotonic()
+        with pytest.raises(errors.RobotUnreachable, match="no answer"):
+            naoqi.ALProxy("ALTest", *mute.getsockname(), connect_timeout=0.3)
+        assert time.monotonic() - start < 2.0
+
+
+def test_an_attempt_that_failed_leaves_no_thread_behind(robot, eventually):
+    robot.kill()
+    before = threading.active_count()
+    with pytest.raises(errors.RobotUnreachable):
+        robot.proxy()
+    eventually(lambda: threading.active_count() <= before, "the threads of the attempt end")
+
+
+def test_a_lazy_proxy_may_be_there_before_the_robot(robot):
+    robot.kill()
+    proxy = robot.proxy(lazy=True)
+    method = proxy.add
+    with pytest.raises(errors.RobotUnreachable, match="not reached for"):
+        method(1, 2)
+    with pytest.raises(errors.RobotUnreachable):
+        proxy.call_async("add", 1, 2)
+    with pytest.raises(errors.RobotUnreachable):
+        proxy.ping()
+    robot.start()
+    assert proxy.connection.wait_connected(10.0)
+    assert method(1, 2) == 3
+    assert proxy.add(2, 2) == 4
+
+
+def test_waiting_for_a_robot_that_does_not_come_ends(robot):
+    robot.kill()
+    connection = naoqi.connection(*robot.address, wait=False)
+    assert connection.wait_connected(0.05) is False
+    assert connection.state == "connecting"
+
+
+def test_a_closed_connection_refuses_and_a_new_one_can_be_had(robot, states):
+    proxy = robot.proxy()
+    followed = states(proxy.connection)
+    followed.wait_for("connected")
+    proxy.connection.close()
+    followed.wait_for("connected", "closed")
+    with pytest.raises(errors.RobotUnreachable, match="this program has closed"):
+        proxy.add(1, 2)
+    assert proxy.connection.wait_connected() is False
+    assert robot.proxy().add(1, 2) == 3
+
+
+def test_closing_fails_the_call_under_way(robot, call_under_way):
+    naoqi.connection(*robot.address).close()
+    assert isinstance(call_under_way()["error"], errors.ConnectionLost)
+
+
+def test_a_listener_may_call_the_robot_fail_and_close(robot, states, caplog, patience):
+    proxy = robot.proxy(lazy=True)
+    answers, done = [], threading.Event()
+
+    def use(state):
+        answers.append((str(state), proxy.add(1, 1) if state == "connected" else None))
+
+    def fail(_state):
+        raise ValueError("a listener with a fault")
+
+    def close(state):
+        if state == "connected":
+            proxy.connection.close()
+        else:
+            done.set()
+
+    robot.kill()
+    naoqi.connection(*robot.address, wait=False).close()
+    proxy = robot.proxy(lazy=True)
+    for listener in (use, fail, close):
+        proxy.connection.add_listener(listener)
+    robot.start()
+    assert done.wait(patience)
+    assert answers == [("connected", 2), ("closed", None)]
+    assert "a listener with a fault" in caplog.text
+
+
+def test_a_removed_listener_hears_nothing(robot, states):
+    connection = robot.proxy().connection
+    heard = []
+    connection.add_listener(heard.append)
+    connection.remove_listener(heard.append)
+    connection.remove_listener(heard.append)
+    followed = states(connection)
+    connection.close()
+    followed.wait_for("closed")
+    assert heard == []
