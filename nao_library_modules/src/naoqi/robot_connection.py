@@ -73,7 +73,7 @@ class Connection:
         return self._state
 
     def add_listener(self, listener: Listener) -> None:
-        """Have a function called with the new state at each change, from a thread of this connection.
+        """Have a function called with the new state at each later change, from a thread of this connection.
 
         Listeners are called one after the other, in the order in which they were added. They may make remote
         calls; what they raise is logged.
@@ -276,7 +276,7 @@ class Connection:
             self._failed_attempts = 0
             self.generation += live is not None
             self._condition.notify_all()
-        self._listeners.tell(state)
+            self._listeners.tell(state)  # with the lock: who sees a state hears only of those that follow
 
     def _ask_for(self, live: Live, name: str) -> Any:
         future = live.session.service(name, _async=True)

@@ -6,7 +6,7 @@ import enum
 import logging
 import threading
 from dataclasses import dataclass
-from typing import Callable, List
+from typing import Callable, List, Sequence
 
 from .worker import Worker
 
@@ -76,8 +76,10 @@ class Listeners:
                 self._listeners.remove(listener)
 
     def tell(self, state: State) -> None:
-        """Have everybody called with this state; does not wait for it."""
-        self._worker.submit(lambda: self._call(state))
+        """Have everybody who is here now called with this state; does not wait for it."""
+        with self._lock:
+            listeners = tuple(self._listeners)
+        self._worker.submit(lambda: self._call(listeners, state))
 
     def in_background(self, job: Callable[[], None]) -> None:
         """Have a job done in the same thread, after what has been told already."""
@@ -87,11 +89,12 @@ class Listeners:
         """Tell nothing more; wait a moment for what has been told already."""
         self._worker.close(timeout=1.0)
 
-    def _call(self, state: State) -> None:
-        with self._lock:
-            listeners = tuple(self._listeners)
+    def _call(self, listeners: Sequence[Listener], state: State) -> None:
         for listener in listeners:
+            with self._lock:
+                removed = listener not in self._listeners
             try:
-                listener(state)
+                if not removed:
+                    listener(state)
             except Exception:
                 logger.exception("listener %r of a connection failed at state %s", listener, state)

@@ -17,6 +17,8 @@ log = logging.getLogger("nao_sim.broker")
 # A port may still be held by connections of a simulator that has just ended: how long to keep trying, s.
 BIND_PATIENCE = 65.0
 BIND_PAUSE = 0.5
+# libqi reports each service it registers, and warns that it deduces paths it has no use for here.
+QUIET_LIBQI = "qi.path.sdklayout=silent:qimessaging.servicedirectory=warning"
 
 
 class Broker:
@@ -31,6 +33,7 @@ class Broker:
     """
 
     def __init__(self, name: str = "nao_sim") -> None:
+        qi.logging.setFilters(QUIET_LIBQI)
         self.name = name
         self.port = 0
         self._session = qi.Session()

@@ -13,7 +13,8 @@ from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.errors import SimulationError
 
 # Parameters of the node that stand for options of the command line; the command line wins.
-PARAMETERS = ("port", "listen", "speed", "gui", "world", "seed", "robot", "posture", "paused", "verbose")
+VALUES = ("port", "listen", "speed", "world", "seed", "robot", "posture", "record_dir", "publish_clock")
+SWITCHES = ("gui", "paused", "verbose")
 
 
 def main() -> int:
@@ -21,7 +22,7 @@ def main() -> int:
     arguments = rospy.myargv(sys.argv)[1:]
     options = parser("rosrun nao_sim_bridge nao_sim")
     options.add_argument("--record-dir", default="recordings", help="folder for pictures and recordings")
-    options.add_argument("--publish-clock", choices=("auto", "yes", "no"), default="auto", help="publish /clock")
+    options.add_argument("--publish-clock", choices=("auto", "true", "false"), default="auto", help="publish /clock")
     parsed = options.parse_args(arguments)
     rospy.init_node("nao_sim", disable_signals=False)
     try:
@@ -32,7 +33,7 @@ def main() -> int:
     except (SimulationError, RuntimeError) as error:
         rospy.logfatal("%s", error)
         return 1
-    wants_clock = {"auto": parsed.speed != 1.0, "yes": True, "no": False}[parsed.publish_clock]
+    wants_clock = {"auto": parsed.speed != 1.0, "true": True, "false": False}[parsed.publish_clock]
     ros_side = RosSide(server, Path(parsed.record_dir).expanduser(), wants_clock)
     rospy.loginfo("simulated NAO ready on port %d, world %s, speed %g", server.broker.port, parsed.world, parsed.speed)
     rospy.set_param("~bound_port", server.broker.port)
@@ -50,10 +51,8 @@ def main() -> int:
 def _from_parameters(options) -> list[str]:
     """Command line words for the node's private parameters that are set."""
     words: list[str] = []
-    for name in (*PARAMETERS, "record_dir", "publish_clock"):
+    for name in VALUES:
         value = rospy.get_param(f"~{name}", None)
-        if value is None or value is False:
-            continue
-        option = "--" + name.replace("_", "-")
-        words += [option] if value is True else [option, str(value)]
-    return words
+        if value is not None:
+            words += ["--" + name.replace("_", "-"), str(value).lower() if isinstance(value, bool) else str(value)]
+    return words + [f"--{name}" for name in SWITCHES if rospy.get_param(f"~{name}", False)]

@@ -45,6 +45,9 @@ class FakeCall:
     def done(self):
         return self._ended.is_set()
 
+    def wait(self, timeout=None):
+        return self._ended.wait(timeout)
+
     def result(self, timeout=None):
         assert self._ended.wait(timeout), f"{self.name}: nobody ended this call"
         if self._error is not None:

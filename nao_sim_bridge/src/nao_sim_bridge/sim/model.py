@@ -159,6 +159,7 @@ class SimulatedHand:
         com: (3,) in the frame of the finger body, m.
         inertia: (3, 3) about the centre of mass, kg m2.
         travel: rad.
+        phalanx_mass: Of each of the eight phalanges where they are bodies of their own, kg.
     """
 
     origin: np.ndarray
@@ -167,6 +168,7 @@ class SimulatedHand:
     com: np.ndarray
     inertia: np.ndarray
     travel: float
+    phalanx_mass: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,7 +225,7 @@ class RobotModel:
         touch: Touch sensors, bumpers and chest button.
         microphones: Microphones of the V6 head.
         loudspeakers: Left and right loudspeaker.
-        infrared: Infrared places (V5 only; empty on V6).
+        infrared: Places of the infrared pair; the V6 keeps the frames, not the parts.
         fingers: Fingers and thumb, the same for both hands.
         simulated_hand: The finger body of the physics.
         collision_shapes: Published self-collision shapes.

@@ -110,7 +110,7 @@ class ModelReader:
             touch=read_places(tables["tactile"], at("tactile")),
             microphones=read_places(tables["microphones_V6"], at("microphones_V6")),
             loudspeakers=read_places(tables["loudspeakers"], at("loudspeakers")),
-            infrared=read_places(tables["infrared_V5"], at("infrared_V5")) if self.version == "V5" else (),
+            infrared=read_places(tables["infrared_V5"], at("infrared_V5")),
             fingers=self.fingers(),
             simulated_hand=self.simulated_hand(),
             collision_shapes=self.collision_shapes(),
@@ -286,7 +286,7 @@ class ModelReader:
     def simulated_hand(self) -> SimulatedHand:
         """The finger body of the physics."""
         where = at("simulated_hand")
-        keys = "note origin_xyz_m axis mass_kg com_xyz_m inertia_kg_m2 travel_rad".split()
+        keys = "note origin_xyz_m axis mass_kg com_xyz_m inertia_kg_m2 travel_rad phalanx_mass_kg".split()
         section = check_keys(self.tables["simulated_hand"], where, keys)
         return SimulatedHand(
             origin=vector(section["origin_xyz_m"], f"{where}.origin_xyz_m"),
@@ -295,6 +295,7 @@ class ModelReader:
             com=vector(section["com_xyz_m"], f"{where}.com_xyz_m"),
             inertia=array(section["inertia_kg_m2"], f"{where}.inertia_kg_m2", (3, 3)),
             travel=float(section["travel_rad"]),
+            phalanx_mass=float(section["phalanx_mass_kg"]),
         )
 
     def collision_shapes(self) -> tuple[CollisionShape, ...]:

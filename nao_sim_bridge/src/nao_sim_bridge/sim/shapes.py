@@ -41,7 +41,7 @@ class Shape:
     material: str = ""
 
     def mirrored(self) -> Shape:
-        """The same shape on the other side of the XZ plane; exact because all kinds are symmetric themselves."""
+        """The same shape on the other side of the XZ plane; exact, as all kinds are symmetric themselves."""
         (x, y, z), (roll, pitch, yaw) = self.xyz, self.rpy
         return replace(self, xyz=(x, -y, z), rpy=(-roll, pitch, -yaw))
 

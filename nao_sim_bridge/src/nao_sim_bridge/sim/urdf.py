@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from nao_sim_bridge.sim.urdf_full import full_urdf, mesh_files
 from nao_sim_bridge.sim.urdf_physics import physics_urdf
 
-__all__ = ["physics_urdf"]
+__all__ = ["full_urdf", "mesh_files", "physics_urdf"]

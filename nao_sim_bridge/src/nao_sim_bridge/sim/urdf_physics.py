@@ -5,6 +5,8 @@ Each further joint or link costs time in every step, so a hand has one finger bo
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -33,11 +35,11 @@ def physics_urdf(model: RobotModel) -> str:
     alt_name = {link.name: link.alt_name for link in model.links}
     lines: list[str] = []
     for link in model.links:
-        mass, com, inertia = link.mass, link.com, link.inertia
+        body = Body(link.mass, link.com, link.inertia)
         if link.name in carrier_of_fingers:
-            mass, com, inertia = without_fingers(link, model.simulated_hand)
+            body = without_fingers(link, model.simulated_hand)
         collisions = [line for shape in shapes.get(link.name, ()) for line in xml.collision(shape)]
-        lines += xml.link(link.alt_name, xml.inertial(mass, com, inertia), collisions)
+        lines += xml.link(link.alt_name, xml.inertial(body.mass, body.com, body.inertia), collisions)
     hand = model.simulated_hand
     for fingers in FINGERS.values():
         collisions = [line for shape in shapes.get(fingers, ()) for line in xml.collision(shape)]
@@ -63,18 +65,27 @@ def hand_joint(joint: Joint, hand: SimulatedHand, alt_name: dict[str, str]) -> l
     return xml.revolute_joint(joint.name, parent, child, hand.origin, hand.axis, limits)
 
 
-def without_fingers(wrist: Link, hand: SimulatedHand) -> tuple[float, np.ndarray, np.ndarray]:
-    """What is left of the wrist link when the open finger body is taken out of it.
+@dataclass(frozen=True, eq=False)
+class Body:
+    """Mass (kg), (3,) centre of mass (m) and (3, 3) inertia about it (kg m2), in some link frame."""
 
-    Returns:
-        Mass (kg), (3,) centre of mass (m) and (3, 3) inertia about it (kg m2); together with the open fingers
-        they are the wrist of the tables exactly.
-    """
-    finger_com = hand.origin + hand.com
-    mass = wrist.mass - hand.mass
-    com = (wrist.mass * wrist.com - hand.mass * finger_com) / mass
-    about_wrist_com = hand.inertia + shift(hand.mass, finger_com - wrist.com)
-    return mass, com, wrist.inertia - about_wrist_com - shift(mass, com - wrist.com)
+    mass: float
+    com: np.ndarray
+    inertia: np.ndarray
+
+
+def without_fingers(wrist: Link, hand: SimulatedHand) -> Body:
+    """What is left of the wrist link when the open finger body is taken out of it."""
+    fingers = Body(hand.mass, hand.origin + hand.com, hand.inertia)
+    return without_bodies(Body(wrist.mass, wrist.com, wrist.inertia), [fingers])
+
+
+def without_bodies(whole: Body, parts: Sequence[Body]) -> Body:
+    """What is left of a body when parts are taken out; rest and parts together are the whole exactly."""
+    mass = whole.mass - sum(part.mass for part in parts)
+    com = (whole.mass * whole.com - sum(part.mass * part.com for part in parts)) / mass
+    taken = sum(part.inertia + shift(part.mass, part.com - whole.com) for part in parts)
+    return Body(mass, com, whole.inertia - taken - shift(mass, com - whole.com))
 
 
 def shift(mass: float, offset: np.ndarray) -> np.ndarray:

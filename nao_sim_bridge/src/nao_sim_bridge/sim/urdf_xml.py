@@ -10,6 +10,7 @@ import numpy as np
 from nao_sim_bridge.sim.shapes import Shape
 
 NO_ROTATION = (0.0, 0.0, 0.0)
+MESH_URL = "package://nao_sim_bridge/urdf/meshes"
 
 
 def number(value: float) -> str:
@@ -41,8 +42,20 @@ def inertial(mass: float, com: Sequence[float], inertia: np.ndarray) -> list[str
     ]
 
 
+MASSLESS = inertial(0.0, NO_ROTATION, np.zeros((3, 3)))
+"""Of a link that only marks a place."""
+
+
 def geometry(shape: Shape) -> str:
-    """A geometry element; capsules are PyBullet's own and no standard URDF."""
+    """A geometry element.
+
+    Capsules are PyBullet's own and no standard URDF. What URDF has no word for is a mesh: the unit mesh of its
+    kind, scaled, or for an arc a mesh of its own.
+    """
+    if shape.kind in ("ellipsoid", "pillow", "arc"):
+        scale = (1.0, 1.0, 1.0) if shape.kind == "arc" else shape.size
+        path = f"{MESH_URL}/{mesh_name(shape)}"
+        return f'<geometry><mesh filename="{path}" scale="{triple(scale)}"/></geometry>'
     if shape.kind == "box":
         inner = f'<box size="{triple(shape.size)}"/>'
     elif shape.kind == "sphere":
@@ -50,6 +63,14 @@ def geometry(shape: Shape) -> str:
     else:
         inner = f'<{shape.kind} radius="{number(shape.size[0])}" length="{number(shape.size[1])}"/>'
     return f"<geometry>{inner}</geometry>"
+
+
+def mesh_name(shape: Shape) -> str:
+    """File of the mesh that a shape refers to."""
+    if shape.kind != "arc":
+        return f"unit_{shape.kind}.stl"
+    inner, outer, thickness, degrees = shape.size
+    return f"arc_{inner * 1e4:.0f}_{outer * 1e4:.0f}_{thickness * 1e4:.0f}_{degrees:.0f}.stl"
 
 
 def collision(shape: Shape) -> list[str]:

@@ -109,7 +109,7 @@ class Studio:
         return colors, np.asarray(bodies).reshape(height, width)
 
     def _light_up(self, picture: np.ndarray, bodies: np.ndarray) -> None:
-        """Let lit lamps shine: their pixels take the colour of the light, and some of it spills around them."""
+        """Let lit lamps shine: their pixels take the colour of the light, and some spills around them."""
         light = self._figure.lamp_light
         level = light.max(axis=1)
         if not np.any(level > 0.0):

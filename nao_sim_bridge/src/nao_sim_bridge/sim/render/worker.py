@@ -1,8 +1,8 @@
 """The picture process: `python -m nao_sim_bridge.sim.render.worker FD (pictures|window) WORLD VERSION`.
 
-It talks over the inherited pipe FD in tuples (kind, content). First it sends ("ready", None) or ("error", text).
-Then it answers ("render", (state, camera)) with ("picture", shape) and the raw pixels, or with ("error", text);
-("show", state) has no answer. It ends when the pipe is closed.
+It talks over the inherited pipe FD in tuples (kind, content). First it sends ("ready", None) or
+("error", text). Then it answers ("render", (state, camera)) with ("picture", shape) and the raw pixels, or
+with ("error", text); ("show", state) has no answer. It ends when the pipe is closed.
 """
 
 from __future__ import annotations
