@@ -3,7 +3,7 @@
 .DEFAULT_GOAL := help
 .PHONY: help setup build demo test unit rostest bench lint format clean
 
-# Scenarios for `make rostest`: parts of their paths (TESTS="lights walk"); how many run at once (JOBS=2).
+# Tests for `make unit` and `make rostest`: parts of their names (TESTS="lights walk"). Scenarios at once: JOBS=2.
 TESTS ?=
 JOBS ?= 1
 
@@ -22,8 +22,8 @@ demo: build ## Play the demonstration in the simulator; pictures, sound and a ta
 test: build ## Run all tests; closes with "N passed, N failed" (JOBS=2: two scenarios at once)
 	@scripts/test all --jobs $(JOBS)
 
-unit: setup ## Run the unit tests: no ROS master, and no build unless they use messages
-	@scripts/test unit
+unit: setup ## Run the unit tests: no ROS master, and no build unless they use messages (TESTS="lights walk")
+	@scripts/test unit $(TESTS)
 
 rostest: build ## Run the ROS scenarios (TESTS="lights walk": some of them; JOBS=2: two at once)
 	@scripts/test rostest --jobs $(JOBS) $(TESTS)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """A new module: a class with a function table and an action server. This one speaks to ALSystem.
 
-A goal for it may hold LedFunction(function="setRobotName", str_param="Ada"). A module may define an action and
-a function message of its own; the fields `function`, `time` and `str_param` are all that this one needs, so it
-borrows those of the lights. The memory functions (getData, ...) come with NaoBasic.
+A goal for it may hold LedFunction(function="setRobotName", str_param="Ada"). A module may define an action
+and a function message of its own; the fields `function`, `time` and `str_param` are all that this one needs,
+so it borrows those of the lights. The memory functions (getData, ...) come with NaoBasic.
 """
 
 from __future__ import annotations

@@ -45,6 +45,8 @@ def table(result: object) -> str:
 def main() -> int:
     """Play the goals one after the other; the exit status tells whether all succeeded."""
     rospy.init_node("lights_client", anonymous=True)
+    # Simulated time begins at zero and jumps with the first message of /clock; limits would be over at once.
+    rospy.sleep(0.0)
     client = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
     if not client.wait_for_server(SERVER_LIMIT):
         print("there is no server NaoLights: start one with roslaunch nao_library nao_sim.launch")

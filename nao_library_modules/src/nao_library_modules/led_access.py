@@ -13,6 +13,7 @@ from .memory_functions import MEMORY
 from .robot import CLEAN_UP_LIMIT
 
 LEDS = "ALLeds"
+DECIMALS = 6
 
 
 class LedAccess:
@@ -126,7 +127,8 @@ class LedAccess:
         for device, value in zip(devices, values):
             if not isinstance(value, (int, float)):
                 raise NaoError(f"the robot's memory holds {value!r} as the value of LED {device!r}")
-        return dict(zip(devices, values))
+        # The robot keeps 32-bit numbers: 0.3 comes back as 0.30000001192092896.
+        return {device: round(value, DECIMALS) for device, value in zip(devices, values)}
 
     def restorer(self, lights: Sequence[str]) -> Callable[[], None]:
         """A function that gives lights and groups the values back that they have now."""

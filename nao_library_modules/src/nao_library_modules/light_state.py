@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Tuple
+from collections.abc import Iterable, Sequence
+from typing import Any, Mapping, Tuple
 
 from .light_names import COLOUR_PARTS, LightNames, colour_part
 

@@ -167,7 +167,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
                 if end == "succeeded":
                     end, text = "aborted", f"all functions were done, but the result is incomplete: {error}"
                 else:
-                    log.warning("the result is incomplete: %s", error)
+                    log.debug("the result is incomplete: %s", error)  # the text says what ended the goal
             self._goals.ended(end, text)
             getattr(self.server, f"set_{end}")(result, text)
         finally:

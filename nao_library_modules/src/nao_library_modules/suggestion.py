@@ -5,22 +5,30 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+LIKENESS = 0.6
+"""Names less alike than this (0..1) are no suggestion."""
+
 
 def closest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
     """Known names that look like `name`, the closest first.
 
-    Upper and lower case do not matter: `setcolor` is as close to `setColor` as can be.
+    Of equally close ones those come first that come first in `known`. Upper and lower case do not matter:
+    `setcolor` is as close to `setColor` as can be.
 
     Args:
         name: The name as typed.
         known: Names to choose from.
         count: How many to return at most.
     """
-    by_lower: dict[str, list[str]] = {}
+    matcher = difflib.SequenceMatcher(b=name.lower())
+    scored = []
     for candidate in known:
-        by_lower.setdefault(candidate.lower(), []).append(candidate)
-    matches = difflib.get_close_matches(name.lower(), list(by_lower), n=count, cutoff=0.6)
-    return [candidate for match in matches for candidate in sorted(by_lower[match])][:count]
+        matcher.set_seq1(candidate.lower())
+        # The quick one is an upper bound and spares most of the work.
+        if matcher.quick_ratio() >= LIKENESS and matcher.ratio() >= LIKENESS:
+            scored.append((matcher.ratio(), candidate))
+    scored.sort(key=lambda pair: -pair[0])
+    return [candidate for _, candidate in scored[:count]]
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

@@ -145,6 +145,7 @@ class Supervisor:
             began = time.monotonic()
             end = self._run_once(stopping)
             if stopping.is_set():
+                log.info("%s %s", self._name, end)
                 self._note(State.STOPPED, None, last_end=end)
                 return
             if time.monotonic() - began >= self._timing.settled:
@@ -181,7 +182,6 @@ class Supervisor:
             end = f"was ended by {signal.Signals(-code).name}"
         else:
             end = f"ended by itself with exit status {code}"
-        log.info("%s %s", self._name, end)
         return end
 
     def _note(self, state: State, pid: int | None, last_end: str | None = None) -> None:

@@ -41,7 +41,7 @@ class Timing:
         longest_delay: Longest pause between two attempts.
     """
 
-    heartbeat_period: float = 0.4
+    heartbeat_period: float = 0.3
     heartbeat_limit: float = 1.3
     connect_limit: float = 5.0
     first_delay: float = 0.2

@@ -8,6 +8,10 @@ from typing import Callable
 
 import rospy
 from geometry_msgs.msg import Point, Quaternion, Twist, Vector3
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import Empty, EmptyResponse
+
 from nao_library_msgs.srv import (
     AdvanceTime,
     AdvanceTimeResponse,
@@ -20,10 +24,6 @@ from nao_library_msgs.srv import (
     TakePicture,
     TakePictureResponse,
 )
-from nav_msgs.msg import Odometry
-from rosgraph_msgs.msg import Clock
-from std_srvs.srv import Empty, EmptyResponse
-
 from nao_sim_bridge.record_dir import inside
 from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.snapshot import Snapshot

@@ -119,7 +119,7 @@ class SimulatorServer:
 
     def press(self, sensors: Sequence[str]) -> None:
         """Simulated fingers on these touch sensors and on no others."""
-        self.runner.call(lambda: self.simulation.robot.touch.press(sensors))
+        self.runner.call(lambda: self.simulation.robot.press(sensors))
 
     def picture(self, view: str, width: int, height: int) -> bytes:
         """A PNG picture of the robot; see `Pictures.png`."""

@@ -109,9 +109,7 @@ class FakeLeds:
 
     @staticmethod
     def _rgb(side, n):
-        return [
-            f"Face/Led/{part}/{side}/{45 * (n - 1)}Deg/Actuator/Value" for part in ("Red", "Green", "Blue")
-        ]
+        return [f"Face/Led/{part}/{side}/{45 * (n - 1)}Deg/Actuator/Value" for part in ("Red", "Green", "Blue")]
 
     def devices(self, name):
         if name in self.groups:

@@ -76,9 +76,7 @@ def test_the_new_module_checks_before_it_acts(system):
 
 def test_the_new_function_blinks_and_leaves_the_lights_as_they_were(blinking, robot, edge):
     before = dict(robot.leds.values)
-    server = blinking.server.play(
-        NaoLedGoal([LedFunction(function="blink", lights=["BrainLeds"], times=[0.01, 0.02])])
-    )
+    server = blinking.server.play(NaoLedGoal([LedFunction(function="blink", lights=["BrainLeds"], times=[0.01, 0.02])]))
     assert server.end == "succeeded"
     assert server.result.memList == ["2"]
     assert edge.clock.waits == [0.01, 0.01, 0.02, 0.02]
@@ -102,10 +100,7 @@ def test_the_new_function_is_preempted_between_flashes(blinking, robot, edge):
 
 def test_the_new_function_is_checked(blinking):
     server = blinking.server.play(NaoLedGoal([LedFunction(function="blink", lights=["BrainLeds"])]))
-    assert (
-        server.text
-        == "function 1 (blink): field times: [] is not allowed: lengths of the flashes in s, above 0"
-    )
+    assert server.text == "function 1 (blink): field times: [] is not allowed: lengths of the flashes in s, above 0"
 
 
 def test_the_client_shows_lights_and_intensities_and_its_goals_are_played(lights, capsys):

@@ -70,8 +70,7 @@ def test_an_unknown_function_names_its_place_the_closest_names_and_all():
     with pytest.raises(FunctionFailed) as caught:
         chain.read([Message(), Message(function="setColour")])
     assert str(caught.value) == (
-        "function 2 (setColour): unknown function 'setColour': did you mean 'setColor'?;"
-        " known are move, on, setColor"
+        "function 2 (setColour): unknown function 'setColour': did you mean 'setColor'?; known are move, on, setColor"
     )
     assert isinstance(caught.value.cause, UnknownFunction)
     assert caught.value.cause.known == ["move", "on", "setColor"]

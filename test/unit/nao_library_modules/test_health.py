@@ -11,9 +11,7 @@ from nao_library_modules.supervisor import State, Status
 
 
 def connection(**facts):
-    return SimpleNamespace(
-        **{"state": "connected", "latency": 0.002, "generation": 1, "last_error": None, **facts}
-    )
+    return SimpleNamespace(**{"state": "connected", "latency": 0.002, "generation": 1, "last_error": None, **facts})
 
 
 @pytest.mark.parametrize(

@@ -29,9 +29,7 @@ def test_every_argument_has_a_default_and_says_what_it_is(launch):
 
 
 def test_names_are_relative_so_that_a_namespace_holds_them(launch):
-    names = [
-        element.get("name", "") for element in launch.iter() if element.tag in ("node", "param", "remap")
-    ]
+    names = [element.get("name", "") for element in launch.iter() if element.tag in ("node", "param", "remap")]
     names += [element.get(end, "") for element in launch.iter("remap") for end in ("from", "to")]
     assert {name for name in names if name.startswith("/")} <= GLOBAL_NAMES
     assert all(not element.get("ns", "").startswith("/") for element in launch.iter())

@@ -44,9 +44,7 @@ def test_one_colour_for_all_or_one_each():
 
 
 def test_a_wrong_number_of_colour_values_says_how_many_are_allowed():
-    with pytest.raises(
-        BadGoal, match=r"4 values for the colours of 2 lights: allowed are 3 \(for all\) or 6"
-    ):
+    with pytest.raises(BadGoal, match=r"4 values for the colours of 2 lights: allowed are 3 \(for all\) or 6"):
         light_goals.colours(TWO, [0, 1, 0, 1], "")
 
 
@@ -73,9 +71,7 @@ def test_wrong_colour_steps(i_values, str_param, text):
         light_goals.colour_steps([0.5, 1.0], i_values, str_param)
 
 
-@pytest.mark.parametrize(
-    "times", [[], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [-1.0], [float("nan")], [float("inf")]]
-)
+@pytest.mark.parametrize("times", [[], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [-1.0], [float("nan")], [float("inf")]])
 def test_times_rise_from_above_zero(times):
     with pytest.raises(BadGoal, match="field times"):
         light_goals.require_times(times)

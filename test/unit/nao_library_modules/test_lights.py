@@ -49,9 +49,7 @@ def test_one_light_to_half_intensity(lights, robot):
 
 def test_both_eyes_green_and_back_after_the_wait(lights, robot, edge):
     eyes = ["LeftFaceLeds", "RightFaceLeds"]
-    green = LedFunction(
-        function="setColor", lights=eyes, i_values=[0, 1, 0], time=Duration.from_sec(0.05), revert=True
-    )
+    green = LedFunction(function="setColor", lights=eyes, i_values=[0, 1, 0], time=Duration.from_sec(0.05), revert=True)
     seen = []
     wait = edge.clock.wait
 
@@ -95,9 +93,7 @@ def test_on_off_and_reset(lights, robot, function, value):
 
 
 def test_fades_of_several_lights_run_together(lights, robot):
-    thread = in_background(
-        lights, robot, f("fade", lights=["Brain0", "Brain1"], i_values=[0.5, 1.0], duration=2.0)
-    )
+    thread = in_background(lights, robot, f("fade", lights=["Brain0", "Brain1"], i_values=[0.5, 1.0], duration=2.0))
     while len(robot.leds.pending) < 2 and thread.is_alive():
         thread.join(0.001)
     assert calls(robot, "fade") == [("fade", "Brain0", 0.5, 2.0), ("fade", "Brain1", 1.0, 2.0)]
@@ -187,9 +183,7 @@ def test_a_failing_call_reverts_what_was_done_before_it(lights, robot):
 
 
 def test_each_function_reverts_before_the_next_one_begins(lights, robot):
-    server = play(
-        lights, f("on", lights=["Brain0"], revert=True), f("getIntensity", lights=["Brain0"]), f("ping")
-    )
+    server = play(lights, f("on", lights=["Brain0"], revert=True), f("getIntensity", lights=["Brain0"]), f("ping"))
     assert server.result.results[1].values == [str(BEFORE)]
 
 
@@ -201,6 +195,13 @@ def test_intensities_are_read_for_lights_and_groups_in_one_call(lights, robot):
     assert (server.result.lights, server.result.intensities) == (["Brain0", "Brain1"], [0.5, 1.0])
     assert server.result.memList == [], "the result has fields for it"
     assert [call[0] for call in robot.proxy("ALMemory").calls] == ["getListData"] * 2
+
+
+def test_intensities_come_back_as_they_were_given_although_the_robot_keeps_32_bits(lights, robot):
+    robot.leds.values["Head/Led/Front/0/Actuator/Value"] = 0.30000001192092896
+    server = play(lights, f("getIntensity", lights=["Brain0"]))
+    assert server.result.results[0].values == ["0.3"]
+    assert server.result.intensities == [0.3]
 
 
 def test_colours_are_read_for_lights_and_groups(lights, robot):
@@ -220,9 +221,7 @@ def test_a_group_made_in_a_chain_is_used_later_in_the_same_chain(lights, robot):
         f("listGroup", str_param="Mine"),
     )
     assert server.end == "succeeded"
-    assert calls(robot, "createGroup") == [
-        ("createGroup", "Mine", ["LeftFaceLed1", "LeftFaceLed2", "Brain0"])
-    ]
+    assert calls(robot, "createGroup") == [("createGroup", "Mine", ["LeftFaceLed1", "LeftFaceLed2", "Brain0"])]
     assert server.result.memList == ["LeftFaceLed1", "LeftFaceLed2", "Brain0"]
     assert play(lights, f("on", lights=["Mine"])).end == "succeeded", "and in a later one"
 

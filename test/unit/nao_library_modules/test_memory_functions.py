@@ -55,9 +55,7 @@ def test_a_list_of_keys_gives_one_string_a_key(lights):
 
 
 def test_values_are_written_with_their_types(lights, robot):
-    assert (
-        play(lights, ("insertData", "Level=0.75"), ("raiseEvent", 'Said={"word": "yes"}')).end == "succeeded"
-    )
+    assert play(lights, ("insertData", "Level=0.75"), ("raiseEvent", 'Said={"word": "yes"}')).end == "succeeded"
     assert robot.memory.data["Level"] == 0.75
     assert robot.memory.data["Said"] == {"word": "yes"}
 

@@ -258,9 +258,7 @@ def test_waiting_is_interrupted_outside_of_goals_too(module):
 
 def test_autostart_needs_a_launch_file(robot, edge):
     with pytest.raises(BadLaunchPath):
-        NaoBasic(
-            "10.0.0.7", 9559, autostart=True, launchpath=("nao_library", "no.launch"), robot=robot, edge=edge
-        )
+        NaoBasic("10.0.0.7", 9559, autostart=True, launchpath=("nao_library", "no.launch"), robot=robot, edge=edge)
 
 
 def test_reports_are_there_for_the_diagnostics(module, edge):
@@ -268,3 +266,37 @@ def test_reports_are_there_for_the_diagnostics(module, edge):
     reports = {name: report() for name, report in edge.reports.items()}
     assert reports["Module robot"].message == "connected"
     assert reports["Module goals"].values["aborted"] == "1"
+
+
+class FakeSupervisor:
+    def __init__(self, *arguments):
+        self.arguments = arguments
+        self.done = []
+
+    def start(self):
+        self.done.append("start")
+
+    def stop(self):
+        self.done.append("stop")
+
+
+def test_autostart_starts_the_launch_file_for_the_robot_and_the_end_of_the_node_stops_it(robot, edge, monkeypatch):
+    monkeypatch.setattr("nao_library_modules.nao_basic.launch_supervisor", FakeSupervisor)
+    path = ("nao_library", "nao.launch")
+    module = NaoBasic("10.0.0.7", 9560, autostart=True, launchpath=path, robot=robot, edge=edge)
+    supervisor = module._launch
+    assert supervisor.arguments == (path, "10.0.0.7", 9560, "/robot1/")
+    assert supervisor.done == ["start"]
+    for action in edge.shutdown_actions:
+        action()
+    assert supervisor.done == ["start", "stop"]
+
+
+def test_without_autostart_the_launch_file_is_left_alone_until_asked_for(robot, edge, monkeypatch):
+    monkeypatch.setattr("nao_library_modules.nao_basic.launch_supervisor", FakeSupervisor)
+    module = NaoBasic("10.0.0.7", 9559, launchpath=("nao_library", "nao.launch"), robot=robot, edge=edge)
+    module.stop_launch()
+    assert module._launch is None
+    module.start_launch()
+    module.stop_launch()
+    assert module._launch.done == ["start", "stop"]

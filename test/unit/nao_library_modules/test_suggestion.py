@@ -21,6 +21,10 @@ def test_names_that_look_like_nothing_get_no_suggestion():
     assert did_you_mean("zzz", KNOWN) == ""
 
 
+def test_equally_close_names_keep_their_order():
+    assert closest("Led", ["Leds", "Led2", "Led1", "Other"]) == ["Leds", "Led2", "Led1"]
+
+
 def test_no_more_names_than_asked_for():
     assert len(closest("getColor", KNOWN, count=1)) == 1
 

@@ -116,11 +116,7 @@ def test_a_program_that_cannot_be_started_is_reported(caplog):
 
 
 def test_a_program_that_ignores_polite_signals_is_killed(supervise, pipe, caplog):
-    deaf = (
-        SAY
-        + "import signal; [signal.signal(s, signal.SIG_IGN) for s in (2, 15)]; say(os.getpid()); "
-        + FOREVER
-    )
+    deaf = SAY + "import signal; [signal.signal(s, signal.SIG_IGN) for s in (2, 15)]; say(os.getpid()); " + FOREVER
     supervisor = supervise(deaf, pipe.path, timing=Timing(interrupt=0.05, terminate=0.05, kill=LIMIT))
     pid = int(pipe.line())
     supervisor.stop()

@@ -25,6 +25,8 @@ class Memory:
 
     def subscribeToEvent(self, *arguments):
         event, module, method = arguments[0], arguments[1], arguments[-1]
+        if not event:
+            raise ValueError("an event needs a name")
         self._subscribers[event, module] = (method, arguments[2] if len(arguments) == 4 else "")
 
     def unsubscribeToEvent(self, event, module):

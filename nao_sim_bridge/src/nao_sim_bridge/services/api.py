@@ -1,4 +1,4 @@
-"""NAOqi's methods as the robot publishes them: overloads, parameter names and summaries, from `config/naoqi_api.json`."""
+"""NAOqi's methods as the robot publishes them: overloads, names and summaries, from `config/naoqi_api.json`."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Method:
 
 
 def qi_type(name: str) -> str:
-    """libqi's letter code of a type as NAOqi writes it.
+    """Libqi's letter code of a type as NAOqi writes it.
 
     Raises:
         ConfigError: The type is unknown.

@@ -77,9 +77,7 @@ class ALLeds:
         duration = number(duration, "duration", 0.0)
         return self._animate(
             "randomEyes",
-            lambda: led_animations.random_eyes(
-                self._simulation.led_layout, duration, self._simulation.robot.random
-            ),
+            lambda: led_animations.random_eyes(self._simulation.led_layout, duration, self._simulation.robot.random),
             step=True,
         )
 

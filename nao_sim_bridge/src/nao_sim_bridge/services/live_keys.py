@@ -11,10 +11,11 @@ from typing import Any, Callable, Mapping
 from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim.config import read_json
 from nao_sim_bridge.sim.errors import ConfigError
-from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.leds_layout import LedLayout
+from nao_sim_bridge.sim.model import RobotModel
+from nao_sim_bridge.sim.readings import FootForces
 from nao_sim_bridge.sim.runner import SimulationRunner
-from nao_sim_bridge.sim.snapshot import FootForces, Snapshot
+from nao_sim_bridge.sim.snapshot import Snapshot
 
 FILE = "naoqi_memory_keys.json"
 GRAVITY = 9.81

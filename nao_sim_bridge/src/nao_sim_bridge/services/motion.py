@@ -173,9 +173,7 @@ class ALMotion:
         if chain != "Body":
             indices = joint_indices(chain, self._model)
             return self._runner.execute(
-                lambda: sequences.stiffness_task(
-                    self._simulation.robot, "rest", indices, 0.0, sequences.STIFFEN_TIME
-                ),
+                lambda: sequences.stiffness_task(self._simulation.robot, "rest", indices, 0.0, sequences.STIFFEN_TIME),
                 "rest",
             )
         return self._change_state("rest", sequences.rest, awake=False)

@@ -58,9 +58,7 @@ def key_frames(count: int, values: Any, times: Any, field: str) -> list[tuple[li
     time_lists = _time_lists(times, count, [len(v) for v in value_lists])
     for joint_values, joint_times in zip(value_lists, time_lists):
         if len(joint_values) != len(joint_times):
-            raise BadValue(
-                "timeLists", times, f"as many times as values for each joint: {len(joint_values)} here"
-            )
+            raise BadValue("timeLists", times, f"as many times as values for each joint: {len(joint_values)} here")
         if joint_times[0] <= 0.0 or any(b <= a for a, b in zip(joint_times, joint_times[1:])):
             raise BadValue("timeLists", joint_times, "times that rise, the first above 0 s")
     return list(zip(time_lists, value_lists))

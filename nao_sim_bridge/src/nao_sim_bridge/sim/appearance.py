@@ -69,15 +69,12 @@ def load_appearance(version: str = "V6") -> Appearance:
     """
     tables = check_keys(read_json(config_file(FILE)), FILE, ("_meta", "materials", "links", "lamps"))
     materials = {
-        name: tuple(vector(color, f"{FILE}: materials.{name}").tolist())
-        for name, color in tables["materials"].items()
+        name: tuple(vector(color, f"{FILE}: materials.{name}").tolist()) for name, color in tables["materials"].items()
     }
     if OFF not in materials:
         raise ConfigError(f"{FILE}: materials", f"missing {OFF!r}")
     authored = {
-        name: tuple(
-            _seen_shape(entry, f"{FILE}: links.{name}[{i}]", materials) for i, entry in enumerate(entries)
-        )
+        name: tuple(_seen_shape(entry, f"{FILE}: links.{name}[{i}]", materials) for i, entry in enumerate(entries))
         for name, entries in tables["links"].items()
     }
     phalanx = authored.pop(PHALANX, ())

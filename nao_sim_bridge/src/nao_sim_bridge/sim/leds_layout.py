@@ -126,9 +126,7 @@ def load_leds(version: str = "V6") -> LedLayout:
     index = {name: number for number, name in enumerate(devices)}
     if version == "V5":
         names_of_short.update(_left_eye_of_v5(tables["eye_positions"]["left_device_angle_deg_by_index_2_5"]))
-    short_names = {
-        name: tuple(index[device] for device in members) for name, members in names_of_short.items()
-    }
+    short_names = {name: tuple(index[device] for device in members) for name, members in names_of_short.items()}
     groups, guessed = _groups(tables)
     layout = LedLayout(
         version=version,

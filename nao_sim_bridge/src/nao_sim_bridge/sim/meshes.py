@@ -171,8 +171,6 @@ def stl_bytes(mesh: Mesh) -> bytes:
     area = np.linalg.norm(normals, axis=1)
     solid = area > 1e-15
     normals[solid] /= area[solid, None]
-    records = np.zeros(
-        int(solid.sum()), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("pad", "<u2")]
-    )
+    records = np.zeros(int(solid.sum()), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("pad", "<u2")])
     records["normal"], records["corners"] = normals[solid], corners[solid]
     return b"\0" * 80 + struct.pack("<I", len(records)) + records.tobytes()

@@ -99,9 +99,7 @@ class ModelReader:
             fsr=self.fsr(),
             imu=frozen_mapping(
                 {
-                    name: read_place(
-                        {"name": name, **imu[name.lower()]}, at("imu", name.lower()), sensor_extra
-                    )
+                    name: read_place({"name": name, **imu[name.lower()]}, at("imu", name.lower()), sensor_extra)
                     for name in ("Accelerometer", "Gyrometer")
                 }
             ),
@@ -122,9 +120,7 @@ class ModelReader:
 
     def links(self) -> tuple[Link, ...]:
         """The links, with the head of the version asked for."""
-        differences = check_keys(
-            self.tables["V5_link_differences"], at("V5_link_differences"), ("note", "links")
-        )
+        differences = check_keys(self.tables["V5_link_differences"], at("V5_link_differences"), ("note", "links"))
         changed = {entry["name"]: entry for entry in differences["links"]} if self.version == "V5" else {}
         links = []
         for index, entry in enumerate(self.tables["links"]):
@@ -133,10 +129,7 @@ class ModelReader:
             entry = {**entry, **changed.get(entry["name"], {})}
             check_keys(entry, at("V5_link_differences", entry["name"]), LINK_KEYS)
             inertia = array(entry["inertia_kg_m2"], f"{where}.inertia_kg_m2", (3, 3))
-            if (
-                not np.allclose(inertia, inertia.T, rtol=0.0, atol=1e-12)
-                or np.linalg.eigvalsh(inertia)[0] <= 0.0
-            ):
+            if not np.allclose(inertia, inertia.T, rtol=0.0, atol=1e-12) or np.linalg.eigvalsh(inertia)[0] <= 0.0:
                 raise ConfigError(f"{where}.inertia_kg_m2", "is not symmetric and positive definite")
             links.append(
                 Link(
@@ -158,9 +151,7 @@ class ModelReader:
             joints[joint.name] = joint
         order = self.tables["almotion_body_order"]
         if sorted(order) != sorted(joints):
-            raise ConfigError(
-                at("almotion_body_order"), "does not name the same joints as the table of joints"
-            )
+            raise ConfigError(at("almotion_body_order"), "does not name the same joints as the table of joints")
         return tuple(joints[name] for name in order)
 
     def joint(self, entry: Any, where: str) -> Joint:
@@ -168,9 +159,7 @@ class ModelReader:
         is_hand = "lower" in entry
         check_keys(entry, where, HAND_KEYS if is_hand else REVOLUTE_KEYS, () if is_hand else ("mimic",))
         if np.any(vector(entry["origin_rpy_rad"], f"{where}.origin_rpy_rad")):
-            raise ConfigError(
-                f"{where}.origin_rpy_rad", "is not zero; link frames must be parallel at zero posture"
-            )
+            raise ConfigError(f"{where}.origin_rpy_rad", "is not zero; link frames must be parallel at zero posture")
         axis = vector(self.tables["simulated_hand"]["axis"] if is_hand else entry["axis"], f"{where}.axis")
         lower = float(entry["lower" if is_hand else "lower_rad"])
         upper = float(entry["upper" if is_hand else "upper_rad"])
@@ -219,9 +208,7 @@ class ModelReader:
 
     def fsr(self) -> tuple[Place, ...]:
         """Foot pressure sensors."""
-        section = check_keys(
-            self.tables["fsr"], at("fsr"), ("frames",), ("range_N", "unit_in_ALMemory", "note")
-        )
+        section = check_keys(self.tables["fsr"], at("fsr"), ("frames",), ("range_N", "unit_in_ALMemory", "note"))
         return read_places(section["frames"], at("fsr.frames"))
 
     def sonars(self) -> tuple[Place, ...]:
@@ -307,9 +294,7 @@ class ModelReader:
             place = read_place(entry, where, ("shape", "radius_m", "length_m"))
             if entry["shape"] not in ("sphere", "cylinder"):
                 raise ConfigError(f"{where}.shape", f"is {entry['shape']!r} (allowed: sphere, cylinder)")
-            shapes.append(
-                CollisionShape(place, entry["shape"], float(entry["radius_m"]), entry.get("length_m"))
-            )
+            shapes.append(CollisionShape(place, entry["shape"], float(entry["radius_m"]), entry.get("length_m")))
         return tuple(shapes)
 
     def motors(self) -> tuple[Motor, ...]:
@@ -317,9 +302,7 @@ class ModelReader:
         section = check_keys(self.tables["motors"], at("motors"), ("types",), ("source", "position_sensor"))
         motors = []
         for index, entry in enumerate(section["types"]):
-            required = (
-                "type model no_load_rpm stall_torque_mNm nominal_torque_mNm_max gear_ratio_A joints_A".split()
-            )
+            required = "type model no_load_rpm stall_torque_mNm nominal_torque_mNm_max gear_ratio_A joints_A".split()
             check_keys(entry, at(f"motors.types[{index}]"), required, ("gear_ratio_B", "joints_B"))
             ratios = {}
             for group in "AB":

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 import tempfile
-from dataclasses import dataclass
 from typing import Mapping, Sequence
 
 import numpy as np
@@ -15,50 +14,16 @@ import pybullet
 
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.motion.joints import JointCommands
+from nao_sim_bridge.sim.readings import BodyReadings, Contact, JointReadings, Pose
+from nao_sim_bridge.sim.rotations import Vector3
 from nao_sim_bridge.sim.settings import Settings
-from nao_sim_bridge.sim.snapshot import Pose, Vector3
 from nao_sim_bridge.sim.urdf import physics_urdf
 from nao_sim_bridge.sim.world import World, build_world
 
 # Columns of PyBullet's joint info and contact point tuples.
 JOINT_NAME, LINK_NAME, PARENT_FRAME_POSITION = 1, 12, 14
-LINK_A, POSITION_ON_A, NORMAL_ON_B, NORMAL_FORCE = 3, 5, 7, 9
+BODY_B, LINK_A, POSITION_ON_A, NORMAL_ON_B, NORMAL_FORCE = 2, 3, 5, 7, 9
 NO_PUSHES: Mapping[str, Vector3] = {}
-
-
-@dataclass(frozen=True)
-class JointReadings:
-    """What the joints measure: (26,) angles in rad (hands 0..1), speeds in rad/s, motor torques in N m."""
-
-    positions: tuple[float, ...]
-    velocities: tuple[float, ...]
-    torques: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class BodyReadings:
-    """True motion of the torso frame in world: pose, velocity in m/s, angular velocity in rad/s."""
-
-    pose: Pose
-    linear_velocity: Vector3
-    angular_velocity: Vector3
-
-
-@dataclass(frozen=True)
-class Contact:
-    """One point where something presses on the robot.
-
-    Attributes:
-        link: Link index of PyBullet (-1 is the torso).
-        position: In world, m.
-        normal: Unit vector in world, towards the robot.
-        force: N, along the normal.
-    """
-
-    link: int
-    position: Vector3
-    normal: Vector3
-    force: float
 
 
 class Physics:
@@ -83,6 +48,7 @@ class Physics:
             physicsClientId=self.client,
         )
         self.objects = build_world(world, self.client, visual=False)
+        self._movable = {name: body for name, body in self.objects.items() if self._mass(body) > 0.0}
         self.robot = self._load_robot()
         self.links = self._index(LINK_NAME)
         joints = self._index(JOINT_NAME)
@@ -179,22 +145,21 @@ class Physics:
         )
         return BodyReadings(Pose(position, orientation), linear, angular)
 
-    def read_contacts(self) -> list[Contact]:
+    def read_contacts(self) -> tuple[Contact, ...]:
         """Every point where another body presses on the robot."""
         points = pybullet.getContactPoints(self.robot, physicsClientId=self.client)
-        return [
+        return tuple(
             Contact(c[LINK_A], c[POSITION_ON_A], c[NORMAL_ON_B], c[NORMAL_FORCE])
             for c in points
-            if c[2] != self.robot and c[NORMAL_FORCE] > 0.0
-        ]
+            if c[BODY_B] != self.robot and c[NORMAL_FORCE] > 0.0
+        )
 
     def read_objects(self) -> Mapping[str, Pose]:
         """Poses of the movable objects of the world."""
-        poses = {}
-        for name, body in self.objects.items():
-            if pybullet.getDynamicsInfo(body, -1, physicsClientId=self.client)[0] > 0.0:
-                poses[name] = Pose(*pybullet.getBasePositionAndOrientation(body, physicsClientId=self.client))
-        return poses
+        return {
+            name: Pose(*pybullet.getBasePositionAndOrientation(body, physicsClientId=self.client))
+            for name, body in self._movable.items()
+        }
 
     def link_pose(self, name: str) -> Pose:
         """Pose of a link frame (not of its centre of mass) in world."""
@@ -209,6 +174,9 @@ class Physics:
         return [1.0 if hit[0] == self.robot else hit[2] for hit in hits]
 
     # --- building -------------------------------------------------------------------------------------------------
+
+    def _mass(self, body: int) -> float:
+        return pybullet.getDynamicsInfo(body, -1, physicsClientId=self.client)[0]
 
     def _load_robot(self) -> int:
         descriptor, path = tempfile.mkstemp(suffix=".urdf")

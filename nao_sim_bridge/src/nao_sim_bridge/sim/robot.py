@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import Sequence
+from typing import Iterable, Sequence
 
 from nao_sim_bridge.sim.errors import UnknownName
 from nao_sim_bridge.sim.led_animations import power_on
@@ -13,14 +13,15 @@ from nao_sim_bridge.sim.leds_layout import LedLayout
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.motion.engine import MotionEngine
 from nao_sim_bridge.sim.motion.joints import JointCommands
-from nao_sim_bridge.sim.physics import Contact, Physics
-from nao_sim_bridge.sim.sensors.feet import FootSensors
+from nao_sim_bridge.sim.physics import Physics
+from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.rotations import Vector3
+from nao_sim_bridge.sim.sensors.body import BodySensors
 from nao_sim_bridge.sim.sensors.inertial import InertialUnit
 from nao_sim_bridge.sim.sensors.power import PowerSystem
 from nao_sim_bridge.sim.sensors.sonar import Sonars
-from nao_sim_bridge.sim.sensors.touch import TouchSensors
 from nao_sim_bridge.sim.settings import Settings
-from nao_sim_bridge.sim.snapshot import Pose, Snapshot, Vector3
+from nao_sim_bridge.sim.snapshot import Snapshot
 from nao_sim_bridge.sim.tasks import TaskIds
 
 
@@ -39,7 +40,6 @@ class SimulatedRobot:
         joints: Command angles and stiffnesses.
         motion: Tasks and targets of the joints.
         leds: The LEDs.
-        touch: Touch sensors.
         random: The only source of chance, so that a seed decides everything.
 
     Args:
@@ -70,14 +70,13 @@ class SimulatedRobot:
         self.leds = LedBank(len(leds.devices), task_ids)
         self.task_ids = task_ids
         self.leds.set(power_on(leds))
-        self.touch = TouchSensors(model, lambda name: _link_index(physics, model, name))
+        self._sensors = BodySensors(model, settings, physics.links)
         self._physics = physics
         self._imu = InertialUnit(model.imu["Accelerometer"].position, settings.gravity_m_s2)
-        self._feet = {side: FootSensors(model, side) for side in "LR"}
-        self._ankles = {side: physics.links[f"{side.lower()}_ankle"] for side in "LR"}
         self._sonars = Sonars(model)
-        self._power = PowerSystem(model, settings)
+        self._power = PowerSystem(len(model.joints), settings)
         self._pushes: list[_Push] = []
+        self._fingers: frozenset[str] = frozenset()
         self._link_names = {index: name for name, index in physics.links.items()}
         self._measured = tuple(angles)
         self._dt = settings.tick_s
@@ -87,6 +86,18 @@ class SimulatedRobot:
         if link != "torso" and link not in self._physics.links:
             raise UnknownName("link", link, ["torso", *self._physics.links])
         self._pushes.append(_Push(link, force, until))
+
+    def press(self, sensors: Iterable[str]) -> None:
+        """Simulated fingers on these touch sensors, and on no others, from now on.
+
+        Raises:
+            UnknownName: There is no such sensor.
+        """
+        wanted = frozenset(sensors)
+        for name in wanted:
+            if name not in self._sensors.touch_names:
+                raise UnknownName("touch sensor", name, self._sensors.touch_names)
+        self._fingers = wanted
 
     def act(self, now: float) -> None:
         """First half of a tick: LEDs, motion and motors up to time `now` (s), then physics."""
@@ -107,22 +118,14 @@ class SimulatedRobot:
         joints = self._physics.read_joints()
         self._measured = joints.positions
         body = self._physics.read_body()
-        contacts: dict[int, list[Contact]] = {}
-        for contact in self._physics.read_contacts():
-            contacts.setdefault(contact.link, []).append(contact)
-        poses = {link: self._pose_of(link) for link in contacts if link >= 0}
-        poses[-1] = body.pose
-        feet = {
-            side: self._feet[side].read(contacts.get(link, ()), poses[link] if link in contacts else body.pose)
-            for side, link in self._ankles.items()
-        }
+        contacts = self._physics.read_contacts()
+        self._power.advance(lambda: self._sensors.currents(joints.torques), self._dt)
         return Snapshot(
             tick=tick,
             time=now,
             positions=joints.positions,
             velocities=joints.velocities,
             torques=joints.torques,
-            currents=self._power.advance(joints.torques, self._dt),
             temperatures=self._power.temperatures,
             commands=self.joints.commands,
             stiffnesses=self.joints.stiffnesses,
@@ -130,19 +133,15 @@ class SimulatedRobot:
             linear_velocity=body.linear_velocity,
             angular_velocity=body.angular_velocity,
             imu=self._imu.read(body, self._dt),
-            left_foot=feet["L"],
-            right_foot=feet["R"],
-            touched=self.touch.read(contacts, poses.__getitem__),
             sonars=self._sonars.read(now, body.pose, self._physics.nearest_hits),
             battery_charge=self._power.charge,
             battery_current=self._power.current,
-            objects=self._physics.read_objects() if self._physics.objects else {},
+            objects=self._physics.read_objects(),
+            contacts=contacts,
+            link_poses={link: self._pose_of(link, body.pose) for link in {contact.link for contact in contacts}},
+            fingers=self._fingers,
+            sensors=self._sensors,
         )
 
-    def _pose_of(self, link: int) -> Pose:
-        return self._physics.link_pose(self._link_names[link])
-
-
-def _link_index(physics: Physics, model: RobotModel, name: str) -> int:
-    alt_name = model.link(name).alt_name
-    return physics.links.get(alt_name, -1)
+    def _pose_of(self, link: int, torso: Pose) -> Pose:
+        return torso if link < 0 else self._physics.link_pose(self._link_names[link])

@@ -214,8 +214,8 @@ class SimulationRunner:
             return math.inf
         if self._speed == FASTEST:
             return 0.0
-        due = self._pace_wall + (self._simulation.time + self._simulation.settings.tick_s - self._pace_time) / self._speed
-        delay = due - time.monotonic()
+        ahead = self._simulation.time + self._simulation.settings.tick_s - self._pace_time
+        delay = self._pace_wall + ahead / self._speed - time.monotonic()
         if delay < -MAX_LAG:
             self._restart_pace()
         return delay

@@ -46,9 +46,7 @@ class Shape:
         return replace(self, xyz=(x, -y, z), rpy=(-roll, pitch, -yaw))
 
 
-def read_shape(
-    entry: Any, where: str, extra: Iterable[str] = (), kinds_known: Sequence[str] = KINDS
-) -> Shape:
+def read_shape(entry: Any, where: str, extra: Iterable[str] = (), kinds_known: Sequence[str] = KINDS) -> Shape:
     """A shape from one entry of a data file.
 
     Args:
@@ -68,11 +66,7 @@ def read_shape(
         raise ConfigError(where, f"needs exactly one of {known}, has {', '.join(kinds) or 'none'}")
     kind, material = kinds[0], str(entry.get("material", ""))
     if "from" in entry or "to" in entry:
-        if (
-            kind not in ("cylinder", "capsule")
-            or not {"from", "to"} <= set(entry)
-            or {"xyz", "rpy"} & set(entry)
-        ):
+        if kind not in ("cylinder", "capsule") or not {"from", "to"} <= set(entry) or {"xyz", "rpy"} & set(entry):
             raise ConfigError(where, "from and to go together, with cylinder or capsule, without xyz and rpy")
         start, end = vector(entry["from"], f"{where}.from"), vector(entry["to"], f"{where}.to")
         radius = vector([entry[kind]], f"{where}.{kind}", 1)[0]

@@ -1,4 +1,4 @@
-"""A world with one NAO, advanced tick by tick. No thread and no wall clock: whoever calls `tick` is in charge of both."""
+"""A world with one NAO, advanced tick by tick. No thread and no wall clock: whoever calls `tick` minds both."""
 
 from __future__ import annotations
 

@@ -1,19 +1,19 @@
-"""What the simulated robot senses at one tick, immutable: services and nodes read it from any thread."""
+"""What the simulated robot senses at one tick, immutable: services and nodes read it from any thread.
+
+What costs time and is not needed at every tick (foot forces, touch, motor currents) is worked out from the raw
+readings when somebody asks for it, and kept.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Mapping, Tuple
 
-from nao_sim_bridge.sim.rotations import Quaternion, Vector3, rotate_back
-
-
-@dataclass(frozen=True)
-class Pose:
-    """Position (m) and orientation (quaternion x, y, z, w) of a body in world."""
-
-    position: Vector3
-    orientation: Quaternion
+from nao_sim_bridge.sim.readings import Contact, FootForces, Pose
+from nao_sim_bridge.sim.rotations import Vector3, rotate_back
+from nao_sim_bridge.sim.sensors.body import BodySensors
+from nao_sim_bridge.sim.sensors.contacts import Presses, in_link_frames
 
 
 @dataclass(frozen=True)
@@ -32,21 +32,6 @@ class Imu:
 
 
 @dataclass(frozen=True)
-class FootForces:
-    """The four force sensors under one foot.
-
-    Attributes:
-        forces: Front left, front right, rear left, rear right, in N.
-        total: Their sum, N.
-        center_of_pressure: x and y in the foot frame, m; (0, 0) without load.
-    """
-
-    forces: Tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    total: float = 0.0
-    center_of_pressure: Tuple[float, float] = (0.0, 0.0)
-
-
-@dataclass(frozen=True)
 class Snapshot:
     """State after one tick. Joint arrays are in ALMotion's Body order (26,).
 
@@ -56,7 +41,6 @@ class Snapshot:
         positions: Measured joint angles, rad (hands 0..1).
         velocities: Measured joint speeds, rad/s.
         torques: Torque of each motor, N m.
-        currents: Electric current of each motor, A, absolute.
         temperatures: Motor temperatures, degC.
         commands: Commanded joint angles, rad.
         stiffnesses: 0..1.
@@ -64,13 +48,14 @@ class Snapshot:
         linear_velocity: True velocity of the torso in world, m/s.
         angular_velocity: True angular velocity of the torso in world, rad/s.
         imu: The inertial unit.
-        left_foot: Force sensors of the left foot.
-        right_foot: Force sensors of the right foot.
-        touched: Names of touch sensors, bumpers and buttons that something presses (names of the robot model).
         sonars: Echo distances left and right, m.
         battery_charge: 0..1.
         battery_current: A, positive while it discharges.
         objects: True poses of the world's movable objects, by name.
+        contacts: Points where something presses on the robot.
+        link_poses: Link index to the pose in world of each link that has a contact.
+        fingers: Touch sensors that a simulated finger presses.
+        sensors: How forces, touch and currents follow from the raw readings.
     """
 
     tick: int
@@ -78,7 +63,6 @@ class Snapshot:
     positions: Tuple[float, ...]
     velocities: Tuple[float, ...]
     torques: Tuple[float, ...]
-    currents: Tuple[float, ...]
     temperatures: Tuple[float, ...]
     commands: Tuple[float, ...]
     stiffnesses: Tuple[float, ...]
@@ -86,13 +70,38 @@ class Snapshot:
     linear_velocity: Vector3
     angular_velocity: Vector3
     imu: Imu
-    left_foot: FootForces
-    right_foot: FootForces
-    touched: frozenset = frozenset()
-    sonars: Tuple[float, float] = (0.0, 0.0)
-    battery_charge: float = 1.0
-    battery_current: float = 0.0
-    objects: Mapping[str, Pose] = field(default_factory=dict)
+    sonars: Tuple[float, ...]
+    battery_charge: float
+    battery_current: float
+    objects: Mapping[str, Pose]
+    contacts: Tuple[Contact, ...]
+    link_poses: Mapping[int, Pose]
+    fingers: frozenset
+    sensors: BodySensors = field(repr=False, compare=False)
+
+    @cached_property
+    def left_foot(self) -> FootForces:
+        """Force sensors of the left foot."""
+        return self.sensors.foot_forces("L", self._presses)
+
+    @cached_property
+    def right_foot(self) -> FootForces:
+        """Force sensors of the right foot."""
+        return self.sensors.foot_forces("R", self._presses)
+
+    @cached_property
+    def touched(self) -> frozenset:
+        """Names of touch sensors, bumpers and buttons that something presses."""
+        return self.fingers | self.sensors.touched(self._presses)
+
+    @cached_property
+    def currents(self) -> Tuple[float, ...]:
+        """Electric current of each motor, A, absolute."""
+        return self.sensors.currents(self.torques)
+
+    @cached_property
+    def _presses(self) -> Presses:
+        return in_link_frames(self.contacts, self.link_poses)
 
     @property
     def velocity_in_torso(self) -> Vector3:

@@ -1,4 +1,4 @@
-"""The URDF for robot_state_publisher, RViz and planners: all frames that clients of NAO drivers know, all looks.
+"""The URDF for robot_state_publisher, RViz and planners: all frames that clients of NAO drivers know.
 
 Links that only mark a place, and lamps, have no mass, and say so: PyBullet takes a link that says nothing for
 1 kg. The phalanges are bodies of their own that follow the joint `LHand` or `RHand`; what they weigh is taken
@@ -33,12 +33,13 @@ GAZE = Place("gaze", "HeadPitch", np.array((0.0465, 0.0, 0.0472)), np.zeros(3))
 def full_urdf(model: RobotModel, appearance: Appearance) -> str:
     """URDF text with all frames, looks, lamps, masses and collision shapes.
 
-    The root is `base_link`; link names are those of the robot's URDF, joint names NAOqi's. `LHand` and `RHand`
-    take hand values in 0..1.
+    The root is `base_link`; link names are those of the robot's URDF, joint names NAOqi's. `LHand` and
+    `RHand` take hand values in 0..1.
     """
     alt_name = {link.name: link.alt_name for link in model.links}
     lines = [line for name, color in appearance.materials.items() for line in _material(name, color)]
-    lines += xml.link(ROOT)  # KDL asks for a root without inertia
+    # The root stays without an inertial element: robot_state_publisher warns of one at every start.
+    lines += xml.link(ROOT)
     lines += xml.fixed_joint(f"{ROOT}_fixedjoint", ROOT, alt_name["Torso"], (0.0, 0.0, 0.0))
     lines += _links(model, appearance)
     for joint in model.joints:
@@ -46,22 +47,16 @@ def full_urdf(model: RobotModel, appearance: Appearance) -> str:
             limits = (joint.lower, joint.upper, joint.max_torque, joint.max_velocity)
             parent, child = alt_name[joint.parent_link], alt_name[joint.child_link]
             mimic = ("LHipYawPitch", 1.0, 0.0) if joint.name == "RHipYawPitch" else None
-            lines += xml.revolute_joint(
-                joint.name, parent, child, joint.origin, joint.axis, limits, mimic=mimic
-            )
+            lines += xml.revolute_joint(joint.name, parent, child, joint.origin, joint.axis, limits, mimic=mimic)
         else:
             lines += _hand(model, appearance, joint.name, alt_name[joint.parent_link])
     for frame, place in frames(model):
         lines += xml.link(frame, xml.MASSLESS)
-        lines += xml.fixed_joint(
-            f"{frame}_fixedjoint", alt_name[place.parent_link], frame, place.position, place.rpy
-        )
+        lines += xml.fixed_joint(f"{frame}_fixedjoint", alt_name[place.parent_link], frame, place.position, place.rpy)
     for camera in model.cameras:
         frame = f"{camera.name}_optical_frame"
         lines += xml.link(frame, xml.MASSLESS)
-        lines += xml.fixed_joint(
-            f"{frame}_fixedjoint", f"{camera.name}_frame", frame, (0.0, 0.0, 0.0), OPTICAL_RPY
-        )
+        lines += xml.fixed_joint(f"{frame}_fixedjoint", f"{camera.name}_frame", frame, (0.0, 0.0, 0.0), OPTICAL_RPY)
     for figure in appearance.lamps:
         name = f"{figure.lamp.name}_led"
         lines += xml.link(name, xml.MASSLESS, xml.visual(figure.shape))

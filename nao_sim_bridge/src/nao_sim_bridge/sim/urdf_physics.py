@@ -103,9 +103,7 @@ def read_collision_shapes(model: RobotModel) -> dict[str, tuple[Shape, ...]]:
     known = {link.name for link in model.links} | set(FINGERS.values())
     for name in shapes:
         if name not in known:
-            raise ConfigError(
-                f"{COLLISION_FILE}: links", f"no link {name!r} (allowed: {', '.join(sorted(known))})"
-            )
+            raise ConfigError(f"{COLLISION_FILE}: links", f"no link {name!r} (allowed: {', '.join(sorted(known))})")
     mirrored = {
         "R" + name[1:]: tuple(shape.mirrored() for shape in of_link)
         for name, of_link in shapes.items()
@@ -119,8 +117,7 @@ def _authored_shapes() -> dict[str, tuple[Shape, ...]]:
     tables = check_keys(read_json(config_file(COLLISION_FILE)), COLLISION_FILE, ("_meta", "links"))
     return {
         name: tuple(
-            read_shape(entry, f"{COLLISION_FILE}: links.{name}[{index}]")
-            for index, entry in enumerate(entries)
+            read_shape(entry, f"{COLLISION_FILE}: links.{name}[{index}]") for index, entry in enumerate(entries)
         )
         for name, entries in tables["links"].items()
     }

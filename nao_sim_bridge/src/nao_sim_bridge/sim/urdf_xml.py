@@ -49,8 +49,8 @@ MASSLESS = inertial(0.0, NO_ROTATION, np.zeros((3, 3)))
 def geometry(shape: Shape) -> str:
     """A geometry element.
 
-    Capsules are PyBullet's own and no standard URDF. What URDF has no word for is a mesh: the unit mesh of its
-    kind, scaled, or for an arc a mesh of its own.
+    Capsules are PyBullet's own and no standard URDF. What URDF has no word for is a mesh: the unit mesh of
+    its kind, scaled, or for an arc a mesh of its own.
     """
     if shape.kind in ("ellipsoid", "pillow", "arc"):
         scale = (1.0, 1.0, 1.0) if shape.kind == "arc" else shape.size

@@ -141,9 +141,7 @@ def load_world(name_or_path: str) -> World:
     if path.suffix not in (".yaml", ".yml"):
         if name_or_path not in world_names():
             there = ", ".join(world_names())
-            raise WorldError(
-                "world", f"no world {name_or_path!r} (there are: {there}; or give a path to a .yaml)"
-            )
+            raise WorldError("world", f"no world {name_or_path!r} (there are: {there}; or give a path to a .yaml)")
         path = world_directory() / f"{name_or_path}.yaml"
     try:
         content = yaml.safe_load(path.read_text(encoding="utf-8"))
@@ -266,9 +264,7 @@ def _build_floor(floor: Floor, client: int, visual: bool) -> int:
             pybullet.GEOM_BOX, halfExtents=extents, rgbaColor=(*floor.color, 1.0), physicsClientId=client
         )
         # The top face is the floor: half the thickness below z = 0.
-        return pybullet.createMultiBody(
-            0.0, -1, seen, basePosition=(0.0, 0.0, -extents[2]), physicsClientId=client
-        )
+        return pybullet.createMultiBody(0.0, -1, seen, basePosition=(0.0, 0.0, -extents[2]), physicsClientId=client)
     touched = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
     body = pybullet.createMultiBody(0.0, touched, physicsClientId=client)
     pybullet.changeDynamics(body, -1, lateralFriction=floor.friction, physicsClientId=client)

@@ -38,8 +38,9 @@ class Ramp:
 class SmoothCurve:
     """A curve through key points, at rest at both ends, without overshoot between two points.
 
-    Each segment is a cubic Hermite polynomial. The slope at an inner point is the harmonic mean of its two chords, zero
-    at a turning point (the monotone rule of Fritsch and Butland), so a joint never leaves the range its key points span.
+    Each segment is a cubic Hermite polynomial. The slope at an inner point is the harmonic mean of its two chords,
+    zero at a turning point (the monotone rule of Fritsch and Butland), so a joint never leaves the range that its key
+    points span.
 
     Attributes:
         times: Times of the points in s, strictly rising, the first is 0.
@@ -52,9 +53,7 @@ class SmoothCurve:
 
     def __post_init__(self) -> None:
         if len(self.times) != len(self.values) or len(self.times) < 2:
-            raise ValueError(
-                f"{len(self.times)} times and {len(self.values)} values: need equally many, at least 2"
-            )
+            raise ValueError(f"{len(self.times)} times and {len(self.values)} values: need equally many, at least 2")
         if any(b <= a for a, b in zip(self.times, self.times[1:])):
             raise ValueError(f"times {list(self.times)} do not rise strictly")
         object.__setattr__(self, "_slopes", _monotone_slopes(self.times, self.values))

@@ -196,9 +196,7 @@ class Viewer:
             RenderError: If there is no display, or the window does not open.
         """
         if not os.environ.get("DISPLAY"):
-            raise RenderError(
-                "window: there is no display (DISPLAY is not set); leave the window out, or set it"
-            )
+            raise RenderError("window: there is no display (DISPLAY is not set); leave the window out, or set it")
         worker = _Worker("window", self._world_name, self._version)
         try:
             worker.receive(START_TIMEOUT, "window")

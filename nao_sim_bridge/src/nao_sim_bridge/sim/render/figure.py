@@ -55,9 +55,7 @@ class Figure:
         self._model = model
         self._appearance = appearance
         self._paint_lamps = paint_lamps
-        self._hands = [
-            (joint.parent_link, joint.name[0], i) for i, joint in enumerate(model.joints) if joint.is_hand
-        ]
+        self._hands = [(joint.parent_link, joint.name[0], i) for i, joint in enumerate(model.joints) if joint.is_hand]
         self._parts = self._build_links()
         self.lamp_bodies = tuple(self._build_lamps())
         self.lamp_light = np.zeros((len(self.lamp_bodies), 3))
@@ -79,20 +77,14 @@ class Figure:
 
     def _place(self, state: RenderState) -> None:
         base = transform(quaternion_matrix(state.base_orientation), state.base_position)
-        poses = {
-            name: base @ pose for name, pose in link_transforms(self._model, state.joint_positions).items()
-        }
+        poses = {name: base @ pose for name, pose in link_transforms(self._model, state.joint_positions).items()}
         for wrist, side, index in self._hands:
             for phalanx, pose in finger_transforms(self._model, state.joint_positions[index]).items():
                 poses[side + phalanx] = poses[wrist] @ pose
-        placed = {
-            name: (pose[:3, 3].tolist(), matrix_quaternion(pose[:3, :3])) for name, pose in poses.items()
-        }
+        placed = {name: (pose[:3, 3].tolist(), matrix_quaternion(pose[:3, :3])) for name, pose in poses.items()}
         for part in self._parts:
             position, orientation = placed[part.frame]
-            pybullet.resetBasePositionAndOrientation(
-                part.body, position, orientation, physicsClientId=self._client
-            )
+            pybullet.resetBasePositionAndOrientation(part.body, position, orientation, physicsClientId=self._client)
 
     def _light(self, values: Sequence[float]) -> None:
         lamps = self._appearance.lamps

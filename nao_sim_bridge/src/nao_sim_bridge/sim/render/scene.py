@@ -11,7 +11,8 @@ import numpy as np
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
 from nao_sim_bridge.sim.model import RobotModel
-from nao_sim_bridge.sim.snapshot import Pose, Quaternion, Vector3
+from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.rotations import Quaternion, Vector3
 
 
 @dataclass(frozen=True)
@@ -113,9 +114,7 @@ def preset_camera(
         raise UnknownName("view", name, PRESETS)
     view = PRESETS[name]
     base = transform(quaternion_matrix(state.base_orientation), state.base_position)
-    frame = (
-        base @ link_transforms(model, state.joint_positions)["HeadPitch"] if view.follows == "head" else base
-    )
+    frame = base @ link_transforms(model, state.joint_positions)["HeadPitch"] if view.follows == "head" else base
     if view.follows == "body":
         frame = _upright(base)
     eye, target = (frame @ np.append(point, 1.0) for point in (view.eye, view.target))

@@ -128,9 +128,7 @@ class Studio:
         picture[rows, columns] = picture[rows, columns] * (1.0 - strength) + entry[:, :3] * strength
         self._add_glow(picture, rows, columns, entry)
 
-    def _add_glow(
-        self, picture: np.ndarray, rows: np.ndarray, columns: np.ndarray, entry: np.ndarray
-    ) -> None:
+    def _add_glow(self, picture: np.ndarray, rows: np.ndarray, columns: np.ndarray, entry: np.ndarray) -> None:
         """Spill light around lit pixels, within the part of the picture that it can reach."""
         height, width = picture.shape[:2]
         radius = max(1, round(height * 0.006))

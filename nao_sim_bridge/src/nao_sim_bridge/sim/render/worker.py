@@ -23,9 +23,7 @@ def main(arguments: list[str]) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         serve = (
-            _open_pictures(pipe, world_name, version)
-            if mode == "pictures"
-            else _open_window(pipe, world_name, version)
+            _open_pictures(pipe, world_name, version) if mode == "pictures" else _open_window(pipe, world_name, version)
         )
     except Exception as error:
         pipe.send(("error", _text(error)))

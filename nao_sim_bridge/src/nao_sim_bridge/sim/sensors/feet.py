@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Iterable, Sequence
+from typing import Iterable
 
 from nao_sim_bridge.sim.model import RobotModel
-from nao_sim_bridge.sim.physics import Contact
-from nao_sim_bridge.sim.rotations import rotate, rotate_back
-from nao_sim_bridge.sim.snapshot import FootForces, Pose
+from nao_sim_bridge.sim.readings import FootForces
+from nao_sim_bridge.sim.sensors.contacts import Press
 
 UNLOADED = FootForces()
 
@@ -31,38 +30,33 @@ class FootSensors:
         self._front_y = (corners[0][1], corners[1][1])
         self._rear_y = (corners[2][1], corners[3][1])
 
-    def read(self, contacts: Iterable[Contact], ankle: Pose) -> FootForces:
-        """Forces of the contacts on this foot.
-
-        Args:
-            contacts: Contacts of the foot's link.
-            ankle: Pose of the ankle roll frame in world.
-        """
-        forces = [0.0, 0.0, 0.0, 0.0]
+    def read(self, presses: Iterable[Press]) -> FootForces:
+        """Forces of what presses on this foot, in the ankle roll frame."""
+        front_left = front_right = rear_left = rear_right = 0.0
         moment_x = moment_y = total = 0.0
-        up = rotate(ankle.orientation, (0.0, 0.0, 1.0))
-        for contact in contacts:
-            load = contact.force * sum(n * u for n, u in zip(contact.normal, up))
+        for x, y, _, upward, force in presses:
+            load = force * upward
             if load <= 0.0:
                 continue
-            offset = [p - o for p, o in zip(contact.position, ankle.position)]
-            x, y, _ = rotate_back(ankle.orientation, offset)
-            for index, share in enumerate(self._shares(x, y)):
-                forces[index] += load * share
+            to_front = load * _share(x, self._rear, self._front)
+            to_rear = load - to_front
+            left = to_front * _share(y, self._front_y[1], self._front_y[0])
+            front_left += left
+            front_right += to_front - left
+            left = to_rear * _share(y, self._rear_y[1], self._rear_y[0])
+            rear_left += left
+            rear_right += to_rear - left
             total += load
             moment_x += load * x
             moment_y += load * y
         if total == 0.0:
             return UNLOADED
-        return FootForces(tuple(forces), total, (moment_x / total, moment_y / total))
-
-    def _shares(self, x: float, y: float) -> Sequence[float]:
-        front = _share(x, self._rear, self._front)
-        left_front = _share(y, self._front_y[1], self._front_y[0])
-        left_rear = _share(y, self._rear_y[1], self._rear_y[0])
-        rear = 1.0 - front
-        return (front * left_front, front * (1 - left_front), rear * left_rear, rear * (1 - left_rear))
+        forces = (front_left, front_right, rear_left, rear_right)
+        return FootForces(forces, total, (moment_x / total, moment_y / total))
 
 
 def _share(value: float, low: float, high: float) -> float:
-    return min(max((value - low) / (high - low), 0.0), 1.0)
+    """How far `value` is from `low` towards `high`, 0..1."""
+    if value <= low:
+        return 0.0
+    return 1.0 if value >= high else (value - low) / (high - low)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Sequence
 
-from nao_sim_bridge.sim.physics import BodyReadings
-from nao_sim_bridge.sim.rotations import cross, roll_pitch_yaw, rotate, rotate_back
-from nao_sim_bridge.sim.snapshot import Imu, Vector3
+from nao_sim_bridge.sim.readings import BodyReadings
+from nao_sim_bridge.sim.rotations import Vector3, cross, roll_pitch_yaw, rotate, rotate_back
+from nao_sim_bridge.sim.snapshot import Imu
 
 
 class InertialUnit:

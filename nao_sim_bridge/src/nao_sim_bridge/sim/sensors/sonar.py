@@ -6,8 +6,8 @@ import math
 from typing import Callable, Sequence
 
 from nao_sim_bridge.sim.model import RobotModel
-from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw, rotate
-from nao_sim_bridge.sim.snapshot import Pose, Vector3
+from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.rotations import Vector3, from_roll_pitch_yaw, rotate
 
 PERIOD = 0.1
 HALF_CONE = math.radians(30.0)
@@ -28,7 +28,9 @@ class Sonars:
 
     def __init__(self, model: RobotModel) -> None:
         self._places = [(tuple(s.position), from_roll_pitch_yaw(*s.rpy)) for s in model.sonars]
-        self._rays = [_direction(ring * HALF_CONE, 2 * math.pi * k / count) for ring, count in RINGS for k in range(count)]
+        self._rays = [
+            _direction(ring * HALF_CONE, 2 * math.pi * k / count) for ring, count in RINGS for k in range(count)
+        ]
         self._next = 0.0
         self._last: tuple[float, ...] = (NO_ECHO,) * len(self._places)
 

@@ -1,0 +1,280 @@
+"""Modules of this process, called by the robot."""
+
+from __future__ import annotations
+
+import socket
+import threading
+
+import numpy as np
+import pytest
+
+import naoqi
+from naoqi import ALBroker, ALModule, errors
+
+EVENT = "FrontTactilTouched"
+
+
+class Buttons(ALModule):
+    """Listens to touches."""
+
+    def __init__(self, name):
+        ALModule.__init__(self, name)
+        self.heard = []
+        self.threads = set()
+
+    def on_touch(self, key, value, message):
+        """Remember a touch."""
+        self.threads.add(threading.current_thread().name)
+        self.heard.append((key, value, message))
+        return value
+
+    def two(self, key, value):
+        self.heard.append((key, value))
+
+    def all_of_them(self, *arguments):
+        self.heard.append(arguments)
+
+    def none(self):
+        self.heard.append(())
+
+    def fails(self, key, value, message):
+        raise KeyError("a callback with a fault")
+
+    def leaves(self, key, value, message):
+        raise SystemExit(3)
+
+    def asks_the_robot(self, key, value, message):
+        return self.robot.add(value, 1)
+
+    def sum_of(self, first, second=10):
+        return np.float64(first + second)
+
+    def size_of(self, raw):
+        return [type(raw).__name__, len(raw)]
+
+    def _hidden(self, key, value, message):
+        self.heard.append("hidden")
+
+
+def broker_to(robot, **options):
+    return ALBroker("testBroker", "0.0.0.0", 0, *robot.address, **options)
+
+
+@pytest.fixture
+def broker(robot):
+    broker = broker_to(robot)
+    yield broker
+    broker.shutdown()
+
+
+@pytest.fixture
+def buttons(broker):
+    return Buttons("Buttons")
+
+
+@pytest.fixture
+def memory(robot):
+    memory = robot.proxy("ALMemory")
+    yield memory
+    for module in memory.getSubscribers(EVENT):
+        memory.unsubscribeToEvent(EVENT, module)
+
+
+def test_the_newest_broker_gives_the_address(broker):
+    assert naoqi.ALProxy("ALTest").add(1, 2) == 3
+    assert naoqi.ALProxy("ALTest").connection is broker.connection
+
+
+def test_without_a_broker_the_text_says_what_to_do():
+    for use in (lambda: naoqi.ALProxy("ALTest"), lambda: Buttons("Buttons")):
+        with pytest.raises(errors.BrokerError, match="create ALBroker"):
+            use()
+
+
+def test_a_broker_tells_who_it_is(broker, buttons):
+    assert broker.getName() == buttons.getBrokerName() == "testBroker"
+    assert broker.getIP() == "127.0.0.1"  # loopback suffices for a robot on this computer
+    assert broker.getPort() > 0
+    assert broker.isModulePresent("ALMemory") and broker.isModulePresent("Buttons")
+    assert not broker.isModulePresent("ALNothing")
+
+
+def test_a_broker_without_a_robot_fails(robot):
+    with pytest.raises(errors.RobotUnreachable):
+        ALBroker("testBroker", "", 0, "127.0.0.1", 1)
+    with pytest.raises(errors.BrokerError, match="no broker"):
+        naoqi.ALProxy("ALTest")
+
+
+def test_a_port_in_use_is_refused(robot):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(errors.BrokerError, match=f"cannot listen on 127.0.0.1:{port}"):
+            ALBroker("testBroker", "", port, *robot.address)
+
+
+def test_shutdown_takes_modules_and_port_back(robot, eventually):
+    broker = broker_to(robot)
+    Buttons("Buttons")
+    port = broker.getPort()
+    broker.shutdown()
+    broker.shutdown()
+    connection = naoqi.connection(*robot.address)
+    eventually(lambda: "Buttons" not in connection.module_names(), "the robot forgets the module")
+    assert broker.getPort() == 0
+    with pytest.raises(OSError):
+        socket.create_connection(("127.0.0.1", port), timeout=1.0)
+    with pytest.raises(errors.BrokerError):
+        Buttons("Buttons")
+
+
+def test_events_call_the_module_in_order_and_in_one_thread(buttons, memory):
+    memory.subscribeToEvent(EVENT, "Buttons", "on_touch")
+    for value in range(20):
+        assert memory.raiseEvent(EVENT, value) == [value]
+    assert buttons.heard == [(EVENT, value, "") for value in range(20)]
+    assert buttons.threads == {"naoqi module Buttons"}
+
+
+def test_the_message_of_a_subscription_arrives(buttons, memory):
+    memory.subscribeToEvent(EVENT, "Buttons", "head", "on_touch")
+    memory.raiseEvent(EVENT, 1.0)
+    assert buttons.heard == [(EVENT, 1.0, "head")]
+
+
+@pytest.mark.parametrize(
+    "method, heard", [("two", (EVENT, 1.0)), ("all_of_them", (EVENT, 1.0, "")), ("none", ())]
+)
+def test_callbacks_may_take_fewer_arguments(buttons, memory, method, heard):
+    memory.subscribeToEvent(EVENT, "Buttons", method)
+    memory.raiseEvent(EVENT, 1.0)
+    assert buttons.heard == [heard]
+
+
+@pytest.mark.parametrize("method, trace", [("fails", "KeyError"), ("leaves", "SystemExit")])
+def test_a_failing_callback_is_logged_and_kills_nothing(buttons, memory, caplog, method, trace):
+    memory.subscribeToEvent(EVENT, "Buttons", method)
+    (answer,) = memory.raiseEvent(EVENT, 1.0)
+    assert trace in answer
+    assert f"in {method}" in caplog.text and trace in caplog.text  # with its trace
+    memory.subscribeToEvent(EVENT, "Buttons", "on_touch")
+    assert memory.raiseEvent(EVENT, 2.0) == [2.0]
+
+
+def test_a_callback_may_call_the_robot(buttons, memory):
+    buttons.robot = naoqi.ALProxy("ALTest")
+    memory.subscribeToEvent(EVENT, "Buttons", "asks_the_robot")
+    assert memory.raiseEvent(EVENT, 4) == [5]
+
+
+def test_a_callback_may_subscribe_and_unsubscribe(buttons, memory):
+    def once(key, value, message):
+        memory.unsubscribeToEvent(EVENT, "Buttons")
+        buttons.heard.append(value)
+
+    buttons.once = once
+    buttons.BIND_PYTHON("Buttons", "once")
+    memory.subscribeToEvent(EVENT, "Buttons", "once")
+    memory.raiseEvent(EVENT, 1.0)
+    assert memory.raiseEvent(EVENT, 2.0) == []
+    assert buttons.heard == [1.0]
+
+
+def test_a_module_is_called_through_a_proxy_like_any_other(robot, buttons):
+    proxy = robot.proxy("Buttons")
+    assert proxy.sum_of(1, 2) == 3.0
+    assert proxy.sum_of(1) == 11.0
+    assert proxy.getName() == "Buttons"
+    assert "Remember a touch." in proxy.getUsage("on_touch")
+    with pytest.raises(errors.RobotError, match="takes 1 to 2 arguments, 4 given"):
+        proxy.sum_of(1, 2, 3, 4)
+    with pytest.raises(errors.BadArguments):
+        proxy.on_touch(1)
+    for hidden in ("_hidden", "heard", "exit", "BIND_PYTHON"):
+        assert not hasattr(proxy, hidden)
+
+
+def test_bind_python_serves_what_is_not_served_by_itself(buttons, memory):
+    memory.subscribeToEvent(EVENT, "Buttons", "_hidden")
+    assert "error" in memory.raiseEvent(EVENT, 1.0)[0]
+    buttons.BIND_PYTHON(buttons.getName(), "_hidden")
+    memory.raiseEvent(EVENT, 1.0)
+    assert buttons.heard == ["hidden"]
+    with pytest.raises(errors.UnknownMethod, match="did you mean 'on_touch'"):
+        buttons.BIND_PYTHON(buttons.getName(), "on_tuch")
+
+
+def test_a_name_can_be_taken_only_once(robot, buttons):
+    with pytest.raises(errors.BrokerError, match="already"):
+        Buttons("Buttons")
+    with pytest.raises(errors.BrokerError, match="robot has a module 'ALTest' already"):
+        Buttons("ALTest")
+
+
+def test_a_module_that_exits_is_gone_and_its_name_is_free(robot, buttons, memory):
+    memory.subscribeToEvent(EVENT, "Buttons", "on_touch")
+    buttons.exit()
+    assert "Buttons" not in naoqi.connection(*robot.address).module_names()
+    assert len(naoqi.connection(*robot.address).subscriptions) == 0
+    Buttons("Buttons").exit()
+
+
+class TestAfterALoss:
+    @pytest.fixture
+    def robot(self, fragile_robot):
+        return fragile_robot
+
+    @pytest.fixture(autouse=True)
+    def subscribed(self, buttons, memory):
+        memory.subscribeToEvent(EVENT, "Buttons", "on_touch")
+        memory.subscribeToEvent("Gone", "Buttons", "on_touch")
+        memory.unsubscribeToEvent("Gone", "Buttons")
+        task = memory.post.subscribeToEvent("", "Buttons", "on_touch")  # refused, so not to be made again
+        with pytest.raises(errors.NaoError):
+            memory.wait(task)
+
+    @pytest.mark.parametrize("harm, repair", [("kill", "start"), ("silence", "speak")])
+    def test_modules_and_subscriptions_come_back(
+        self, robot, broker, buttons, memory, states, eventually, caplog, harm, repair
+    ):
+        followed = states(broker.connection)
+        getattr(robot, harm)()
+        followed.wait_for("lost")
+        getattr(robot, repair)()
+        followed.wait_for("lost", "connected")
+        eventually(lambda: "1 event subscriptions made again" in caplog.text, "the log says so")
+        assert "modules registered again: Buttons" in caplog.text
+        assert memory.raiseEvent(EVENT, 5.0) == [5.0]
+        assert buttons.heard == [(EVENT, 5.0, "")]
+        assert memory.getSubscribers("Gone") == []
+
+    def test_subscriptions_of_other_modules_come_back_too(self, robot, memory, states, eventually, caplog):
+        memory.subscribeToEvent(EVENT, "ALTest", "add")
+        followed = states(memory.connection)
+        robot.kill()
+        followed.wait_for("lost")
+        robot.start()
+        eventually(lambda: memory_has(memory, "ALTest") and memory_has(memory, "Buttons"), "both are back")
+
+    def test_a_broker_whose_own_session_breaks_serves_again(self, broker, memory, caplog, eventually):
+        broker._session.close()  # as if only that socket had been cut
+        eventually(lambda: "made again" in caplog.text, "the log says so")
+        assert memory.raiseEvent(EVENT, 6.0) == [6.0]
+        assert broker.connection.generation == 1
+
+    def test_a_broker_that_was_shut_down_stays_so(self, robot, broker, memory, states):
+        broker.shutdown()
+        followed = states(broker.connection)
+        robot.kill()
+        followed.wait_for("lost")
+        robot.start()
+        followed.wait_for("lost", "connected")
+        assert "Buttons" not in broker.connection.module_names()
+        assert memory.getSubscribers(EVENT) == []
+
+
+def memory_has(memory, module):
+    try:
+        return module in memory.getSubscribers(EVENT)
+    except errors.RobotUnreachable:
+        return False

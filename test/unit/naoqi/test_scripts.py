@@ -1,0 +1,121 @@
+"""Whole programs, run as a user runs them: as the maker's SDK has them, and to a clean end."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+SOURCES = Path(__file__).parents[3] / "nao_library_modules" / "src"
+
+SDK_STYLE = """
+import sys
+import time
+from naoqi import *
+
+memory = None
+
+class HumanGreeter(ALModule):
+    def __init__(self, name):
+        ALModule.__init__(self, name)
+        self.tts = ALProxy("ALTest")
+        global memory
+        memory = ALProxy("ALMemory")
+        memory.subscribeToEvent("FaceDetected", "Greeter", "onFaceDetected")
+
+    def onFaceDetected(self, *_args):
+        memory.unsubscribeToEvent("FaceDetected", "Greeter")
+        print("hello", self.tts.add("you", "!"), _args[1])
+        memory.subscribeToEvent("FaceDetected", "Greeter", "onFaceDetected")
+
+def main(ip, port):
+    myBroker = ALBroker("myBroker", "0.0.0.0", 0, ip, port)
+    global Greeter
+    Greeter = HumanGreeter("Greeter")
+    for number in range(2):
+        memory.raiseEvent("FaceDetected", number)
+    task = ALProxy("ALTest", ip, port).post.add(1, 2)
+    ALProxy("ALTest").wait(task, 0)
+    try:
+        raise KeyboardInterrupt
+    except KeyboardInterrupt:
+        myBroker.shutdown()
+        sys.exit(0)
+
+main("127.0.0.1", int(sys.argv[1]))
+"""
+
+USE_AND_LEAVE = """
+import sys
+from naoqi import ALBroker, ALModule, ALProxy
+
+class Buttons(ALModule):
+    def on_touch(self, key, value, message):
+        pass
+
+test = ALProxy("ALTest", "127.0.0.1", int(sys.argv[1]))
+test.add(1, 2)
+{last}
+"""
+
+
+def run(script, robot, **options):
+    command = [sys.executable, "-c", script, str(robot.port)]
+    environment = {"PYTHONPATH": str(SOURCES), "PATH": "/usr/bin:/bin"}
+    return subprocess.run(
+        command, env=environment, capture_output=True, text=True, timeout=60, check=False, **options
+    )
+
+
+def test_a_program_of_the_sdk_runs_with_python_3_syntax_only(robot):
+    result = run(SDK_STYLE, robot)
+    assert result.stdout == "hello you! 0\nhello you! 1\n"
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    "last",
+    [
+        "pass",
+        "broker = ALBroker('b', '', 0, '127.0.0.1', int(sys.argv[1])); buttons = Buttons('LeavingButtons')",
+        "call = test.call_async('begin')",
+        "ALProxy('ALTest', '127.0.0.1', 1, lazy=True)",
+        "import threading; threading.Thread(target=lambda: test.begin(), daemon=True).start()",
+        "test.connection.add_listener(lambda state: test.add(1, 1))",
+    ],
+)
+def test_a_program_ends_quietly_whatever_is_still_open(robot, last):
+    start = time.monotonic()
+    result = run(USE_AND_LEAVE.format(last=last), robot)
+    stderr = "\n".join(line for line in result.stderr.splitlines() if "Exception in thread" not in line)
+    assert result.returncode == 0, stderr
+    assert "terminate" not in stderr and "Fatal" not in stderr
+    assert time.monotonic() - start < 10.0
+
+
+def test_a_call_posted_just_before_the_end_still_arrives(robot, proxy, eventually):
+    before = proxy.begun()
+    result = run(USE_AND_LEAVE.format(last="test.post.begin()"), robot)
+    assert result.returncode == 0
+    eventually(lambda: proxy.begun() == before + 1, "the robot got the call")
+    proxy.finish(None)
+
+
+def test_ctrl_c_ends_a_call_that_waits_and_cancels_it_on_the_robot(robot, proxy, eventually):
+    before, running = proxy.cancellations(), proxy.begun()
+    command = [sys.executable, "-c", USE_AND_LEAVE.format(last="test.begin()"), str(robot.port)]
+    environment = {"PYTHONPATH": str(SOURCES), "PATH": "/usr/bin:/bin"}
+    program = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True)
+    eventually(lambda: proxy.begun() == running + 1, "the call arrives")
+    program.send_signal(signal.SIGINT)
+    _, stderr = program.communicate(timeout=10.0)
+    assert "KeyboardInterrupt" in stderr
+    eventually(lambda: proxy.cancellations() == before + 1, "the robot hears of it")
+
+
+def test_libqi_is_silent_about_its_sdk(robot):
+    assert run(USE_AND_LEAVE.format(last="pass"), robot).stderr == ""
