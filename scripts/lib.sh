@@ -38,6 +38,14 @@ clean_python_environment() {
     export PYTHONNOUSERSITE=1
 }
 
+# libqi keeps a machine id under $HOME, and without one under the current directory.
+ensure_home() {
+    if [ ! -d "${HOME:-}" ]; then
+        export HOME="$ws/home"
+        mkdir -p "$HOME"
+    fi
+}
+
 # One writer at a time: two makes in one checkout would otherwise install and build into each other.
 take_lock() {
     mkdir -p "$ws"

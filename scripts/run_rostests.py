@@ -47,8 +47,7 @@ def time_limit(scenario: Path) -> float:
     except ElementTree.ParseError:
         tests = []
     return MARGIN + sum(
-        _number(test.get("time-limit"), TEST_TIME_LIMIT) * (1 + _number(test.get("retry"), 0))
-        for test in tests
+        _number(test.get("time-limit"), TEST_TIME_LIMIT) * (1 + _number(test.get("retry"), 0)) for test in tests
     )
 
 

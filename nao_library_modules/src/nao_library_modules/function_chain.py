@@ -20,9 +20,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Callable, TypeVar
 
-from naoqi.errors import NaoError
-
-from .errors import BadGoal, FunctionFailed, UnknownFunction
+from .errors import BadGoal, FunctionFailed, Preempted, UnknownFunction
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -72,9 +70,7 @@ def seconds(duration: Any) -> float:
 class _Signature:
     """Parameters of one callable as fields of one message type, worked out once."""
 
-    def __init__(
-        self, function: Callable[..., Any], message_type: type, bound_self: object | None = None
-    ) -> None:
+    def __init__(self, function: Callable[..., Any], message_type: type, bound_self: object | None = None) -> None:
         fields = frozenset(message_type.__slots__)
         self._values: list[tuple[str | None, Any]] = []
         parameters = list(inspect.signature(function).parameters.values())
@@ -171,7 +167,9 @@ class FunctionChain:
     def _guarded(position: int, message: Any, action: Callable[[Any], Any]) -> Any:
         try:
             return action(message)
-        except NaoError as error:
+        except Preempted:
+            raise
+        except Exception as error:  # a check with a mistake in it as well: the text names the function
             raise FunctionFailed(position, message.function, error) from error
 
     def _bind(self, message: Any) -> _Binding:

@@ -74,9 +74,7 @@ class LedAccess:
         # All at once: one after the other, well over a hundred calls take a second on a wireless network.
         devices = self._call_all(proxy, "listLED", [(name,) for name in short_names])
         members = self._call_all(proxy, "listGroup", [(name,) for name in group_names])
-        self._names = LightNames.from_listings(
-            dict(zip(short_names, devices)), dict(zip(group_names, members))
-        )
+        self._names = LightNames.from_listings(dict(zip(short_names, devices)), dict(zip(group_names, members)))
         self._generation = generation
         return self._names
 
@@ -137,9 +135,7 @@ class LedAccess:
 
         def restore() -> None:
             proxy = self._proxy()
-            pending = [
-                proxy.call_async(method, *args) for method, args in restoring_calls(names, lights, values)
-            ]
+            pending = [proxy.call_async(method, *args) for method, args in restoring_calls(names, lights, values)]
             for call in pending:
                 call.result(timeout=CLEAN_UP_LIMIT)
 

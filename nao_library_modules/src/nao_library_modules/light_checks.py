@@ -48,9 +48,7 @@ def check_lights(self: HasLeds, lights: Sequence[str], context: dict[str, Any]) 
     require_lights(_names(self, lights, context), lights)
 
 
-def check_intensities(
-    self: HasLeds, lights: Sequence[str], i_values: Sequence[float], context: dict[str, Any]
-) -> None:
+def check_intensities(self: HasLeds, lights: Sequence[str], i_values: Sequence[float], context: dict[str, Any]) -> None:
     """Known lights, one intensity for all or one each."""
     check_lights(self, lights, context)
     intensities(lights, i_values)

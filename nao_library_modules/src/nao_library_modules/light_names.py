@@ -49,9 +49,7 @@ class LightNames:
     groups: Mapping[str, tuple[str, ...]]
 
     @classmethod
-    def from_listings(
-        cls, lights: Mapping[str, Sequence[str]], groups: Mapping[str, Sequence[str]]
-    ) -> LightNames:
+    def from_listings(cls, lights: Mapping[str, Sequence[str]], groups: Mapping[str, Sequence[str]]) -> LightNames:
         """Make the dictionary from what the robot lists.
 
         Args:
@@ -61,9 +59,7 @@ class LightNames:
         names = cls({name: tuple(devices) for name, devices in lights.items()}, {})
         return cls(names.lights, {name: names._resolve(name, groups, frozenset()) for name in groups})
 
-    def _resolve(
-        self, name: str, groups: Mapping[str, Sequence[str]], parents: frozenset[str]
-    ) -> tuple[str, ...]:
+    def _resolve(self, name: str, groups: Mapping[str, Sequence[str]], parents: frozenset[str]) -> tuple[str, ...]:
         if name in self.lights or name not in groups:
             return (name,)
         if name in parents:  # a group that contains itself adds nothing

@@ -112,9 +112,7 @@ class NaoLights(NaoBasic):
         return [mean_intensity(self.leds.names, light, values) for light in lights]
 
     @checked_by(check_colours)
-    def set_color(
-        self, lights: Sequence[str], i_values: Sequence[float], str_param: str, revert: bool
-    ) -> None:
+    def set_color(self, lights: Sequence[str], i_values: Sequence[float], str_param: str, revert: bool) -> None:
         """Set colours at once; one for all lights, or one a light."""
         self.fade_rgb(lights, i_values, str_param, 0.0, revert)
 
@@ -136,9 +134,7 @@ class NaoLights(NaoBasic):
         self, lights: Sequence[str], i_values: Sequence[float], str_param: str, duration: float, revert: bool
     ) -> None:
         """Fade to colours, all lights together."""
-        arguments = [
-            (light, *colour, duration) for light, colour in zip(lights, colours(lights, i_values, str_param))
-        ]
+        arguments = [(light, *colour, duration) for light, colour in zip(lights, colours(lights, i_values, str_param))]
         self._act(lights, revert, "fadeRGB", arguments, together=duration > 0.0)
 
     @checked_by(check_fade_list)
@@ -152,9 +148,7 @@ class NaoLights(NaoBasic):
     ) -> None:
         """Fade through colours, each reached at its time, all lights together."""
         steps = [to_integer(colour) for colour in colour_steps(times, i_values, str_param)]
-        self._act(
-            lights, revert, "fadeListRGB", [(light, steps, list(times)) for light in lights], together=True
-        )
+        self._act(lights, revert, "fadeListRGB", [(light, steps, list(times)) for light in lights], together=True)
 
     @checked_by(check_animation)
     def random_eyes(self, duration: float, revert: bool) -> None:

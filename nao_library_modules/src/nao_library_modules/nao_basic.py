@@ -187,12 +187,8 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         Raises:
             NaoError: If the robot cannot be asked; the goal is aborted then.
         """
-        result.results = [
-            FunctionResult(o.function, o.values, Duration.from_sec(o.elapsed)) for o in outcomes
-        ]
-        result.memList = [
-            value for o in outcomes if o.function not in self.typed_answers for value in o.values
-        ]
+        result.results = [FunctionResult(o.function, o.values, Duration.from_sec(o.elapsed)) for o in outcomes]
+        result.memList = [value for o in outcomes if o.function not in self.typed_answers for value in o.values]
 
     def _run_chain(self, goal: Any, outcomes: list[Outcome]) -> tuple[str, str]:
         messages = getattr(goal, goal.__slots__[0])
@@ -214,10 +210,13 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         except Preempted:
             return "preempted", f"preempted in function {position} ({function})" if position else "preempted"
         except Exception as error:
-            if not isinstance(error, NaoError):
-                log.exception("unexpected error in function %d (%s)", position, function)
-            failed = FunctionFailed(position, function, error) if position else error
-            return "aborted", str(failed) if isinstance(failed, NaoError) else f"unexpected error: {failed!r}"
+            if position:
+                error = FunctionFailed(position, function, error)
+            cause = error.cause if isinstance(error, FunctionFailed) else error
+            if isinstance(cause, NaoError):
+                return "aborted", str(error)
+            log.error("unexpected error: %s", error, exc_info=cause)
+            return "aborted", str(error) if error is not cause else f"unexpected error: {error!r}"
         return "succeeded", ""
 
     def _tell_progress(self, position: int, function: str, count: int) -> None:

@@ -28,9 +28,7 @@ def robot_parser(description: str) -> argparse.ArgumentParser:
         "Names and parameters are set with ROS remappings: name:=other, _parameter:=value.",
     )
     parser.add_argument("--pip", metavar="IP", help=f"address of the robot (default {DEFAULT_IP})")
-    parser.add_argument(
-        "--pport", metavar="PORT", type=int, help=f"port of its NAOqi (default {DEFAULT_PORT})"
-    )
+    parser.add_argument("--pport", metavar="PORT", type=int, help=f"port of its NAOqi (default {DEFAULT_PORT})")
     return parser
 
 
@@ -65,9 +63,7 @@ def launch_path(value: Any) -> tuple[str, str] | None:
     raise NaoError(f"~launchpath {value!r}: it is 'package launchfile'")
 
 
-def run_module(
-    module: Callable[..., Any], name: str, description: str, argv: Sequence[str] | None = None
-) -> int:
+def run_module(module: Callable[..., Any], name: str, description: str, argv: Sequence[str] | None = None) -> int:
     """Start a module as a node and keep it until the node ends.
 
     Args:

@@ -24,6 +24,4 @@ def config_file(name: str) -> Path:
         installed = None
     if installed is not None and installed.is_file():
         return installed
-    raise FileNotFoundError(
-        f"no configuration file {name}: looked beside the sources and in package {PACKAGE}"
-    )
+    raise FileNotFoundError(f"no configuration file {name}: looked beside the sources and in package {PACKAGE}")

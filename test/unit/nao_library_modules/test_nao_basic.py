@@ -9,6 +9,7 @@ from genpy import Duration
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_modules.errors import BadGoal, Preempted, UnknownFunction
+from nao_library_modules.function_chain import checked_by
 from nao_library_modules.launcher import BadLaunchPath
 from nao_library_modules.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
@@ -118,6 +119,17 @@ def test_an_unexpected_error_is_logged_with_its_trace_and_the_server_lives_on(mo
     assert server.text == "function 1 (crash): KeyError: 'oops'"
     assert "Traceback" in caplog.text
     assert module.server.play(chain(("say", "again"))).end == "succeeded"
+
+
+def test_an_unexpected_error_in_a_check_names_the_function_and_runs_nothing(module, caplog):
+    def check(str_param):
+        raise KeyError("oops")
+
+    module.function_table["odd"] = checked_by(check)(lambda str_param: module.say(str_param))
+    server = module.server.play(chain(("say", "one"), ("odd", "two")))
+    assert (server.end, server.text) == ("aborted", "function 2 (odd): KeyError: 'oops'")
+    assert "Traceback" in caplog.text
+    assert module.done == []
 
 
 def test_preemption_ends_a_wait_and_the_function_before_it_counts_as_done(module, edge):

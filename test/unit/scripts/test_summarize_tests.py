@@ -19,9 +19,7 @@ FAILING = (
     '<testsuite><testcase classname="Leds" name="test_on">'
     '<failure message="expected 1&#10;got 0"/></testcase></testsuite>'
 )
-SKIPPING = (
-    '<testsuite><testcase classname="Leds" name="test_on"><skipped message="dark"/></testcase></testsuite>'
-)
+SKIPPING = '<testsuite><testcase classname="Leds" name="test_on"><skipped message="dark"/></testcase></testsuite>'
 DIED = (
     '<testsuite><testcase classname="RosTest" name="testlights">'
     "<failure>test [lights] did not generate test results</failure></testcase></testsuite>"
@@ -76,9 +74,7 @@ def test_unreadable_results_are_a_failure(tmp_path):
 
 
 def test_the_report_of_rostest_itself_counts_only_where_it_fails(tmp_path):
-    ran = collect_run(
-        leave_run(tmp_path / "ran", 0, rostest_lights=PASSING, rosunit_lights=PASSING), "lights.test"
-    )
+    ran = collect_run(leave_run(tmp_path / "ran", 0, rostest_lights=PASSING, rosunit_lights=PASSING), "lights.test")
     died = collect_run(leave_run(tmp_path / "died", 1, rostest_lights=DIED), "lights.test")
     assert outcomes(ran) == [Outcome.PASSED]
     assert outcomes(died) == [Outcome.FAILED]
@@ -114,9 +110,7 @@ def test_closing_line_and_verdict(wanted, line, success):
     assert is_success(cases) is success
 
 
-@pytest.mark.parametrize(
-    "status, words", [(124, "in time"), (-9, "signal 9"), (139, "signal 11"), (2, "status 2")]
-)
+@pytest.mark.parametrize("status, words", [(124, "in time"), (-9, "signal 9"), (139, "signal 11"), (2, "status 2")])
 def test_exit_statuses_are_told_in_words(status, words):
     assert words in describe_status(status)
 

