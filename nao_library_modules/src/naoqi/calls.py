@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
+from threading import get_ident
 from typing import TYPE_CHECKING, Any, Callable, Optional, Tuple
 
 import qi
@@ -61,10 +62,14 @@ class Call:
         """
         # Most answers come within the first slice, and then this is all that is done.
         first_ms = FIRST_SLICE_MS if timeout is None else max(0, min(FIRST_SLICE_MS, int(1000.0 * timeout)))
+        presence, thread = self.method.module.connection.presence, get_ident()
+        presence.enter(thread)
         try:
             value = self._future.value(first_ms)
         except RuntimeError as error:
             value = self._late_value(error, timeout, first_ms)
+        finally:
+            presence.leave(thread)
         return wire.from_wire(value)
 
     def wait(self, timeout: Optional[float] = None) -> bool:
@@ -76,20 +81,12 @@ class Call:
         Returns:
             Whether the call is finished.
         """
-        wait = self._future.wait
-        in_main_thread = threading.current_thread() is threading.main_thread()
-        slice_ms = INTERRUPTIBLE_MS if in_main_thread else LONGEST_WAIT_MS
-        if timeout is None:
-            while wait(slice_ms) == RUNNING:
-                pass
-            return True
-        deadline = time.monotonic() + timeout
-        while True:
-            left_ms = int(1000.0 * (deadline - time.monotonic())) + 1
-            if wait(max(0, min(left_ms, slice_ms))) != RUNNING:
-                return True
-            if time.monotonic() >= deadline:
-                return False
+        presence, thread = self.method.module.connection.presence, get_ident()
+        presence.enter(thread)
+        try:
+            return self._wait(timeout)
+        finally:
+            presence.leave(thread)
 
     def done(self) -> bool:
         """Whether the call is finished: with a value, an error, or cancelled."""
@@ -114,18 +111,39 @@ class Call:
                 What it raises is logged.
         """
 
+        presence = self.method.module.connection.presence
+
         def run(_future: Any) -> None:
             try:
                 callback(self)
             except Exception:
                 logger.exception("the done-callback %r of a call failed", callback)
+            finally:
+                presence.leave(run)
 
+        presence.enter(run)
         self._future.addCallback(run)
+
+    def _wait(self, timeout: Optional[float]) -> bool:
+        wait = self._future.wait
+        in_main_thread = threading.current_thread() is threading.main_thread()
+        slice_ms = INTERRUPTIBLE_MS if in_main_thread else LONGEST_WAIT_MS
+        if timeout is None:
+            while wait(slice_ms) == RUNNING:
+                pass
+            return True
+        deadline = time.monotonic() + timeout
+        while True:
+            left_ms = int(1000.0 * (deadline - time.monotonic())) + 1
+            if wait(max(0, min(left_ms, slice_ms))) != RUNNING:
+                return True
+            if time.monotonic() >= deadline:
+                return False
 
     def _late_value(self, error: RuntimeError, timeout: Optional[float], waited_ms: int) -> Any:
         """The value, after the first look at the future has raised: the call failed, or only takes longer."""
         if str(error) == NOT_YET:
-            if not self.wait(None if timeout is None else max(0.0, timeout - 0.001 * waited_ms)):
+            if not self._wait(None if timeout is None else max(0.0, timeout - 0.001 * waited_ms)):
                 raise CallTimeout(self.method.module.name, self.method.name, timeout or 0.0) from None
             try:
                 return self._future.value()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from threading import get_ident
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple
 
 from . import wire
@@ -151,7 +152,15 @@ class RemoteMethod:
         return self._send(arguments)
 
     def _send(self, arguments: Tuple[Any, ...]) -> Call:
-        live = self.module.connection.live
+        connection = self.module.connection
+        presence, thread = connection.presence, get_ident()
+        presence.enter(thread)  # before looking for the session: when that is closed, nobody new comes in
+        try:
+            return self._sent(connection.live, arguments)
+        finally:
+            presence.leave(thread)
+
+    def _sent(self, live: Optional[Live], arguments: Tuple[Any, ...]) -> Call:
         if live is None or live is not self._live or live.services.get(self.module.name) is not self._service:
             self._bind(live)
         try:

@@ -13,6 +13,7 @@ import time
 from typing import Any, Callable, List, Optional
 
 from .errors import NaoError, RobotUnreachable
+from .presence import Presence
 from .session import Live, answered, open_live
 from .state import Listener, Listeners, State, Timing
 from .subscriptions import EventSubscriptions
@@ -20,6 +21,9 @@ from .tasks import TaskTable
 from .translate import connect_reason, is_unknown_service, unknown_module
 
 logger = logging.getLogger("naoqi")
+
+EXIT_LIMIT = 1.0
+"""So long `close` waits for calls that must end because it has closed the session, in s."""
 
 
 class Connection:
@@ -33,6 +37,7 @@ class Connection:
         latency: Round trip of the last heartbeat in s; None while not connected.
         last_error: What went wrong last, empty if nothing ever did.
         tasks: The posted calls of all proxies on this connection.
+        presence: Who is inside libqi on behalf of this connection.
         subscriptions: Event subscriptions to make again after a loss.
     """
 
@@ -46,6 +51,7 @@ class Connection:
         self.latency: Optional[float] = None
         self.last_error = ""
         self.tasks = TaskTable()
+        self.presence = Presence()
         self._condition = threading.Condition()
         self._state = State.CONNECTING
         self._since = time.monotonic()
@@ -194,6 +200,7 @@ class Connection:
         if threading.current_thread() is not self._watcher:
             self._watcher.join(self.timing.heartbeat_limit + 1.0)
         self._listeners.close()
+        self.presence.wait_until_empty(EXIT_LIMIT)
 
     # From here on the watching thread.
 
@@ -256,7 +263,7 @@ class Connection:
         else:
             self.last_error = reason
             self._change(State.LOST)
-        live.session.close()  # makes the calls under way fail, also when the robot is silent
+        live.close()  # makes the calls under way fail, also when the robot is silent
         if not self._closing.is_set():
             logger.warning("connection to NAOqi at %s lost (%s); reconnecting", self.address, reason)
 

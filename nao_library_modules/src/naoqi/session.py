@@ -33,6 +33,10 @@ class Live:
     broken: threading.Event
     services: Dict[str, Any] = field(default_factory=dict)
 
+    def close(self) -> None:
+        """End the session: calls under way fail, also when the robot is silent."""
+        close_quietly(self.session)
+
 
 def new_session() -> Any:
     """A `qi.Session` that is not connected."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import sys
 import threading
 from dataclasses import dataclass, field
 from typing import Sequence
@@ -25,6 +26,9 @@ from nao_sim_bridge.sim.simulation import Scene, Simulation
 from nao_sim_bridge.sim.tasks import Task
 
 MAX_PUSH = 60.0
+# How long a thread that computes keeps Python's interpreter when another wants it, s. The simulation computes nearly
+# all the time when it runs as fast as possible; Python's own 5 ms would be felt in every call.
+SWITCH_INTERVAL = 0.0005
 log = logging.getLogger("nao_sim.server")
 
 
@@ -76,6 +80,7 @@ class SimulatorServer:
         Raises:
             RuntimeError: The address cannot be had.
         """
+        sys.setswitchinterval(SWITCH_INTERVAL)
         self.broker.listen(self.options.address, self.options.port, lambda: not self.ended.is_set())
         robot_leds = lambda: self.simulation.robot.leds.values  # noqa: E731
         self.memory.add_live(live_keys(self.runner, self.simulation.model, self.simulation.led_layout, robot_leds))

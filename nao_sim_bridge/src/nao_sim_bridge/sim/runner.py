@@ -190,6 +190,8 @@ class SimulationRunner:
         snapshot = self._simulation.tick()
         with self._ticked:
             self._ticked.notify_all()
+        # Time that passes without a wait would keep every other thread from the interpreter.
+        time.sleep(0.0)
         if self._advances:
             task, left = self._advances[0]
             if left > 1:

@@ -14,11 +14,12 @@ import numpy as np
 
 from nao_sim_bridge.sim import urdf_xml as xml
 from nao_sim_bridge.sim.appearance import Appearance
+from nao_sim_bridge.sim.collision import read_collision_shapes
 from nao_sim_bridge.sim.kinematics import rpy_matrix, transform
 from nao_sim_bridge.sim.meshes import stl_bytes, tessellate
 from nao_sim_bridge.sim.model import Finger, Place, RobotModel
 from nao_sim_bridge.sim.shapes import Shape
-from nao_sim_bridge.sim.urdf_physics import Body, read_collision_shapes, without_bodies
+from nao_sim_bridge.sim.urdf_physics import Body, without_bodies
 
 ROOT = "base_link"
 OPTICAL_RPY = (-math.pi / 2.0, 0.0, -math.pi / 2.0)

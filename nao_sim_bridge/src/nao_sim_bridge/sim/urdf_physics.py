@@ -7,20 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
-from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim import urdf_xml as xml
-from nao_sim_bridge.sim.config import check_keys, read_json
-from nao_sim_bridge.sim.errors import ConfigError
+from nao_sim_bridge.sim.collision import FINGERS, read_collision_shapes
 from nao_sim_bridge.sim.model import Joint, Link, RobotModel, SimulatedHand
-from nao_sim_bridge.sim.shapes import Shape, read_shape
-
-COLLISION_FILE = "collision.json"
-FINGERS = {"LHand": "LFingers", "RHand": "RFingers"}
-"""Finger link of each hand joint."""
 
 
 def physics_urdf(model: RobotModel) -> str:
@@ -91,33 +83,3 @@ def without_bodies(whole: Body, parts: Sequence[Body]) -> Body:
 def shift(mass: float, offset: np.ndarray) -> np.ndarray:
     """Parallel axis term: (3, 3) inertia in kg m2 of a point mass at `offset` m."""
     return mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
-
-
-def read_collision_shapes(model: RobotModel) -> dict[str, tuple[Shape, ...]]:
-    """Collision shapes by link name (and finger link name), the left ones mirrored to the right.
-
-    Raises:
-        ConfigError: If the file names a link that the robot does not have, or a bad shape.
-    """
-    shapes = _authored_shapes()
-    known = {link.name for link in model.links} | set(FINGERS.values())
-    for name in shapes:
-        if name not in known:
-            raise ConfigError(f"{COLLISION_FILE}: links", f"no link {name!r} (allowed: {', '.join(sorted(known))})")
-    mirrored = {
-        "R" + name[1:]: tuple(shape.mirrored() for shape in of_link)
-        for name, of_link in shapes.items()
-        if name.startswith("L")
-    }
-    return {**shapes, **mirrored}
-
-
-@lru_cache(maxsize=None)
-def _authored_shapes() -> dict[str, tuple[Shape, ...]]:
-    tables = check_keys(read_json(config_file(COLLISION_FILE)), COLLISION_FILE, ("_meta", "links"))
-    return {
-        name: tuple(
-            read_shape(entry, f"{COLLISION_FILE}: links.{name}[{index}]") for index, entry in enumerate(entries)
-        )
-        for name, entries in tables["links"].items()
-    }

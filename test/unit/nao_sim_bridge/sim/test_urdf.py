@@ -13,12 +13,12 @@ import pytest
 
 from nao_sim_bridge.paths import data_root, urdf_file
 from nao_sim_bridge.sim.appearance import load_appearance
+from nao_sim_bridge.sim.collision import LOAD_FLAGS, apart, read_collision_shapes
 from nao_sim_bridge.sim.kinematics import center_of_mass, link_transforms, quaternion_matrix
 from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.model import VERSIONS, load_model
 from nao_sim_bridge.sim.postures import load_postures, posture
 from nao_sim_bridge.sim.urdf import full_urdf, mesh_files, physics_urdf
-from nao_sim_bridge.sim.urdf_physics import read_collision_shapes
 
 FRAMES_OF_CLIENTS = """
 base_link torso Head gaze l_sole r_sole l_ankle r_ankle l_wrist r_wrist l_gripper r_gripper CameraTop_frame
@@ -30,7 +30,6 @@ LHandTouchLeft_frame LHandTouchRight_frame RHandTouchBack_frame RHandTouchLeft_f
 MicroFrontCenter_frame MicroRearCenter_frame MicroSurroundLeft_frame MicroSurroundRight_frame ChestButton_frame
 LInfraRed_frame RInfraRed_frame
 """.split()
-FLAGS = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
 
 
 class Loaded:
@@ -40,13 +39,18 @@ class Loaded:
         path = folder / "robot.urdf"
         path.write_text(text)
         self.client = pybullet.connect(pybullet.DIRECT)
-        self.body = pybullet.loadURDF(str(path), flags=FLAGS, physicsClientId=self.client)
+        self.body = pybullet.loadURDF(str(path), flags=LOAD_FLAGS, physicsClientId=self.client)
         infos = [
             pybullet.getJointInfo(self.body, i, physicsClientId=self.client)
             for i in range(pybullet.getNumJoints(self.body, physicsClientId=self.client))
         ]
         self.joints = {info[1].decode(): info for info in infos}
         self.links = {info[12].decode(): info[0] for info in infos}
+
+    def keep_apart(self, pairs):
+        for first, second in pairs:
+            indices = self.links.get(first, -1), self.links.get(second, -1)
+            pybullet.setCollisionFilterPair(self.body, self.body, *indices, 0, physicsClientId=self.client)
 
     def dynamics(self, link):
         return pybullet.getDynamicsInfo(self.body, link, physicsClientId=self.client)
@@ -81,6 +85,7 @@ class Loaded:
 @pytest.fixture
 def physics(tmp_path):
     loaded = Loaded(physics_urdf(load_model()), tmp_path)
+    loaded.keep_apart(apart(load_model()))
     yield loaded
     pybullet.disconnect(physicsClientId=loaded.client)
 
@@ -157,15 +162,27 @@ def test_no_posture_touches_itself(physics, name):
     assert physics.self_contacts() == []
 
 
-def test_hands_that_meet_do_touch(physics):
-    model = load_model()
-    for joint in model.joints:
-        physics.put(joint.name, 0.0)
+def test_limbs_that_meet_do_touch(physics):
     for side, sign in (("L", 1.0), ("R", -1.0)):
         physics.put(f"{side}ShoulderRoll", -0.3 * sign)
         physics.put(f"{side}ElbowRoll", -0.6 * sign)
-    touching = {link for pair in physics.self_contacts() for link in pair}
-    assert touching & {"l_wrist", "LFingers", "LForeArm"} and touching & {"r_wrist", "RFingers", "RForeArm"}
+    assert ("l_wrist", "r_wrist") in {tuple(sorted(pair)) for pair in physics.self_contacts()}
+
+
+def test_a_forearm_touches_the_belly(physics):
+    for name, angle in (("ShoulderPitch", 1.5), ("ElbowYaw", 0.0), ("ElbowRoll", -1.5)):
+        physics.put(f"L{name}", angle)
+    touching = {tuple(sorted(pair)) for pair in physics.self_contacts()}
+    assert touching & {("l_wrist", "torso"), ("LForeArm", "torso"), ("LFingers", "torso")}
+
+
+def test_pairs_that_stay_apart_are_pairs_of_links(physics):
+    pairs = list(apart(load_model()))
+    names = {"torso", *physics.links}
+    assert all(first in names and second in names for first, second in pairs)
+    known = {frozenset(pair) for pair in pairs}
+    assert frozenset(("torso", "Neck")) in known and frozenset(("torso", "LTibia")) in known
+    assert frozenset(("torso", "l_wrist")) not in known and frozenset(("LTibia", "RTibia")) not in known
 
 
 def sole_points():

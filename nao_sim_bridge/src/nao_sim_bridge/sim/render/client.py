@@ -22,7 +22,11 @@ SOURCES = Path(__file__).resolve().parents[3]
 
 
 class RenderError(SimulationError):
-    """A picture could not be made; the next request starts afresh."""
+    """A picture could not be made; the next request starts the process again if it has to."""
+
+
+class PictureRefused(RenderError):
+    """The picture process is well but cannot make this picture."""
 
 
 class _Worker:
@@ -53,7 +57,8 @@ class _Worker:
         """The next answer; an error it reports is raised.
 
         Raises:
-            RenderError: If it has ended, does not answer in time, or reports an error.
+            PictureRefused: If it reports an error.
+            RenderError: If it has ended or does not answer in time.
         """
         try:
             if not self.pipe.poll(timeout):
@@ -62,7 +67,7 @@ class _Worker:
         except (EOFError, OSError) as error:
             raise RenderError(f"{what}: {self.last_words()}") from error
         if kind == "error":
-            raise RenderError(f"{what}: {content}")
+            raise PictureRefused(f"{what}: {content}")
         return content
 
     def last_words(self) -> str:
@@ -78,8 +83,13 @@ class _Worker:
         try:
             self.process.wait(STOP_TIMEOUT)
         except subprocess.TimeoutExpired:
-            self.process.kill()
-            self.process.wait()
+            self.kill()
+
+    def kill(self) -> None:
+        """End it by force."""
+        self.pipe.close()
+        self.process.kill()
+        self.process.wait()
 
 
 def os_pipe() -> tuple[Connection, Connection]:
@@ -139,13 +149,14 @@ class Renderer:
                 worker.pipe.send(("render", (state, camera)))
                 shape = worker.receive(timeout, "picture")
                 pixels = worker.pipe.recv_bytes()
-            except (OSError, EOFError) as error:
-                self._drop_worker()
-                raise RenderError(f"picture: {worker.last_words()}") from error
-            except RenderError:
-                # A late answer would be taken for that of the next request.
-                self._drop_worker()
+            except PictureRefused:
                 raise
+            except (OSError, EOFError, RenderError) as error:
+                # It is gone, or late: its answer would be taken for that of the next request.
+                words = str(error) if isinstance(error, RenderError) else f"picture: {worker.last_words()}"
+                self._worker = None
+                worker.kill()
+                raise RenderError(words) from error
         return np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
 
     def close(self) -> None:
