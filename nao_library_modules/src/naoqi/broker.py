@@ -5,11 +5,11 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 
 from .errors import BrokerError, NaoError, RobotUnreachable
 from .registry import CONNECT_TIMEOUT, connection
-from .session import answered, connect_session, new_session
+from .session import Live, answered, connect_session
 from .state import State
 from .worker import Worker
 
@@ -61,7 +61,7 @@ class ALBroker:
         self._listen_ip = listen_ip
         self._listen_port = listen_port
         self._lock = threading.RLock()  # guards session and modules, and keeps two restorations apart
-        self._session: Any = None
+        self._live: Optional[Live] = None
         self._modules: Dict[str, Any] = {}
         self._service_ids: Dict[str, int] = {}
         self._down = threading.Event()
@@ -92,7 +92,7 @@ class ALBroker:
     def getPort(self) -> int:
         """TCP port on which it listens; 0 while it does not."""
         with self._lock:
-            endpoints = self._session.endpoints() if self._session is not None else []
+            endpoints = self._live.session.endpoints() if self._live is not None else []
         return int(endpoints[0].rsplit(":", 1)[1]) if endpoints else 0
 
     def isModulePresent(self, name: str) -> bool:
@@ -130,8 +130,9 @@ class ALBroker:
                 raise BrokerError(self._name, "it has been shut down")
             if name in self._modules:
                 raise BrokerError(self._name, f"it serves a module {name!r} already")
-            if self._session is None:
+            if self._live is None:
                 raise self.connection.unreachable()
+            self.connection.presence.lend(served)
             self._register(name, served, patience=0.0)
             self._modules[name] = served
             self.connection.subscriptions.own(name)
@@ -157,27 +158,25 @@ class ALBroker:
     # Called with the lock held.
 
     def _open(self, port: int) -> None:
-        session = new_session()
+        live = Live(on_break=lambda: self._worker.submit(self._restore))
         host = self._host_to_listen_on()
-        try:
-            session.listen(f"tcp://{host}:{port}")
-        except RuntimeError as error:
-            session.close()
-            raise BrokerError(self._name, f"cannot listen on {host}:{port} ({str(error).strip()})") from error
         robot = self.connection
         try:
-            connect_session(session, robot.host, robot.port, robot.timing.connect_limit)
+            live.session.listen(f"tcp://{host}:{port}")
+            connect_session(live.session, robot.host, robot.port, robot.timing.connect_limit)
         except RobotUnreachable:
-            session.close()
+            live.close()
             raise
-        session.disconnected.connect(lambda _reason: self._worker.submit(self._restore))
-        self._session = session
+        except RuntimeError as error:
+            live.close()
+            raise BrokerError(self._name, f"cannot listen on {host}:{port} ({str(error).strip()})") from error
+        self._live = live
 
     def _withdraw(self, name: str) -> None:
         self._modules.pop(name, None)
         service_id = self._service_ids.pop(name, None)
-        if service_id is not None and self._session is not None:
-            answered(self._session.unregisterService(service_id, _async=True), STEP_LIMIT)
+        if service_id is not None and self._live is not None:
+            answered(self._live.session.unregisterService(service_id, _async=True), STEP_LIMIT)
 
     def _register(self, name: str, served: Any, patience: float) -> None:
         """Register one module; a name in use is tried again until the patience (s) is over.
@@ -186,7 +185,7 @@ class ALBroker:
         """
         end, delay = time.monotonic() + patience, 0.05
         while True:
-            future = self._session.registerService(name, served, _async=True)
+            future = self._live.session.registerService(name, served, _async=True)
             if not answered(future, STEP_LIMIT):
                 reason = f"no answer to the registration of {name}"
                 raise RobotUnreachable(self.connection.host, self.connection.port, reason)
@@ -208,10 +207,10 @@ class ALBroker:
 
     def _close_session(self) -> None:
         with self._lock:
-            session, self._session = self._session, None
+            live, self._live = self._live, None
             self._service_ids.clear()
-        if session is not None:
-            session.close()
+        if live is not None:
+            live.close()
 
     # Called by the connection and by libqi; the work is done in the thread of the broker.
 
@@ -228,7 +227,7 @@ class ALBroker:
         delay = 0.2
         while not self._down.is_set() and self.connection.state is State.CONNECTED:
             with self._lock:
-                if self._session is not None and self._session.isConnected():
+                if self._live is not None and self._live.session.isConnected():
                     return
                 self._close_session()
                 try:

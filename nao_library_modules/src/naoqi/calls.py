@@ -111,17 +111,13 @@ class Call:
                 What it raises is logged.
         """
 
-        presence = self.method.module.connection.presence
-
         def run(_future: Any) -> None:
             try:
                 callback(self)
             except Exception:
                 logger.exception("the done-callback %r of a call failed", callback)
-            finally:
-                presence.leave(run)
 
-        presence.enter(run)
+        self.method.module.connection.presence.lend(run)
         self._future.addCallback(run)
 
     def _wait(self, timeout: Optional[float]) -> bool:

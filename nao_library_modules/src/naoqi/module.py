@@ -71,9 +71,7 @@ class ALModule:
             UnknownMethod: If the module has no such method.
         """
         if not callable(getattr(self, method, None)):
-            known = [
-                each for each in dir(self) if not each.startswith("__") and callable(getattr(self, each))
-            ]
+            known = [each for each in dir(self) if not each.startswith("__") and callable(getattr(self, each))]
             raise UnknownMethod(module_name, method, closest_names(method, known), known)
         if method not in self.__methods:
             self.__methods.append(method)

@@ -7,11 +7,12 @@ Closing a session makes everybody come out; this is how its owner waits for that
 from __future__ import annotations
 
 import threading
-from typing import Dict, Hashable
+import weakref
+from typing import Any, Dict, Hashable
 
 
 class Presence:
-    """Threads that wait in libqi, and callbacks that libqi still has to call."""
+    """Threads that wait in libqi, and objects of ours that it holds and will let go of in a thread of its own."""
 
     def __init__(self) -> None:
         """Nobody is inside."""
@@ -22,6 +23,10 @@ class Presence:
     def enter(self, who: Hashable) -> None:
         """Somebody goes in; done at each call, hence this cheap."""
         self._inside[who] = None
+
+    def lend(self, held: Any) -> None:
+        """Libqi holds this object from now on; it has left when nobody holds it any more."""
+        self.enter(weakref.ref(held, self.leave))
 
     def leave(self, who: Hashable) -> None:
         """Somebody has come out; who was never in is no error."""

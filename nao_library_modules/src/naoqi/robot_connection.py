@@ -57,7 +57,7 @@ class Connection:
         self._since = time.monotonic()
         self._failed_attempts = 0
         self._check = ""
-        self._opening: Any = None
+        self._opening: Optional[Live] = None
         self._closing = threading.Event()
         self._listeners = Listeners(f"naoqi listeners {self.address}")
         self.subscriptions = EventSubscriptions(self)
@@ -190,6 +190,7 @@ class Connection:
                 return
             self._closing.set()
             live, opening = self.live, self._opening
+        self.tasks.abandon()
         if live is not None:
             if self.tasks.any_running():
                 # Requests leave in order, so an answered one proves that those before it have arrived.
@@ -209,7 +210,7 @@ class Connection:
         while not self._closing.is_set():
             try:
                 live = self._open()
-            except RobotUnreachable as error:
+            except Exception as error:  # whatever it is, this thread is the only one that can bring it back
                 self._note_failed_attempt(error)
                 if not self._closing.wait(delay) and self.generation == 0 and self._failed_attempts == 1:
                     logger.warning("%s; trying on in the background", str(error).rstrip("."))
@@ -228,10 +229,10 @@ class Connection:
             with self._condition:
                 self._opening = None
 
-    def _announce(self, session: Any) -> None:
+    def _announce(self, live: Live) -> None:
         """Let `close` break an attempt off; if it has been called already, do so here."""
         with self._condition:
-            self._opening = session
+            self._opening = live
             if self._closing.is_set():
                 raise RobotUnreachable(self.host, self.port, "this program has closed the connection")
 
@@ -267,9 +268,12 @@ class Connection:
         if not self._closing.is_set():
             logger.warning("connection to NAOqi at %s lost (%s); reconnecting", self.address, reason)
 
-    def _note_failed_attempt(self, error: RobotUnreachable) -> None:
+    def _note_failed_attempt(self, error: Exception) -> None:
         if self._closing.is_set():
             return
+        if not isinstance(error, RobotUnreachable):
+            logger.error("an attempt to connect to %s failed in a new way", self.address, exc_info=error)
+            error = RobotUnreachable(self.host, self.port, str(error))
         with self._condition:
             self.last_error, self._check = error.reason, error.check
             self._failed_attempts += 1

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 import time
-from dataclasses import dataclass, field
 from typing import Any, Callable, Dict
 
 import qi
@@ -17,34 +17,44 @@ QUIET_LIBQI = "qi.path.sdklayout=0"
 """libqi warns that it found no SDK around it; a program that only talks to a robot needs none."""
 
 
-@dataclass(eq=False)
 class Live:
-    """One session from its connection to its loss. A session cannot be used again, so each has its own.
+    """One session from its making to its loss. A session cannot be used again, so each has its own.
 
     Attributes:
         session: The `qi.Session`.
-        heartbeat: The remote method that is called as heartbeat.
-        broken: Set when libqi reports the end of the session, and when the program closes it.
+        heartbeat: The remote method that is called as heartbeat; None until it is connected.
+        broken: Set when libqi reports the end of the session, and when the program wants it.
         services: Remote objects found so far, by name.
     """
 
-    session: Any
-    heartbeat: Any
-    broken: threading.Event
-    services: Dict[str, Any] = field(default_factory=dict)
+    def __init__(self, on_break: Callable[[], None] = lambda: None) -> None:
+        """Make a session that is not connected.
+
+        Args:
+            on_break: Called in a thread of libqi when the connection breaks; not when `close` ends it.
+        """
+        qi.logging.setFilters(QUIET_LIBQI)
+        self.session = qi.Session()
+        self.heartbeat: Any = None
+        self.broken = threading.Event()
+        self.services: Dict[str, Any] = {}
+        self._on_break = on_break
+        self._link = self.session.disconnected.connect(self._break)
 
     def close(self) -> None:
         """End the session: calls under way fail, also when the robot is silent."""
-        close_quietly(self.session)
+        # A program that ends must not be called back by libqi any more; a session that was never connected, or
+        # is broken already, has nothing to take back and says so.
+        with contextlib.suppress(RuntimeError):
+            self.session.disconnected.disconnect(self._link)
+        self.session.close()
+
+    def _break(self, _reason: str) -> None:
+        self.broken.set()
+        self._on_break()
 
 
-def new_session() -> Any:
-    """A `qi.Session` that is not connected."""
-    qi.logging.setFilters(QUIET_LIBQI)
-    return qi.Session()
-
-
-def open_live(host: str, port: int, limit: float, announce: Callable[[Any], None]) -> Live:
+def open_live(host: str, port: int, limit: float, announce: Callable[[Live], None]) -> Live:
     """Connect to the NAOqi at an address.
 
     Args:
@@ -58,20 +68,19 @@ def open_live(host: str, port: int, limit: float, announce: Callable[[Any], None
         RobotUnreachable: If no NAOqi answers there.
     """
     deadline = time.monotonic() + limit
-    broken = threading.Event()
-    session = new_session()
-    session.disconnected.connect(lambda _reason: broken.set())
-    announce(session)
+    live = Live()
+    announce(live)
     try:
-        connect_session(session, host, port, limit)
-        future = session.service("ServiceDirectory", _async=True)
+        connect_session(live.session, host, port, limit)
+        future = live.session.service("ServiceDirectory", _async=True)
         directory = _value(future, host, port, deadline - time.monotonic())
-        return Live(session, directory.machineId, broken)
+        live.heartbeat = directory.machineId
+        return live
     except RobotUnreachable:
-        session.close()
+        live.close()
         raise
     except (RuntimeError, AttributeError) as error:
-        session.close()
+        live.close()
         reason = f"what answers there is no NAOqi ({error})"
         raise RobotUnreachable(host, port, reason, "that this is the port of NAOqi") from error
 

@@ -23,6 +23,7 @@ class TaskTable:
         """Make an empty table."""
         self._lock = threading.Lock()  # guards all below; never held while a call is asked anything
         self._last_id = 0
+        self._error_level = logging.ERROR
         self._running: Dict[int, Call] = {}
         self._errors: OrderedDict[int, NaoError] = OrderedDict()
 
@@ -80,6 +81,10 @@ class TaskTable:
             pass
         return False
 
+    def abandon(self) -> None:
+        """The program ends the connection itself: that calls still run then is no news to it."""
+        self._error_level = logging.DEBUG
+
     def stop(self, task: int) -> None:
         """Cancel a call; one that is finished already is no error."""
         call = self._call(task)
@@ -99,7 +104,7 @@ class TaskTable:
             logger.debug("posted call %d (%s) was cancelled", task, call.method)
         except NaoError as failure:
             error = failure
-            logger.error("posted call %d: %s", task, failure)
+            logger.log(self._error_level, "posted call %d: %s", task, failure)
         with self._lock:
             self._running.pop(task, None)
             if error is not None:

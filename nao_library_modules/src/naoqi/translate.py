@@ -27,9 +27,7 @@ from .signatures import readable_call
 NOT_SENT = ("Socket is not connected", "Session not connected.")
 BROKEN_UNDER_WAY = ("Session closed", "Session disconnected", "Socket Disconnected", "Service removed")
 CANCELED = ("Future canceled.", "Call has been canceled.")
-PYTHON_SERVICE = re.compile(
-    r"(?P<kind>[A-Za-z_][\w.]*)(?:: (?P<text>.*?))?\n+(?P<trace>At:\n.*)\Z", re.DOTALL
-)
+PYTHON_SERVICE = re.compile(r"(?P<kind>[A-Za-z_][\w.]*)(?:: (?P<text>.*?))?\n+(?P<trace>At:\n.*)\Z", re.DOTALL)
 CONVERSION_FAILED = re.compile(r"Call argument number \d+ (conversion failure from .* to [^.]*)")
 
 Reason = Tuple[str, str]

@@ -142,9 +142,7 @@ def test_the_message_of_a_subscription_arrives(buttons, memory):
     assert buttons.heard == [(EVENT, 1.0, "head")]
 
 
-@pytest.mark.parametrize(
-    "method, heard", [("two", (EVENT, 1.0)), ("all_of_them", (EVENT, 1.0, "")), ("none", ())]
-)
+@pytest.mark.parametrize("method, heard", [("two", (EVENT, 1.0)), ("all_of_them", (EVENT, 1.0, "")), ("none", ())])
 def test_callbacks_may_take_fewer_arguments(buttons, memory, method, heard):
     memory.subscribeToEvent(EVENT, "Buttons", method)
     memory.raiseEvent(EVENT, 1.0)
@@ -257,7 +255,7 @@ class TestAfterALoss:
         eventually(lambda: memory_has(memory, "ALTest") and memory_has(memory, "Buttons"), "both are back")
 
     def test_a_broker_whose_own_session_breaks_serves_again(self, broker, memory, caplog, eventually):
-        broker._session.close()  # as if only that socket had been cut
+        broker._live.session.close()  # as if only that socket had been cut
         eventually(lambda: "made again" in caplog.text, "the log says so")
         assert memory.raiseEvent(EVENT, 6.0) == [6.0]
         assert broker.connection.generation == 1

@@ -15,11 +15,7 @@ CAMERAS = json.loads((REPOSITORY / "nao_sim_bridge" / "config" / "nao_h25.json")
 
 
 def constants_of(module):
-    return {
-        name: value
-        for name, value in vars(module).items()
-        if isinstance(value, (int, float)) and name[0] != "_"
-    }
+    return {name: value for name, value in vars(module).items() if isinstance(value, (int, float)) and name[0] != "_"}
 
 
 def test_frames_have_the_numbers_of_almotion_under_old_and_new_names():
@@ -77,9 +73,7 @@ def test_cameras_agree_with_the_robot_data():
 
 
 def test_parameters_are_numbered_without_gap_up_to_the_focus():
-    numbers = {
-        value for name, value in constants_of(vision_definitions).items() if name.startswith("kCamera")
-    }
+    numbers = {value for name, value in constants_of(vision_definitions).items() if name.startswith("kCamera")}
     assert numbers == set(range(41)) | {43}
 
 

@@ -11,9 +11,7 @@ METHODS = ["setIntensity", "getIntensity", "fade"]
 
 
 def site(*arguments):
-    return CallSite(
-        "nao", 9559, "ALLeds", "fade", arguments, lambda: ["fade(string, float)"], lambda: METHODS
-    )
+    return CallSite("nao", 9559, "ALLeds", "fade", arguments, lambda: ["fade(string, float)"], lambda: METHODS)
 
 
 def error_of(text, *arguments):

@@ -12,6 +12,7 @@ from typing import Mapping, Sequence
 import numpy as np
 import pybullet
 
+from nao_sim_bridge.sim.collision import LOAD_FLAGS, apart
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.motion.joints import JointCommands
 from nao_sim_bridge.sim.readings import BodyReadings, Contact, JointReadings, Pose
@@ -56,7 +57,9 @@ class Physics:
         self._travel = model.simulated_hand.travel
         self._hands = [i for i, j in enumerate(model.joints) if j.is_hand]
         self._torques = np.array([j.max_torque for j in model.joints])
+        self._keep_apart()
         self._set_friction()
+        self._limit_speeds()
         self._couple_hips(joints)
         local_position, local_orientation = pybullet.getDynamicsInfo(self.robot, -1, physicsClientId=self.client)[3:5]
         self._torso_to_com = (local_position, local_orientation)
@@ -183,8 +186,7 @@ class Physics:
         try:
             with os.fdopen(descriptor, "w", encoding="utf-8") as file:
                 file.write(physics_urdf(self._model))
-            flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
-            return pybullet.loadURDF(path, flags=flags, physicsClientId=self.client)
+            return pybullet.loadURDF(path, flags=LOAD_FLAGS, physicsClientId=self.client)
         finally:
             os.remove(path)
 
@@ -192,6 +194,12 @@ class Physics:
         count = pybullet.getNumJoints(self.robot, physicsClientId=self.client)
         infos = [pybullet.getJointInfo(self.robot, i, physicsClientId=self.client) for i in range(count)]
         return {info[column].decode(): info[0] for info in infos}
+
+    def _keep_apart(self) -> None:
+        """Leave out the pairs of links that never touch each other: neighbours overlap at their joint."""
+        for first, second in apart(self._model):
+            indices = (self.links.get(first, -1), self.links.get(second, -1))
+            pybullet.setCollisionFilterPair(self.robot, self.robot, *indices, 0, physicsClientId=self.client)
 
     def _set_friction(self) -> None:
         contact = self._settings.contact
@@ -214,6 +222,23 @@ class Physics:
                 frictionAnchor=1,
                 contactStiffness=contact.sole_stiffness,
                 contactDamping=contact.sole_damping,
+                physicsClientId=self.client,
+            )
+
+    def _limit_speeds(self) -> None:
+        """Keep the motors to their top speeds: without, one that lags catches up at any speed its torque allows.
+
+        Only the call for one joint takes a limit; the engine keeps it when `drive` sets everything else anew.
+        """
+        speeds = self._to_engine_speeds([j.max_velocity for j in self._model.joints])
+        for index, speed in zip(self._indices, speeds):
+            pybullet.setJointMotorControl2(
+                self.robot,
+                index,
+                pybullet.POSITION_CONTROL,
+                targetPosition=0.0,
+                force=0.0,
+                maxVelocity=speed,
                 physicsClientId=self.client,
             )
 

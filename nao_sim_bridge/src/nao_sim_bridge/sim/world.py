@@ -19,7 +19,9 @@ import yaml
 from nao_sim_bridge.paths import world_directory
 from nao_sim_bridge.sim.config import check_keys, vector
 from nao_sim_bridge.sim.errors import ConfigError
+from nao_sim_bridge.sim.meshes import tessellate
 from nao_sim_bridge.sim.shapes import KINDS, Shape, read_shape
+from nao_sim_bridge.sim.visuals import visual_shape
 
 FLOOR = "floor"
 OBJECT_OPTIONS = ("rpy", "mass", "color", "friction", "rolling_friction", "restitution")
@@ -261,7 +263,11 @@ def _build_floor(floor: Floor, client: int, visual: bool) -> int:
     if visual:
         extents = (FLOOR_EXTENT, FLOOR_EXTENT, 0.005)
         seen = pybullet.createVisualShape(
-            pybullet.GEOM_BOX, halfExtents=extents, rgbaColor=(*floor.color, 1.0), physicsClientId=client
+            pybullet.GEOM_BOX,
+            halfExtents=extents,
+            rgbaColor=(*floor.color, 1.0),
+            specularColor=(0.0, 0.0, 0.0),
+            physicsClientId=client,
         )
         # The top face is the floor: half the thickness below z = 0.
         return pybullet.createMultiBody(0.0, -1, seen, basePosition=(0.0, 0.0, -extents[2]), physicsClientId=client)
@@ -273,21 +279,11 @@ def _build_floor(floor: Floor, client: int, visual: bool) -> int:
 
 def _build_object(thing: WorldObject, client: int, visual: bool) -> int:
     shape = thing.shape
-    kind = getattr(pybullet, f"GEOM_{shape.kind.upper()}")
-    size: dict[str, Any] = {}
-    if shape.kind == "box":
-        size["halfExtents"] = [edge / 2.0 for edge in shape.size]
-    else:
-        size["radius"] = shape.size[0]
-    if shape.kind in ("cylinder", "capsule"):
-        # PyBullet calls the same thing height in collision shapes and length in visual ones.
-        size["length" if visual else "height"] = shape.size[1]
+    touched, seen, mass = -1, -1, 0.0
     if visual:
-        seen = pybullet.createVisualShape(kind, rgbaColor=(*thing.color, 1.0), physicsClientId=client, **size)
-        touched, mass = -1, 0.0
+        seen = visual_shape(tessellate(shape), thing.color, client)
     else:
-        touched = pybullet.createCollisionShape(kind, physicsClientId=client, **size)
-        seen, mass = -1, thing.mass
+        touched, mass = _collision_shape(shape, client), thing.mass
     body = pybullet.createMultiBody(
         mass,
         touched,
@@ -307,3 +303,14 @@ def _build_object(thing: WorldObject, client: int, visual: bool) -> int:
             physicsClientId=client,
         )
     return body
+
+
+def _collision_shape(shape: Shape, client: int) -> int:
+    if shape.kind == "box":
+        half = [edge / 2.0 for edge in shape.size]
+        return pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=client)
+    size: dict[str, Any] = {"radius": shape.size[0]}
+    if shape.kind != "sphere":
+        size["height"] = shape.size[1]
+    kind = getattr(pybullet, f"GEOM_{shape.kind.upper()}")
+    return pybullet.createCollisionShape(kind, physicsClientId=client, **size)

@@ -47,6 +47,8 @@ class _Worker:
                 [*command, str(there.fileno()), mode, world_name, version],
                 pass_fds=(there.fileno(),),
                 stdin=subprocess.DEVNULL,
+                # The window talks about its threads on the standard output.
+                stdout=subprocess.DEVNULL if mode == "window" else None,
                 env=environment,
             )
         finally:
@@ -199,6 +201,7 @@ class Viewer:
         self._world_name = world_name
         self._version = version
         self._worker: _Worker | None = None
+        self._drawing = False
 
     def start(self) -> Viewer:
         """Open the window.
@@ -214,20 +217,26 @@ class Viewer:
         except RenderError:
             worker.stop()
             raise
-        self._worker = worker
+        self._worker, self._drawing = worker, False
         return self
 
     def show(self, state: RenderState) -> None:
-        """Show a state; never waits. States that come faster than the window draws are left out by it.
+        """Show a state, or leave it out when the window still draws another one; never waits.
 
         Raises:
             RenderError: If the window has been closed.
         """
         if self._worker is None:
             raise RenderError("window: it is not open")
+        pipe = self._worker.pipe
         try:
-            self._worker.pipe.send(("show", state))
-        except OSError as error:
+            if self._drawing and pipe.poll():
+                pipe.recv()
+                self._drawing = False
+            if not self._drawing:
+                pipe.send(("show", state))
+                self._drawing = True
+        except (OSError, EOFError) as error:
             raise RenderError(f"window: {self._worker.last_words()}") from error
 
     def close(self) -> None:

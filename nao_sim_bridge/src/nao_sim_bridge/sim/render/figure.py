@@ -1,8 +1,7 @@
 """The robot as bodies of a PyBullet world that are only there to be seen.
 
 Each link is one body a colour, each lamp a body of its own. The engine knows no joints between them: poses
-come from forward kinematics, so a picture needs no physics. Meshes are made by ourselves because PyBullet
-draws the spheres of a URDF with a few dozen flat triangles.
+come from forward kinematics, so a picture needs no physics.
 """
 
 from __future__ import annotations
@@ -25,6 +24,7 @@ from nao_sim_bridge.sim.meshes import Mesh, merged, tessellate
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.render.scene import RenderState
 from nao_sim_bridge.sim.shapes import Shape
+from nao_sim_bridge.sim.visuals import visual_shape
 
 
 @dataclass(frozen=True)
@@ -129,13 +129,5 @@ class Figure:
         return bodies
 
     def _build_body(self, mesh: Mesh, color: Sequence[float]) -> int:
-        seen = pybullet.createVisualShape(
-            pybullet.GEOM_MESH,
-            vertices=mesh.vertices.tolist(),
-            normals=mesh.normals.tolist(),
-            uvs=[(0.0, 0.0)] * len(mesh.vertices),
-            indices=mesh.faces.ravel().tolist(),
-            rgbaColor=(*color, 1.0),
-            physicsClientId=self._client,
-        )
+        seen = visual_shape(mesh, color, self._client)
         return pybullet.createMultiBody(0.0, -1, seen, physicsClientId=self._client)

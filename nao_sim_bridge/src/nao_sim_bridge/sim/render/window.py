@@ -38,19 +38,22 @@ class Window:
         pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_RENDERING, 0, physicsClientId=self._client)
         self._objects = build_world(world, self._client, visual=True)
         self._figure = Figure(self._client, load_model(version), load_appearance(version), paint_lamps=True)
-        pybullet.resetDebugVisualizerCamera(1.2, 60.0, -18.0, (0.0, 0.0, 0.28), physicsClientId=self._client)
+        pybullet.resetDebugVisualizerCamera(0.85, 60.0, -14.0, (0.0, 0.0, 0.28), physicsClientId=self._client)
+        lamp = [5.0 * part for part in world.light.direction]
+        pybullet.configureDebugVisualizer(lightPosition=lamp, physicsClientId=self._client)
         pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_RENDERING, 1, physicsClientId=self._client)
 
     def serve(self) -> None:
-        """Show the newest state thirty times a second until the pipe or the window is closed."""
+        """Show what comes, at most thirty times a second, until the pipe or the window is closed."""
         while pybullet.isConnected(self._client):
+            # Without news, look now and then whether somebody has closed the window.
+            if not self._pipe.poll(PERIOD):
+                continue
+            _, state = self._pipe.recv()
             began = time.monotonic()
-            state = None
-            while self._pipe.poll(0.0 if state else PERIOD):
-                _, state = self._pipe.recv()
-            if state is not None:
-                self._show(state)
+            self._show(state)
             time.sleep(max(0.0, PERIOD - (time.monotonic() - began)))
+            self._pipe.send(("shown", None))
 
     def _show(self, state: RenderState) -> None:
         self._figure.show(state)

@@ -2,7 +2,7 @@
 
 It talks over the inherited pipe FD in tuples (kind, content). First it sends ("ready", None) or
 ("error", text). Then it answers ("render", (state, camera)) with ("picture", shape) and the raw pixels, or
-with ("error", text); ("show", state) has no answer. It ends when the pipe is closed.
+with ("error", text); ("show", state) is answered with ("shown", None). It ends when the pipe is closed.
 """
 
 from __future__ import annotations
