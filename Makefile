@@ -1,7 +1,7 @@
 # Everything a user types. Each target installs and builds what it needs first; with nothing to do that takes no time.
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build demo test unit rostest bench lint format clean
+.PHONY: urdf help setup build demo test unit rostest bench lint format clean
 
 # Tests for `make unit` and `make rostest`: parts of their names (TESTS="lights walk"). Scenarios at once: JOBS=2.
 TESTS ?=
@@ -36,6 +36,10 @@ lint: setup ## Check the form of Python files, packages and scripts
 
 format: setup ## Put the form of Python files right
 	@.venv/bin/ruff check --fix --quiet . ; .venv/bin/ruff format .
+
+urdf: setup ## Generate the robot's URDF anew from its tables
+	@PYTHONPATH=nao_sim_bridge/src .venv/bin/python nao_sim_bridge/nodes/nao_urdf \
+	    --output nao_sim_bridge/urdf/nao_h25.urdf --meshes nao_sim_bridge/urdf/meshes
 
 clean: ## Remove the workspace, the virtual environment and what the demonstration left
 	rm -rf .ws .venv demo_output
