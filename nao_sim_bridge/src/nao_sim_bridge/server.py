@@ -10,13 +10,14 @@ from typing import Sequence
 
 from nao_sim_bridge.broker import Broker
 from nao_sim_bridge.pictures import Pictures
+from nao_sim_bridge.services import motion
 from nao_sim_bridge.services.arguments import number, numbers
 from nao_sim_bridge.services.binding import make_service
 from nao_sim_bridge.services.leds import ALLeds
 from nao_sim_bridge.services.live_keys import constants, live_keys
 from nao_sim_bridge.services.memory import ALMemory
 from nao_sim_bridge.services.memory_store import MemoryStore
-from nao_sim_bridge.services.motion import AWAKE, ALMotion
+from nao_sim_bridge.services.motion.wake import AWAKE
 from nao_sim_bridge.services.nao_simulation import NAME as NAO_SIMULATION
 from nao_sim_bridge.services.nao_simulation import NaoSimulation
 from nao_sim_bridge.services.system import ALSystem
@@ -88,13 +89,13 @@ class SimulatorServer:
             self.memory.insert(key, value)
         self.runner.start()
         modules = {
-            "ALMemory": ALMemory(self.memory, self.broker),
-            "ALLeds": ALLeds(self.simulation, self.runner),
-            "ALMotion": ALMotion(self.simulation, self.runner, self.memory),
-            "ALSystem": ALSystem(self.memory, self.reset_task, self.ended.set),
+            "ALMemory": [ALMemory(self.memory, self.broker)],
+            "ALLeds": [ALLeds(self.simulation, self.runner)],
+            "ALMotion": motion.parts(self.simulation, self.runner, self.memory),
+            "ALSystem": [ALSystem(self.memory, self.reset_task, self.ended.set)],
         }
-        for name, module in modules.items():
-            self.broker.register(name, make_service(name, module, self.broker))
+        for name, parts in modules.items():
+            self.broker.register(name, make_service(name, parts, self.broker))
         self.broker.register(NAO_SIMULATION, NaoSimulation(self))
         self.memory.raise_event("NAOqiReady", None)
         if self.options.gui:

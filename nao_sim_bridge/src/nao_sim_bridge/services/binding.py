@@ -2,14 +2,15 @@
 
 libqi resolves overloads by signature, and a Python method has only one. So for every overload in NAOqi's table the
 published object gets a function of its own, all under the same remote name, and all of them end in the one method of
-the implementation. Wrong arguments are then refused by libqi itself with the list of candidates, as on the robot.
+the implementation. A module may be implemented by several objects, each with a part of its methods. Wrong arguments
+are refused by libqi itself with the list of candidates, as on the robot.
 """
 
 from __future__ import annotations
 
 import inspect
 import logging
-from typing import Any, Callable, Iterable
+from typing import Any, Callable, Iterable, Sequence
 
 import qi
 
@@ -23,12 +24,12 @@ log = logging.getLogger("nao_sim.services")
 NATIVE = frozenset({"isStatsEnabled", "clearStats", "isTraceEnabled"})
 
 
-def make_service(module: str, implementation: Any, broker: Any) -> Any:
+def make_service(module: str, parts: Sequence[Any], broker: Any) -> Any:
     """The object to register under the name `module`.
 
     Args:
         module: NAOqi name, a key of the API table.
-        implementation: Object whose methods do the work; those with the names of the table are published.
+        parts: Objects whose methods do the work; those with the names of the table are published.
         broker: What the methods that every module has need to know: its `name` and `unregister(module)`.
     """
     table = module_methods(module)
@@ -37,7 +38,7 @@ def make_service(module: str, implementation: Any, broker: Any) -> Any:
     for name, method in table.items():
         if name in NATIVE:
             continue
-        target = getattr(implementation, name, None) or getattr(common, name, None)
+        target = _find(name, [*parts, common])
         if target is None:
             continue
         common.targets[name] = target
@@ -45,16 +46,19 @@ def make_service(module: str, implementation: Any, broker: Any) -> Any:
             attribute = name if position == 0 else f"{name}_{position}"
             body[attribute] = _bound(module, method, overload, target)
     body["pCall"] = _bound_any(module, "pCall", common.pCall)
-    for name, signal in getattr(implementation, "signals", dict)().items():
-        body[name] = signal
     return type(module, (), body)()
 
 
-def offered(module: str, implementation: Any) -> tuple[list[str], list[str]]:
-    """Names of the table's methods that a service of this implementation answers, and those it does not."""
+def offered(module: str, parts: Sequence[Any]) -> tuple[list[str], list[str]]:
+    """Names of the table's methods that a service of these parts answers, and those it does not."""
     table = module_methods(module)
-    answers = [n for n in table if n in NATIVE or hasattr(implementation, n) or hasattr(CommonModule, n)]
+    answers = [n for n in table if n in NATIVE or _find(n, [*parts, CommonModule]) is not None]
     return answers, [n for n in table if n not in answers]
+
+
+def _find(name: str, parts: Iterable[Any]) -> Callable[..., Any] | None:
+    """The method `name` of the first part that has it."""
+    return next((getattr(part, name) for part in parts if hasattr(part, name)), None)
 
 
 def answer(module: str, method: str, call: Callable[..., Any], args: Iterable[Any]) -> Any:

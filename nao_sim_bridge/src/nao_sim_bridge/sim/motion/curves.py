@@ -29,7 +29,7 @@ class Ramp:
     def value(self, elapsed: float) -> float:
         """Angle in rad after `elapsed` seconds; holds start before and target afterwards."""
         duration = self.duration
-        if elapsed >= duration:
+        if elapsed >= duration or duration == 0.0:
             return self.target
         return self.start + max(elapsed, 0.0) / duration * (self.target - self.start)
 

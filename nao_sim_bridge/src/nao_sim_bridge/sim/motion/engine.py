@@ -180,4 +180,5 @@ class MotionEngine:
         return all(
             abs(commands[i] - self._joints.clamp(i, curve.value(curve.duration))) <= REACHED
             for i, curve in job.curves.items()
+            if not self._joints.overruled(i, job.curves)
         )

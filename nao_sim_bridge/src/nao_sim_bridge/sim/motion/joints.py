@@ -6,7 +6,7 @@ replaced as a whole and never changed.
 
 from __future__ import annotations
 
-from typing import Sequence
+from typing import Container, Sequence
 
 from nao_sim_bridge.sim.model import RobotModel
 
@@ -68,6 +68,10 @@ class JointCommands:
     @staticmethod
     def _mirror(commands: list[float], velocities: list[float], source: int, target: int) -> None:
         commands[target], velocities[target] = commands[source], velocities[source]
+
+    def overruled(self, index: int, wanted: Container[int]) -> bool:
+        """Whether joint `index` goes where another one of `wanted` goes: the left hip wins over the right."""
+        return index == self._right and self._left in wanted
 
     def slip(self, measured: Sequence[float]) -> None:
         """Let the rests of limp joints follow where something has moved them to; `measured` in rad."""

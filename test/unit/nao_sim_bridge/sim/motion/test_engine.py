@@ -154,12 +154,13 @@ def test_different_wishes_for_the_two_hips_end_where_the_left_one_asks(motion):
 
 
 def test_a_task_of_the_right_hip_ends_after_one_of_the_left_hip_has_let_go(motion):
-    left, right = motion.glide(LEFT, to=-0.2), motion.glide(RIGHT, to=-0.1, duration=0.5)
-    motion.run(0.9)
-    assert not right.finished
-    motion.run(0.5)
-    assert left.finished and right.finished
-    assert motion.angle(LEFT) == motion.angle(RIGHT) == -0.1
+    left, right = motion.glide(LEFT, to=-0.2), motion.glide(RIGHT, to=0.1, duration=0.5)
+    motion.run(1.0)
+    assert left.finished and not right.finished
+    assert motion.angle(LEFT) == motion.angle(RIGHT) == -0.2
+    motion.run(0.2)
+    assert right.finished
+    assert motion.angle(LEFT) == motion.angle(RIGHT) == 0.1
 
 
 # --- targets ----------------------------------------------------------------------------------------------------------

@@ -1,0 +1,25 @@
+"""ALMotion of the simulated robot, in parts of one subject each; `parts` puts them together."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nao_sim_bridge.services.memory_store import MemoryStore
+from nao_sim_bridge.services.motion.angles import Angles
+from nao_sim_bridge.services.motion.body import Body
+from nao_sim_bridge.services.motion.stiffness import Stiffness
+from nao_sim_bridge.services.motion.task_list import TaskList
+from nao_sim_bridge.services.motion.wake import Wake
+from nao_sim_bridge.sim.runner import SimulationRunner
+from nao_sim_bridge.sim.simulation import Simulation
+
+
+def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> list[Any]:
+    """Objects that together have the methods of ALMotion."""
+    return [
+        Body(simulation, runner),
+        Angles(simulation, runner),
+        Stiffness(simulation, runner),
+        Wake(simulation, runner, memory),
+        TaskList(simulation, runner),
+    ]
