@@ -6,7 +6,7 @@ import logging
 import sys
 import threading
 from dataclasses import dataclass, field
-from typing import Sequence
+from typing import Any, Sequence
 
 from nao_sim_bridge.broker import Broker
 from nao_sim_bridge.pictures import Pictures
@@ -88,19 +88,22 @@ class SimulatorServer:
         for key, value in constants(self.options.scene.version).items():
             self.memory.insert(key, value)
         self.runner.start()
-        modules = {
-            "ALMemory": [ALMemory(self.memory, self.broker)],
-            "ALLeds": [ALLeds(self.simulation, self.runner)],
-            "ALMotion": motion.parts(self.simulation, self.runner, self.memory),
-            "ALSystem": [ALSystem(self.memory, self.reset_task, self.ended.set)],
-        }
-        for name, parts in modules.items():
+        for name, parts in self.modules().items():
             self.broker.register(name, make_service(name, parts, self.broker))
         self.broker.register(NAO_SIMULATION, NaoSimulation(self))
         self.memory.raise_event("NAOqiReady", None)
         if self.options.gui:
             self.pictures.open_window()
         log.info("simulated NAO listens on %s:%d", self.options.address, self.broker.port)
+
+    def modules(self) -> dict[str, list[Any]]:
+        """NAOqi's modules by name: the objects that together have the methods of each."""
+        return {
+            "ALMemory": [ALMemory(self.memory, self.broker)],
+            "ALLeds": [ALLeds(self.simulation, self.runner)],
+            "ALMotion": motion.parts(self.simulation, self.runner, self.memory),
+            "ALSystem": [ALSystem(self.memory, self.reset_task, self.ended.set)],
+        }
 
     def stop(self) -> None:
         """Leave the network and end the simulation."""
@@ -121,7 +124,7 @@ class SimulatorServer:
         if len(vector) != 3:
             raise BadValue("force", force, "[x, y, z] in N")
         lasting = number(duration, "duration", 0.0, MAX_PUSH)
-        self.runner.call(lambda: self.simulation.robot.push(vector, self.simulation.time + lasting, link))
+        self.runner.call(lambda: self.simulation.robot.push(vector, lasting, link))
 
     def press(self, sensors: Sequence[str]) -> None:
         """Simulated fingers on these touch sensors and on no others."""

@@ -43,7 +43,7 @@ class Bench:
         return getattr(self.now, of)[self.model.joint_index[name]]
 
     def push(self, force, duration, link="torso"):
-        self.robot.push(force, self.simulation.time + duration, link)
+        self.robot.push(force, duration, link)
 
     def run(self, seconds):
         return self.simulation.run(seconds)

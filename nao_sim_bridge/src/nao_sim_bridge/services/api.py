@@ -24,6 +24,9 @@ SIMPLE_TYPES = {
     "buffer": "r",
     # A raw address in the robot's memory; on the wire it would be a number.
     "pointer": "L",
+    # Structures of single modules: ability, enabled, running; tag to animations.
+    "AutonomousAbilityStatus": "(sbb)",
+    "TagForAnimations": "{s[s]}",
 }
 
 
@@ -72,7 +75,7 @@ def qi_type(name: str) -> str:
         return f"[{qi_type(parts[0])}]"
     if kind == "map" and len(parts) == 2:
         return "{" + "".join(map(qi_type, parts)) + "}"
-    if kind == "tuple" and parts:
+    if (kind == "tuple" and parts) or (kind == "pair" and len(parts) == 2):
         return "(" + "".join(map(qi_type, parts)) + ")"
     raise ConfigError(FILE, f"unknown type {name!r}")
 

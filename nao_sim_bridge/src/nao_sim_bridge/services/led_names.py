@@ -41,7 +41,7 @@ class LedNames:
             raise NaoqiError(f"group {name!r} has no members")
         for member in members:
             self._check(member)
-            if member == name or name in self._made.get(member, ()):
+            if self._leads_to(member, name):
                 raise NaoqiError(f"group {name!r} would hold itself")
         self._made[name] = tuple(members)
 
@@ -66,6 +66,10 @@ class LedNames:
         if name not in self._layout.short_names:
             raise UnknownName("LED", name, self._layout.short_names)
         return [self._layout.devices[i] for i in self._layout.short_names[name]]
+
+    def _leads_to(self, member: str, name: str) -> bool:
+        """Whether a member is `name`, or a made group that holds it at any depth."""
+        return member == name or any(self._leads_to(inner, name) for inner in self._made.get(member, ()))
 
     def _check(self, name: str) -> None:
         known = (self._made, self._layout.groups, self._layout.short_names, self._layout.device_index)

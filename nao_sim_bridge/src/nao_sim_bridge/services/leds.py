@@ -131,7 +131,7 @@ class ALLeds:
 
     def _animate(self, name: str, frames: Callable[[], Sequence[LedKeyframe]], step: bool = False) -> Task:
         return self._runner.execute(
-            lambda: self._simulation.robot.leds.animate(name, frames(), self._simulation.time, step), name
+            lambda: self._simulation.robot.leds.animate(name, frames(), self._simulation.robot.time, step), name
         )
 
 

@@ -234,7 +234,7 @@ class MemoryStore:
                 subscriber(key, value, message)
             except Exception:
                 log.exception("a subscriber of %s failed", key)
-        if is_new:
+        if is_new and key not in (KEY_ADDED, KEY_REMOVED):
             self._announce(KEY_ADDED, key)
 
     def _announce(self, event: str, key: str) -> None:

@@ -42,6 +42,8 @@ class SimulatedRobot:
         leds: The LEDs.
         random: The only source of chance, so that a seed decides everything.
 
+    Its clock starts at 0 with it: after a reset equal commands must meet equal times, to the last bit.
+
     Args:
         model: The robot.
         leds: Layout of its LEDs.
@@ -80,12 +82,18 @@ class SimulatedRobot:
         self._link_names = {index: name for name, index in physics.links.items()}
         self._measured = tuple(angles)
         self._dt = settings.tick_s
+        self._ticks = 0
 
-    def push(self, force: Vector3, until: float, link: str = "torso") -> None:
-        """Push a link with `force` (N, in world) until simulated time `until` (s)."""
+    @property
+    def time(self) -> float:
+        """Simulated time since the robot was put into the world, s."""
+        return self._ticks * self._dt
+
+    def push(self, force: Vector3, duration: float, link: str = "torso") -> None:
+        """Push a link with `force` (N, in world) for `duration` s from now on."""
         if link != "torso" and link not in self._physics.links:
             raise UnknownName("link", link, ["torso", *self._physics.links])
-        self._pushes.append(_Push(link, force, until))
+        self._pushes.append(_Push(link, force, self.time + duration))
 
     def press(self, sensors: Iterable[str]) -> None:
         """Simulated fingers on these touch sensors, and on no others, from now on.
@@ -99,8 +107,10 @@ class SimulatedRobot:
                 raise UnknownName("touch sensor", name, self._sensors.touch_names)
         self._fingers = wanted
 
-    def act(self, now: float) -> None:
-        """First half of a tick: LEDs, motion and motors up to time `now` (s), then physics."""
+    def act(self) -> None:
+        """First half of a tick: LEDs, motion and motors up to its end, then physics."""
+        self._ticks += 1
+        now = self.time
         self.leds.tick(now)
         self.motion.tick(now, self._dt)
         self.joints.slip(self._measured)
@@ -133,7 +143,7 @@ class SimulatedRobot:
             linear_velocity=body.linear_velocity,
             angular_velocity=body.angular_velocity,
             imu=self._imu.read(body, self._dt),
-            sonars=self._sonars.read(now, body.pose, self._physics.nearest_hits),
+            sonars=self._sonars.read(self.time, body.pose, self._physics.nearest_hits),
             battery_charge=self._power.charge,
             battery_current=self._power.current,
             objects=self._physics.read_objects(),

@@ -83,7 +83,7 @@ class Simulation:
     def tick(self) -> Snapshot:
         """Advance by one tick: LEDs, motion, motors, physics, sensors, in this order."""
         self._tick += 1
-        self.robot.act(self.time)
+        self.robot.act()
         self.snapshot = self.robot.sense(self._tick, self.time)
         return self.snapshot
 

@@ -10,13 +10,14 @@ from nao_sim_bridge.sim import led_animations
 from nao_sim_bridge.sim.errors import UnknownName
 from nao_sim_bridge.sim.motion import sequences
 
+DERIVED = ("left_foot", "right_foot", "touched", "currents")
 BALL = "{name: ball, sphere: 0.04, position: [0.3, 0.02, 0.3], mass: 0.2}"
 
 
 def state(snapshot, *without):
     """All values of a snapshot, of fields and of what follows from them, by name."""
-    names = [field.name for field in fields(snapshot) if field.compare] + "left_foot right_foot touched currents".split()
-    return {name: getattr(snapshot, name) for name in names if name not in without}
+    names = [field.name for field in fields(snapshot) if field.compare]
+    return {name: getattr(snapshot, name) for name in [*names, *DERIVED] if name not in without}
 
 
 def story(bench):
@@ -27,7 +28,7 @@ def story(bench):
     bench.aim(0.5, HeadYaw=0.8, LShoulderPitch=0.2)
     bench.push((12.0, 4.0, 0.0), 0.2)
     layout = bench.simulation.led_layout
-    robot.leds.animate("eyes", led_animations.random_eyes(layout, 1.0, robot.random), bench.simulation.time, step=True)
+    robot.leds.animate("eyes", led_animations.random_eyes(layout, 1.0, robot.random), robot.time, step=True)
     seen += bench.watch(0.5)
     robot.press(["Head/Touch/Front"])
     seen += bench.watch(0.5)
@@ -87,7 +88,7 @@ def test_a_reset_brings_robot_objects_and_lights_back_and_kills_tasks(bench, wor
     one = bench(world=world_file(BALL))
     ball = one.now.objects["ball"]
     motion = sequences.posture_task(one.robot, "rest", "Crouch")
-    fade = one.robot.leds.animate("off", [led_animations.LedKeyframe(3.0, {0: 0.0})], one.simulation.time)
+    fade = one.robot.leds.animate("off", [led_animations.LedKeyframe(3.0, {0: 0.0})], one.robot.time)
     one.push((60.0, 0.0, 0.0), 5.0)
     one.robot.press(["Head/Touch/Rear"])
     one.run(1.0)

@@ -22,7 +22,8 @@ from nao_sim_bridge.sim.tasks import Task, TaskIds
 Curve = Union[Ramp, SmoothCurve]
 CurveBuilder = Callable[[Sequence[float]], Mapping[int, Curve]]
 
-# A command is "there" when it is this close; float rounding only, commands are exact.
+# A command is "there" when it is this close (rad), a curve over when its end is this close (s): float rounding only,
+# so that what ends now is at its end and not a hair before.
 REACHED = 1e-9
 
 
@@ -125,7 +126,7 @@ class MotionEngine:
         for job in self._jobs:
             if job.started is None:
                 continue
-            elapsed = now - job.started
+            elapsed = now - job.started + REACHED
             values = {index: curve.value(elapsed) for index, curve in job.curves.items()}
             if job.stiffness:
                 self._joints.set_stiffness(values)
@@ -161,14 +162,14 @@ class MotionEngine:
             if index not in self._ramps:
                 self._ramps[index] = (Ramp(self._joints.commands[index], target, speed), now - dt)
             ramp, started = self._ramps[index]
-            wanted[index] = ramp.value(now - started)
-            if now - started >= ramp.duration:
+            elapsed = now - started + REACHED
+            wanted[index] = ramp.value(elapsed)
+            if elapsed >= ramp.duration:
                 del self._targets[index], self._ramps[index]
 
     def _finish_jobs(self, now: float) -> None:
         for job in [j for j in self._jobs if j.started is not None]:
-            # Half a nanosecond of slack: sums of ticks are not exact.
-            if any(now - job.started < curve.duration - REACHED for curve in job.curves.values()):
+            if any(now - job.started + REACHED < curve.duration for curve in job.curves.values()):
                 continue
             if job.stiffness or self._commands_reached(job):
                 self._drop(job.task)

@@ -40,7 +40,7 @@ class Sonars:
 
     def read(self, now: float, torso: Pose, nearest_hits: NearestHits) -> tuple[float, ...]:
         """Distances in m, measured anew every 0.1 s of simulated time."""
-        if now < self._next:
+        if now < self._next - 1e-9:  # float rounding must not cost a tick
             return self._last
         self._next = now + PERIOD
         self._last = tuple(self._measure(place, torso, nearest_hits) for place in self._places)

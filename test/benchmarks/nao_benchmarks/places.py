@@ -1,0 +1,10 @@
+"""Where the programs are that the benchmarks start."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+PROGRAMS = Path(__file__).resolve().parent / "programs"
+SIMULATOR_NODE = ROOT / "nao_sim_bridge" / "nodes" / "nao_sim"
+LIGHTS_NODE = ROOT / "nao_library_modules" / "nodes" / "nao_lights"

@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""Times ticks of a robot that stands awake against bare physics steps of the same robot in the same state.
+
+The server has all its services registered; nobody calls them. Prints JSON: seconds of each tick, `ours` and `bare`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+
+import pybullet
+import qi
+from nao_benchmarks.stats import interleave
+
+from nao_sim_bridge.server import ServerOptions, SimulatorServer
+from nao_sim_bridge.sim.motion.joints import JointCommands
+from nao_sim_bridge.sim.physics import Physics
+from nao_sim_bridge.sim.simulation import Scene, Simulation
+from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.world import load_world
+
+SETTLE_S = 2.0
+LIMIT = 60.0
+# Two robots that stand alike: m.
+SAME_HEIGHT = 0.005
+
+
+def bare_twin(simulation: Simulation) -> Physics:
+    """The engine alone: the same robot in the same world, told once to hold the same angles, at rest."""
+    snapshot, settings = simulation.snapshot, simulation.settings
+    twin = Physics(simulation.model, load_world(simulation.scene.world), settings, snapshot.positions)
+    joints = JointCommands(simulation.model, snapshot.commands)
+    joints.set_stiffness(dict(enumerate(snapshot.stiffnesses)))
+    twin.drive(joints)
+    for _ in range(round(SETTLE_S / settings.tick_s)):
+        twin.step()
+    return twin
+
+
+def time_ticks(simulation: Simulation, rounds: int) -> dict[str, list[float]]:
+    """Alternate our ticks with bare ones; in the simulation thread."""
+    twin = bare_twin(simulation)
+    client, steps = twin.client, range(simulation.settings.steps_per_tick)
+    step = pybullet.stepSimulation
+
+    def bare_tick() -> None:
+        for _ in steps:
+            step(physicsClientId=client)
+
+    try:
+        ours, bare = interleave([simulation.tick, bare_tick], rounds, warm_up=100)
+        check_alike(simulation.snapshot, twin)
+    finally:
+        twin.close()
+    return {"ours": list(ours.seconds), "bare": list(bare.seconds)}
+
+
+def check_alike(snapshot: Snapshot, twin: Physics) -> None:
+    """See that both robots stand awake: a fallen one has other contacts, and other costs."""
+    ours, bare = snapshot.torso.position[2], twin.read_body().pose.position[2]
+    if not all(snapshot.stiffnesses):
+        raise SystemExit("the robot is not awake: not every joint is stiff")
+    if not math.isclose(ours, bare, abs_tol=SAME_HEIGHT):
+        raise SystemExit(f"the robots do not stand alike: torso {ours:.3f} m and {bare:.3f} m above the floor")
+
+
+def main() -> int:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=2000, help="ticks to measure")
+    rounds = parser.parse_args().rounds
+    server = SimulatorServer(ServerOptions(Scene(posture="Stand"), port=0, speed=math.inf))
+    server.start()
+    session = qi.Session()
+    try:
+        session.connect(f"tcp://127.0.0.1:{server.broker.port}")
+        session.service("ALMotion").wakeUp()
+        server.runner.pause()
+        print(json.dumps(server.runner.call(lambda: time_ticks(server.simulation, rounds), LIMIT)))
+    finally:
+        session.close()
+        server.stop()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

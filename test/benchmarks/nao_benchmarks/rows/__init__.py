@@ -1,0 +1,21 @@
+"""The rows of the table, one file each. A new one is a class in a file of its own and an entry here."""
+
+from __future__ import annotations
+
+from ..row import Row
+from .chained_functions import ChainedFunctions
+from .goal_round_trip import GoalRoundTrip
+from .memory import Memory
+from .physics_tick import PhysicsTick
+from .proxy_call import ProxyCall
+from .real_time_factor import RealTimeFactor
+
+# Those that compute come first, while nothing else runs yet.
+ROWS: tuple[Row, ...] = (
+    PhysicsTick(),
+    RealTimeFactor(),
+    ProxyCall(),
+    GoalRoundTrip(),
+    ChainedFunctions(),
+    Memory(),
+)

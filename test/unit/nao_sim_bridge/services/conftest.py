@@ -1,0 +1,138 @@
+"""A simulated robot on the network, and a client of it: real libqi, time that passes only when asked."""
+
+from __future__ import annotations
+
+import queue
+import sys
+import threading
+from contextlib import contextmanager
+
+import pytest
+import qi
+
+from nao_sim_bridge.server import ServerOptions, SimulatorServer
+from nao_sim_bridge.sim.simulation import Scene
+
+
+class Client:
+    """A client of a simulated robot that stands still in time; it wakes up limp in Stand."""
+
+    def __init__(self, server, patience):
+        self.server = server
+        self.patience = patience
+        self.session = connected(server.broker.port)
+        self._services = {}
+
+    def __getattr__(self, name):
+        """A service of the robot by its name, for example `robot.ALMotion`."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name not in self._services:
+            self._services[name] = self.session.service(name)
+        return self._services[name]
+
+    @property
+    def now(self):
+        """The last snapshot."""
+        return self.server.runner.snapshot
+
+    def advance(self, seconds):
+        """Let simulated time pass."""
+        return self.NaoSimulation.advance(seconds)
+
+    def post(self, module, method, *arguments):
+        """Call without waiting; the future of the answer."""
+        return getattr(self, module).call(method, *arguments, _async=True)
+
+    def settled(self):
+        """Return when the simulation has run every command it was given."""
+        self.server.runner.call(lambda: None, self.patience)
+
+    def finish(self, module, method, *arguments, after):
+        """Call a method that takes simulated time and let `after` s pass; its answer."""
+        future = self.post(module, method, *arguments)
+        self.handed_over(module)
+        self.advance(after)
+        return self.answer(future)
+
+    def handed_over(self, module):
+        """Return when the module has heard every call of this client before: one object takes one call at a time."""
+        getattr(self, module).ping()
+        self.settled()
+
+    def answer(self, future):
+        """The value of a future that is due."""
+        return future.value(int(1000 * self.patience))
+
+    @contextmanager
+    def busy_simulation(self):
+        """The simulation has no time for anybody."""
+        done = threading.Event()
+        self.server.runner.execute(lambda: done.wait(self.patience))
+        try:
+            yield
+        finally:
+            done.set()
+
+    def close(self):
+        self.session.close()
+
+
+def connected(port):
+    session = qi.Session()
+    session.connect(f"tcp://127.0.0.1:{port}")
+    return session
+
+
+@pytest.fixture(scope="module")
+def shared_robot(patience):
+    interval = sys.getswitchinterval()
+    server = SimulatorServer(ServerOptions(Scene(posture="Stand"), port=0, paused=True))
+    server.start()
+    client = Client(server, patience)
+    yield client
+    client.close()
+    server.stop()
+    sys.setswitchinterval(interval)
+
+
+@pytest.fixture
+def robot(shared_robot):
+    """The robot of this file, put to its start; keys of the memory stay."""
+    shared_robot.NaoSimulation.reset()
+    return shared_robot
+
+
+@pytest.fixture
+def stiff_robot(robot):
+    """The robot, stiff, standing."""
+    robot.ALMotion.setStiffnesses("Body", 1.0)
+    return robot
+
+
+class Listener:
+    """A module of a client that events call back."""
+
+    def __init__(self):
+        self.heard = queue.Queue()
+
+    @qi.bind(qi.Void, [qi.String, qi.Dynamic, qi.String])
+    def onEvent(self, name, value, message):
+        self.heard.put((name, value, message))
+
+
+@pytest.fixture(scope="module")
+def listening_session(shared_robot):
+    session = connected(shared_robot.server.broker.port)
+    session.listen("tcp://127.0.0.1:0")
+    yield session
+    session.close()
+
+
+@pytest.fixture
+def listener(listening_session):
+    """Registered as the module "Listener" while the test runs; what it hears is in its queue `heard`."""
+    module = Listener()
+    number = listening_session.registerService("Listener", module)
+    yield module
+    listening_session.unregisterService(number)

@@ -1,0 +1,42 @@
+"""Contacts in the frames of their links."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from nao_sim_bridge.sim.readings import Contact, Pose
+from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
+from nao_sim_bridge.sim.sensors.contacts import in_link_frames
+
+UPRIGHT = Pose((1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 1.0))
+TURNED = Pose((0.0, 0.0, 1.0), from_roll_pitch_yaw(0.0, 0.0, math.pi / 2))
+OVER = Pose((0.0, 0.0, 0.0), from_roll_pitch_yaw(math.pi, 0.0, 0.0))
+
+
+def press_of(pose, position, normal, force=5.0):
+    (press,) = in_link_frames([Contact(4, position, normal, force)], {4: pose})[4]
+    return press
+
+
+def test_a_contact_is_moved_into_the_frame_of_its_link():
+    assert press_of(UPRIGHT, (1.1, 2.2, 2.9), (0, 0, 1)) == pytest.approx((0.1, 0.2, -0.1, 1.0, 5.0))
+
+
+def test_and_turned_into_it():
+    assert press_of(TURNED, (0.0, 0.3, 1.0), (0, 0, 1)) == pytest.approx((0.3, 0.0, 0.0, 1.0, 5.0), abs=1e-12)
+    assert press_of(TURNED, (-0.3, 0.0, 1.0), (1, 0, 0)) == pytest.approx((0.0, 0.3, 0.0, 0.0, 5.0), abs=1e-12)
+
+
+def test_on_a_link_upside_down_a_push_from_the_floor_goes_downwards():
+    assert press_of(OVER, (0.1, 0.2, 0.3), (0, 0, 1)).upward == pytest.approx(-1.0)
+    assert press_of(OVER, (0.1, 0.2, 0.3), (0, 0, 1))[:3] == pytest.approx((0.1, -0.2, -0.3))
+
+
+def test_contacts_are_sorted_by_link():
+    contacts = [Contact(link, (0, 0, 0), (0, 0, 1), float(n)) for n, link in enumerate((4, -1, 4))]
+    presses = in_link_frames(contacts, {4: UPRIGHT, -1: TURNED})
+    assert [press.force for press in presses[4]] == [0.0, 2.0]
+    assert [press.force for press in presses[-1]] == [1.0]
+    assert in_link_frames([], {}) == {}
