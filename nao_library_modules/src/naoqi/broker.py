@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Optional
 
 from .errors import BrokerError, NaoError, RobotUnreachable
 from .registry import CONNECT_TIMEOUT, connection
+from .remote import ANSWERED_BY_ALL, RemoteModule
 from .session import Live, answered, connect_session
 from .state import State
 from .worker import Worker
@@ -191,6 +192,7 @@ class ALBroker:
                 raise RobotUnreachable(self.connection.host, self.connection.port, reason)
             if not future.hasError():
                 self._service_ids[name] = future.value()
+                self._wait_until_served(name)
                 return
             text = future.error().strip()
             if NAME_IN_USE not in text:
@@ -198,6 +200,24 @@ class ALBroker:
             if time.monotonic() >= end or self._down.wait(delay):
                 raise BrokerError(self._name, f"the robot has a module {name!r} already; choose another name")
             delay = min(2.0 * delay, 0.5)
+
+    def _wait_until_served(self, name: str) -> None:
+        """Wait until the module answers; for some ms after its registration libqi may still refuse calls.
+
+        Raises:
+            BrokerError: If it does not.
+        """
+        module = RemoteModule(name, self.connection, STEP_LIMIT)
+        end, delay = time.monotonic() + STEP_LIMIT, 0.005
+        while True:
+            try:
+                self.connection.forget_service(name)  # of a module that had the name before
+                module.method(ANSWERED_BY_ALL)()
+                return
+            except NaoError as error:
+                if time.monotonic() >= end or self._down.wait(delay):
+                    raise BrokerError(self._name, f"module {name!r} does not answer: {error}") from error
+                delay = min(2.0 * delay, 0.5)
 
     def _host_to_listen_on(self) -> str:
         if self._listen_ip not in ANY_ADDRESS:

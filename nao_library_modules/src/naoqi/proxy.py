@@ -9,7 +9,7 @@ from .broker import current_broker
 from .calls import Call
 from .errors import BadArguments
 from .registry import CONNECT_TIMEOUT, connection
-from .remote import RemoteMethod, RemoteModule
+from .remote import ANSWERED_BY_ALL, RemoteMethod, RemoteModule
 from .robot_connection import Connection
 
 
@@ -155,7 +155,7 @@ class ALProxy:
         """
         if self._remote.offers("ping"):
             return self._remote.method("ping")()
-        self._remote.method("isStatsEnabled")()  # libqi answers that for every object
+        self._remote.method(ANSWERED_BY_ALL)()
         return True
 
     def getMethodList(self) -> List[str]:

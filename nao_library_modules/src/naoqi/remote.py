@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 FIRST_OWN_UID = 100
 """libqi numbers the methods of the module itself from here; those below it adds to every object."""
+ANSWERED_BY_ALL = "isStatsEnabled"
+"""A method without effect that libqi adds to every object."""
 LOCAL_NAMES = frozenset(("isValid", "metaObject"))
 """What libqi's own object can do without asking the robot; passed through as it is."""
 

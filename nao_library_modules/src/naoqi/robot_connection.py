@@ -22,6 +22,8 @@ from .translate import connect_reason, is_unknown_service, unknown_module
 
 logger = logging.getLogger("naoqi")
 
+FLUSH_LIMIT = 0.5
+"""So long `close` waits for the robot to have received everything, in s."""
 EXIT_LIMIT = 1.0
 """So long `close` waits for calls that must end because it has closed the session, in s."""
 
@@ -184,7 +186,7 @@ class Connection:
         return [each["name"] for each in future.value()]
 
     def close(self) -> None:
-        """End the connection for good. Calls under way fail; posted calls have been handed to the robot."""
+        """End the connection for good. What was posted has reached the robot; calls under way fail."""
         with self._condition:
             if self._closing.is_set():
                 return
@@ -192,9 +194,8 @@ class Connection:
             live, opening = self.live, self._opening
         self.tasks.abandon()
         if live is not None:
-            if self.tasks.any_running():
-                # Requests leave in order, so an answered one proves that those before it have arrived.
-                live.heartbeat(_async=True).wait(500)
+            # Requests leave in order, so an answered one proves that posts and cancellations have arrived.
+            live.heartbeat(_async=True).wait(int(1000.0 * FLUSH_LIMIT))
             live.broken.set()
         if opening is not None:
             opening.close()

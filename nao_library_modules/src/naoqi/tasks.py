@@ -44,10 +44,6 @@ class TaskTable:
         """Whether this number was ever given out here."""
         return isinstance(task, int) and not isinstance(task, bool) and 0 < task <= self._last_id
 
-    def any_running(self) -> bool:
-        """Whether a posted call is under way."""
-        return bool(self._running)
-
     def is_running(self, task: int) -> bool:
         """Whether this call is under way."""
         call = self._call(task)

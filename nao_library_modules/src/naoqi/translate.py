@@ -24,7 +24,8 @@ from .errors import (
 )
 from .signatures import readable_call
 
-NOT_SENT = ("Socket is not connected", "Session not connected.")
+NOT_SENT = ("Socket is not connected", "Session not connected.", "The call request could not be handled.")
+"""The method has not been called: there is no connection, or nothing behind the address of the module."""
 BROKEN_UNDER_WAY = ("Session closed", "Session disconnected", "Socket Disconnected", "Service removed")
 CANCELED = ("Future canceled.", "Call has been canceled.")
 PYTHON_SERVICE = re.compile(r"(?P<kind>[A-Za-z_][\w.]*)(?:: (?P<text>.*?))?\n+(?P<trace>At:\n.*)\Z", re.DOTALL)
@@ -86,7 +87,7 @@ def call_error(raised: Exception, site: CallSite) -> NaoError:
     """
     text = str(raised).strip()
     if text in NOT_SENT:
-        reason = f"{site.module}.{site.method} was not sent: the module, or the connection, has just gone"
+        reason = f"{site.module}.{site.method} was not carried out: the module, or the connection, has just gone"
         return RobotUnreachable(site.host, site.port, reason)
     if text in BROKEN_UNDER_WAY:
         return ConnectionLost(site.host, site.port, text.rstrip("."), f"{site.module}.{site.method}")

@@ -33,12 +33,12 @@ class Memory:
         del self._subscribers[event, module]
 
     def getSubscribers(self, event):
-        return sorted(module for name, module in self._subscribers if name == event)
+        return sorted(module for name, module in list(self._subscribers) if name == event)
 
     def raiseEvent(self, event, value):
         """Call everybody; returns a future of their answers, so that no thread of the server is held."""
         calls = []
-        for (name, module), (method, message) in self._subscribers.items():
+        for (name, module), (method, message) in list(self._subscribers.items()):
             if name == event:
                 calls.append(self._session.service(module).call(method, event, value, message, _async=True))
         if event in self._signals:

@@ -66,7 +66,7 @@ def test_finished_calls_leave_the_table(proxy, eventually):
     tasks = [proxy.post.add(number, 1) for number in range(50)]
     for task in tasks:
         assert proxy.wait(task) is False
-    eventually(lambda: not proxy.connection.tasks.any_running(), "the table is empty")
+    eventually(lambda: not proxy.connection.tasks._running, "the table is empty")
 
 
 def test_a_call_object_tells_when_it_is_done(proxy, begun, patience):

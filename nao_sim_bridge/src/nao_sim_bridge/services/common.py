@@ -77,14 +77,12 @@ class CommonModule:
         with self._lock:
             call_id = next(self._ids)
             self._posted[call_id] = result if isinstance(result, Task) else None
-            while len(self._posted) > REMEMBERED:
-                self._posted.popitem(last=False)
+            self._forget_finished()
         return call_id
 
     def isRunning(self, call_id: int) -> bool:
         """True while the posted call has not ended."""
-        task = self._task(call_id)
-        return task is not None and not task.finished
+        return _runs(self._task(call_id))
 
     def stop(self, call_id: int) -> None:
         """End a posted call before its time."""
@@ -95,10 +93,17 @@ class CommonModule:
     def wait(self, call_id: int, timeout: int = 0) -> Any:
         """Wait for a posted call, at most `timeout` ms (0: for ever); true when the time was up first."""
         task = self._task(call_id)
-        if task is None or task.finished:
+        if not _runs(task):
             return False
         ended = Task("wait", call_id)
-        task.add_done_callback(lambda _: ended.finish(False))
+
+        def settle(done: Task) -> None:
+            if isinstance(done.value, Task):
+                done.value.add_done_callback(settle)
+            else:
+                ended.finish(False)
+
+        task.add_done_callback(settle)
         if timeout > 0:
             timer = threading.Timer(timeout / 1000.0, ended.finish, [True])
             timer.daemon = True
@@ -111,11 +116,23 @@ class CommonModule:
         return self._table[name]
 
     def _task(self, call_id: int) -> Task | None:
-        """The task at the end of the chain that a posted call started."""
+        """What a posted call started; None when it took no time."""
         with self._lock:
             if call_id not in self._posted:
                 raise NaoqiError(f"no posted call has the id {call_id}")
-            task = self._posted[call_id]
-        while task is not None and task.finished and isinstance(task.value, Task):
-            task = task.value
-        return task
+            return self._posted[call_id]
+
+    def _forget_finished(self) -> None:
+        """Keep no more than `REMEMBERED` calls, but all that still run."""
+        for call_id in list(self._posted):
+            if len(self._posted) <= REMEMBERED:
+                return
+            if not _runs(self._posted[call_id]):
+                del self._posted[call_id]
+
+
+def _runs(task: Task | None) -> bool:
+    """Whether a task, or the one at the end of the chain that it began, has not ended."""
+    while task is not None and task.finished and isinstance(task.value, Task):
+        task = task.value
+    return task is not None and not task.finished

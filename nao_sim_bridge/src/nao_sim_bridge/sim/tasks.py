@@ -68,9 +68,11 @@ class Task:
         return self._result
 
     def request_kill(self) -> None:
-        """Ask for the end of the task from any thread; see `TaskIds.make` for who hears it."""
+        """Ask for the end of the task, and of the one it leads to, from any thread; `TaskIds.ask` hears it."""
         if self._ask is not None:
             self._ask(self)
+        # A command that has not run yet cannot be stopped, but what it is about to start can.
+        self.add_done_callback(lambda done: done.value.request_kill() if isinstance(done.value, Task) else None)
 
     def kill(self) -> bool:
         """End the task before its time; whoever owns the work drops it. Simulation thread only."""

@@ -10,7 +10,9 @@ from contextlib import contextmanager
 import pytest
 import qi
 
+from nao_sim_bridge.broker import Broker
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
+from nao_sim_bridge.services.binding import make_service
 from nao_sim_bridge.sim.simulation import Scene
 
 
@@ -136,3 +138,35 @@ def listener(listening_session):
     number = listening_session.registerService("Listener", module)
     yield module
     listening_session.unregisterService(number)
+
+
+@pytest.fixture(scope="module")
+def broker():
+    """A broker of its own for modules that a test makes up."""
+    made = Broker("test_broker")
+    made.listen("127.0.0.1", 0)
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def session(broker):
+    """A client of `broker`."""
+    client = connected(broker.port)
+    yield client
+    client.close()
+
+
+@pytest.fixture
+def serve(broker, session):
+    """Serves objects as a NAOqi module; returns what a client gets to see of it."""
+    served = []
+
+    def make(module, *parts):
+        broker.register(module, make_service(module, parts, broker))
+        served.append(module)
+        return session.service(module)
+
+    yield make
+    for module in served:
+        broker.unregister(module)

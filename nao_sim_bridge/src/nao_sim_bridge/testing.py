@@ -1,0 +1,250 @@
+"""For rostest suites against the simulated NAO: wait for the stack, reset the world, move time, read the robot.
+
+A suite includes `test_stack.launch` of the package `nao_library` in its `.test` file and uses `SimulatedRobot` in its
+Python file. Nothing here waits by sleeping: waits end with a message of the robot, or with a clear error.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Callable, Iterable, Mapping, Sequence
+
+import actionlib
+import qi
+import rospy
+from geometry_msgs.msg import Vector3
+from nao_library_msgs.srv import AdvanceTime, PressSensors, PushRobot, TakePicture
+from std_srvs.srv import Empty
+
+from nao_sim_bridge.broker import QUIET_LIBQI
+
+DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
+
+
+class StackNotReady(RuntimeError):
+    """Something that a test needs is not there; the text names it."""
+
+
+@dataclass
+class GoalRun:
+    """A goal that was sent, and what came back so far.
+
+    Attributes:
+        feedback: (simulated time in s, feedback message) of each feedback.
+        sent: Simulated time at which the goal was sent, s.
+    """
+
+    client: Any
+    sent: float
+    feedback: list = field(default_factory=list)
+    _news: threading.Condition = field(default_factory=threading.Condition)
+    _done: tuple = ()
+
+    @property
+    def state(self) -> int:
+        """Terminal state (actionlib_msgs/GoalStatus); only after `wait`."""
+        return self._done[0]
+
+    @property
+    def result(self) -> Any:
+        """Result message; only after `wait`."""
+        return self._done[1]
+
+    @property
+    def ended(self) -> float:
+        """Simulated time at which the result came, s; only after `wait`."""
+        return self._done[2]
+
+    @property
+    def text(self) -> str:
+        """Text of the end state."""
+        return self.client.get_goal_status_text()
+
+    def wait(self, limit: float = 30.0) -> GoalRun:
+        """Wait for the end, at most `limit` s of wall time.
+
+        Raises:
+            StackNotReady: There is no result in time.
+        """
+        self._wait(lambda: bool(self._done), limit, "result of the goal")
+        return self
+
+    def wait_for_function(self, index: int, limit: float = 30.0) -> GoalRun:
+        """Wait until function `index` (from 0) of the chain begins, at most `limit` s of wall time."""
+        self._wait(lambda: any(f.index >= index for _, f in self.feedback), limit, f"feedback of function {index}")
+        return self
+
+    def _wait(self, condition: Callable[[], bool], limit: float, what: str) -> None:
+        with self._news:
+            if not self._news.wait_for(condition, limit):
+                raise StackNotReady(f"not there within {limit:g} s: {what}")
+
+    def _on_feedback(self, feedback: Any) -> None:
+        with self._news:
+            self.feedback.append((rospy.get_time(), feedback))
+            self._news.notify_all()
+
+    def _on_done(self, state: int, result: Any) -> None:
+        with self._news:
+            self._done = (state, result, rospy.get_time())
+            self._news.notify_all()
+
+
+def send(client: actionlib.SimpleActionClient, goal: Any) -> GoalRun:
+    """Send a goal and return at once."""
+    run = GoalRun(client, rospy.get_time())
+    client.send_goal(goal, done_cb=run._on_done, feedback_cb=run._on_feedback)
+    return run
+
+
+class SimulatedRobot:
+    """The simulated robot of a test.
+
+    Args:
+        namespace: Namespace the simulator runs in, "" for that of the test.
+        limit: Longest wall time to wait for the simulator, s.
+
+    Raises:
+        StackNotReady: The simulator is not there in time.
+    """
+
+    def __init__(self, namespace: str = "", limit: float = 30.0) -> None:
+        self.namespace = namespace.rstrip("/")
+        self._advance = self._service("nao_sim/advance", AdvanceTime, limit)
+        self._push = self._service("nao_sim/push", PushRobot, limit)
+        self._press = self._service("nao_sim/press", PressSensors, limit)
+        self._picture = self._service("nao_sim/picture", TakePicture, limit)
+        self._reset = self._service("nao_sim/reset", Empty, limit)
+        self._pause = self._service("nao_sim/pause", Empty, limit)
+        self._resume = self._service("nao_sim/resume", Empty, limit)
+        self._session: Any = None
+
+    # --- the stack ------------------------------------------------------------------------------------------------
+
+    def action_client(self, name: str, action: type, limit: float = 30.0) -> actionlib.SimpleActionClient:
+        """A client of an action server of this robot that is ready for goals.
+
+        Raises:
+            StackNotReady: The server is not there within `limit` s of wall time.
+        """
+        client = actionlib.SimpleActionClient(self._name(name), action)
+        wait_until(
+            lambda: client.wait_for_server(rospy.Duration(0.01)), limit, f"action server {self._name(name)}"
+        )
+        return client
+
+    @property
+    def port(self) -> int:
+        """Port of the robot's NAOqi."""
+        return int(rospy.get_param(self._name("nao_sim/bound_port")))
+
+    def module(self, name: str) -> Any:
+        """A NAOqi module of the robot, for example "ALMemory", straight over libqi."""
+        if self._session is None or not self._session.isConnected():
+            qi.logging.setFilters(QUIET_LIBQI)
+            self._session = qi.Session()
+            self._session.connect(f"tcp://127.0.0.1:{self.port}")
+        return self._session.service(name)
+
+    # --- world and time -------------------------------------------------------------------------------------------
+
+    def reset(self) -> None:
+        """Put robot and world to where they started; simulated time goes on."""
+        self._reset()
+
+    def advance(self, seconds: float) -> float:
+        """Let simulated time pass as fast as possible; returns the time after it, s."""
+        return self._advance(rospy.Duration.from_sec(seconds)).now.to_sec()
+
+    def pause(self) -> None:
+        """Let time stand still; calls are still answered."""
+        self._pause()
+
+    def resume(self) -> None:
+        """Let time pass again."""
+        self._resume()
+
+    def push(self, force: Sequence[float], seconds: float, link: str = "torso") -> None:
+        """Push a link with `force` (x, y, z in N, in world) for a while."""
+        answer = self._push(link, Vector3(*force), rospy.Duration.from_sec(seconds))
+        if not answer.success:
+            raise ValueError(answer.message)
+
+    def press(self, sensors: Iterable[str]) -> None:
+        """Simulated fingers on these touch sensors and on no others."""
+        answer = self._press(list(sensors))
+        if not answer.success:
+            raise ValueError(answer.message)
+
+    # --- looking --------------------------------------------------------------------------------------------------
+
+    def picture(self, view: str = "three_quarter", file: str = "picture.png") -> Path:
+        """Take a picture; returns where it is."""
+        answer = self._picture(view, 0, 0, file)
+        if not answer.success:
+            raise ValueError(answer.message)
+        return Path(answer.path)
+
+    def value(self, key: str) -> Any:
+        """What ALMemory has under a key."""
+        return self.module("ALMemory").getData(key)
+
+    def led(self, device: str) -> float:
+        """Intensity 0..1 of an LED device, for example "Head/Led/Front/Right/1"."""
+        return self.value(DEVICE.format(device))
+
+    def leds(self, devices: Iterable[str]) -> dict[str, float]:
+        """Intensities of several LED devices, read at once."""
+        devices = list(devices)
+        values = self.module("ALMemory").getListData([DEVICE.format(device) for device in devices])
+        return dict(zip(devices, values))
+
+    def wait_for_leds(self, wanted: Mapping[str, float], limit: float = 10.0) -> None:
+        """Wait until LED devices have these intensities.
+
+        Raises:
+            StackNotReady: They have not within `limit` s of wall time; the text names the first that has not.
+        """
+        wrong = ""
+
+        def right() -> bool:
+            nonlocal wrong
+            found = self.leds(wanted)
+            wrong = next((f"{n} is {found[n]}, not {v}" for n, v in wanted.items() if abs(found[n] - v) > 0.02), "")
+            return not wrong
+
+        wait_until(right, limit, lambda: f"LEDs: {wrong}")
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _name(self, name: str) -> str:
+        return f"{self.namespace}/{name}" if self.namespace else name
+
+    def _service(self, name: str, kind: type, limit: float) -> rospy.ServiceProxy:
+        name = self._name(name)
+        wait_until(lambda: _service_there(name), limit, f"service {name}; is the simulator in the launch file?")
+        return rospy.ServiceProxy(name, kind)
+
+
+def wait_until(condition: Callable[[], bool], limit: float, what: str | Callable[[], str]) -> None:
+    """Ask again and again until `condition()` holds; it should itself take a moment, as a call to the robot does.
+
+    Raises:
+        StackNotReady: It does not hold within `limit` s of wall time.
+    """
+    give_up = time.monotonic() + limit
+    while not condition():
+        if time.monotonic() > give_up or rospy.is_shutdown():
+            text = what if isinstance(what, str) else what()
+            raise StackNotReady(f"not there within {limit:g} s: {text}")
+
+
+def _service_there(name: str) -> bool:
+    try:
+        rospy.wait_for_service(name, timeout=0.2)
+    except rospy.ROSException:
+        return False
+    return True

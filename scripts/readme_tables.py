@@ -1,0 +1,265 @@
+#!/usr/bin/env python3
+"""Writes the tables of README.md from the code that they tell about.
+
+A table named NAME stands between `<!-- begin: NAME -->` and `<!-- end: NAME -->`; what is between the two is
+replaced. Needs the messages of the built workspace, but neither a ROS master nor a robot.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import importlib
+import inspect
+import pkgutil
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from unittest.mock import MagicMock
+
+import nao_library_modules
+from nao_library_modules.memory_functions import MemoryFunctions
+from nao_library_modules.nao_basic import NaoBasic
+from nao_sim_bridge.cli import parser as simulator_parser
+from nao_sim_bridge.server import ServerOptions, SimulatorServer
+from nao_sim_bridge.services.binding import offered
+from nao_sim_bridge.services.nao_simulation import NaoSimulation
+
+ROOT = Path(__file__).resolve().parents[1]
+README = ROOT / "README.md"
+CLIENT = ROOT / "nao_library_modules" / "examples" / "green_eyes.py"
+LAUNCH_FILES = ROOT / "launch" / "launch"
+MARKED = re.compile(r"<!-- begin: (?P<name>[^>]+) -->\n(?P<body>.*?)<!-- end: (?P<end>[^>]+) -->", re.DOTALL)
+
+
+class ReadmeError(Exception):
+    """The marks in the text and the tables do not belong together."""
+
+
+@dataclass(frozen=True)
+class Server:
+    """An action server as it presents itself to clients.
+
+    Attributes:
+        name: Relative name of the action.
+        action: Type of the action, without its package.
+        message: Type of the function messages, without its package.
+        module: Class behind it.
+        functions: Name -> callable, without the functions that all servers share.
+    """
+
+    name: str
+    action: str
+    message: str
+    module: type
+    functions: Mapping[str, Callable[..., Any]]
+
+
+# Text
+
+
+def fill(text: str, tables: Mapping[str, str]) -> str:
+    """Put tables between their marks.
+
+    Raises:
+        ReadmeError: If a table has no marks, marks have no table, or do not come in pairs.
+    """
+    seen = []
+
+    def replaced(match: re.Match[str]) -> str:
+        name = match["name"]
+        if name != match["end"] or "<!-- begin:" in match["body"]:
+            raise ReadmeError(f"the mark 'begin: {name}' is not followed by its 'end: {name}'")
+        if name not in tables:
+            raise ReadmeError(f"there is no table {name!r}; there are: {', '.join(tables)}")
+        seen.append(name)
+        return f"<!-- begin: {name} -->\n\n{tables[name].strip()}\n\n<!-- end: {name} -->"
+
+    filled = MARKED.sub(replaced, text)
+    if len(seen) != text.count("<!-- begin:") or len(seen) != text.count("<!-- end:"):
+        raise ReadmeError("a mark has no partner")
+    missing = [name for name in tables if name not in seen]
+    if missing:
+        raise ReadmeError(f"the text has no marks for {', '.join(missing)}")
+    return filled
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A Markdown table."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(cell.replace("|", r"\|") for cell in line) + " |" for line in lines)
+
+
+def code(text: object) -> str:
+    """Text in code type; a dash for nothing."""
+    return f"`{text}`" if str(text) else "–"
+
+
+def first_line(thing: Any) -> str:
+    """First line of a docstring.
+
+    Raises:
+        ReadmeError: If there is none.
+    """
+    doc = inspect.getdoc(thing)
+    if not doc:
+        raise ReadmeError(f"{thing!r} has no docstring")
+    return doc.splitlines()[0]
+
+
+# What is told
+
+
+def client() -> str:
+    """The shortest client without its first line and docstring."""
+    source = CLIENT.read_text(encoding="utf-8")
+    first = ast.parse(source).body[1].lineno
+    return "```python\n" + "\n".join(source.splitlines()[first - 1 :]) + "\n```"
+
+
+def launch_arguments(file: Path) -> str:
+    """Arguments of a launch file."""
+    args = ElementTree.parse(file).getroot().findall("arg")
+    rows = [(code(a.get("name", "")), launch_default(a.get("default", "")), a.get("doc", "")) for a in args]
+    return table(("argument", "default", "meaning"), rows)
+
+
+def launch_default(text: str) -> str:
+    """A default of a launch file in words: what is computed is said to be so."""
+    environment = re.fullmatch(r"\$\(optenv \w+ ?(.*)\)", text)
+    if environment:
+        return code(environment[1])
+    if text.startswith("$(eval"):
+        return "depends on " + ", ".join(code(name) for name in re.findall(r"arg\('(\w+)'\)", text))
+    return code(text)
+
+
+def find_servers() -> list[Server]:
+    """The servers of all modules of the library, by name.
+
+    A module is built with stand-ins for robot and ROS, which do nothing and remember what it serves.
+    """
+    servers = []
+    for found in pkgutil.iter_modules(nao_library_modules.__path__):
+        source = importlib.import_module(f"nao_library_modules.{found.name}")
+        classes = [c for c in vars(source).values() if inspect.isclass(c) and c.__module__ == source.__name__]
+        for module in classes:
+            if issubclass(module, NaoBasic):
+                servers += _served(module)
+    return sorted(servers, key=lambda server: server.name.lower())
+
+
+def _served(module: type) -> list[Server]:
+    edge = MagicMock()
+    instance = module("127.0.0.1", 9559, robot=MagicMock(), edge=edge)
+    shared = MemoryFunctions.memory_functions(instance)
+    functions = {name: f for name, f in instance.function_table.items() if name not in shared}
+    servers = []
+    for call in edge.action_server.call_args_list:
+        name, action = call[0][:2]
+        field_type = action().action_goal.goal._slot_types[0]
+        message = field_type.rpartition("/")[2].replace("[]", "")
+        servers.append(Server(name, action.__name__, message, module, functions))
+    return servers
+
+
+def servers_table(servers: Sequence[Server]) -> str:
+    """Names and types of the servers."""
+    names = [(s.name, s.action, s.message, s.module.__name__) for s in servers]
+    rows = [(*map(code, row), first_line(s.module)) for row, s in zip(names, servers)]
+    return table(("server", "action", "function message", "class", "what it does"), rows)
+
+
+def functions_table(functions: Mapping[str, Callable[..., Any]]) -> str:
+    """Functions of a server, the fields that each takes from its message, and what it does."""
+    rows = []
+    for name, function in functions.items():
+        fields = inspect.signature(function).parameters
+        rows.append((code(name), ", ".join(map(code, fields)) or code(""), first_line(function)))
+    return table(("function", "fields", "what it does"), rows)
+
+
+def memory_functions() -> Mapping[str, Callable[..., Any]]:
+    """Functions that all servers share."""
+    return MemoryFunctions.memory_functions(MemoryFunctions())
+
+
+def simulator_options() -> str:
+    """Options of the simulator's command line."""
+    # argparse has no public list of its options; its help text differs between versions of Python.
+    options = [o for o in simulator_parser("nao_sim")._actions if o.option_strings and o.dest != "help"]
+    rows = []
+    for option in options:
+        choices = f"; one of {', '.join(map(code, option.choices))}" if option.choices else ""
+        default = "off" if option.nargs == 0 else code(option.default)
+        rows.append((code(option.option_strings[-1]), default, f"{option.help}{choices}"))
+    return table(("option", "default", "meaning"), rows)
+
+
+def simulator_only() -> str:
+    """Methods of the service that a robot does not have."""
+    rows = []
+    for name, method in vars(NaoSimulation).items():
+        if inspect.isfunction(method) and not name.startswith("_"):
+            parameters = list(inspect.signature(method).parameters)[1:]
+            rows.append((code(f"{name}({', '.join(parameters)})"), first_line(method)))
+    return table(("method", "what it does"), rows)
+
+
+def naoqi_methods() -> str:
+    """How many methods of each of NAOqi's modules the simulator answers."""
+    server = SimulatorServer(ServerOptions(port=0))
+    try:
+        rows = []
+        for module, parts in sorted(server.modules().items()):
+            answered, open_ = offered(module, parts)
+            rows.append((code(module), str(len(answered)), str(len(answered) + len(open_))))
+    finally:
+        server.simulation.close()
+    return table(("module", "methods answered", "methods of the robot"), rows)
+
+
+def all_tables() -> dict[str, str]:
+    """Every table by the name in its marks."""
+    servers = find_servers()
+    return {
+        "client": client(),
+        "launch nao_sim": launch_arguments(LAUNCH_FILES / "nao_sim.launch"),
+        "launch nao": launch_arguments(LAUNCH_FILES / "nao.launch"),
+        "servers": servers_table(servers),
+        **{f"functions {server.name}": functions_table(server.functions) for server in servers},
+        "memory functions": functions_table(memory_functions()),
+        "simulator options": simulator_options(),
+        "simulator only": simulator_only(),
+        "naoqi": naoqi_methods(),
+    }
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write README.md anew, or with --check only look; the exit status tells whether all is well."""
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--check", action="store_true", help="write nothing; fail when it is out of date")
+    options.add_argument("--file", type=Path, default=README, help="the file with the marks")
+    parsed = options.parse_args(arguments)
+    text = parsed.file.read_text(encoding="utf-8")
+    try:
+        filled = fill(text, all_tables())
+    except ReadmeError as error:
+        print(f"{parsed.file}: {error}", file=sys.stderr)
+        return 1
+    if filled == text:
+        return 0
+    if parsed.check:
+        print(f"{parsed.file} is out of date; run 'make docs'", file=sys.stderr)
+        return 1
+    parsed.file.write_text(filled, encoding="utf-8")
+    print(f"{parsed.file} is up to date again")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

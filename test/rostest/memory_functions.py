@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""The memory functions that every module has, through NaoLights, against the robot's ALMemory."""
+
+import json
+import threading
+import unittest
+
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_msgs.msg import LedFunction, MemoryEvent
+
+from nao_sim_bridge.testing import SimulatedRobot, send
+
+ACCELEROMETER = "Device/SubDeviceList/InertialSensor/AccelerometerZ/Sensor/Value"
+
+
+class MemoryFunctions(unittest.TestCase):
+    def setUp(self):
+        self.robot = SimulatedRobot()
+        self.client = self.robot.action_client("NaoLights", NaoLedAction)
+
+    def ask(self, *calls):
+        chain = [LedFunction(function=function, str_param=parameter) for function, parameter in calls]
+        run = send(self.client, NaoLedGoal(chain)).wait()
+        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
+        return run.result.memList
+
+    def test_data_goes_in_and_out(self):
+        answers = self.ask(("insertData", "Test/Answer=[1, 2.5, \"three\"]"), ("getData", "Test/Answer"))
+        self.assertEqual(json.loads(answers[-1]), [1, 2.5, "three"])
+        self.assertEqual(self.robot.value("Test/Answer"), [1, 2.5, "three"])
+        self.assertIn("Test/Answer", self.ask(("getDataList", "Test/")))
+        self.assertEqual(self.ask(("getType", "Test/Answer"))[-1], "Data")
+        self.assertEqual(len(self.ask(("getTimestamp", "Test/Answer"))), 3)
+        self.ask(("removeData", "Test/Answer"))
+        self.assertNotIn("Test/Answer", self.ask(("getDataList", "Test/")))
+
+    def test_sensors_of_the_robot(self):
+        self.assertAlmostEqual(float(self.ask(("getData", ACCELEROMETER))[-1]), 9.81, delta=0.4)
+        values = self.ask(("getListData", f"{ACCELEROMETER},RobotConfig/Body/Type"))
+        self.assertEqual(values[1], "Nao")
+
+    def test_events_of_the_robot_come_as_a_topic(self):
+        arrived, messages = threading.Event(), []
+
+        def on_event(message):
+            messages.append(message)
+            arrived.set()
+
+        topic = rospy.Subscriber("memory_events", MemoryEvent, on_event)
+        self.ask(("subscribeToEvent", "Test/Event"))
+        self.robot.module("ALMemory").raiseEvent("Test/Event", [1, "a"])
+        self.assertTrue(arrived.wait(10.0))
+        self.assertEqual((messages[0].name, json.loads(messages[0].value)), ("Test/Event", [1, "a"]))
+        self.assertIn("Test/Event", self.ask(("getEventList", "")))
+        self.assertEqual(json.loads(self.ask(("getEventHistory", "Test/Event"))[-1])[0], [1, "a"])
+        self.ask(("unsubscribeToEvent", "Test/Event"))
+        topic.unregister()
+
+    def test_events_raised_through_a_goal_reach_the_robot(self):
+        self.ask(("raiseEvent", "Test/FromGoal=42"), ("raiseMicroEvent", "Test/Micro=true"))
+        self.assertEqual(self.robot.value("Test/FromGoal"), 42)
+        self.assertIn("Test/Micro", self.ask(("getMicroEventList", "")))
+
+    def test_ping(self):
+        self.assertEqual(self.ask(("ping", ""))[-1], "True")
+
+
+if __name__ == "__main__":
+    rospy.init_node("memory_functions_test")
+    rostest.rosrun("nao_library_tests", "memory_functions", MemoryFunctions)
