@@ -41,7 +41,7 @@ class PaperListings(unittest.TestCase):
         run = send(self.led_client, nao_library_actions.msg.NaoLedGoal([brain_half])).wait()
         self.assertEqual(run.state, GoalStatus.SUCCEEDED)
         self.assertAlmostEqual(self.robot.led("Head/Led/Front/Right/1"), 0.5)
-        self.assertEqual((run.result.lights, run.result.intensities), (["Brain0"], [0.5]))
+        self.assertEqual(list(zip(run.result.lights, run.result.intensities)), [("Brain0", 0.5)])
 
     def test_both_eyes_green(self):
         self.assertLess(green_pixels(self.robot.picture("front", "white_eyes.png")), 20)

@@ -37,9 +37,6 @@ class SimulatedWorld(unittest.TestCase):
         self.assertLess(self.height(), 0.2)
 
     def test_topic_and_service_of_the_true_pose_agree(self):
-        self.robot.pause()
-        self.addCleanup(self.robot.resume)
-        self.robot.resume()
         message = rospy.wait_for_message("ground_truth/odom", Odometry, timeout=30.0)
         self.assertEqual((message.header.frame_id, message.child_frame_id), ("world", "torso"))
         self.assertAlmostEqual(message.pose.pose.position.z, self.height(), delta=0.002)

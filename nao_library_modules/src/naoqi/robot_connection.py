@@ -24,6 +24,8 @@ logger = logging.getLogger("naoqi")
 
 FLUSH_LIMIT = 0.5
 """So long `close` waits for the robot to have received everything, in s."""
+READY_LIMIT = 1.0
+"""So long a module that is known may take until it can be called, in s."""
 EXIT_LIMIT = 1.0
 """So long `close` waits for calls that must end because it has closed the session, in s."""
 
@@ -291,14 +293,20 @@ class Connection:
             self._listeners.tell(state)  # with the lock: who sees a state hears only of those that follow
 
     def _ask_for(self, live: Live, name: str) -> Any:
-        future = live.session.service(name, _async=True)
-        if not answered(future, self.timing.connect_limit):
-            raise RobotUnreachable(self.host, self.port, f"no answer to the question where module {name} is")
-        if not future.hasError():
-            return future.value()
-        text = future.error()
-        if is_unknown_service(text):
-            raise unknown_module(name, self.host, self.port, self.module_names())
-        if live is not self.live or not live.session.isConnected():
-            raise self.unreachable()
-        raise NaoError(f"NAOqi at {self.address} gave no access to module {name}: {text}")
+        end, delay = time.monotonic() + READY_LIMIT, 0.005
+        while True:
+            future = live.session.service(name, _async=True)
+            if not answered(future, self.timing.connect_limit):
+                reason = f"no answer to the question where module {name} is"
+                raise RobotUnreachable(self.host, self.port, reason)
+            if not future.hasError():
+                return future.value()
+            text = future.error()
+            if is_unknown_service(text):
+                raise unknown_module(name, self.host, self.port, self.module_names())
+            if live is not self.live or not live.session.isConnected():
+                raise self.unreachable()
+            # A module that has only just arrived, or that leaves right now.
+            if time.monotonic() >= end or live.broken.wait(delay):
+                raise NaoError(f"NAOqi at {self.address} gave no access to module {name}: {text.strip()}")
+            delay *= 2.0

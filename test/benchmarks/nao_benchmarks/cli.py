@@ -15,6 +15,7 @@ from .row import Row
 from .stack import Stack
 
 OUTPUT = ROOT / "bench_output" / "bench.json"
+EPILOG = "The exit status is 1 when a bound is missed or a row could not be measured."
 
 
 def parser(rows: Sequence[Row]) -> argparse.ArgumentParser:
@@ -24,13 +25,12 @@ def parser(rows: Sequence[Row]) -> argparse.ArgumentParser:
     options = argparse.ArgumentParser(
         prog="scripts/ros-env python3 test/benchmarks/run.py",
         description="Measures the stack against what it is made of, side by side in one run.",
-        epilog="\n".join(["rows:", *lines, "", "Exit status 1: a bound is missed or a row could not be measured."]),
+        epilog="\n".join(["rows:", *lines, "", EPILOG]),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    options.add_argument(
-        "--only", metavar="NAME", action="append", choices=[row.name for row in rows], help="this row; may be repeated"
-    )
-    options.add_argument("--output", type=Path, default=OUTPUT, help="file to write (default bench_output/bench.json)")
+    names = [row.name for row in rows]
+    options.add_argument("--only", metavar="NAME", action="append", choices=names, help="a row; may be repeated")
+    options.add_argument("--output", type=Path, default=OUTPUT, help="file (default bench_output/bench.json)")
     return options
 
 

@@ -32,8 +32,8 @@ def set_intensity(light: str, count: int) -> NaoLedGoal:
 class GoalClient:
     """Sends goals to one server and waits for their ends.
 
-    `SimpleActionClient.wait_for_result` waits in slices of 100 ms, and its done callback comes before it is ready
-    for the next goal. The client below it tells of each transition when the message arrives.
+    `SimpleActionClient.wait_for_result` waits in slices of 100 ms, and its done callback comes before it is
+    ready for the next goal. The client below it tells of each transition when the message arrives.
 
     Args:
         server: Name of the action.

@@ -34,7 +34,7 @@ class Result:
 
 
 def table(results: Sequence[Result]) -> str:
-    """A table for people: one line a row, and under it what the rows are."""
+    """A table for people: one line a row, and under it what the rows are, with notes."""
     lines = [HEADINGS, *(_cells(result) for result in results)]
     widths = [max(len(line[column]) for line in lines) for column in range(len(HEADINGS))]
     text = ["  ".join(_aligned(line, widths)).rstrip() for line in lines]
@@ -44,6 +44,8 @@ def table(results: Sequence[Result]) -> str:
     for result in results:
         against = f" : {result.row.against}" if result.row.against else " (absolute)"
         text.append(f"{result.row.name:<{width}}  {result.row.subject}{against}")
+        if result.figures is not None and result.figures.note:
+            text.append(f"{'':<{width}}    {result.figures.note}")
     text += [f"\n{result.row.name}: not measured: {result.error}" for result in results if result.error]
     return "\n".join(text)
 
@@ -84,6 +86,7 @@ def _entry(result: Result) -> dict[str, object]:
         "bound": {"kind": row.bound.kind.value, "limit": row.bound.limit},
         "ok": result.ok,
         "error": result.error or None,
+        "note": None if figures is None else figures.note or None,
         "details": {} if figures is None else dict(figures.details),
     }
 

@@ -56,11 +56,13 @@ class Figures:
         ours: Our figure, in the unit of the row.
         reference: What it is compared with, in the same unit; None where the figure stands for itself.
         details: Further figures for the file, by name.
+        note: What a reader of the table should know besides; a line at most.
     """
 
     ours: float
     reference: float | None = None
     details: Mapping[str, float] = field(default_factory=dict)
+    note: str = ""
 
     @property
     def ratio(self) -> float | None:
@@ -73,19 +75,20 @@ class Figures:
         return self.ours if self.ratio is None else self.ratio
 
     @classmethod
-    def compared(cls, ours: Sample, reference: Sample, scale: float) -> Figures:
+    def compared(cls, ours: Sample, reference: Sample, scale: float, note: str = "") -> Figures:
         """Medians of two samples, with their quartiles as details.
 
         Args:
             ours: Our runs.
             reference: Runs of the reference.
             scale: How many of the row's units make a second.
+            note: See the attribute.
         """
         details: dict[str, float] = {"runs": len(ours.seconds), "reference runs": len(reference.seconds)}
         for name, sample in (("ours", ours), ("reference", reference)):
             for which, value in zip(("first", "third"), sample.quartiles):
                 details[f"{name}, {which} quartile"] = value * scale
-        return cls(ours.median * scale, reference.median * scale, details)
+        return cls(ours.median * scale, reference.median * scale, details, note)
 
 
 class Row(abc.ABC):

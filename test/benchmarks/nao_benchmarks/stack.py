@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 START_LIMIT = 40.0
 OUR_SERVER = "NaoLights"
 BARE_SERVER = "bare_lights"
+# s; a client must still find its goal in the list when the result takes longer than the state.
+STATUS_LIST_TIMEOUT = 0.2
 
 
 class Stack:
@@ -57,14 +59,33 @@ class Stack:
 
     @cached_property
     def goal_clients(self) -> tuple[GoalClient, GoalClient]:
-        """Clients of our server for the lights and of a bare server for the same action."""
+        """Clients of our server for the lights and of a bare server for the same action, as they come."""
+        return self._goal_servers("busy")
+
+    @cached_property
+    def rare_goal_clients(self) -> tuple[GoalClient, GoalClient]:
+        """Clients of two more such servers, for which every goal is like one that comes once in a while.
+
+        With each change actionlib publishes the state of all goals that ended in the last 5 s. A benchmark makes
+        hundreds in that time, a user a few; these servers forget them soon.
+        """
+        return self._goal_servers("rare", STATUS_LIST_TIMEOUT)
+
+    def _goal_servers(self, namespace: str, status_list_timeout: float | None = None) -> tuple[GoalClient, GoalClient]:
         assert self.master
-        port = self.simulator.port
-        self._start("nao_lights", [str(LIGHTS_NODE), "--pip", "127.0.0.1", "--pport", str(port)])
-        self._start("bare server", [str(PROGRAMS / "bare_action_server.py"), BARE_SERVER])
+        import rospy
+
         from .goals import GoalClient  # not above: it needs the messages of the built workspace
 
-        return GoalClient(OUR_SERVER, START_LIMIT), GoalClient(BARE_SERVER, START_LIMIT)
+        ours, bare = f"/{namespace}/{OUR_SERVER}", f"/{namespace}/{BARE_SERVER}"
+        if status_list_timeout is not None:
+            for server in (ours, bare):
+                rospy.set_param(f"{server}/status_list_timeout", status_list_timeout)
+        robot = ["--pip", "127.0.0.1", "--pport", str(self.simulator.port)]
+        remapping = f"__ns:=/{namespace}"
+        self._start("nao_lights", [str(LIGHTS_NODE), *robot, remapping])
+        self._start("bare server", [str(PROGRAMS / "bare_action_server.py"), BARE_SERVER, remapping])
+        return GoalClient(ours, START_LIMIT), GoalClient(bare, START_LIMIT)
 
     def _start(self, name: str, command: list[str]) -> Program:
         return self._started.enter_context(Program(name, [sys.executable, *command]))

@@ -1,4 +1,4 @@
-"""Measuring alternatives side by side. Machines are noisy, so the figures that count are ratios of medians."""
+"""Measuring alternatives side by side. Machines are noisy: what counts are ratios of medians."""
 
 from __future__ import annotations
 
@@ -30,6 +30,10 @@ class Sample:
             return self.seconds[0], self.seconds[0]
         first, _, third = quantiles(self.seconds, n=4, method="inclusive")
         return first, third
+
+    def share_above(self, limit: float) -> float:
+        """Share 0..1 of the runs that took longer than `limit` (s)."""
+        return sum(each > limit for each in self.seconds) / len(self.seconds)
 
 
 def interleave(

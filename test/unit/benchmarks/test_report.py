@@ -65,8 +65,14 @@ def test_the_table_says_what_the_rows_are_and_why_one_has_no_figures():
     assert "compared: not measured: the robot sleeps" in text
 
 
+def test_a_note_stands_below_what_the_row_is():
+    lines = table([Result(Compared(), Figures(1.0, 2.0, note="a slow day"))]).splitlines()
+    assert lines[-1].strip() == "a slow day"
+    assert lines[-2].endswith("our thing : a bare thing")
+
+
 def test_the_record_has_every_figure_and_the_machine():
-    figures = Figures(120.0, 100.0, {"runs": 5})
+    figures = Figures(120.0, 100.0, {"runs": 5}, "quiet machine")
     content = record([Result(Compared(), figures), Result(Absolute(), None, "gone")], {"cores": 2})
     assert content["machine"] == {"cores": 2}
     compared, absolute = content["rows"]
@@ -81,6 +87,7 @@ def test_the_record_has_every_figure_and_the_machine():
         "bound": {"kind": "at most", "limit": 1.5},
         "ok": True,
         "error": None,
+        "note": "quiet machine",
         "details": {"runs": 5},
     }
     assert absolute["ours"] is absolute["ratio"] is absolute["against"] is None

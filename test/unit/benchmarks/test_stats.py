@@ -70,6 +70,11 @@ def test_quartiles_enclose_the_middle_half():
     assert Sample((7.0,)).quartiles == (7.0, 7.0)
 
 
+def test_the_share_above_a_limit_leaves_the_limit_out():
+    assert Sample((1.0, 2.0, 3.0, 4.0)).share_above(2.0) == 0.5
+    assert Sample((1.0, 2.0)).share_above(5.0) == 0.0
+
+
 def test_real_time_is_measured_in_seconds():
     """Two runs that wait for the same event limit differ only by what the machine adds."""
     never = threading.Event()

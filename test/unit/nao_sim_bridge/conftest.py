@@ -9,7 +9,7 @@ import pytest
 from nao_sim_bridge.sim.simulation import Scene, Simulation
 
 BODY = range(26)
-PATIENCE = 30.0
+PATIENCE = 15.0
 """Longest wait for something that must happen, in s; passing tests do not come near it."""
 
 

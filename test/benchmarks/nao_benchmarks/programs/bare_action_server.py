@@ -15,7 +15,8 @@ def main() -> int:
     """Serve the action that the command line names until the node ends."""
     name = rospy.myargv(sys.argv)[1]
     rospy.init_node(name)
-    server = actionlib.SimpleActionServer(name, NaoLedAction, lambda _: server.set_succeeded(), auto_start=False)
+    done = lambda _: server.set_succeeded()  # noqa: E731
+    server = actionlib.SimpleActionServer(name, NaoLedAction, done, auto_start=False)
     server.start()
     rospy.spin()
     return 0

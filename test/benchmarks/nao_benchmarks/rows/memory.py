@@ -25,7 +25,10 @@ def resident_kib(pid: int, field: str) -> float:
 
 
 class Memory(Row):
-    """Resident memory of the node after some work: wake-up, time, a picture. The process that draws is not in it."""
+    """Resident memory of the node after some work: wake-up, time, a picture.
+
+    The process that draws is one of its own, and not in it.
+    """
 
     name = "memory"
     subject = "resident memory of nao_sim, standing awake"
@@ -44,4 +47,4 @@ class Memory(Row):
                 raise BenchmarkError("the simulator gave no picture")
             pid = simulator.program.pid
             now, most = resident_kib(pid, "VmRSS"), resident_kib(pid, "VmHWM")
-        return Figures(now / MIB, details={"most so far": most / MIB})
+        return Figures(now / MIB, details={"most": most / MIB}, note=f"at most {most / MIB:.1f} MiB so far")

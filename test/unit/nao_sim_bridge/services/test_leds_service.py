@@ -59,7 +59,7 @@ def test_a_fade_passes_through_the_middle_and_answers_at_its_end(robot):
     future = robot.post("ALLeds", "fade", "FaceLeds", 0.0, 2.0)
     robot.handed_over("ALLeds")
     robot.advance(1.0)
-    assert set(robot.ALLeds.getIntensity("FaceLeds")) == {pytest.approx(0.5, abs=0.01)}
+    assert robot.ALLeds.getIntensity("FaceLeds") == pytest.approx([0.5] * 48, abs=0.01)
     assert future.isRunning()
     robot.advance(1.01)
     assert robot.answer(future) is None
@@ -124,7 +124,7 @@ def test_cancelling_a_fade_leaves_the_light_there(robot):
     future.cancel()
     robot.handed_over("ALLeds")
     robot.advance(1.5)
-    assert set(robot.ALLeds.getIntensity("FaceLeds")) == {pytest.approx(0.5, abs=0.01)}
+    assert robot.ALLeds.getIntensity("FaceLeds") == pytest.approx([0.5] * 48, abs=0.01)
 
 
 def test_random_eyes_twinkle_for_their_time(robot):

@@ -218,7 +218,7 @@ def test_a_subscriber_object_signals_every_value(memory, patience):
     subscriber.signal.connect(heard.put)
     memory.raiseEvent("Test/Signal", [1, 2])
     memory.raiseEvent("Test/Signal", "x")
-    assert sorted((heard.get(timeout=patience) for _ in range(2)), key=str) == ["x", [1, 2]]
+    assert sorted((heard.get(timeout=patience) for _ in range(2)), key=repr) == ["x", [1, 2]]
 
 
 @pytest.mark.parametrize("remove", ["removeEvent", "removeData"])
@@ -227,7 +227,8 @@ def test_an_event_that_was_removed_can_be_subscribed_to_anew(memory, patience, r
     memory.subscriber("Test/Again")
     getattr(memory, remove)("Test/Again")
     heard = queue.Queue()
-    memory.subscriber("Test/Again").signal.connect(heard.put)
+    subscriber = memory.subscriber("Test/Again")
+    subscriber.signal.connect(heard.put)
     memory.raiseEvent("Test/Again", 5)
     assert heard.get(timeout=patience) == 5
 
@@ -246,10 +247,11 @@ def test_signals_of_a_service_become_events(memory, listening_session, patience)
     heard = queue.Queue()
     memory.addMapping("Source", "touched", "Test/Touched")
     memory.addMapping("Source", {"moved": "Test/Moved"})
-    memory.subscriber("Test/Touched").signal.connect(heard.put)
+    subscribers = [memory.subscriber(event) for event in ("Test/Touched", "Test/Moved")]
+    for subscriber in subscribers:
+        subscriber.signal.connect(heard.put)
     source.touched(3)
     assert heard.get(timeout=patience) == 3
-    memory.subscriber("Test/Moved").signal.connect(heard.put)
     source.moved(4, 5)
     assert heard.get(timeout=patience) == [4, 5]
     with pytest.raises(RuntimeError, match="service 'Source' has no signal 'tuched'"):

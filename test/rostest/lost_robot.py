@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""The robot is late, dies in the middle of a goal, and comes back: goals abort clearly, the node goes on."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_msgs.msg import LedFunction
+from rospy import Duration
+
+import actionlib
+from nao_sim_bridge.testing import send, wait_until
+
+PORT = os.environ.get("NAO_PORT", "9559")
+HALF = LedFunction(function="setIntensity", lights=["Brain0"], i_values=[0.5])
+LONG = LedFunction(function="fade", lights=["Brain0"], i_values=[0.0], duration=100.0)
+
+
+class LostRobot(unittest.TestCase):
+    def setUp(self):
+        self.simulator = None
+        self.addCleanup(self.kill)
+        self.client = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
+        self.assertTrue(self.client.wait_for_server(Duration(30)))
+
+    def start(self):
+        self.simulator = subprocess.Popen([sys.executable, "-m", "nao_sim_bridge", "--port", PORT])
+
+    def kill(self):
+        if self.simulator is not None:
+            self.simulator.send_signal(signal.SIGCONT)
+            self.simulator.kill()
+            self.simulator.wait()
+            self.simulator = None
+
+    def play(self, *functions):
+        return send(self.client, NaoLedGoal(list(functions)))
+
+    def wait_until_it_works(self):
+        wait_until(lambda: self.play(HALF).wait().state == GoalStatus.SUCCEEDED, 20.0, "a goal that succeeds")
+
+    def wait_for_level(self, level):
+        def seen():
+            message = rospy.wait_for_message("/diagnostics", DiagnosticArray, timeout=10.0)
+            robot = [s for s in message.status if s.name.endswith("NaoLights robot")]
+            return bool(robot) and robot[0].level == level
+
+        wait_until(seen, 20.0, f"level {level!r} on /diagnostics")
+
+    def test_robot_that_is_late_dies_and_comes_back(self):
+        early = self.play(HALF).wait()
+        self.assertEqual(early.state, GoalStatus.ABORTED)
+        self.assertIn(PORT, early.text)
+        self.wait_for_level(DiagnosticStatus.ERROR)
+
+        self.start()
+        self.wait_until_it_works()
+        self.wait_for_level(DiagnosticStatus.OK)
+
+        for stop in (signal.SIGKILL, signal.SIGSTOP):
+            with self.subTest(stop):
+                run = self.play(HALF, LONG)
+                run.wait_for_function(1)
+                began = time.monotonic()
+                self.simulator.send_signal(stop)
+                run.wait(10.0)
+                self.assertLess(time.monotonic() - began, 2.5)
+                self.assertEqual(run.state, GoalStatus.ABORTED)
+                self.assertIn("function 2", run.text)
+                self.assertEqual([done.function for done in run.result.results], ["setIntensity"])
+                self.kill()
+                self.start()
+                self.wait_until_it_works()
+
+
+if __name__ == "__main__":
+    rospy.init_node("lost_robot_test")
+    rostest.rosrun("nao_library_tests", "lost_robot", LostRobot)
