@@ -1,7 +1,7 @@
 # Everything a user types. Each target installs and builds what it needs first; with nothing to do that takes no time.
 
 .DEFAULT_GOAL := help
-.PHONY: urdf help setup build demo test unit rostest bench lint format clean
+.PHONY: docs urdf help setup build demo test unit rostest bench lint format clean
 
 # Tests for `make unit` and `make rostest`: parts of their names (TESTS="lights walk"). Scenarios at once: JOBS=2.
 TESTS ?=
@@ -40,6 +40,9 @@ format: setup ## Put the form of Python files right
 urdf: setup ## Generate the robot's URDF anew from its tables
 	@PYTHONPATH=nao_sim_bridge/src .venv/bin/python nao_sim_bridge/nodes/nao_urdf \
 	    --output nao_sim_bridge/urdf/nao_h25.urdf --meshes nao_sim_bridge/urdf/meshes
+
+docs: build ## Write the tables of README.md anew from the code
+	@scripts/ros-env python3 scripts/readme_tables.py
 
 clean: ## Remove the workspace, the virtual environment and what the demonstration left
 	rm -rf .ws .venv demo_output

@@ -12,10 +12,10 @@ import rosnode
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_msgs.msg import LedFunction
 from rospy import Duration
 
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.testing import send, wait_until
 
 PORT = os.environ.get("NAO_PORT", "9559")
@@ -35,9 +35,7 @@ class Autostart(unittest.TestCase):
         self.addCleanup(module.kill)
         client = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
         self.assertTrue(client.wait_for_server(Duration(30)))
-        wait_until(
-            lambda: send(client, NaoLedGoal([HALF])).wait().state == GoalStatus.SUCCEEDED, 40.0, "a simulator"
-        )
+        wait_until(lambda: send(client, NaoLedGoal([HALF])).wait().state == GoalStatus.SUCCEEDED, 40.0, "a simulator")
         self.assertIn("/nao_sim", rosnode.get_node_names())
         module.send_signal(signal.SIGINT)
         self.assertEqual(module.wait(30.0), 0)

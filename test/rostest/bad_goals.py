@@ -6,10 +6,10 @@ import unittest
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_msgs.msg import LedFunction
 from rospy import Duration
 
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.testing import SimulatedRobot, send
 
 HALF = {"function": "setIntensity", "lights": ["Brain0"], "i_values": [0.5]}
@@ -17,10 +17,13 @@ BRAIN0 = "Head/Led/Front/Right/1"
 
 
 class BadGoals(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.client = cls.robot.action_client("NaoLights", NaoLedAction)
+
     def setUp(self):
-        self.robot = SimulatedRobot()
         self.robot.reset()
-        self.client = self.robot.action_client("NaoLights", NaoLedAction)
 
     def play(self, *functions):
         return send(self.client, NaoLedGoal([LedFunction(**fields) for fields in functions])).wait()

@@ -6,10 +6,10 @@ import unittest
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_msgs.msg import LedFunction
 from rospy import Duration
 
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.testing import SimulatedRobot, send
 
 BRAIN = {f"Brain{i}": device for i, device in enumerate(("Front/Right/1", "Front/Right/0", "Middle/Right/0"))}
@@ -27,17 +27,21 @@ def intensity(light, value, seconds=0.0, revert=False):
 
 
 class ChainsAndPreemption(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.client = cls.robot.action_client("NaoLights", NaoLedAction)
+
     def setUp(self):
-        self.robot = SimulatedRobot()
         self.robot.reset()
-        self.client = self.robot.action_client("NaoLights", NaoLedAction)
 
     def test_functions_run_in_order_with_their_waits(self):
         waits = (0.5, 1.0, 0.75)
         chain = [intensity(f"Brain{i}", 0.1 * i, wait) for i, wait in enumerate(waits)]
         run = send(self.client, NaoLedGoal(chain)).wait()
         self.assertEqual(run.state, GoalStatus.SUCCEEDED)
-        self.assertEqual([(f.index, f.function, f.count) for _, f in run.feedback], [(i, "setIntensity", 3) for i in range(3)])
+        steps = [(f.index, f.function, f.count) for _, f in run.feedback]
+        self.assertEqual(steps, [(i, "setIntensity", 3) for i in range(3)])
         times = [time for time, _ in run.feedback] + [run.ended]
         for wait, begin, end in zip(waits, times, times[1:]):
             self.assertAlmostEqual(end - begin, wait, delta=0.15)
@@ -46,7 +50,7 @@ class ChainsAndPreemption(unittest.TestCase):
     def test_cancel_in_the_middle_of_a_wait(self):
         run = send(self.client, NaoLedGoal([intensity("Brain0", 0.3, 1000.0), intensity("Brain1", 0.3)]))
         self.robot.wait_for_leds({led("Brain0"): 0.3})
-        self.client.cancel_goal()
+        run.cancel()
         run.wait(5.0)
         self.assertEqual(run.state, GoalStatus.PREEMPTED)
         self.assertEqual([r.function for r in run.result.results], ["setIntensity"])
@@ -57,7 +61,7 @@ class ChainsAndPreemption(unittest.TestCase):
         run = send(self.client, NaoLedGoal([fade]))
         run.wait_for_function(0)
         self.robot.wait_for_leds({led("Brain1"): 1.0})
-        self.client.cancel_goal()
+        run.cancel()
         run.wait(5.0)
         self.assertEqual(run.state, GoalStatus.PREEMPTED)
         stopped = self.robot.led(led("Brain0"))
@@ -71,7 +75,7 @@ class ChainsAndPreemption(unittest.TestCase):
         )
         run = send(self.client, NaoLedGoal([red]))
         self.robot.wait_for_leds({RED_EYE: 0.0})
-        self.client.cancel_goal()
+        run.cancel()
         run.wait(5.0)
         self.assertEqual(run.state, GoalStatus.PREEMPTED)
         self.assertEqual(self.robot.led(RED_EYE), 1.0)
@@ -79,8 +83,7 @@ class ChainsAndPreemption(unittest.TestCase):
     def test_a_new_goal_takes_over(self):
         first = send(self.client, NaoLedGoal([intensity("Brain0", 0.2, 1000.0)]))
         first.wait_for_function(0)
-        other = self.robot.action_client("NaoLights", NaoLedAction)
-        second = send(other, NaoLedGoal([intensity("Brain1", 0.6)])).wait(10.0)
+        second = send(self.client, NaoLedGoal([intensity("Brain1", 0.6)])).wait(10.0)
         first.wait(5.0)
         self.assertEqual((first.state, second.state), (GoalStatus.PREEMPTED, GoalStatus.SUCCEEDED))
         self.assertAlmostEqual(self.robot.led(led("Brain1")), 0.6)
@@ -88,7 +91,7 @@ class ChainsAndPreemption(unittest.TestCase):
     def test_cancel_between_functions_of_a_long_chain(self):
         run = send(self.client, NaoLedGoal([intensity("Brain0", (k % 10) / 10.0, 0.01) for k in range(2000)]))
         run.wait_for_function(5)
-        self.client.cancel_goal()
+        run.cancel()
         run.wait(5.0)
         self.assertEqual(run.state, GoalStatus.PREEMPTED)
         self.assertGreaterEqual(len(run.result.results), 5)
@@ -99,7 +102,7 @@ class ChainsAndPreemption(unittest.TestCase):
             run = send(self.client, NaoLedGoal([intensity("Brain0", 0.5, 1000.0 if k % 2 else 0.0)]))
             if k % 3 == 0:
                 run.wait_for_function(0)
-            self.client.cancel_goal()
+            run.cancel()
         last = send(self.client, NaoLedGoal([intensity("Brain2", 0.7)])).wait(10.0)
         self.assertEqual(last.state, GoalStatus.SUCCEEDED)
 

@@ -6,9 +6,9 @@ import unittest
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
+
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_msgs.msg import LedFunction
-
 from nao_sim_bridge.testing import SimulatedRobot, send
 
 EYE_ANGLES = range(0, 360, 45)
@@ -26,10 +26,13 @@ def eyes(red, green, blue):
 
 
 class LightsFunctions(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.client = cls.robot.action_client("NaoLights", NaoLedAction)
+
     def setUp(self):
-        self.robot = SimulatedRobot()
         self.robot.reset()
-        self.client = self.robot.action_client("NaoLights", NaoLedAction)
 
     def play(self, function, **fields):
         run = send(self.client, NaoLedGoal([LedFunction(function=function, **fields)])).wait()

@@ -8,15 +8,15 @@ import sys
 import time
 import unittest
 
+import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_msgs.msg import LedFunction
 from rospy import Duration
 
-import actionlib
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.testing import send, wait_until
 
 PORT = os.environ.get("NAO_PORT", "9559")

@@ -8,18 +8,19 @@ import unittest
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
+
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_msgs.msg import LedFunction, MemoryEvent
-
 from nao_sim_bridge.testing import SimulatedRobot, send
 
 ACCELEROMETER = "Device/SubDeviceList/InertialSensor/AccelerometerZ/Sensor/Value"
 
 
 class MemoryFunctions(unittest.TestCase):
-    def setUp(self):
-        self.robot = SimulatedRobot()
-        self.client = self.robot.action_client("NaoLights", NaoLedAction)
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.client = cls.robot.action_client("NaoLights", NaoLedAction)
 
     def ask(self, *calls):
         chain = [LedFunction(function=function, str_param=parameter) for function, parameter in calls]
@@ -28,7 +29,7 @@ class MemoryFunctions(unittest.TestCase):
         return run.result.memList
 
     def test_data_goes_in_and_out(self):
-        answers = self.ask(("insertData", "Test/Answer=[1, 2.5, \"three\"]"), ("getData", "Test/Answer"))
+        answers = self.ask(("insertData", 'Test/Answer=[1, 2.5, "three"]'), ("getData", "Test/Answer"))
         self.assertEqual(json.loads(answers[-1]), [1, 2.5, "three"])
         self.assertEqual(self.robot.value("Test/Answer"), [1, 2.5, "three"])
         self.assertIn("Test/Answer", self.ask(("getDataList", "Test/")))

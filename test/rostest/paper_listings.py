@@ -4,15 +4,15 @@
 import unittest
 
 import actionlib
-import nao_library_actions.msg
 import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from nao_library_msgs.msg import LedFunction
 from PIL import Image
 from rospy import Duration
 
+import nao_library_actions.msg
+from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.testing import SimulatedRobot, send
 
 EYES = [
@@ -31,10 +31,13 @@ def green_pixels(path):
 
 
 class PaperListings(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.led_client = cls.robot.action_client("NaoLights", nao_library_actions.msg.NaoLedAction)
+
     def setUp(self):
-        self.robot = SimulatedRobot()
         self.robot.reset()
-        self.led_client = self.robot.action_client("NaoLights", nao_library_actions.msg.NaoLedAction)
 
     def test_one_light_at_half_intensity(self):
         brain_half = LedFunction(function="setIntensity", lights=["Brain0"], i_values=[0.5])

@@ -5,9 +5,9 @@ import unittest
 
 import rospy
 import rostest
-from nao_library_msgs.srv import GetTruepose
 from nav_msgs.msg import Odometry
 
+from nao_library_msgs.srv import GetTruepose
 from nao_sim_bridge.testing import SimulatedRobot
 
 

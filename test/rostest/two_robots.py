@@ -7,9 +7,9 @@ import rosgraph
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
+
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_msgs.msg import LedFunction
-
 from nao_sim_bridge.testing import SimulatedRobot, send
 
 BRAIN0 = "Head/Led/Front/Right/1"

@@ -24,7 +24,8 @@ class ALModule:
 
     All calls of one module run one after the other, in a thread of the module: events keep their order, and a
     callback may take its time and call the robot. A callback of an event may take fewer than the three
-    arguments. What a callback raises is logged with its trace and returned to the caller as an error.
+    arguments. What a callback raises is logged with its trace and returned to the caller as an error. A module
+    must not wait for a call of itself through a proxy: that call would wait for the one under way.
     """
 
     def __init__(self, name: str) -> None:

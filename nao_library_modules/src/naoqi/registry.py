@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import atexit
 import threading
-from typing import Dict, Tuple
+from typing import Dict, Optional, Tuple
 
 from .errors import BadArguments, RobotUnreachable
 from .robot_connection import Connection
@@ -13,6 +13,7 @@ from .state import State, Timing
 DEFAULT_PORT = 9559
 CONNECT_TIMEOUT = 5.0
 """Limit of the wait for a robot, in s."""
+DEFAULT_TIMING = Timing()
 
 
 class Registry:
@@ -25,18 +26,17 @@ class Registry:
         self._wanted: Dict[Connection, int] = {}
         self._closed_at_exit = False
 
-    def get(self, host: str, port: int, wait: bool, limit: float) -> Connection:
+    def get(self, host: str, port: int, wait: bool, limit: float, timing: Timing) -> Connection:
         """The connection to an address; see `connection`."""
         with self._lock:
             if not self._closed_at_exit:
                 self._closed_at_exit = True
                 # libqi's threads must not meet an interpreter that is being taken down.
                 atexit.register(self.close_all)
-            found = self._connections.get((host, port))
+            found: Optional[Connection] = self._connections.get((host, port))
             if found is None or found.state is State.CLOSED:
-                found = Connection(host, port, Timing(connect_limit=max(limit, 0.1)))
-                self._connections[host, port] = found
-                self._wanted = {each: count for each, count in self._wanted.items() if each is not found}
+                self._wanted.pop(found, None)
+                found = self._connections[host, port] = Connection(host, port, timing)
             self._wanted[found] = self._wanted.get(found, 0) + 1
         if wait:
             try:
@@ -71,7 +71,12 @@ _registry = Registry()
 
 
 def connection(
-    ip: str, port: int = DEFAULT_PORT, *, wait: bool = True, connect_timeout: float = CONNECT_TIMEOUT
+    ip: str,
+    port: int = DEFAULT_PORT,
+    *,
+    wait: bool = True,
+    connect_timeout: float = CONNECT_TIMEOUT,
+    timing: Timing = DEFAULT_TIMING,
 ) -> Connection:
     """The connection to the NAOqi at an address, opened by the first who asks.
 
@@ -81,6 +86,7 @@ def connection(
         wait: Whether to wait until it stands. Without, it is opened in the background, again and again until
             the robot is there; calls made before then fail at once.
         connect_timeout: Limit of the wait, in s.
+        timing: How patient the connection is; the first who asks for it decides.
 
     Raises:
         BadArguments: If this is no address.
@@ -93,7 +99,7 @@ def connection(
         reason = "the port must be a number from 1 to 65535"
     if reason:
         raise BadArguments("naoqi", "connection", (ip, port), reason=reason)
-    return _registry.get(ip.strip(), port, wait, connect_timeout)
+    return _registry.get(ip.strip(), port, wait, connect_timeout, timing)
 
 
 def close_all() -> None:

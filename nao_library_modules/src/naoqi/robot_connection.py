@@ -12,20 +12,19 @@ import threading
 import time
 from typing import Any, Callable, List, Optional
 
-from .errors import NaoError, RobotUnreachable
+from . import directory
+from .errors import RobotUnreachable
 from .presence import Presence
 from .session import Live, answered, open_live
 from .state import Listener, Listeners, State, Timing
 from .subscriptions import EventSubscriptions
 from .tasks import TaskTable
-from .translate import connect_reason, is_unknown_service, unknown_module
+from .translate import connect_reason
 
 logger = logging.getLogger("naoqi")
 
 FLUSH_LIMIT = 0.5
 """So long `close` waits for the robot to have received everything, in s."""
-READY_LIMIT = 1.0
-"""So long a module that is known may take until it can be called, in s."""
 EXIT_LIMIT = 1.0
 """So long `close` waits for calls that must end because it has closed the session, in s."""
 
@@ -45,7 +44,7 @@ class Connection:
         subscriptions: Event subscriptions to make again after a loss.
     """
 
-    def __init__(self, host: str, port: int, timing: Timing = Timing()) -> None:  # noqa: B008  it is frozen
+    def __init__(self, host: str, port: int, timing: Timing) -> None:
         """Start connecting in the background."""
         self.host = host
         self.port = port
@@ -164,7 +163,7 @@ class Connection:
             raise self.unreachable()
         found = live.services.get(name)
         if found is None:
-            found = live.services[name] = self._ask_for(live, name)
+            found = live.services[name] = directory.find_module(self, live, name)
         return found
 
     def forget_service(self, name: str) -> None:
@@ -182,10 +181,7 @@ class Connection:
         live = self.live
         if live is None:
             raise self.unreachable()
-        future = live.session.services(_async=True)
-        if not answered(future, self.timing.connect_limit) or future.hasError():
-            raise self.unreachable()
-        return [each["name"] for each in future.value()]
+        return directory.module_names(self, live)
 
     def close(self) -> None:
         """End the connection for good. What was posted has reached the robot; calls under way fail."""
@@ -291,22 +287,3 @@ class Connection:
             self.generation += live is not None
             self._condition.notify_all()
             self._listeners.tell(state)  # with the lock: who sees a state hears only of those that follow
-
-    def _ask_for(self, live: Live, name: str) -> Any:
-        end, delay = time.monotonic() + READY_LIMIT, 0.005
-        while True:
-            future = live.session.service(name, _async=True)
-            if not answered(future, self.timing.connect_limit):
-                reason = f"no answer to the question where module {name} is"
-                raise RobotUnreachable(self.host, self.port, reason)
-            if not future.hasError():
-                return future.value()
-            text = future.error()
-            if is_unknown_service(text):
-                raise unknown_module(name, self.host, self.port, self.module_names())
-            if live is not self.live or not live.session.isConnected():
-                raise self.unreachable()
-            # A module that has only just arrived, or that leaves right now.
-            if time.monotonic() >= end or live.broken.wait(delay):
-                raise NaoError(f"NAOqi at {self.address} gave no access to module {name}: {text.strip()}")
-            delay *= 2.0

@@ -31,7 +31,8 @@ class Timing:
     """How patient a connection is, all in s.
 
     A silent robot is given up `heartbeat_period + heartbeat_limit` after its last sign of life at the latest,
-    so the defaults keep the promise of 2 s. Raise the limit where a slow network carries large images.
+    so the defaults make calls under way fail within 2 s. Raise the limit where a slow network carries large
+    images: the answer to a heartbeat has to wait behind them.
 
     Attributes:
         heartbeat_period: Pause between two heartbeats.

@@ -8,17 +8,18 @@ from __future__ import annotations
 
 import threading
 import time
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Callable, Iterable, Mapping, Sequence
 
 import actionlib
 import qi
+import roslib.message
 import rospy
+from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Vector3
-from nao_library_msgs.srv import AdvanceTime, PressSensors, PushRobot, TakePicture
 from std_srvs.srv import Empty
 
+from nao_library_msgs.srv import AdvanceTime, PressSensors, PushRobot, TakePicture
 from nao_sim_bridge.broker import QUIET_LIBQI
 
 DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
@@ -28,40 +29,51 @@ class StackNotReady(RuntimeError):
     """Something that a test needs is not there; the text names it."""
 
 
-@dataclass
 class GoalRun:
     """A goal that was sent, and what came back so far.
+
+    It stands on actionlib's ActionClient: SimpleActionClient loses the end of a goal that is over before its
+    `send_goal` has returned, which a test of quick goals meets now and then.
 
     Attributes:
         feedback: (simulated time in s, feedback message) of each feedback.
         sent: Simulated time at which the goal was sent, s.
+
+    Args:
+        client: Client of a server that is there.
+        goal: The goal message.
     """
 
-    client: Any
-    sent: float
-    feedback: list = field(default_factory=list)
-    _news: threading.Condition = field(default_factory=threading.Condition)
-    _done: tuple = ()
+    def __init__(self, client: actionlib.SimpleActionClient, goal: Any) -> None:
+        self.feedback: list[tuple[float, Any]] = []
+        self.sent = rospy.get_time()
+        self._news = threading.Condition()
+        self._end: tuple[Any, float] | None = None
+        self._handle = client.action_client.send_goal(goal, self._on_transition, self._on_feedback)
 
     @property
     def state(self) -> int:
         """Terminal state (actionlib_msgs/GoalStatus); only after `wait`."""
-        return self._done[0]
-
-    @property
-    def result(self) -> Any:
-        """Result message; only after `wait`."""
-        return self._done[1]
-
-    @property
-    def ended(self) -> float:
-        """Simulated time at which the result came, s; only after `wait`."""
-        return self._done[2]
+        return self._handle.get_terminal_state()
 
     @property
     def text(self) -> str:
         """Text of the end state."""
-        return self.client.get_goal_status_text()
+        return self._handle.get_goal_status_text()
+
+    @property
+    def result(self) -> Any:
+        """Result message; only after `wait`."""
+        return self._ended()[0]
+
+    @property
+    def ended(self) -> float:
+        """Simulated time at which the result came, s; only after `wait`."""
+        return self._ended()[1]
+
+    def cancel(self) -> None:
+        """Ask the server to end the goal."""
+        self._handle.cancel()
 
     def wait(self, limit: float = 30.0) -> GoalRun:
         """Wait for the end, at most `limit` s of wall time.
@@ -69,35 +81,50 @@ class GoalRun:
         Raises:
             StackNotReady: There is no result in time.
         """
-        self._wait(lambda: bool(self._done), limit, "result of the goal")
+        self._wait(lambda: self._end is not None, limit, "result of the goal")
         return self
 
     def wait_for_function(self, index: int, limit: float = 30.0) -> GoalRun:
-        """Wait until function `index` (from 0) of the chain begins, at most `limit` s of wall time."""
-        self._wait(lambda: any(f.index >= index for _, f in self.feedback), limit, f"feedback of function {index}")
+        """Wait until function `index` (from 0) of the chain begins, at most `limit` s of wall time.
+
+        Raises:
+            StackNotReady: It has not begun in time, or the goal ended before.
+        """
+
+        def begun() -> bool:
+            return any(feedback.index >= index for _, feedback in self.feedback)
+
+        self._wait(lambda: begun() or self._end is not None, limit, f"feedback of function {index}")
+        if not begun():
+            state = GoalStatus.to_string(self.state)
+            raise StackNotReady(f"the goal ended before function {index} began: {state} {self.text}")
         return self
+
+    def _ended(self) -> tuple[Any, float]:
+        if self._end is None:
+            raise StackNotReady("the goal has not ended yet: call wait() first")
+        return self._end
 
     def _wait(self, condition: Callable[[], bool], limit: float, what: str) -> None:
         with self._news:
             if not self._news.wait_for(condition, limit):
                 raise StackNotReady(f"not there within {limit:g} s: {what}")
 
-    def _on_feedback(self, feedback: Any) -> None:
+    def _on_feedback(self, _handle: Any, feedback: Any) -> None:
         with self._news:
             self.feedback.append((rospy.get_time(), feedback))
             self._news.notify_all()
 
-    def _on_done(self, state: int, result: Any) -> None:
-        with self._news:
-            self._done = (state, result, rospy.get_time())
-            self._news.notify_all()
+    def _on_transition(self, handle: Any) -> None:
+        if handle.get_comm_state() == actionlib.CommState.DONE:
+            with self._news:
+                self._end = (handle.get_result(), rospy.get_time())
+                self._news.notify_all()
 
 
 def send(client: actionlib.SimpleActionClient, goal: Any) -> GoalRun:
     """Send a goal and return at once."""
-    run = GoalRun(client, rospy.get_time())
-    client.send_goal(goal, done_cb=run._on_done, feedback_cb=run._on_feedback)
-    return run
+    return GoalRun(client, goal)
 
 
 class SimulatedRobot:
@@ -125,14 +152,18 @@ class SimulatedRobot:
     # --- the stack ------------------------------------------------------------------------------------------------
 
     def action_client(self, name: str, action: type, limit: float = 30.0) -> actionlib.SimpleActionClient:
-        """A client of an action server of this robot that is ready for goals.
+        """A client of a module of this robot that is connected to it and ready for goals.
 
         Raises:
-            StackNotReady: The server is not there within `limit` s of wall time.
+            StackNotReady: The server is not there, or does not reach the robot, within `limit` s of wall time each.
         """
         client = actionlib.SimpleActionClient(self._name(name), action)
+        wait_until(lambda: client.wait_for_server(rospy.Duration(0.01)), limit, f"action server {self._name(name)}")
+        ping = _ping_goal(action)
         wait_until(
-            lambda: client.wait_for_server(rospy.Duration(0.01)), limit, f"action server {self._name(name)}"
+            lambda: send(client, ping).wait(limit).state == GoalStatus.SUCCEEDED,
+            limit,
+            f"connection of {self._name(name)} to the robot",
         )
         return client
 
@@ -227,6 +258,13 @@ class SimulatedRobot:
         name = self._name(name)
         wait_until(lambda: _service_there(name), limit, f"service {name}; is the simulator in the launch file?")
         return rospy.ServiceProxy(name, kind)
+
+
+def _ping_goal(action: type) -> Any:
+    """A goal with the function `ping`, which every module has."""
+    goal = action().action_goal.goal
+    kind = roslib.message.get_message_class(goal._slot_types[0].rstrip("[]"))
+    return type(goal)([kind(function="ping")])
 
 
 def wait_until(condition: Callable[[], bool], limit: float, what: str | Callable[[], str]) -> None:

@@ -29,7 +29,7 @@ def parser(rows: Sequence[Row]) -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     names = [row.name for row in rows]
-    options.add_argument("--only", metavar="NAME", action="append", choices=names, help="a row; may be repeated")
+    options.add_argument("--only", metavar="NAME", action="append", choices=names, help="a row; repeatable")
     options.add_argument("--output", type=Path, default=OUTPUT, help="file (default bench_output/bench.json)")
     return options
 

@@ -15,7 +15,7 @@ from typing import Mapping, Sequence
 from .errors import BenchmarkError
 
 KEPT_LINES = 200
-NO_CHANGES: Mapping[str, str] = {}
+NOTHING: Mapping[str, str] = {}
 PATIENCE = 8.0
 """How long a program may take to end after an interrupt, in s, before it is killed."""
 
@@ -33,7 +33,7 @@ class Program:
         environment: What to add to the environment.
     """
 
-    def __init__(self, name: str, command: Sequence[str], environment: Mapping[str, str] = NO_CHANGES) -> None:
+    def __init__(self, name: str, command: Sequence[str], environment: Mapping[str, str] = NOTHING) -> None:
         self.name = name
         self._process = subprocess.Popen(
             list(command),

@@ -20,7 +20,7 @@ START_LIMIT = 40.0
 OUR_SERVER = "NaoLights"
 BARE_SERVER = "bare_lights"
 # s; a client must still find its goal in the list when the result takes longer than the state.
-STATUS_LIST_TIMEOUT = 0.2
+FORGET_AFTER = 0.2
 
 
 class Stack:
@@ -28,6 +28,7 @@ class Stack:
 
     def __init__(self) -> None:
         self._started = ExitStack()
+        self._ros = False
 
     def __enter__(self) -> Stack:
         return self
@@ -44,18 +45,20 @@ class Stack:
         """A simulated robot in real time, as a robot would be: it has nothing to do."""
         return self._started.enter_context(Simulator.plain())
 
-    @cached_property
-    def master(self) -> str:
-        """Address of a ROS master of our own; this process is a node of it from then on."""
-        port = _free_port()
-        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
+    def start_ros(self) -> None:
+        """Start a ROS master of our own, unless it runs already; this process becomes a node of it."""
+        if self._ros:
+            return
+        port = free_port()
+        os.environ.update(ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1")
+        os.environ.pop("ROS_HOSTNAME", None)
         core = self._started.enter_context(Program("roscore", ["roscore", "-p", str(port)]))
         core.wait_for(r"started core service \[/rosout\]", START_LIMIT)
         import rospy  # not above: rows that need no ROS run without it
 
         rospy.init_node("benchmarks", disable_signals=True)
         self._started.callback(rospy.signal_shutdown, "the benchmarks are over")
-        return os.environ["ROS_MASTER_URI"]
+        self._ros = True
 
     @cached_property
     def goal_clients(self) -> tuple[GoalClient, GoalClient]:
@@ -66,23 +69,23 @@ class Stack:
     def rare_goal_clients(self) -> tuple[GoalClient, GoalClient]:
         """Clients of two more such servers, for which every goal is like one that comes once in a while.
 
-        With each change actionlib publishes the state of all goals that ended in the last 5 s. A benchmark makes
-        hundreds in that time, a user a few; these servers forget them soon.
+        With each change actionlib publishes the state of all goals that ended in the last 5 s. A benchmark
+        makes hundreds in that time, a user a few; these servers forget them soon.
         """
-        return self._goal_servers("rare", STATUS_LIST_TIMEOUT)
+        return self._goal_servers("rare", FORGET_AFTER)
 
-    def _goal_servers(self, namespace: str, status_list_timeout: float | None = None) -> tuple[GoalClient, GoalClient]:
-        assert self.master
+    def _goal_servers(self, name: str, forget_after: float | None = None) -> tuple[GoalClient, GoalClient]:
+        self.start_ros()
         import rospy
 
         from .goals import GoalClient  # not above: it needs the messages of the built workspace
 
-        ours, bare = f"/{namespace}/{OUR_SERVER}", f"/{namespace}/{BARE_SERVER}"
-        if status_list_timeout is not None:
+        ours, bare = f"/{name}/{OUR_SERVER}", f"/{name}/{BARE_SERVER}"
+        if forget_after is not None:
             for server in (ours, bare):
-                rospy.set_param(f"{server}/status_list_timeout", status_list_timeout)
+                rospy.set_param(f"{server}/status_list_timeout", forget_after)
         robot = ["--pip", "127.0.0.1", "--pport", str(self.simulator.port)]
-        remapping = f"__ns:=/{namespace}"
+        remapping = f"__ns:=/{name}"
         self._start("nao_lights", [str(LIGHTS_NODE), *robot, remapping])
         self._start("bare server", [str(PROGRAMS / "bare_action_server.py"), BARE_SERVER, remapping])
         return GoalClient(ours, START_LIMIT), GoalClient(bare, START_LIMIT)
@@ -91,7 +94,7 @@ class Stack:
         return self._started.enter_context(Program(name, [sys.executable, *command]))
 
 
-def _free_port() -> int:
+def free_port() -> int:
     """A TCP port of the loopback interface that nobody uses at the moment."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))

@@ -10,6 +10,7 @@ from nao_benchmarks.errors import BenchmarkError
 from nao_benchmarks.program import Program
 
 LIMIT = 20.0
+DEAF = "from signal import *; signal(SIGINT, SIG_IGN); print('deaf', flush=True); pause()"
 WAITING = "import signal; print('port 4711', flush=True); signal.pause()"
 
 
@@ -39,7 +40,7 @@ def test_a_line_counts_also_when_it_came_before():
 def test_a_line_that_does_not_come_in_time_is_an_error_with_what_was_said():
     with python(WAITING) as program:
         program.wait_for("port", LIMIT)
-        with pytest.raises(BenchmarkError, match=r"a program did not say 'ready' within 0.05 s(?s:.*)port 4711"):
+        with pytest.raises(BenchmarkError, match=r"did not say 'ready' within 0.05 s(?s:.*)port 4711"):
             program.wait_for("ready", 0.05)
 
 
@@ -85,17 +86,16 @@ def test_leaving_the_block_interrupts_it_so_that_it_can_clean_up():
 
 
 def test_what_it_started_ends_with_it():
-    child = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); print('child up', flush=True); signal.pause()"
     text = (
         "import subprocess, sys\n"
-        f"child = subprocess.Popen([sys.executable, '-c', {child!r}])\n"
+        f"child = subprocess.Popen([sys.executable, '-c', {DEAF!r}])\n"
         "print('child', child.pid, flush=True)\n"
         "try:\n    child.wait()\n"
         "except KeyboardInterrupt:\n    pass"
     )
     with python(text) as program:
         pid = int(program.wait_for(r"child (\d+)", LIMIT)[1])
-        program.wait_for("child up", LIMIT)
+        program.wait_for("deaf", LIMIT)
         # A descriptor of the process tells its end, whoever is its parent by then.
         descriptor = os.pidfd_open(pid) if hasattr(os, "pidfd_open") else None
     if descriptor is None:
@@ -122,9 +122,8 @@ def test_ctrl_c_at_our_terminal_is_not_for_it():
 
 def test_a_program_that_ignores_interrupts_is_killed(monkeypatch):
     monkeypatch.setattr("nao_benchmarks.program.PATIENCE", 0.2)
-    text = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); print('up', flush=True); signal.pause()"
-    with python(text) as program:
-        program.wait_for("up", LIMIT)
+    with python(DEAF) as program:
+        program.wait_for("deaf", LIMIT)
     assert program._process.returncode == -signal.SIGKILL
 
 

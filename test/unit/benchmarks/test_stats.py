@@ -36,7 +36,8 @@ def test_alternatives_take_turns_and_every_second_round_goes_backwards():
 
 def test_each_alternative_has_its_own_times_in_the_order_of_its_runs():
     clock = Clock()
-    first, second = interleave([clock.taking("a", 1.0, 2.0, 4.0), clock.taking("b", 8.0)], rounds=3, clock=clock)
+    runs = [clock.taking("a", 1.0, 2.0, 4.0), clock.taking("b", 8.0)]
+    first, second = interleave(runs, rounds=3, clock=clock)
     assert first.seconds == (1.0, 2.0, 4.0)
     assert second.seconds == (8.0, 8.0, 8.0)
 
@@ -44,7 +45,8 @@ def test_each_alternative_has_its_own_times_in_the_order_of_its_runs():
 @pytest.mark.parametrize("warm_up", [1, 2])
 def test_the_warm_up_runs_but_does_not_count(warm_up):
     clock = Clock()
-    (sample,) = interleave([clock.taking("a", *[100.0] * warm_up, 1.0)], rounds=2, warm_up=warm_up, clock=clock)
+    run = clock.taking("a", *[100.0] * warm_up, 1.0)
+    (sample,) = interleave([run], rounds=2, warm_up=warm_up, clock=clock)
     assert clock.log == ["a"] * (warm_up + 2)
     assert sample.seconds == (1.0, 1.0)
 

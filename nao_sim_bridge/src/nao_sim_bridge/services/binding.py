@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import inspect
 import logging
+import threading
+from functools import partial
 from typing import Any, Callable, Iterable, Sequence
 
 import qi
@@ -83,27 +85,28 @@ def as_future(task: Task, label: str) -> Any:
             a task itself.
         label: "Module::method", for error texts.
     """
-    following = [task]
-    cancelled = []
+    cancelled = threading.Event()
 
     def cancel(_: Any) -> None:
-        cancelled.append(True)
-        following[-1].request_kill()
-
-    def settle(done: Task) -> None:
-        if done.error is not None:
-            promise.setError(f"{label} {done.error}")
-        elif isinstance(done.value, Task):
-            following.append(done.value)
-            done.value.add_done_callback(settle)
-        elif done.killed and cancelled:
-            promise.setCanceled()
-        else:
-            promise.setValue(done.value)
+        cancelled.set()
+        task.request_kill()
 
     promise = qi.Promise(cancel)
-    task.add_done_callback(settle)
+    task.add_done_callback(partial(_settle, promise, cancelled, label))
     return promise.future()
+
+
+def _settle(promise: Any, cancelled: threading.Event, label: str, done: Task) -> None:
+    # Not a closure that names itself: such a cycle would keep the promise until the next garbage collection, and a
+    # promise with a value that is still there when the interpreter ends makes libqi abort the process.
+    if done.error is not None:
+        promise.setError(f"{label} {done.error}")
+    elif isinstance(done.value, Task):
+        done.value.add_done_callback(partial(_settle, promise, cancelled, label))
+    elif done.killed and cancelled.is_set():
+        promise.setCanceled()
+    else:
+        promise.setValue(done.value)
 
 
 def _bound(module: str, method: Method, overload: Overload, target: Callable[..., Any]) -> Callable[..., Any]:

@@ -83,6 +83,7 @@ class ALMemory:
 
     def removeData(self, key: str) -> None:
         self._store.remove(key)
+        self._signals.pop(key, None)
 
     def declareEvent(self, name: str, extractor: str = "") -> None:
         self._store.declare_event(_name(name), extractor)
@@ -94,12 +95,12 @@ class ALMemory:
         self._store.raise_micro_event(_name(name), value)
 
     def removeEvent(self, name: str) -> None:
-        self._signals.pop(name, None)
         self._store.remove(name, EVENT)
+        self._signals.pop(name, None)
 
     def removeMicroEvent(self, name: str) -> None:
-        self._signals.pop(name, None)
         self._store.remove(name, MICRO_EVENT)
+        self._signals.pop(name, None)
 
     def getEventList(self) -> list[str]:
         return self._store.names(EVENT)

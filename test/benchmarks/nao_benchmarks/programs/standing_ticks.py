@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times ticks of a robot that stands awake against bare physics steps of the same robot in the same state.
 
-The server has all its services registered; nobody calls them. Prints JSON: `ours` and `bare`, s for each tick.
+The server has all its services registered; nobody calls them. Prints JSON: `ours` and `bare`, s of each tick.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import sys
 
 import pybullet
 import qi
+from nao_benchmarks.errors import BenchmarkError
 from nao_benchmarks.stats import interleave
 
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
@@ -41,7 +42,11 @@ def bare_twin(simulation: Simulation) -> Physics:
 
 
 def time_ticks(simulation: Simulation, rounds: int) -> dict[str, list[float]]:
-    """Alternate our ticks with bare ones; in the simulation thread."""
+    """Alternate our ticks with bare ones; in the simulation thread.
+
+    Raises:
+        BenchmarkError: If the two robots are not alike at the end.
+    """
     twin = bare_twin(simulation)
     client, steps = twin.client, range(simulation.settings.steps_per_tick)
     step = pybullet.stepSimulation
@@ -59,12 +64,16 @@ def time_ticks(simulation: Simulation, rounds: int) -> dict[str, list[float]]:
 
 
 def check_alike(snapshot: Snapshot, twin: Physics) -> None:
-    """See that both robots stand awake: a fallen one has other contacts, and other costs."""
+    """See that both robots stand awake: a fallen one has other contacts, and other costs.
+
+    Raises:
+        BenchmarkError: If they do not.
+    """
     ours, bare = snapshot.torso.position[2], twin.read_body().pose.position[2]
     if not all(snapshot.stiffnesses):
-        raise SystemExit("the robot is not awake: not every joint is stiff")
+        raise BenchmarkError("the robot is not awake: not every joint is stiff")
     if not math.isclose(ours, bare, abs_tol=SAME_HEIGHT):
-        raise SystemExit(f"the robots do not stand alike: torsos {ours:.3f} m and {bare:.3f} m high")
+        raise BenchmarkError(f"the robots do not stand alike: torsos {ours:.3f} m and {bare:.3f} m high")
 
 
 def main() -> int:
@@ -80,6 +89,9 @@ def main() -> int:
         session.service("ALMotion").wakeUp()
         server.runner.pause()
         print(json.dumps(server.runner.call(lambda: time_ticks(server.simulation, rounds), LIMIT)))
+    except BenchmarkError as error:
+        print(error)
+        return 1
     finally:
         session.close()
         server.stop()

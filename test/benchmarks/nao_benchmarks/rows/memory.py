@@ -37,7 +37,7 @@ class Memory(Row):
 
     def measure(self, stack: Stack) -> Figures:
         """Start the node on the stack's ROS master, let it work, and read its account."""
-        assert stack.master
+        stack.start_ros()
         command = [sys.executable, str(SIMULATOR_NODE), "--port", "0", "--posture", "Stand"]
         with Simulator.started("nao_sim", command) as simulator:
             simulator.wake_up()

@@ -11,14 +11,15 @@ from ..simulator import Simulator
 from ..stack import Stack
 from ..stats import interleave
 
-SIMULATED_S = 10.0
-ROUNDS = 7
+SIMULATED_S = 8.0
+ROUNDS = 5
 
 
 def processor_time(pid: int) -> float:
     """Time that a process has had on processors, all its threads together, in s."""
+    text = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
     # The name, in brackets, may hold blanks; the fields after it are numbered from 3.
-    fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
+    fields = text.rpartition(")")[2].split()
     user, system = int(fields[14 - 3]), int(fields[15 - 3])
     return (user + system) / os.sysconf("SC_CLK_TCK")
 
