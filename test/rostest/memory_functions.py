@@ -11,7 +11,7 @@ from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_msgs.msg import LedFunction, MemoryEvent
-from nao_sim_bridge.testing import SimulatedRobot, send
+from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 ACCELEROMETER = "Device/SubDeviceList/InertialSensor/AccelerometerZ/Sensor/Value"
 
@@ -52,6 +52,7 @@ class MemoryFunctions(unittest.TestCase):
 
         topic = rospy.Subscriber("memory_events", MemoryEvent, on_event)
         self.ask(("subscribeToEvent", "Test/Event"))
+        wait_until(lambda: topic.get_num_connections() > 0, 10.0, "the connection to memory_events")
         self.robot.module("ALMemory").raiseEvent("Test/Event", [1, "a"])
         self.assertTrue(arrived.wait(10.0))
         self.assertEqual((messages[0].name, json.loads(messages[0].value)), ("Test/Event", [1, "a"]))

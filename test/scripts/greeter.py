@@ -40,7 +40,10 @@ def main(ip, port):
     task = leds.post.fadeRGB("FaceLeds", 0x00FF00, 20.0)
     print("fading", leds.isRunning(task), leds.wait(task, 200))
     leds.stop(task)
-    print("stopped", not leds.isRunning(task))
+    try:
+        print("stopped", not leds.wait(task, 5000))
+    except RuntimeError as error:
+        print("stopped", "cancel" in str(error).lower())
     body = ALProxy("ALMotion", ip, port)
     body.setStiffnesses("Head", 1.0)
     body.angleInterpolation("HeadYaw", [30.0 * almath.TO_RAD, 0.0], [0.5, 1.0], True)

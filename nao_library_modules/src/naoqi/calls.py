@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import logging
 import threading
 import time
@@ -103,22 +104,23 @@ class Call:
         """
         self._future.cancel()
 
-    def add_done_callback(self, callback: Callable[["Call"], None]) -> None:
+    def add_done_callback(self, callback: Callable[[Call], None]) -> None:
         """Have a function called with this call when it is finished, at once if it already is.
 
         Args:
             callback: Runs in a thread of libqi and must not wait for anything: set an event there, no more.
                 What it raises is logged.
         """
+        # No closure, because the frames of an error that somebody keeps would keep it too.
+        held = functools.partial(self._run, callback)
+        self.method.module.connection.presence.lend(held)
+        self._future.addCallback(held)
 
-        def run(_future: Any) -> None:
-            try:
-                callback(self)
-            except Exception:
-                logger.exception("the done-callback %r of a call failed", callback)
-
-        self.method.module.connection.presence.lend(run)
-        self._future.addCallback(run)
+    def _run(self, callback: Callable[[Call], None], _future: Any) -> None:
+        try:
+            callback(self)
+        except Exception:
+            logger.exception("the done-callback %r of a call failed", callback)
 
     def _wait(self, timeout: Optional[float]) -> bool:
         wait = self._future.wait

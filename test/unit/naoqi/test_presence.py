@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import threading
 
+import pytest
+
+from naoqi import errors
 from naoqi.presence import Presence
 
 
@@ -44,5 +47,8 @@ def test_leaving_twice_is_no_error():
 def test_finished_calls_leave_nothing_behind(proxy, eventually):
     for number in range(100):
         proxy.wait(proxy.post.add(number, 1))
+    with pytest.raises(errors.RobotError):
+        proxy.wait(proxy.post.fails())
+    proxy.call_async("fails").add_done_callback(lambda _: 1 / 0)
     presence = proxy.connection.presence
     eventually(lambda: len(presence._inside) == 0, "libqi lets go of all callbacks")

@@ -11,6 +11,8 @@ class Body(MotionPart):
     """Names, limits, configuration, summary."""
 
     def getBodyNames(self, name: str) -> list[str]:
+        if name == "Chains":
+            return list(self._model.chain_names)
         if name in self._model.chains:
             return list(self._model.chains[name])
         return joint_names(name, self._model)

@@ -7,6 +7,10 @@ from dataclasses import dataclass, field
 from typing import Sequence
 
 
+# Sums of ticks are not exact: a curve whose end is this close, in s, is at its end and not a hair before.
+ROUNDING = 1e-9
+
+
 @dataclass(frozen=True)
 class Ramp:
     """One joint moving at constant speed.
@@ -29,7 +33,7 @@ class Ramp:
     def value(self, elapsed: float) -> float:
         """Angle in rad after `elapsed` seconds; holds start before and target afterwards."""
         duration = self.duration
-        if elapsed >= duration or duration == 0.0:
+        if elapsed >= duration - ROUNDING or duration == 0.0:
             return self.target
         return self.start + max(elapsed, 0.0) / duration * (self.target - self.start)
 
@@ -68,7 +72,7 @@ class SmoothCurve:
         times, values = self.times, self.values
         if elapsed <= times[0]:
             return values[0]
-        if elapsed >= times[-1]:
+        if elapsed >= times[-1] - ROUNDING:
             return values[-1]
         i = bisect_right(times, elapsed) - 1
         length = times[i + 1] - times[i]

@@ -15,15 +15,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Callable, Iterable, Mapping, Sequence, Union
 
-from nao_sim_bridge.sim.motion.curves import Ramp, SmoothCurve
+from nao_sim_bridge.sim.motion.curves import ROUNDING, Ramp, SmoothCurve
 from nao_sim_bridge.sim.motion.joints import JointCommands
 from nao_sim_bridge.sim.tasks import Task, TaskIds
 
 Curve = Union[Ramp, SmoothCurve]
 CurveBuilder = Callable[[Sequence[float]], Mapping[int, Curve]]
 
-# A command is "there" when it is this close (rad), a curve over when its end is this close (s): float rounding only,
-# so that what ends now is at its end and not a hair before.
+# A command is "there" when it is this close; float rounding only, commands are exact.
 REACHED = 1e-9
 
 
@@ -126,7 +125,7 @@ class MotionEngine:
         for job in self._jobs:
             if job.started is None:
                 continue
-            elapsed = now - job.started + REACHED
+            elapsed = now - job.started
             values = {index: curve.value(elapsed) for index, curve in job.curves.items()}
             if job.stiffness:
                 self._joints.set_stiffness(values)
@@ -162,14 +161,13 @@ class MotionEngine:
             if index not in self._ramps:
                 self._ramps[index] = (Ramp(self._joints.commands[index], target, speed), now - dt)
             ramp, started = self._ramps[index]
-            elapsed = now - started + REACHED
-            wanted[index] = ramp.value(elapsed)
-            if elapsed >= ramp.duration:
+            wanted[index] = ramp.value(now - started)
+            if now - started >= ramp.duration - ROUNDING:
                 del self._targets[index], self._ramps[index]
 
     def _finish_jobs(self, now: float) -> None:
         for job in [j for j in self._jobs if j.started is not None]:
-            if any(now - job.started + REACHED < curve.duration for curve in job.curves.values()):
+            if any(now - job.started < curve.duration - ROUNDING for curve in job.curves.values()):
                 continue
             if job.stiffness or self._commands_reached(job):
                 self._drop(job.task)
