@@ -10,7 +10,7 @@ import pytest
 import readme_tables
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from readme_tables import ReadmeError, Server, code, fill, functions_table, launch_default, table
+from readme_tables import ReadmeError, fill, functions_table, launch_default, table
 
 from nao_library_actions.msg import NaoLedResult
 from nao_sim_bridge.cli import parser
@@ -210,9 +210,3 @@ def test_the_printed_client_asks_for_functions_with_fields_that_they_take(lights
         given = {name for name in message.__slots__ if getattr(message, name) != getattr(empty, name)}
         taken = functions_table({message.function: functions[message.function]})
         assert given - {"function", "time"} <= set(re.findall(r"`(\w+)`", taken)), message.function
-
-
-def test_a_server_without_functions_of_its_own_has_an_empty_table():
-    server = Server("NaoSilent", "NaoLedAction", "LedFunction", type, {})
-    assert cells(functions_table(server.functions)) == []
-    assert code("") == "–"

@@ -162,7 +162,7 @@ class MotionEngine:
                 self._ramps[index] = (Ramp(self._joints.commands[index], target, speed), now - dt)
             ramp, started = self._ramps[index]
             wanted[index] = ramp.value(now - started)
-            if now - started >= ramp.duration - ROUNDING:
+            if now - started >= ramp.duration:
                 del self._targets[index], self._ramps[index]
 
     def _finish_jobs(self, now: float) -> None:

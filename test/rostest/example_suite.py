@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+"""The example of docs/testing.md: a suite as users of nao_library write it for their own experiment."""
+
+import unittest
+
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_msgs.msg import LedFunction
+from nao_sim_bridge.testing import SimulatedRobot, send
+
+
+class ExampleSuite(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.lights = cls.robot.action_client("NaoLights", NaoLedAction)
+
+    def setUp(self):
+        self.robot.reset()
+
+    def test_eyes_are_red_while_the_robot_waits(self):
+        red = LedFunction(
+            function="setColor", lights=["FaceLeds"], str_param="red", time=rospy.Duration(3), revert=True
+        )
+        run = send(self.lights, NaoLedGoal([red]))
+        self.robot.wait_for_leds({"Face/Led/Red/Left/0Deg": 1.0, "Face/Led/Green/Left/0Deg": 0.0})
+        self.assertEqual(run.wait().state, GoalStatus.SUCCEEDED)
+        self.assertEqual(self.robot.led("Face/Led/Green/Left/0Deg"), 1.0)
+
+    def test_it_still_stands_after_a_push(self):
+        self.robot.module("ALMotion").wakeUp()
+        self.robot.push((10.0, 0.0, 0.0), 0.1)
+        self.robot.advance(2.0)
+        self.assertGreater(self.robot.value("leftFootTotalWeight") + self.robot.value("rightFootTotalWeight"), 5.0)
+
+
+if __name__ == "__main__":
+    rospy.init_node("example_suite_test")
+    rostest.rosrun("nao_library_tests", "example_suite", ExampleSuite)
