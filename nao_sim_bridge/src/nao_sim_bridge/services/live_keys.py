@@ -15,6 +15,7 @@ from nao_sim_bridge.sim.leds_layout import LedLayout
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.readings import FootForces
 from nao_sim_bridge.sim.runner import SimulationRunner
+from nao_sim_bridge.sim.sensors.sonar import NO_ECHO
 from nao_sim_bridge.sim.snapshot import Snapshot
 
 FILE = "naoqi_memory_keys.json"
@@ -121,8 +122,8 @@ def _vector(field: str, axis: str) -> Read:
 
 def _sonar(side: str, echo: str) -> Read:
     index = 0 if side == "Left" else 1
-    # One echo is simulated: the first. Further ones read as "no echo", 0.
-    return (lambda s: s.sonars[index]) if not echo else (lambda s: 0.0)
+    # One echo is simulated: the first. Further ones read as "no echo"; 0 would be an error of the sensor.
+    return (lambda s: s.sonars[index]) if not echo else (lambda s: NO_ECHO)
 
 
 _PATTERNS: tuple[tuple[str, Callable[..., Read]], ...] = (

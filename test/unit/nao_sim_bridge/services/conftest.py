@@ -87,15 +87,21 @@ def connected(port):
 
 
 @pytest.fixture(scope="module")
-def shared_robot(patience):
+def shared_robot(client_of):
     interval = sys.getswitchinterval()
     server = SimulatorServer(ServerOptions(Scene(posture="Stand"), port=0, paused=True))
     server.start()
-    client = Client(server, patience)
+    client = client_of(server)
     yield client
     client.close()
     server.stop()
     sys.setswitchinterval(interval)
+
+
+@pytest.fixture(scope="session")
+def client_of(patience):
+    """Makes a client of a server."""
+    return lambda server: Client(server, patience)
 
 
 @pytest.fixture
