@@ -134,7 +134,11 @@ class ALBroker:
             if self._live is None:
                 raise self.connection.unreachable()
             self.connection.presence.lend(served)
-            self._register(name, served, patience=0.0)
+            try:
+                self._register(name, served, patience=0.0)
+            except NaoError:
+                self._withdraw(name)
+                raise
             self._modules[name] = served
             self.connection.subscriptions.own(name)
 
@@ -199,6 +203,7 @@ class ALBroker:
                 raise BrokerError(self._name, f"module {name!r} cannot be registered: {text}")
             if time.monotonic() >= end or self._down.wait(delay):
                 raise BrokerError(self._name, f"the robot has a module {name!r} already; choose another name")
+            logger.info("broker %s: the name %s is still taken; trying again", self._name, name)
             delay = min(2.0 * delay, 0.5)
 
     def _wait_until_served(self, name: str) -> None:

@@ -52,7 +52,7 @@ def served_object(module: Any, name: str, methods: Sequence[str], worker: Worker
 def _served_method(module: Any, module_name: str, name: str, worker: Worker) -> Callable[..., Any]:
     method = getattr(module, name)
     lowest, highest = _argument_counts(method)
-    fixed = lowest == highest and (lowest == 0 or lowest >= EVENT_ARGUMENTS) and lowest != 0
+    fixed = lowest == highest >= EVENT_ARGUMENTS  # then libqi itself can check the arguments of a call
 
     def serve(_served: Any, *arguments: Any) -> Any:
         promise = qi.Promise()

@@ -1,7 +1,7 @@
 """A small robot for the tests of the proxy layer: a libqi server in a process of its own.
 
-Run as a program with a port (0 takes a free one); it prints `ready PORT`. It speaks libqi as a robot does, so
-that the tests meet libqi's real texts, threads and losses.
+Run as a program with a port (0 takes a free one) and names of more modules; it prints `ready PORT`. It speaks
+libqi as a robot does, so that the tests meet libqi's real texts, threads and losses.
 """
 
 from __future__ import annotations
@@ -206,7 +206,10 @@ def main():
     session.registerService("ALMemory", qi.multiThreaded()(Memory)(session))
     session.registerService("ALTest", Module())
     session.registerService("ALNao", Nao())
-    session.registerService("Switch", Switch(session))
+    switch = Switch(session)
+    session.registerService("Switch", switch)
+    for name in sys.argv[2:]:
+        switch.arrive(name)
     print("ready", session.endpoints()[0].rsplit(":", 1)[1], flush=True)
     sys.stdin.read()  # until the tests close it, or die
 

@@ -267,6 +267,19 @@ class TestAfterALoss:
         assert buttons.heard == [(EVENT, 5.0, "")]
         assert memory.getSubscribers("Gone") == []
 
+    def test_a_name_that_is_still_taken_is_tried_again(
+        self, robot, broker, buttons, raised, states, eventually, caplog
+    ):
+        caplog.set_level("INFO", "naoqi")
+        followed = states(broker.connection)
+        robot.kill()
+        followed.wait_for("lost")
+        robot.start(buttons.getName())  # as if the robot still knew our former session
+        eventually(lambda: "is still taken" in caplog.text, "the first attempt fails")
+        robot.proxy("Switch").leave(buttons.getName())
+        raised(7.0, [7.0])
+        assert buttons.heard == [(EVENT, 7.0, "")]
+
     def test_subscriptions_of_other_modules_come_back_too(self, robot, buttons, memory, states, eventually):
         memory.subscribeToEvent(EVENT, "ALTest", "add")
         followed = states(memory.connection)

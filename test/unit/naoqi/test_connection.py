@@ -202,6 +202,25 @@ def test_a_listener_may_call_the_robot_fail_and_close(robot, states, caplog, pat
     assert "a listener with a fault" in caplog.text
 
 
+def test_closing_waits_for_those_who_are_still_inside_libqi(robot, monkeypatch):
+    connection = robot.proxy().connection
+    waits = []
+    monkeypatch.setattr(connection.presence, "wait_until_empty", lambda limit: waits.append(connection.live))
+    connection.close()
+    assert waits == [None]  # once, and after the session was gone
+
+
+def test_a_listener_removed_by_another_is_not_called_any_more(robot, states):
+    connection = robot.proxy().connection
+    heard = []
+    connection.add_listener(lambda _state: connection.remove_listener(heard.append))
+    connection.add_listener(heard.append)
+    followed = states(connection)
+    connection.close()
+    followed.wait_for("closed")
+    assert heard == []
+
+
 def test_a_removed_listener_hears_nothing(robot, states):
     connection = robot.proxy().connection
     heard = []

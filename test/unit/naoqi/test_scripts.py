@@ -103,7 +103,8 @@ def test_a_program_ends_quietly_whatever_is_still_open(robot, last):
 
 def test_a_call_posted_just_before_the_end_still_arrives(robot, proxy, eventually):
     before = proxy.begun()
-    result = run(USE_AND_LEAVE.format(last="test.post.begin()"), robot)
+    # The first call fills the socket, so that the second waits behind it as the program ends.
+    result = run(USE_AND_LEAVE.format(last="test.post.kindOf('x' * 5000000); test.post.begin()"), robot)
     assert result.returncode == 0
     eventually(lambda: proxy.begun() == before + 1, "the robot got the call")
     proxy.finish(None)
@@ -111,7 +112,8 @@ def test_a_call_posted_just_before_the_end_still_arrives(robot, proxy, eventuall
 
 def test_ctrl_c_ends_a_call_that_waits_and_cancels_it_on_the_robot(robot, proxy, eventually):
     before, running = proxy.cancellations(), proxy.begun()
-    command = [sys.executable, "-c", USE_AND_LEAVE.format(last="test.begin()"), str(robot.port)]
+    last = "import naoqi.calls; naoqi.calls.FIRST_SLICE_MS = 0; test.begin()"  # to be in the long wait at once
+    command = [sys.executable, "-c", USE_AND_LEAVE.format(last=last), str(robot.port)]
     environment = {"PYTHONPATH": str(SOURCES), "PATH": "/usr/bin:/bin"}
     program = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True)
     eventually(lambda: proxy.begun() == running + 1, "the call arrives")

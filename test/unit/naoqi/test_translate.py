@@ -47,6 +47,12 @@ def test_a_text_about_another_method_is_the_robots_own_trouble():
     assert type(error_of(text)) is errors.RobotError
 
 
+def test_only_libqis_own_kind_of_error_speaks_about_signatures():
+    text = "Arguments types did not match for fade (resolved to '(s)'):\n  fade::(sff) (1)"
+    assert type(error_of(f"RuntimeError: {text}\n\nAt:\n  /x.py(3): fade\n")) is errors.BadArguments
+    assert type(error_of(f"ValueError: {text}\n\nAt:\n  /x.py(3): fade\n")) is errors.RobotError
+
+
 def test_libqis_words_out_of_the_mouth_of_a_service_do_not_mean_our_connection():
     error = error_of("RuntimeError: Session closed\n\nAt:\n  /x.py(3): fade\n")
     assert type(error) is errors.RobotError

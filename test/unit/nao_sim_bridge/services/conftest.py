@@ -119,10 +119,12 @@ def stiff_robot(robot):
 
 
 class Listener:
-    """A module of a client that events call back."""
+    """A module of a client that events call back, and that has signals."""
 
     def __init__(self):
         self.heard = queue.Queue()
+        self.touched = qi.Signal("(i)")
+        self.moved = qi.Signal("(ii)")
 
     @qi.bind(qi.Void, [qi.String, qi.Dynamic, qi.String])
     def onEvent(self, name, value, message):
@@ -130,20 +132,21 @@ class Listener:
 
 
 @pytest.fixture(scope="module")
-def listening_session(shared_robot):
+def shared_listener(shared_robot):
+    """Registered as the module "Listener" once for all: libqi takes its time to forget a module of the same name."""
     session = connected(shared_robot.server.broker.port)
     session.listen("tcp://127.0.0.1:0")
-    yield session
+    module = Listener()
+    session.registerService("Listener", module)
+    yield module
     session.close()
 
 
 @pytest.fixture
-def listener(listening_session):
-    """Registered as the module "Listener" while the test runs; what it hears is in its queue `heard`."""
-    module = Listener()
-    number = listening_session.registerService("Listener", module)
-    yield module
-    listening_session.unregisterService(number)
+def listener(shared_listener):
+    """The module "Listener"; what it hears is in its queue `heard`."""
+    shared_listener.heard = queue.Queue()
+    return shared_listener
 
 
 @pytest.fixture(scope="module")
@@ -155,9 +158,9 @@ def broker():
     made.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def session(broker):
-    """A client of `broker`."""
+    """A client of `broker`, new for each test: it must not remember what another one served under the same name."""
     client = connected(broker.port)
     yield client
     client.close()

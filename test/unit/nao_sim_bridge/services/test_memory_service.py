@@ -5,7 +5,6 @@ from __future__ import annotations
 import queue
 
 import pytest
-import qi
 
 from nao_sim_bridge.services.memory_store import HISTORY_LENGTH
 
@@ -233,27 +232,16 @@ def test_an_event_that_was_removed_can_be_subscribed_to_anew(memory, patience, r
     assert heard.get(timeout=patience) == 5
 
 
-class Source:
-    """A module of a client with signals."""
-
-    def __init__(self):
-        self.touched = qi.Signal("(i)")
-        self.moved = qi.Signal("(ii)")
-
-
-def test_signals_of_a_service_become_events(memory, listening_session, patience):
-    source = Source()
-    number = listening_session.registerService("Source", source)
+def test_signals_of_a_service_become_events(memory, listener, patience):
     heard = queue.Queue()
-    memory.addMapping("Source", "touched", "Test/Touched")
-    memory.addMapping("Source", {"moved": "Test/Moved"})
+    memory.addMapping("Listener", "touched", "Test/Touched")
+    memory.addMapping("Listener", {"moved": "Test/Moved"})
     subscribers = [memory.subscriber(event) for event in ("Test/Touched", "Test/Moved")]
     for subscriber in subscribers:
         subscriber.signal.connect(heard.put)
-    source.touched(3)
+    listener.touched(3)
     assert heard.get(timeout=patience) == 3
-    source.moved(4, 5)
+    listener.moved(4, 5)
     assert heard.get(timeout=patience) == [4, 5]
-    with pytest.raises(RuntimeError, match="service 'Source' has no signal 'tuched'"):
-        memory.addMapping("Source", "tuched", "Test/Touched")
-    listening_session.unregisterService(number)
+    with pytest.raises(RuntimeError, match="service 'Listener' has no signal 'tuched'"):
+        memory.addMapping("Listener", "tuched", "Test/Touched")

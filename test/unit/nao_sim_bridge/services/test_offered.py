@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-import qi
 
 from nao_sim_bridge.services.api import COMMON, module_methods
 from nao_sim_bridge.services.binding import offered
@@ -29,7 +28,7 @@ COMMON_CALLS = {
 }
 CALLS = {
     "ALMemory": {
-        "addMapping": ("TestSource", "moved", EVENT),
+        "addMapping": ("Listener", "moved", EVENT),
         "declareEvent": (EVENT, "Extractor"),
         "getData": (KEY,),
         "getDataList": ("Test",),
@@ -51,12 +50,12 @@ CALLS = {
         "removeEvent": (EVENT,),
         "removeMicroEvent": ("Test/Micro",),
         "setDescription": (KEY, "text"),
-        "subscribeToEvent": (EVENT, "TestSource", "onEvent"),
-        "subscribeToMicroEvent": ("Test/Micro", "TestSource", "message", "onEvent"),
+        "subscribeToEvent": (EVENT, "Listener", "onEvent"),
+        "subscribeToMicroEvent": ("Test/Micro", "Listener", "message", "onEvent"),
         "subscriber": (EVENT,),
-        "unregisterModuleReference": ("TestSource",),
-        "unsubscribeToEvent": (EVENT, "TestSource"),
-        "unsubscribeToMicroEvent": ("Test/Micro", "TestSource"),
+        "unregisterModuleReference": ("Listener",),
+        "unsubscribeToEvent": (EVENT, "Listener"),
+        "unsubscribeToMicroEvent": ("Test/Micro", "Listener"),
     },
     "ALLeds": {
         "createGroup": ("TestGroup", ["Brain0"]),
@@ -135,24 +134,13 @@ MISSING_IN_SYSTEM = {
 LONGEST = 3.0
 
 
-class Source:
-    """A module of a client with a signal, that can be called back."""
-
-    def __init__(self):
-        self.moved = qi.Signal("(ii)")
-
-    @qi.bind(qi.Void, [qi.String, qi.Dynamic, qi.String])
-    def onEvent(self, *_):
-        """Hears an event."""
-
-
 @pytest.fixture
-def answers(robot):
+def answers(shared_robot):
     """Names of the methods that a module answers and those it does not, without the common ones."""
     common = set(module_methods(COMMON))
 
     def of(module):
-        return [set(names) - common for names in offered(module, robot.server.modules()[module])]
+        return [set(names) - common for names in offered(module, shared_robot.server.modules()[module])]
 
     return of
 
@@ -178,24 +166,26 @@ def test_the_common_methods_are_called_below():
 
 
 @pytest.fixture
-def prepared(robot, listening_session):
-    """Keys, events, subscriptions, a posted call and a source of signals, which the calls are about."""
-    memory = robot.ALMemory
+def prepared(shared_robot, shared_listener):
+    """Keys, events, subscriptions and a posted call, which the calls are about."""
+    memory = shared_robot.ALMemory
     memory.insertData(KEY, 0)
     memory.raiseEvent(EVENT, 0)
     memory.raiseMicroEvent("Test/Micro", 0)
-    memory.subscribeToEvent(EVENT, "TestSource", "onEvent")
-    memory.subscribeToMicroEvent("Test/Micro", "TestSource", "message", "onEvent")
-    number = listening_session.registerService("TestSource", Source())
+    memory.subscribeToEvent(EVENT, "Listener", "onEvent")
+    memory.subscribeToMicroEvent("Test/Micro", "Listener", "message", "onEvent")
     for module in CALLS:
-        getattr(robot, module).pCall("ping")
-    yield robot
-    listening_session.unregisterService(number)
+        getattr(shared_robot, module).pCall("ping")
+    return shared_robot
 
 
 @pytest.mark.parametrize("module, method", [(module, method) for module, calls in CALLS.items() for method in calls])
 def test_a_method_answers(prepared, module, method):
-    prepared.finish(module, method, *CALLS[module][method], after=LONGEST)
+    future = prepared.post(module, method, *CALLS[module][method])
+    prepared.handed_over(module)
+    if future.isRunning():
+        prepared.advance(LONGEST)
+    prepared.answer(future)
 
 
 @pytest.mark.parametrize("module", CALLS)

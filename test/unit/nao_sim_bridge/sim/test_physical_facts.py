@@ -127,7 +127,7 @@ def test_a_lifted_foot_carries_nothing_and_the_other_one_everything(bench):
     one.run(0.5)
     lean(one, 0.3)
     one.aim(0.7, RKneePitch=0.5, RHipPitch=-0.3, RAnklePitch=-0.2)
-    end = one.run(1.2)
+    end = one.run(2.5)
     assert end.right_foot.forces == (0.0,) * 4
     assert end.right_foot.center_of_pressure == (0.0, 0.0)
     assert end.left_foot.total == pytest.approx(WEIGHT, rel=0.02)

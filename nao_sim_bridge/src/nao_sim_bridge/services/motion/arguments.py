@@ -48,8 +48,8 @@ def joint_indices(names: Any, model: RobotModel) -> list[int]:
 def key_frames(count: int, values: Any, times: Any, field: str) -> list[tuple[list[float], list[float]]]:
     """(times, values) of each of `count` joints from the shapes NAOqi takes.
 
-    One value or one list for one joint; for several joints a list with one value or one list each. Times likewise; one
-    number or one list of times serves all joints.
+    One value or one list for one joint; for several joints one value for all, or a list with one value or one list
+    each. Times likewise; one number or one list of times serves all joints.
 
     Raises:
         BadValue: A size does not fit, or times do not rise from above 0.
@@ -66,7 +66,7 @@ def key_frames(count: int, values: Any, times: Any, field: str) -> list[tuple[li
 
 def _one_each(values: Any, count: int, field: str) -> list[list[float]]:
     if not isinstance(values, (list, tuple)):
-        values = [values]
+        return [[number(values, field)]] * count
     if not values:
         raise BadValue(field, values, "at least one value")
     nested = any(isinstance(v, (list, tuple)) for v in values)

@@ -23,7 +23,8 @@ class FootSensors:
     """
 
     def __init__(self, model: RobotModel, side: str) -> None:
-        place = {p.name: p.position for p in model.fsr if p.name.startswith(f"{side}Foot/")}
+        # Plain floats: the forces go over the network, which knows no numpy.
+        place = {p.name: p.position.tolist() for p in model.fsr if p.name.startswith(f"{side}Foot/")}
         corners = [place[f"{side}Foot/FSR/{name}"] for name in ("FrontLeft", "FrontRight", "RearLeft", "RearRight")]
         self._front = (corners[0][0] + corners[1][0]) / 2
         self._rear = (corners[2][0] + corners[3][0]) / 2

@@ -59,6 +59,7 @@ def test_a_joint_named_twice_is_refused_when_it_is_to_move():
         (1, [0.5, 0.1], [1.0, 2.0], [([1.0, 2.0], [0.5, 0.1])]),
         (1, [[0.5, 0.1]], [[1.0, 2.0]], [([1.0, 2.0], [0.5, 0.1])]),
         (1, [0.5], 1, [([1.0], [0.5])]),
+        (2, 0.5, 1.0, [([1.0], [0.5]), ([1.0], [0.5])]),
         (2, [0.5, 0.1], 1.0, [([1.0], [0.5]), ([1.0], [0.1])]),
         (2, [0.5, 0.1], [1.0], [([1.0], [0.5]), ([1.0], [0.1])]),
         (2, [0.5, 0.1], [1.0, 2.0], [([1.0], [0.5]), ([2.0], [0.1])]),
@@ -76,7 +77,6 @@ def test_key_frames_come_in_many_shapes(count, values, times, frames):
     "count, values, times, message",
     [
         (2, [0.5], 1.0, "angleLists is .*, allowed is 2 entries, one for each joint; there are 1"),
-        (2, 0.5, 1.0, "allowed is 2 entries"),
         (2, [], 1.0, "angleLists is .*, allowed is at least one value"),
         (2, [[], [1]], 1.0, "angleLists is .*, allowed is at least one value for each joint"),
         (1, [0.5], [], "timeLists is .*, allowed is at least one time"),
@@ -86,6 +86,7 @@ def test_key_frames_come_in_many_shapes(count, values, times, frames):
         (1, [0.5], [0.0], "timeLists is .*, allowed is times that rise, the first above 0 s"),
         (1, [0.5, 0.1], [2.0, 1.0], "times that rise"),
         (1, [0.5, 0.1], [1.0, 1.0], "times that rise"),
+        (2, "much", 1.0, "angleLists is 'much', allowed is a finite number"),
         (1, ["much"], [1.0], r"angleLists\[0\] is 'much', allowed is a finite number"),
         (1, [0.5], ["soon"], r"timeLists\[0\] is 'soon', allowed is a finite number"),
         (1, [float("nan")], [1.0], "a finite number"),

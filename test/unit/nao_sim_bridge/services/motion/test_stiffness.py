@@ -49,6 +49,11 @@ def test_an_interpolation_passes_through_the_middle_and_arrives_exactly(robot):
     assert robot.ALMotion.getStiffnesses("Head") == [0.0, 0.5]
 
 
+def test_one_value_and_one_time_serve_the_whole_body(robot):
+    robot.finish("ALMotion", "stiffnessInterpolation", "Body", 1.0, 1.0, after=1.01)
+    assert robot.ALMotion.getStiffnesses("Body") == [1.0] * 26
+
+
 def test_setting_stiffness_ends_an_interpolation_of_it(robot):
     future = robot.post("ALMotion", "stiffnessInterpolation", "HeadYaw", 1.0, 5.0)
     robot.handed_over("ALMotion")
