@@ -44,6 +44,15 @@ class LightsFunctions(unittest.TestCase):
         for device, value in wanted.items():
             self.assertAlmostEqual(found[device], value, delta=0.01, msg=device)
 
+    def eye_colours(self):
+        """The different colours that the 16 segments of the eyes have."""
+        found = self.robot.leds(eyes(0, 0, 0))
+        return {
+            tuple(found[f"Face/Led/{color}/{side}/{angle}Deg"] for color in ("Red", "Green", "Blue"))
+            for side in ("Left", "Right")
+            for angle in EYE_ANGLES
+        }
+
     def test_on_off_and_reset(self):
         self.play("off", lights=["AllLeds"])
         self.check({**eyes(0, 0, 0), BRAIN0: 0.0})
@@ -84,17 +93,23 @@ class LightsFunctions(unittest.TestCase):
         self.check(eyes(0, 0, 1))
 
     def test_animations_change_the_eyes_for_their_time(self):
-        for function, fields in (
-            ("randomEyes", {"duration": 0.6}),
-            ("rasta", {"duration": 0.6}),
-            ("rotateEyes", {"str_param": "cyan", "rotation_time": 0.4, "duration": 0.6}),
+        cyan, dark, rasta = (0, 1, 1), (0, 0, 0), {(0, 1, 0), (1, 1, 0), (1, 0, 0)}
+        for function, fields, shown in (
+            ("randomEyes", {"duration": 0.6}, lambda colours: len(colours) == 16),
+            ("rasta", {"duration": 0.6}, lambda colours: len(colours) == 1 and colours < rasta),
+            (
+                "rotateEyes",
+                {"str_param": "cyan", "rotation_time": 0.4, "duration": 0.6},
+                lambda colours: colours == {cyan, dark},
+            ),
         ):
             with self.subTest(function):
                 self.robot.reset()
                 began = rospy.get_time()
                 self.play(function, **fields)
                 self.assertAlmostEqual(rospy.get_time() - began, 0.6, delta=0.3)
-                self.assertNotEqual(self.robot.leds(eyes(1, 1, 1)), eyes(1, 1, 1))
+                colours = self.eye_colours()
+                self.assertTrue(shown(colours), colours)
 
     def test_animation_with_revert_leaves_no_trace(self):
         self.play("rasta", duration=0.5, revert=True)

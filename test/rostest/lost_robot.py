@@ -9,6 +9,8 @@ import time
 import unittest
 
 import actionlib
+import rosgraph
+import rosnode
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
@@ -59,6 +61,7 @@ class LostRobot(unittest.TestCase):
         early = self.play(HALF).wait()
         self.assertEqual(early.state, GoalStatus.ABORTED)
         self.assertIn(PORT, early.text)
+        node = rosnode.get_api_uri(rosgraph.Master("/lost_robot_test"), "/nao_lights")
         self.wait_for_level(DiagnosticStatus.ERROR)
 
         self.start()
@@ -66,6 +69,7 @@ class LostRobot(unittest.TestCase):
         self.wait_for_level(DiagnosticStatus.OK)
 
         for stop in (signal.SIGKILL, signal.SIGSTOP):
+            dead = stop == signal.SIGKILL
             with self.subTest(stop):
                 run = self.play(HALF, LONG)
                 run.wait_for_function(1)
@@ -74,11 +78,16 @@ class LostRobot(unittest.TestCase):
                 run.wait(10.0)
                 self.assertLess(time.monotonic() - began, 2.5)
                 self.assertEqual(run.state, GoalStatus.ABORTED)
-                self.assertIn("function 2", run.text)
+                for words in ("function 2", f"127.0.0.1:{PORT}", "connection broke" if dead else "no answer"):
+                    self.assertIn(words, run.text)
                 self.assertEqual([done.function for done in run.result.results], ["setIntensity"])
+                if not dead:
+                    self.wait_for_level(DiagnosticStatus.ERROR)
                 self.kill()
                 self.start()
                 self.wait_until_it_works()
+                self.wait_for_level(DiagnosticStatus.OK)
+        self.assertEqual(rosnode.get_api_uri(rosgraph.Master("/lost_robot_test"), "/nao_lights"), node)
 
 
 if __name__ == "__main__":

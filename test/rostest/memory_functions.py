@@ -58,7 +58,14 @@ class MemoryFunctions(unittest.TestCase):
         self.assertEqual((messages[0].name, json.loads(messages[0].value)), ("Test/Event", [1, "a"]))
         self.assertIn("Test/Event", self.ask(("getEventList", "")))
         self.assertEqual(json.loads(self.ask(("getEventHistory", "Test/Event"))[-1])[0], [1, "a"])
-        self.ask(("unsubscribeToEvent", "Test/Event"))
+        # The first event must not come any more; the second, raised after it, shows that it would have.
+        self.ask(("unsubscribeToEvent", "Test/Event"), ("subscribeToEvent", "Test/Later"))
+        arrived.clear()
+        self.robot.module("ALMemory").raiseEvent("Test/Event", [2, "b"])
+        self.robot.module("ALMemory").raiseEvent("Test/Later", None)
+        self.assertTrue(arrived.wait(10.0))
+        self.assertEqual([message.name for message in messages], ["Test/Event", "Test/Later"])
+        self.ask(("unsubscribeToEvent", "Test/Later"))
         topic.unregister()
 
     def test_events_raised_through_a_goal_reach_the_robot(self):

@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""The LED listings of the nao_library paper, as printed, through the real stack."""
+"""The LED listings of the nao_library paper through the real stack, NAOqi's way and nao_library's.
+
+The paper prints the goal's type as LedGoal; here the action is NaoLed, so it is NaoLedGoal.
+"""
 
 import unittest
 
@@ -14,6 +17,7 @@ from rospy import Duration
 import nao_library_actions.msg
 from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.testing import SimulatedRobot, send
+from naoqi import ALProxy
 
 EYES = [
     f"Face/Led/{color}/{side}/{angle}Deg"
@@ -23,6 +27,7 @@ EYES = [
 ]
 GREEN = {device: float("Green" in device) for device in EYES}
 WHITE = {device: 1.0 for device in EYES}
+BRAIN0 = "Device/SubDeviceList/Head/Led/Front/Right/1/Actuator/Value"
 
 
 def green_pixels(path):
@@ -35,6 +40,8 @@ class PaperListings(unittest.TestCase):
     def setUpClass(cls):
         cls.robot = SimulatedRobot()
         cls.led_client = cls.robot.action_client("NaoLights", nao_library_actions.msg.NaoLedAction)
+        cls.leds_proxy = ALProxy("ALLeds", "127.0.0.1", cls.robot.port)
+        cls.memory_proxy = ALProxy("ALMemory", "127.0.0.1", cls.robot.port)
 
     def setUp(self):
         self.robot.reset()
@@ -43,8 +50,21 @@ class PaperListings(unittest.TestCase):
         brain_half = LedFunction(function="setIntensity", lights=["Brain0"], i_values=[0.5])
         run = send(self.led_client, nao_library_actions.msg.NaoLedGoal([brain_half])).wait()
         self.assertEqual(run.state, GoalStatus.SUCCEEDED)
-        self.assertAlmostEqual(self.robot.led("Head/Led/Front/Right/1"), 0.5)
+        self.assertEqual(self.memory_proxy.getData(BRAIN0), 0.5)
         self.assertEqual(list(zip(run.result.lights, run.result.intensities)), [("Brain0", 0.5)])
+
+    def test_one_light_at_half_intensity_by_naoqi(self):
+        self.leds_proxy.setIntensity("Brain0", 0.5)
+        self.assertEqual(self.memory_proxy.getData(BRAIN0), 0.5)
+
+    def test_both_eyes_green_by_naoqi(self):
+        self.leds_proxy.setIntensity("LeftFaceLedsRed", 0)
+        self.leds_proxy.setIntensity("RightFaceLedsRed", 0)
+        self.leds_proxy.setIntensity("LeftFaceLedsGreen", 1)
+        self.leds_proxy.setIntensity("RightFaceLedsGreen", 1)
+        self.leds_proxy.setIntensity("LeftFaceLedsBlue", 0)
+        self.leds_proxy.setIntensity("RightFaceLedsBlue", 0)
+        self.assertEqual(self.robot.leds(GREEN), GREEN)
 
     def test_both_eyes_green(self):
         self.assertLess(green_pixels(self.robot.picture("front", "white_eyes.png")), 20)
@@ -71,7 +91,7 @@ class PaperListings(unittest.TestCase):
         self.assertEqual(self.robot.leds(WHITE), WHITE)
         self.assertAlmostEqual(run.ended - run.sent, 2.0, delta=0.3)
 
-    def test_clients_of_several_servers_wait_as_in_the_paper(self):
+    def test_clients_wait_for_the_server_as_in_the_paper(self):
         lights = actionlib.SimpleActionClient("NaoLights", nao_library_actions.msg.NaoLedAction)
         self.assertTrue(lights.wait_for_server(Duration(60)))
 

@@ -7,7 +7,6 @@ import rospy
 import rostest
 from nav_msgs.msg import Odometry
 
-from nao_library_msgs.srv import GetTruepose
 from nao_sim_bridge.testing import SimulatedRobot
 
 
@@ -17,15 +16,15 @@ class SimulatedWorld(unittest.TestCase):
         self.robot.reset()
 
     def height(self):
-        return rospy.ServiceProxy("get_truepose", GetTruepose)().pose.pose.pose.position.z
+        return self.robot.true_pose().position.z
 
     def test_it_stands_up_by_its_own_motors_and_stays(self):
         self.assertLess(self.height(), 0.25)
         self.robot.module("ALMotion").wakeUp()
         self.assertGreater(self.height(), 0.32)
-        before = rospy.ServiceProxy("get_truepose", GetTruepose)().pose.pose.pose.position
+        before = self.robot.true_pose().position
         self.robot.advance(20.0)
-        after = rospy.ServiceProxy("get_truepose", GetTruepose)().pose.pose.pose.position
+        after = self.robot.true_pose().position
         self.assertLess(abs(after.x - before.x) + abs(after.y - before.y), 0.001)
         weight = sum(self.robot.value(f"{side}FootTotalWeight") for side in ("left", "right"))
         self.assertAlmostEqual(weight, 5.36, delta=0.1)
@@ -39,7 +38,11 @@ class SimulatedWorld(unittest.TestCase):
     def test_topic_and_service_of_the_true_pose_agree(self):
         message = rospy.wait_for_message("ground_truth/odom", Odometry, timeout=30.0)
         self.assertEqual((message.header.frame_id, message.child_frame_id), ("world", "torso"))
-        self.assertAlmostEqual(message.pose.pose.position.z, self.height(), delta=0.002)
+        topic, service = message.pose.pose, self.robot.true_pose()
+        for axis in "xyz":
+            self.assertAlmostEqual(getattr(topic.position, axis), getattr(service.position, axis), delta=0.002)
+        for axis in "xyzw":
+            self.assertAlmostEqual(getattr(topic.orientation, axis), getattr(service.orientation, axis), delta=0.01)
 
     def test_time_moves_only_as_told_while_paused(self):
         self.robot.pause()

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 READY_LIMIT = 1.0
 """So long a module that is known may take until it can be called, in s."""
+START_LIMIT = 0.5
+"""So long after the connection a module may appear, in s: a robot that starts registers one after the other."""
 
 
 def module_names(connection: Connection, live: Live) -> List[str]:
@@ -46,6 +48,8 @@ def find_module(connection: Connection, live: Live, name: str) -> Any:
             return future.value()
         text = future.error().strip()
         if is_unknown_service(text):
+            if time.monotonic() < live.connected_at + START_LIMIT and not live.broken.wait(delay):
+                continue
             raise unknown_module(name, connection.host, connection.port, module_names(connection, live))
         if live is not connection.live or not live.session.isConnected():
             raise connection.unreachable()

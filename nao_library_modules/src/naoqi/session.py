@@ -25,6 +25,7 @@ class Live:
         heartbeat: The remote method that is called as heartbeat; None until it is connected.
         broken: Set when libqi reports the end of the session, and when the program wants it.
         services: Remote objects found so far, by name.
+        connected_at: Monotonic time of its connection, in s.
     """
 
     def __init__(self, on_break: Callable[[], None] = lambda: None) -> None:
@@ -38,6 +39,7 @@ class Live:
         self.heartbeat: Any = None
         self.broken = threading.Event()
         self.services: Dict[str, Any] = {}
+        self.connected_at = 0.0
         self._on_break = on_break
         self._link = self.session.disconnected.connect(self._break)
 
@@ -75,6 +77,7 @@ def open_live(host: str, port: int, limit: float, announce: Callable[[Live], Non
         future = live.session.service("ServiceDirectory", _async=True)
         directory = _value(future, host, port, deadline - time.monotonic())
         live.heartbeat = directory.machineId
+        live.connected_at = time.monotonic()
         return live
     except RobotUnreachable:
         live.close()

@@ -6,8 +6,9 @@ import logging
 import threading
 from typing import TYPE_CHECKING, Any, Collection, Dict, Set, Tuple
 
-from .errors import NaoError
+from .errors import NaoError, RobotUnreachable, UnknownModule
 from .remote import RemoteMethod, RemoteModule
+from .worker import Worker
 
 if TYPE_CHECKING:
     from .robot_connection import Connection, State
@@ -38,6 +39,7 @@ class EventSubscriptions:
         self._lock = threading.Lock()  # guards the table
         self._arguments: Dict[Key, Tuple[Any, ...]] = {}
         self._owned: Set[str] = set()
+        self._worker = Worker(f"naoqi subscriptions {connection.address}")
         connection.add_listener(self._on_state)
 
     def __len__(self) -> int:
@@ -77,6 +79,8 @@ class EventSubscriptions:
         """Subscribe these modules again; what fails is logged, and tried again after the next loss."""
         with self._lock:
             entries = [item for item in self._arguments.items() if item[0][2] in modules]
+        if not entries or not self._memory_is_there():
+            return
         done = 0
         for (method, event, module), arguments in entries:
             try:
@@ -88,7 +92,29 @@ class EventSubscriptions:
             logger.warning("NAOqi at %s: %d event subscriptions made again", self._connection.address, done)
 
     def _on_state(self, state: State) -> None:
-        if state == "connected" and self._connection.generation > 1:
+        if state == "closed":
+            self._worker.close()
+        elif state == "connected" and self._connection.generation > 1:
             with self._lock:
                 foreign = {key[2] for key in self._arguments} - self._owned
-            self.renew(foreign)
+            if foreign:
+                self._worker.submit(lambda: self.renew(foreign))
+
+    def _memory_is_there(self) -> bool:
+        """Wait for ALMemory: a robot that boots can be reached long before it has all its modules.
+
+        Returns:
+            False if the connection is lost before that; then the next one brings a new attempt.
+        """
+        delay = 0.1
+        while True:
+            live = self._connection.live
+            try:
+                self._memory.service()
+                return True
+            except UnknownModule:
+                if live is None or live.broken.wait(delay):
+                    return False
+                delay = min(2.0 * delay, 2.0)
+            except RobotUnreachable:
+                return False

@@ -16,10 +16,10 @@ import qi
 import roslib.message
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from geometry_msgs.msg import Vector3
+from geometry_msgs.msg import Pose, Vector3
 from std_srvs.srv import Empty
 
-from nao_library_msgs.srv import AdvanceTime, PressSensors, PushRobot, TakePicture
+from nao_library_msgs.srv import AdvanceTime, GetTruepose, PressSensors, PushRobot, TakePicture
 from nao_sim_bridge.broker import QUIET_LIBQI
 
 DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
@@ -147,6 +147,7 @@ class SimulatedRobot:
         self._reset = self._service("nao_sim/reset", Empty, limit)
         self._pause = self._service("nao_sim/pause", Empty, limit)
         self._resume = self._service("nao_sim/resume", Empty, limit)
+        self._true_pose = self._service("get_truepose", GetTruepose, limit)
         self._session: Any = None
 
     # --- the stack ------------------------------------------------------------------------------------------------
@@ -218,6 +219,10 @@ class SimulatedRobot:
         if not answer.success:
             raise ValueError(answer.message)
         return Path(answer.path)
+
+    def true_pose(self) -> Pose:
+        """Where the torso really is, in world: position in m, orientation as a quaternion."""
+        return self._true_pose().pose.pose.pose
 
     def value(self, key: str) -> Any:
         """What ALMemory has under a key."""

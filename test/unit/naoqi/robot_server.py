@@ -14,6 +14,9 @@ import threading
 
 import qi
 
+BOOTING = "--booting"
+"""Among the names of more modules: ALMemory is not there yet."""
+
 
 class Memory:
     """The part of ALMemory that events need: both ways of subscribing."""
@@ -169,12 +172,14 @@ class Nao(Module):
 class Switch:
     """Makes modules come and go."""
 
-    def __init__(self, session):
+    def __init__(self, session, memory):
         self._session = session
+        self._memory = memory  # qi publishes callables only
         self._ids = {}
 
     def arrive(self, name):
-        self._ids[name] = self._session.registerService(name, Module())
+        module = self._memory if name == "ALMemory" else Module()
+        self._ids[name] = self._session.registerService(name, module)
 
     def leave(self, name):
         self._session.unregisterService(self._ids.pop(name))
@@ -203,12 +208,14 @@ def main():
     session = qi.Session()
     session.listenStandalone(f"tcp://127.0.0.1:{sys.argv[1]}")
     free_the_port_at_death()
-    session.registerService("ALMemory", qi.multiThreaded()(Memory)(session))
+    memory = qi.multiThreaded()(Memory)(session)
+    if BOOTING not in sys.argv:
+        session.registerService("ALMemory", memory)
     session.registerService("ALTest", Module())
     session.registerService("ALNao", Nao())
-    switch = Switch(session)
+    switch = Switch(session, memory)
     session.registerService("Switch", switch)
-    for name in sys.argv[2:]:
+    for name in set(sys.argv[2:]) - {BOOTING}:
         switch.arrive(name)
     print("ready", session.endpoints()[0].rsplit(":", 1)[1], flush=True)
     sys.stdin.read()  # until the tests close it, or die

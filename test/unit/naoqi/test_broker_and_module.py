@@ -267,6 +267,18 @@ class TestAfterALoss:
         assert buttons.heard == [(EVENT, 5.0, "")]
         assert memory.getSubscribers("Gone") == []
 
+    def test_a_robot_that_still_boots_is_given_its_time(self, robot, broker, memory, states, eventually, caplog):
+        memory.subscribeToEvent(EVENT, "ALTest", "add")
+        followed = states(broker.connection)
+        robot.kill()
+        followed.wait_for("lost")
+        robot.start("--booting")
+        eventually(lambda: "modules registered again" in caplog.text, "our own module is back")
+        assert "made again" not in caplog.text
+        robot.proxy("Switch").arrive("ALMemory")
+        eventually(lambda: caplog.text.count("1 event subscriptions made again") == 2, "ours and the other one")
+        assert len(subscribers(memory)) == 2
+
     def test_a_name_that_is_still_taken_is_tried_again(
         self, robot, broker, buttons, raised, states, eventually, caplog
     ):

@@ -152,6 +152,17 @@ def test_a_lazy_proxy_may_be_there_before_the_robot(robot):
     assert proxy.add(2, 2) == 4
 
 
+def test_a_module_may_appear_a_moment_after_the_robot(robot, states, in_thread):
+    robot.kill()
+    connection = naoqi.connection(*robot.address, wait=False)
+    followed = states(connection)
+    robot.start()
+    followed.wait_for("connected")
+    finish = in_thread(lambda: robot.proxy("Visitor").add(1, 1))
+    robot.proxy("Switch").arrive("Visitor")
+    assert finish().get("value") == 2
+
+
 def test_waiting_for_a_robot_that_does_not_come_ends(robot):
     robot.kill()
     connection = naoqi.connection(*robot.address, wait=False)

@@ -41,7 +41,9 @@ def test_lists_of_keys_are_written_and_read_at_once(memory):
 
 @pytest.mark.parametrize("pairs", [["Test/One", 1], [["Test/Bad"]], [["Test/Bad", 1, 2]], [[1, 2]]])
 def test_a_malformed_list_writes_nothing(memory, pairs):
-    with pytest.raises(RuntimeError, match=r"ALMemory::insertListData list holds .*, allowed is \[\[key, value\], ...\]"):
+    with pytest.raises(
+        RuntimeError, match=r"ALMemory::insertListData list holds .*, allowed is \[\[key, value\], ...\]"
+    ):
         memory.insertListData([["Test/Good", 1], *pairs])
     assert "Test/Good" not in memory.getDataListName()
 

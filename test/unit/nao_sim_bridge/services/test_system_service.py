@@ -51,7 +51,9 @@ def test_a_known_time_zone_is_taken(system):
 
 def test_memory_and_disk_are_those_of_the_machine(system):
     assert 0 < system.freeMemory() <= system.totalMemory()
-    assert system.totalMemory() == pytest.approx(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**20, abs=1)
+    assert system.totalMemory() == pytest.approx(
+        os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**20, abs=1
+    )
     for mount, total, used, free in system.diskFree(True):
         assert mount == "/"
         assert 0 <= free <= total and 0 <= used <= total

@@ -125,8 +125,8 @@ def test_leaning_to_a_side_loads_that_foot(bench, roll):
 def test_a_lifted_foot_carries_nothing_and_the_other_one_everything(bench):
     one = bench()
     one.run(0.5)
-    lean(one, 0.3)
-    one.aim(0.7, RKneePitch=0.5, RHipPitch=-0.3, RAnklePitch=-0.2)
+    lean(one, 0.38)
+    one.aim(1.0, RKneePitch=0.6, RHipPitch=-0.3, RAnklePitch=-0.3)
     end = one.run(2.5)
     assert end.right_foot.forces == (0.0,) * 4
     assert end.right_foot.center_of_pressure == (0.0, 0.0)

@@ -172,7 +172,11 @@ def test_a_hand_opens_and_closes(stiff_robot, hand):
 @pytest.mark.parametrize(
     "method, arguments, message",
     [
-        ("getAngles", ("HeadYow", True), "ALMotion::getAngles unknown joint or chain 'HeadYow': did you mean 'HeadYaw'"),
+        (
+            "getAngles",
+            ("HeadYow", True),
+            "ALMotion::getAngles unknown joint or chain 'HeadYow': did you mean 'HeadYaw'",
+        ),
         ("setAngles", (["HeadYaw", "HeadYaw"], 0.1, 0.5), "named twice: HeadYaw"),
         ("setAngles", ("Head", [0.1, 0.2, 0.3], 0.5), "angles is .*, allowed is one number or 2, one for each joint"),
         ("setAngles", ("HeadYaw", "much", 0.5), "angles is 'much', allowed is a finite number"),

@@ -1,0 +1,149 @@
+"""Part of ALMotion: where effectors are, and moving them there."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Sequence
+
+import numpy as np
+
+from nao_sim_bridge.services.arguments import number
+from nao_sim_bridge.services.motion.cartesian_arguments import (
+    as_position,
+    as_transform,
+    effectors,
+    mask_of,
+    one_each,
+    paths_of,
+    pose_of_position,
+    pose_of_transform,
+)
+from nao_sim_bridge.services.motion.part import MotionPart
+from nao_sim_bridge.services.motion.placements import placement, space_of
+from nao_sim_bridge.sim.frames import Placement, frame_of, sensor_places, space_in_torso
+from nao_sim_bridge.sim.motion.cartesian_path import PosePath, joint_curves
+from nao_sim_bridge.sim.motion.inverse_kinematics import solve
+from nao_sim_bridge.sim.tasks import Task
+
+PoseReader = Callable[[Any], np.ndarray]
+
+
+class Cartesian(MotionPart):
+    """Positions (x, y, z, wx, wy, wz) and transforms of effectors, joints and sensors."""
+
+    def getSensorNames(self) -> list[str]:
+        return list(sensor_places(self._model))
+
+    def getPosition(self, name: str, space: int, use_sensors: bool) -> list[float]:
+        return as_position(self._pose(name, space, self._placement(use_sensors)))
+
+    def getTransform(self, name: str, space: int, use_sensors: bool) -> list[float]:
+        return as_transform(self._pose(name, space, self._placement(use_sensors)))
+
+    def setPosition(self, name: str, space: int, position: Any, fraction: float, mask: int) -> Task:
+        return self._set("setPosition", [name], space, [pose_of_position(position)], fraction, mask)
+
+    def setPositions(self, names: Any, spaces: Any, positions: Any, fraction: float, mask: Any) -> Task:
+        return self._set_many("setPositions", names, spaces, positions, pose_of_position, fraction, mask)
+
+    def setTransform(self, name: str, space: int, target: Any, fraction: float, mask: int) -> Task:
+        return self._set("setTransform", [name], space, [pose_of_transform(target)], fraction, mask)
+
+    def setTransforms(self, names: Any, spaces: Any, targets: Any, fraction: float, mask: Any) -> Task:
+        return self._set_many("setTransforms", names, spaces, targets, pose_of_transform, fraction, mask)
+
+    def changePosition(self, name: str, space: int, change: Any, fraction: float, mask: int) -> Task:
+        now = self._pose(name, space, self._placement(False))
+        target = _moved(now, pose_of_position(change))
+        return self._set("changePosition", [name], space, [target], fraction, mask)
+
+    def changeTransform(self, name: str, space: int, change: Any, fraction: float, mask: int) -> Task:
+        now = self._pose(name, space, self._placement(False))
+        target = _moved(now, pose_of_transform(change))
+        return self._set("changeTransform", [name], space, [target], fraction, mask)
+
+    def positionInterpolation(self, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
+        call = "positionInterpolation"
+        return self._interpolate(call, [name], space, [path], mask, [times], absolute, pose_of_position)
+
+    def positionInterpolations(
+        self, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool = True
+    ) -> Task:
+        call = "positionInterpolations"
+        return self._interpolate(call, names, spaces, paths, masks, times, absolute, pose_of_position)
+
+    def transformInterpolation(self, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
+        call = "transformInterpolation"
+        return self._interpolate(call, [name], space, [path], mask, [times], absolute, pose_of_transform)
+
+    def transformInterpolations(
+        self, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool = True
+    ) -> Task:
+        call = "transformInterpolations"
+        return self._interpolate(call, names, spaces, paths, masks, times, absolute, pose_of_transform)
+
+    def _placement(self, use_sensors: bool) -> Placement:
+        return placement(self._model, self._robot, self._runner.snapshot, use_sensors)
+
+    def _pose(self, name: str, space: int, placed: Placement) -> np.ndarray:
+        frame = frame_of(self._model, name)
+        return np.linalg.inv(space_in_torso(self._model, space_of(space), placed)) @ placed.in_torso(frame)
+
+    def _chain(self, name: str) -> list[int]:
+        joints = (self._model.joint_index[joint] for joint in self._model.chains[name])
+        return [i for i in joints if not self._model.joints[i].is_hand]
+
+    def _set_many(
+        self, call: str, names: Any, spaces: Any, targets: Any, pose: PoseReader, fraction: float, masks: Any
+    ) -> Task:
+        count = len(effectors(names))
+        poses = [pose(target) for target in one_each(targets, count, "targets", nested=True)]
+        return self._set(call, names, spaces, poses, fraction, masks)
+
+    def _set(
+        self, call: str, names: Any, spaces: Any, poses: Sequence[np.ndarray], fraction: float, masks: Any
+    ) -> Task:
+        names = effectors(names)
+        fraction = number(fraction, "fractionMaxSpeed", 0.01, 1.0)
+        placed, commands = self._placement(False), self._robot.joints.commands
+        targets: dict[int, float] = {}
+        masks, spaces = one_each(masks, len(names), "axisMask"), one_each(spaces, len(names), "spaces")
+        for name, space, pose, mask in zip(names, spaces, poses, masks):
+            frame, chain = space_in_torso(self._model, space_of(space), placed), self._chain(name)
+            at = frame_of(self._model, name)
+            found = solve(self._model, chain, at, frame @ pose, mask_of(mask), frame[:3, :3], commands)
+            targets.update(zip(chain, found))
+        top = {i: fraction * self._model.joints[i].max_velocity for i in targets}
+        # All joints arrive together, so that the effector goes about straight.
+        duration = max(abs(angle - commands[i]) / top[i] for i, angle in targets.items())
+        speeds = {i: abs(angle - commands[i]) / duration if duration else 0.0 for i, angle in targets.items()}
+        speeds = {i: speed or top[i] for i, speed in speeds.items()}
+        return self._runner.execute(lambda: self._robot.motion.set_targets(targets, speeds), call)
+
+    def _interpolate(
+        self, call: str, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool, pose: PoseReader
+    ) -> Task:
+        names = effectors(names)
+        masks = [mask_of(mask) for mask in one_each(masks, len(names), "axisMasks")]
+        spaces = [space_of(space) for space in one_each(spaces, len(names), "spaces")]
+        keys = paths_of(paths, times, len(names), pose)
+        chains = [self._chain(name) for name in names]
+
+        def curves(commands: Sequence[float]) -> dict:
+            placed = self._placement(False)
+            found: dict = {}
+            for name, space, mask, chain, (at, poses) in zip(names, spaces, masks, chains, keys):
+                frame, now = space_in_torso(self._model, space, placed), self._pose(name, space, placed)
+                ahead = poses if absolute else [_moved(now, change) for change in poses]
+                path, moments, moving = PosePath((0.0, *at), [now, *ahead]), (0.0, *at), frame_of(self._model, name)
+                found.update(joint_curves(self._model, chain, moving, path, moments, mask, frame, commands))
+            return found
+
+        return self._follow(call, [i for chain in chains for i in chain], curves)
+
+
+def _moved(pose: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """`pose` shifted and turned by `change`, both along the axes of the space."""
+    moved = pose.copy()
+    moved[:3, :3] = change[:3, :3] @ pose[:3, :3]
+    moved[:3, 3] += change[:3, 3]
+    return moved

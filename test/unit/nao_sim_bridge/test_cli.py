@@ -1,0 +1,63 @@
+"""The command line, and the program as a whole."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from nao_sim_bridge.cli import parse, server_options
+from nao_sim_bridge.server import ServerOptions
+from nao_sim_bridge.sim.simulation import Scene
+
+
+def options(*arguments):
+    return server_options(parse("nao_sim", arguments))
+
+
+def test_the_defaults_are_a_robot_on_the_loopback_in_real_time():
+    assert options() == ServerOptions(Scene("empty", "V6", "Crouch", 0), "127.0.0.1", 9559, 1.0, False, False)
+
+
+def test_every_option_reaches_the_server():
+    chosen = options(
+        *"--port 0 --listen 0.0.0.0 --speed 2.5 --gui --world my.yaml --seed 7 --robot V5 --posture Stand --paused".split()
+    )
+    assert chosen == ServerOptions(Scene("my.yaml", "V5", "Stand", 7), "0.0.0.0", 0, 2.5, True, True)
+
+
+@pytest.mark.parametrize("text", ["max", "0", "0.0", "inf"])
+def test_as_fast_as_possible_has_several_spellings(text):
+    assert options("--speed", text).speed == math.inf
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (["--speed", "-1"], "'-1' is not a speed: a number above 0, or max"),
+        (["--speed", "fast"], "'fast' is not a speed"),
+        (["--speed", "nan"], "'nan' is not a speed"),
+        (["--port", "65536"], "'65536' is not a port: 0 to 65535"),
+        (["--port", "-1"], "'-1' is not a port"),
+        (["--port", "naoqi"], "'naoqi' is not a port"),
+        (["--robot", "V3"], "invalid choice: 'V3' (choose from"),
+        (["--posture", "Standing"], "invalid choice: 'Standing' (choose from"),
+        (["--seed", "x"], "invalid int value: 'x'"),
+        (["--wrold", "empty"], "unrecognized arguments: --wrold"),
+    ],
+)
+def test_wrong_arguments_end_the_program_with_what_is_allowed(capsys, arguments, message):
+    with pytest.raises(SystemExit) as ended:
+        options(*arguments)
+    assert ended.value.code == 2
+    assert message in capsys.readouterr().err
+
+
+def test_help_names_every_option_and_its_default(capsys):
+    with pytest.raises(SystemExit) as ended:
+        parse("nao_sim", ["--help"])
+    assert ended.value.code == 0
+    text = capsys.readouterr().out
+    for option in "port listen speed gui world seed robot posture paused verbose".split():
+        assert f"--{option}" in text
+    assert "(default: 9559)" in text and "empty" in text

@@ -1,0 +1,183 @@
+"""Who may import whom: the layers of the stack point one way. Read from the sources, without importing them."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Iterator
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCES = {name: ROOT / name / "src" for name in ("nao_library_modules", "nao_sim_bridge")}
+
+# Import names that stand for ROS: of its Python libraries, and of every message package but our own.
+ROS_LIBRARIES = {
+    "actionlib",
+    "cv_bridge",
+    "diagnostic_updater",
+    "dynamic_reconfigure",
+    "genpy",
+    "rosbag",
+    "rosgraph",
+    "roslaunch",
+    "roslib",
+    "rosnode",
+    "rospy",
+    "rosservice",
+    "rostest",
+    "rostopic",
+    "tf",
+    "tf2_ros",
+}
+OWN_DEFINITIONS = {"nao_library_msgs": "definitions", "nao_library_actions": "definitions"}
+# What scripts for the robot maker's SDK import beside naoqi.
+SDK = {"almath", "motion", "vision_definitions"}
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A part of the stack, and the parts it may import besides itself and what this rule is not about.
+
+    Attributes:
+        name: What others call it.
+        folder: Where its files are, below one of the source folders.
+        may_import: Names of layers, of "ros", "qi", "pybullet" or "definitions" (our messages and actions).
+        nested: Folders inside that are layers of their own.
+    """
+
+    name: str
+    folder: str
+    may_import: frozenset[str]
+    nested: tuple[str, ...] = ()
+
+
+LAYERS = (
+    Layer("naoqi", "nao_library_modules/src/naoqi", frozenset({"qi", "sdk"})),
+    Layer("sdk", "nao_library_modules/src", frozenset(), ("naoqi", "nao_library_modules")),
+    Layer(
+        "modules",
+        "nao_library_modules/src/nao_library_modules",
+        frozenset({"naoqi", "definitions", "ros"}),
+        ("driver", "process_modules"),
+    ),
+    Layer(
+        "driver",
+        "nao_library_modules/src/nao_library_modules/driver",
+        frozenset({"naoqi", "definitions", "ros"}),
+    ),
+    Layer("sim", "nao_sim_bridge/src/nao_sim_bridge/sim", frozenset({"pybullet", "sim paths"})),
+    Layer("services", "nao_sim_bridge/src/nao_sim_bridge/services", frozenset({"sim", "qi", "sim paths"})),
+    Layer(
+        "server",
+        "nao_sim_bridge/src/nao_sim_bridge",
+        frozenset({"services", "sim", "sim paths", "qi", "ros", "definitions"}),
+        ("sim", "services"),
+    ),
+)
+# Process modules are clients: they reach the servers through actions only. The rule waits for the first of them.
+LATER = Layer(
+    "process_modules",
+    "nao_library_modules/src/nao_library_modules/process_modules",
+    frozenset({"definitions", "ros"}),
+)
+if (ROOT / LATER.folder).is_dir():
+    LAYERS = (*LAYERS, LATER)
+# Files of the server layer that ROS may be in; the others run without.
+ROS_SIDE = {"ros_node.py", "ros_side.py", "testing.py"}
+
+
+def files_of(layer: Layer) -> list[Path]:
+    folder = ROOT / layer.folder
+    nested = [folder / name for name in layer.nested]
+    return [path for path in sorted(folder.rglob("*.py")) if not any(inner in path.parents for inner in nested)]
+
+
+def imported(path: Path) -> Iterator[str]:
+    """Full names of the modules that a file imports, anywhere in it; relative imports made absolute."""
+    package = path.relative_to(next(source for source in SOURCES.values() if source in path.parents)).parent.parts
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = [*package[: len(package) - node.level + 1]] if node.level else []
+            base += node.module.split(".") if node.module else []
+            # "from package import part" may name a module as well as something inside one.
+            yield from (".".join([*base, alias.name]) for alias in node.names)
+
+
+def layer_of(module: str) -> str | None:
+    """The layer a module belongs to; None for what the rule is not about."""
+    root, *inner = module.split(".")
+    if root in SDK:
+        return "sdk"
+    if root in OWN_DEFINITIONS:
+        return OWN_DEFINITIONS[root]
+    if root in ROS_LIBRARIES or root.endswith(("_msgs", "_srvs")):
+        return "ros"
+    if root == "nao_sim_bridge":
+        part = inner[0] if inner else ""
+        return {"sim": "sim", "services": "services", "paths": "sim paths"}.get(part, "server")
+    if root == "nao_library_modules":
+        part = inner[0] if inner else ""
+        return part if part in ("driver", "process_modules") else "modules"
+    return root if root in ("naoqi", "qi", "pybullet") else None
+
+
+@pytest.mark.parametrize("layer", LAYERS, ids=lambda layer: layer.name)
+def test_imports_point_one_way(layer):
+    files = files_of(layer)
+    assert files, f"{layer.folder} is empty: the rule checks nothing"
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {module} ({found})"
+        for path in files
+        for module in imported(path)
+        for found in [layer_of(module)]
+        if found not in (None, layer.name) and found not in layer.may_import
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_only_the_ros_side_of_the_simulator_knows_ros():
+    (server,) = [layer for layer in LAYERS if layer.name == "server"]
+    users = {path.name for path in files_of(server) for module in imported(path) if layer_of(module) == "ros"}
+    assert users, "nobody uses ROS: the rule checks nothing"
+    assert users <= ROS_SIDE
+
+
+def test_every_file_belongs_to_a_layer():
+    files = [path for layer in LAYERS for path in files_of(layer)]
+    everything = {path for source in SOURCES.values() for path in source.rglob("*.py")}
+    assert everything == set(files)
+    assert len(files) == len(set(files))
+
+
+@pytest.mark.parametrize(
+    "module, layer",
+    [
+        ("nao_sim_bridge.sim.runner", "sim"),
+        ("nao_sim_bridge.server.SimulatorServer", "server"),
+        ("nao_library_modules.driver", "driver"),
+        ("nao_library_modules.lights.NaoLights", "modules"),
+        ("geometry_msgs.msg.Pose", "ros"),
+        ("nao_library_msgs.msg.LedFunction", "definitions"),
+        ("motion", "sdk"),
+        ("math", None),
+        ("numpy.linalg", None),
+    ],
+)
+def test_modules_are_told_apart(module, layer):
+    assert layer_of(module) == layer
+
+
+def test_relative_imports_are_followed(monkeypatch, tmp_path):
+    monkeypatch.setitem(SOURCES, "nao_library_modules", tmp_path)
+    file = tmp_path / "nao_library_modules" / "driver" / "node.py"
+    file.parent.mkdir(parents=True)
+    file.write_text("from . import led\nfrom ..lights import NaoLights\nif True:\n    import qi.path\n")
+    assert list(imported(file)) == [
+        "nao_library_modules.driver.led",
+        "nao_library_modules.lights.NaoLights",
+        "qi.path",
+    ]
