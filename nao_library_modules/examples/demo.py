@@ -153,6 +153,7 @@ class Demonstration:
     def __init__(self, stack: Stack, output: Path) -> None:
         import actionlib
         import rospy
+
         from nao_library_actions.msg import NaoLedAction
         from nao_library_msgs.srv import TakePicture
         from naoqi import ALProxy
@@ -180,6 +181,7 @@ class Demonstration:
         """Send one goal, and compare what the robot reports with what was asked."""
         import rospy
         from actionlib_msgs.msg import GoalStatus
+
         from nao_library_actions.msg import NaoLedGoal
         from nao_library_msgs.msg import LedFunction
 
@@ -238,9 +240,7 @@ def count_green_pixels(path: Path) -> int:
     return int(((green > 150) & (green > 1.6 * red) & (green > 1.6 * blue)).sum())
 
 
-def wait_until(
-    ready: Callable[[], bool], limit: float, what: str, going_on: Callable[[], bool] = lambda: True
-) -> None:
+def wait_until(ready: Callable[[], bool], limit: float, what: str, going_on: Callable[[], bool] = lambda: True) -> None:
     """Wait until `ready()`, looking ten times a second.
 
     Raises:

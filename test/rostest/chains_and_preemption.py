@@ -80,13 +80,13 @@ class ChainsAndPreemption(unittest.TestCase):
     def test_a_new_goal_in_the_middle_of_a_fade_stops_it_there(self):
         first = send(self.client, NaoLedGoal([fade_out("Brain0", 20.0), intensity("Brain1", 0.4)]))
         self.wait_for_the_middle_of_the_fade("Brain0")
-        second = send(self.client, NaoLedGoal([intensity("Brain2", 0.6)])).wait(10.0)
+        second = send(self.client, NaoLedGoal([intensity("Brain2", 0.5)])).wait(10.0)
         self.assert_preempted(first, [])
         self.assertEqual(second.state, GoalStatus.SUCCEEDED)
         stopped = self.robot.led(led("Brain0"))
         self.robot.advance(1.0)
         found = self.robot.leds(led(f"Brain{i}") for i in range(3))
-        self.assertEqual(found, {led("Brain0"): stopped, led("Brain1"): 1.0, led("Brain2"): 0.6})
+        self.assertEqual(found, {led("Brain0"): stopped, led("Brain1"): 1.0, led("Brain2"): 0.5})
         self.assertGreater(stopped, 0.0)
 
     def test_revert_is_carried_out_when_cancelled(self):
@@ -120,16 +120,15 @@ class ChainsAndPreemption(unittest.TestCase):
     def test_a_chain_is_preempted_between_its_functions(self):
         chain = NaoLedGoal([intensity("Brain0", (k % 10) / 10.0, 0.01) for k in range(2000)])
         for how in ("a cancel", "a new goal"):
-            with self.subTest(how):
-                run = send(self.client, chain).wait_for_function(5)
-                if how == "a cancel":
-                    run.cancel()
-                else:
-                    send(self.client, NaoLedGoal([intensity("Brain1", 0.6)])).wait(10.0)
-                run.wait(5.0)
-                self.assertEqual(run.state, GoalStatus.PREEMPTED)
-                self.assertGreaterEqual(len(run.result.results), 5)
-                self.assertLess(len(run.result.results), 2000)
+            run = send(self.client, chain).wait_for_function(5)
+            if how == "a cancel":
+                run.cancel()
+            else:
+                send(self.client, NaoLedGoal([intensity("Brain1", 0.6)])).wait(10.0)
+            run.wait(5.0)
+            self.assertEqual(run.state, GoalStatus.PREEMPTED, how)
+            self.assertGreaterEqual(len(run.result.results), 5, how)
+            self.assertLess(len(run.result.results), 2000, how)
 
     def test_races_of_goals_and_cancels_leave_the_server_alive(self):
         for k in range(30):

@@ -82,11 +82,10 @@ class LightsFunctions(unittest.TestCase):
             ("fade", {"lights": ["BrainLeds"], "i_values": [0.2]}, {BRAIN0: 0.2}),
             ("fadeRGB", {"lights": ["FaceLeds"], "i_values": [0, 0, 1]}, eyes(0, 0, 1)),
         ):
-            with self.subTest(function):
-                began = rospy.get_time()
-                self.play(function, duration=1.0, **fields)
-                self.assertAlmostEqual(rospy.get_time() - began, 1.0, delta=0.3)
-                self.check(wanted)
+            began = rospy.get_time()
+            self.play(function, duration=1.0, **fields)
+            self.assertAlmostEqual(rospy.get_time() - began, 1.0, delta=0.3, msg=function)
+            self.check(wanted)
 
     def test_fade_list_ends_in_its_last_colour(self):
         self.play("fadeListRGB", lights=["FaceLeds"], str_param="red,green,#0000ff", times=[0.2, 0.4, 0.6])
@@ -103,13 +102,12 @@ class LightsFunctions(unittest.TestCase):
                 lambda colours: colours == {cyan, dark},
             ),
         ):
-            with self.subTest(function):
-                self.robot.reset()
-                began = rospy.get_time()
-                self.play(function, **fields)
-                self.assertAlmostEqual(rospy.get_time() - began, 0.6, delta=0.3)
-                colours = self.eye_colours()
-                self.assertTrue(shown(colours), colours)
+            self.robot.reset()
+            began = rospy.get_time()
+            self.play(function, **fields)
+            self.assertAlmostEqual(rospy.get_time() - began, 0.6, delta=0.3, msg=function)
+            colours = self.eye_colours()
+            self.assertTrue(shown(colours), (function, colours))
 
     def test_animation_with_revert_leaves_no_trace(self):
         self.play("rasta", duration=0.5, revert=True)

@@ -68,25 +68,23 @@ class LostRobot(unittest.TestCase):
         self.wait_until_it_works()
         self.wait_for_level(DiagnosticStatus.OK)
 
-        for stop in (signal.SIGKILL, signal.SIGSTOP):
-            dead = stop == signal.SIGKILL
-            with self.subTest(stop):
-                run = self.play(HALF, LONG)
-                run.wait_for_function(1)
-                began = time.monotonic()
-                self.simulator.send_signal(stop)
-                run.wait(10.0)
-                self.assertLess(time.monotonic() - began, 2.5)
-                self.assertEqual(run.state, GoalStatus.ABORTED)
-                for words in ("function 2", f"127.0.0.1:{PORT}", "connection broke" if dead else "no answer"):
-                    self.assertIn(words, run.text)
-                self.assertEqual([done.function for done in run.result.results], ["setIntensity"])
-                if not dead:
-                    self.wait_for_level(DiagnosticStatus.ERROR)
-                self.kill()
-                self.start()
-                self.wait_until_it_works()
-                self.wait_for_level(DiagnosticStatus.OK)
+        for stop, reason in ((signal.SIGKILL, "closed by the robot"), (signal.SIGSTOP, "heartbeat")):
+            run = self.play(HALF, LONG)
+            run.wait_for_function(1)
+            began = time.monotonic()
+            self.simulator.send_signal(stop)
+            run.wait(10.0)
+            self.assertLess(time.monotonic() - began, 2.5, stop)
+            self.assertEqual(run.state, GoalStatus.ABORTED, stop)
+            for words in ("function 2 (fade)", f"127.0.0.1:{PORT}", "connection broke", reason):
+                self.assertIn(words, run.text, stop)
+            self.assertEqual([done.function for done in run.result.results], ["setIntensity"])
+            if stop == signal.SIGSTOP:  # the dead one is started again at once
+                self.wait_for_level(DiagnosticStatus.ERROR)
+            self.kill()
+            self.start()
+            self.wait_until_it_works()
+            self.wait_for_level(DiagnosticStatus.OK)
         self.assertEqual(rosnode.get_api_uri(rosgraph.Master("/lost_robot_test"), "/nao_lights"), node)
 
 

@@ -58,12 +58,11 @@ class Startup(unittest.TestCase):
     def test_every_program_explains_itself(self):
         for package in ("nao_sim_bridge", "nao_library_modules"):
             for program in sorted((Path(rospkg.RosPack().get_path(package)) / "nodes").iterdir()):
-                with self.subTest(program.name):
-                    done = subprocess.run(
-                        ["rosrun", package, program.name, "--help"], stdout=subprocess.PIPE, text=True, timeout=30
-                    )
-                    self.assertEqual(done.returncode, 0)
-                    self.assertIn("usage", done.stdout)
+                done = subprocess.run(
+                    ["rosrun", package, program.name, "--help"], stdout=subprocess.PIPE, text=True, timeout=30
+                )
+                self.assertEqual(done.returncode, 0, program)
+                self.assertIn("usage", done.stdout, program)
 
     def test_every_launch_argument_is_documented(self):
         folder = Path(rospkg.RosPack().get_path("nao_library")) / "launch"
@@ -71,8 +70,7 @@ class Startup(unittest.TestCase):
         self.assertTrue(files)
         for file in files:
             for argument in ElementTree.parse(file).getroot().findall("arg"):
-                with self.subTest(file.name, argument=argument.get("name")):
-                    self.assertTrue(argument.get("doc"))
+                self.assertTrue(argument.get("doc"), (file.name, argument.get("name")))
 
 
 if __name__ == "__main__":

@@ -117,9 +117,7 @@ class Components:
         return [getattr(self, name) for name in self._names]
 
     def _same_kind(self, other: object) -> bool:
-        return isinstance(other, type(self)) or (
-            isinstance(other, Components) and isinstance(self, type(other))
-        )
+        return isinstance(other, type(self)) or (isinstance(other, Components) and isinstance(self, type(other)))
 
     def __setattr__(self, name: str, value: object) -> None:
         """Set a component, which must be a number, or any other attribute."""

@@ -88,15 +88,11 @@ def transformFromRotVec(*arguments: int | float | Position3D) -> Transform:
             "transformFromRotVec takes a Position3D, or AXIS_MASK_X (1), AXIS_MASK_Y (2) or AXIS_MASK_Z (4) "
             f"and an angle, or all three, got {arguments!r}"
         )
-    return Transform._from_parts(
-        _ABOUT[turn[0]](as_number(turn[1], "transformFromRotVec angle")), point._values()
-    )
+    return Transform._from_parts(_ABOUT[turn[0]](as_number(turn[1], "transformFromRotVec angle")), point._values())
 
 
 def transformFromRotVecInPlace(*arguments: int | float | Position3D | Transform) -> None:
     """Write to the last argument what `transformFromRotVec` makes of the ones before it."""
     if not arguments:
-        raise AlmathError(
-            "transformFromRotVecInPlace takes a Transform to overwrite as its last argument, got nothing"
-        )
+        raise AlmathError("transformFromRotVecInPlace takes a Transform to overwrite as its last argument, got nothing")
     fill(arguments[-1], transformFromRotVec(*arguments[:-1]), "transformFromRotVecInPlace")

@@ -180,8 +180,7 @@ def quaternionFromRotation3D(angles: Rotation3D, out: Quaternion | None = None) 
     """Quaternion of Rz(wz) Ry(wy) Rx(wx); written to `out` if that is given."""
     require(angles, Rotation3D, "quaternionFromRotation3D")
     about_x, about_y, about_z = (
-        Quaternion.fromAngleAndAxisRotation(angle, *axis)
-        for angle, axis in zip(angles._values(), _matrix.IDENTITY)
+        Quaternion.fromAngleAndAxisRotation(angle, *axis) for angle, axis in zip(angles._values(), _matrix.IDENTITY)
     )
     return answer(about_z * about_y * about_x, out, "quaternionFromRotation3D")
 
@@ -192,9 +191,7 @@ def quaternionFromTransform(transform: Transform) -> Quaternion:
     return Quaternion(*_matrix.to_quaternion(transform._rows()))
 
 
-def quaternionPosition3DFromPosition6D(
-    position: Position6D, out_quaternion: Quaternion, out_point: Position3D
-) -> None:
+def quaternionPosition3DFromPosition6D(position: Position6D, out_quaternion: Quaternion, out_point: Position3D) -> None:
     """Split a position into a quaternion and a point, written to the last two arguments."""
     point = position3DFromPosition6D(position)
     fill(out_point, point, "quaternionPosition3DFromPosition6D")

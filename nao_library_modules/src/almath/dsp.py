@@ -15,9 +15,7 @@ class DigitalFilter:
         """Pass the input on."""
         self.configureFilter([1.0], [], 1.0)
 
-    def configureFilter(
-        self, input_weights: list[float], output_weights: list[float], dc_gain: float
-    ) -> None:
+    def configureFilter(self, input_weights: list[float], output_weights: list[float], dc_gain: float) -> None:
         """Set the weights and forget what was filtered before.
 
         Args:

@@ -18,9 +18,7 @@ from almath.velocities import Velocity6D
 Turnable = Union[Position3D, Position6D, Velocity6D]
 
 
-def _turn(
-    kind: type, transform: Transform, vector: Turnable, out: Turnable, where: str, back: bool = False
-) -> None:
+def _turn(kind: type, transform: Transform, vector: Turnable, out: Turnable, where: str, back: bool = False) -> None:
     """Turn each triple of numbers of a vector, forth or back, and write the result to `out`."""
     require(transform, Transform, where)
     require(vector, kind, where)

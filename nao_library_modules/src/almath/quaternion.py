@@ -62,9 +62,7 @@ class Quaternion(Scalable):
         return Quaternion(math.cos(angle / 2.0), axis.x, axis.y, axis.z)
 
 
-def quaternionFromAngleAndAxisRotation(
-    angle: float, axis_x: float, axis_y: float, axis_z: float
-) -> Quaternion:
+def quaternionFromAngleAndAxisRotation(angle: float, axis_x: float, axis_y: float, axis_z: float) -> Quaternion:
     """Rotation by `angle` rad about an axis of any length but zero."""
     return Quaternion.fromAngleAndAxisRotation(angle, axis_x, axis_y, axis_z)
 

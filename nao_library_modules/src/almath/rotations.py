@@ -30,9 +30,7 @@ class Rotation(Components):
         if not arguments:
             return cls._defaults
         if len(arguments) != 1:
-            raise AlmathError(
-                f"Rotation takes one sequence of 9, 12 or 16 numbers, got {len(arguments)} arguments"
-            )
+            raise AlmathError(f"Rotation takes one sequence of 9, 12 or 16 numbers, got {len(arguments)} arguments")
         if isinstance(arguments[0], Rotation):
             return arguments[0]._values()
         numbers = as_numbers(arguments[0], "Rotation")
@@ -199,9 +197,7 @@ def rotationFromAngleDirection(angle: float, *axis: float | Position3D) -> Rotat
     if len(axis) == 1 and isinstance(axis[0], Position3D):
         axis = tuple(axis[0]._values())
     if len(axis) != 3:
-        raise AlmathError(
-            f"rotationFromAngleDirection takes an angle and a Position3D or three numbers, got {axis!r}"
-        )
+        raise AlmathError(f"rotationFromAngleDirection takes an angle and a Position3D or three numbers, got {axis!r}")
     return Rotation.fromAngleDirection(angle, *axis)
 
 
@@ -238,13 +234,9 @@ def rotationFromAxesXYZ(x_axis: Position3D, y_axis: Position3D, z_axis: Position
     """
     for axis in (x_axis, y_axis, z_axis):
         require(axis, Position3D, "rotationFromAxesXYZ")
-    rotation = Rotation._from_rows(
-        _matrix.transposed(tuple(tuple(a._values()) for a in (x_axis, y_axis, z_axis)))
-    )
+    rotation = Rotation._from_rows(_matrix.transposed(tuple(tuple(a._values()) for a in (x_axis, y_axis, z_axis))))
     if not rotation.isRotation(0.001):
-        raise AlmathError(
-            f"{x_axis!r}, {y_axis!r}, {z_axis!r} are not three right-handed unit vectors at right angles"
-        )
+        raise AlmathError(f"{x_axis!r}, {y_axis!r}, {z_axis!r} are not three right-handed unit vectors at right angles")
     return rotation
 
 

@@ -32,9 +32,7 @@ def modulo2PIInPlace(angles: list[float]) -> None:
         AlmathError: If it is a number: Python numbers cannot change, use `modulo2PI`.
     """
     if not isinstance(angles, MutableSequence):
-        raise AlmathError(
-            f"modulo2PIInPlace takes a list of angles, got {angles!r}; modulo2PI returns a wrapped angle"
-        )
+        raise AlmathError(f"modulo2PIInPlace takes a list of angles, got {angles!r}; modulo2PI returns a wrapped angle")
     angles[:] = [modulo2PI(angle) for angle in as_numbers(angles, "modulo2PIInPlace")]
 
 
@@ -64,9 +62,7 @@ def weightedMeanAngle(angles: list[float], weights: list[float]) -> float:
     angles = as_numbers(angles, "weightedMeanAngle angles")
     weights = as_numbers(weights, "weightedMeanAngle weights")
     if len(angles) != len(weights):
-        raise AlmathError(
-            f"weightedMeanAngle takes a weight for each angle, got {len(weights)} for {len(angles)}"
-        )
+        raise AlmathError(f"weightedMeanAngle takes a weight for each angle, got {len(weights)} for {len(angles)}")
     if not all(weight > 0.0 for weight in weights):
         raise AlmathError(f"weightedMeanAngle takes weights above zero, got {weights}")
     x = sum(weight * math.cos(angle) for angle, weight in zip(angles, weights))

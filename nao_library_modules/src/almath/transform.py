@@ -33,9 +33,7 @@ class Transform(Components):
             position = [as_number(value, f"Transform {name}") for name, value in zip("xyz", arguments)]
             return cls._from_parts(_matrix.IDENTITY, position)._values()
         if len(arguments) != 1 or isinstance(arguments[0], Real):
-            raise AlmathError(
-                f"Transform takes 3 numbers or a sequence of 12 or 16, got {len(arguments)} arguments"
-            )
+            raise AlmathError(f"Transform takes 3 numbers or a sequence of 12 or 16, got {len(arguments)} arguments")
         if isinstance(arguments[0], Transform):
             return arguments[0]._values()
         numbers = as_numbers(arguments[0], "Transform")
@@ -146,9 +144,7 @@ class Transform(Components):
         return Transform._from_parts(_matrix.from_angles(wx, wy, wz), (0.0, 0.0, 0.0))
 
     @staticmethod
-    def fromPosition(
-        x: float, y: float, z: float, wx: float = 0.0, wy: float = 0.0, wz: float = 0.0
-    ) -> Transform:
+    def fromPosition(x: float, y: float, z: float, wx: float = 0.0, wy: float = 0.0, wz: float = 0.0) -> Transform:
         """Translation in m and, if given, rotation Rz(wz) Ry(wy) Rx(wx) in rad."""
         return Transform._from_parts(_matrix.from_angles(wx, wy, wz), (x, y, z))
 
@@ -185,9 +181,7 @@ def transformFrom3DRotation(wx: float, wy: float, wz: float) -> Transform:
     return Transform.from3DRotation(wx, wy, wz)
 
 
-def transformFromPosition(
-    x: float, y: float, z: float, wx: float = 0.0, wy: float = 0.0, wz: float = 0.0
-) -> Transform:
+def transformFromPosition(x: float, y: float, z: float, wx: float = 0.0, wy: float = 0.0, wz: float = 0.0) -> Transform:
     """Translation in m and, if given, rotation Rz(wz) Ry(wy) Rx(wx) in rad."""
     return Transform.fromPosition(x, y, z, wx, wy, wz)
 

@@ -24,9 +24,7 @@ class _TypedList(list):
     def __init__(self, *arguments: object) -> None:
         """Read a sequence, or a size and an item; see the class."""
         if len(arguments) > 2:
-            raise AlmathError(
-                f"{type(self).__name__} takes a sequence, or a size and an item, got {arguments!r}"
-            )
+            raise AlmathError(f"{type(self).__name__} takes a sequence, or a size and an item, got {arguments!r}")
         if arguments and isinstance(arguments[0], int):
             super().__init__()
             self.resize(*arguments)

@@ -63,6 +63,7 @@ class ALBroker:
         self._listen_port = listen_port
         self._lock = threading.RLock()  # guards session and modules, and keeps two restorations apart
         self._live: Optional[Live] = None
+        self._generation = 0
         self._modules: Dict[str, Any] = {}
         self._service_ids: Dict[str, int] = {}
         self._down = threading.Event()
@@ -163,9 +164,10 @@ class ALBroker:
     # Called with the lock held.
 
     def _open(self, port: int) -> None:
-        live = Live(on_break=lambda: self._worker.submit(self._restore))
+        live = Live(on_break=lambda: self._worker.submit(self._follow))
         host = self._host_to_listen_on()
         robot = self.connection
+        generation = robot.generation
         try:
             live.session.listen(f"tcp://{host}:{port}")
             connect_session(live.session, robot.host, robot.port, robot.timing.connect_limit)
@@ -175,7 +177,7 @@ class ALBroker:
         except RuntimeError as error:
             live.close()
             raise BrokerError(self._name, f"cannot listen on {host}:{port} ({str(error).strip()})") from error
-        self._live = live
+        self._live, self._generation = live, generation
 
     def _withdraw(self, name: str) -> None:
         self._modules.pop(name, None)
@@ -240,31 +242,42 @@ class ALBroker:
     # Called by the connection and by libqi; the work is done in the thread of the broker.
 
     def _on_state(self, state: State) -> None:
-        if state is State.CONNECTED:
-            self._worker.submit(self._restore)
-        elif state is State.LOST:
-            self._worker.submit(self._close_session)
-        elif state is State.CLOSED:
+        if state is State.CLOSED:
             self.shutdown()
+        else:
+            self._worker.submit(self._follow)
 
-    def _restore(self) -> None:
-        """If the session is gone, open it again, register the modules and subscribe them to their events."""
+    def _follow(self) -> None:
+        """Bring the own session to where the connection stands now."""
+        if self.connection.state is not State.CONNECTED:
+            self._close_session()
+        elif self._restored():
+            self._register_again()
+
+    def _restored(self) -> bool:
+        """Open the session again if it is gone, however often it takes; whether that was so and has worked."""
         delay = 0.2
         while not self._down.is_set() and self.connection.state is State.CONNECTED:
             with self._lock:
-                if self._live is not None and self._live.session.isConnected():
-                    return
+                if self._is_healthy():
+                    return False
                 self._close_session()
                 try:
                     self._reopen()
-                    break
+                    return True
                 except NaoError as error:
-                    logger.error("broker %s cannot serve again yet: %s", self._name, error)
+                    # The first time, the connection is probably breaking too, and will say so itself.
+                    level = logging.INFO if delay < 0.3 else logging.ERROR
+                    logger.log(level, "broker %s cannot serve again yet: %s", self._name, error)
             self._down.wait(delay)
             delay = min(2.0 * delay, 2.0)
-        else:
-            return
-        self._register_again()
+        return False
+
+    def _is_healthy(self) -> bool:
+        """Whether the session stands, and is not left over from before a loss: then it may only seem to."""
+        if self._live is None or self._generation != self.connection.generation:
+            return False
+        return self._live.session.isConnected()
 
     def _reopen(self) -> None:
         try:

@@ -184,7 +184,11 @@ class SimulatedRobot:
     # --- world and time -------------------------------------------------------------------------------------------
 
     def reset(self) -> None:
-        """Put robot and world to where they started; simulated time goes on."""
+        """Put robot and world to where they started; simulated time goes on.
+
+        Calls that run on the robot end, as after NAOqi's `killAll`. Goals go on with their next function: end them
+        before.
+        """
         self._reset()
 
     def advance(self, seconds: float) -> float:

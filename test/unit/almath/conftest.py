@@ -15,10 +15,7 @@ def rng():
 @pytest.fixture
 def random_transforms(rng):
     """A hundred transforms with any rotation, up to 2 m away."""
-    return [
-        almath.Transform.fromPosition(*rng.uniform(-2.0, 2.0, 3), *rng.uniform(-3.1, 3.1, 3))
-        for _ in range(100)
-    ]
+    return [almath.Transform.fromPosition(*rng.uniform(-2.0, 2.0, 3), *rng.uniform(-3.1, 3.1, 3)) for _ in range(100)]
 
 
 @pytest.fixture

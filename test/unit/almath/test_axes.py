@@ -54,9 +54,7 @@ def test_projection_needs_an_axis_and_something_to_project():
         almath.axisRotationProjection(almath.Position3D(1, 0, 0), almath.Rotation3D())
 
 
-@pytest.mark.parametrize(
-    "axis", [(2, 0, 0), (0, -3, 0), (0, 0, 0.5), (0, 0, -1), (1, 2, -3), (1e-6, 1.0, 1.0)]
-)
+@pytest.mark.parametrize("axis", [(2, 0, 0), (0, -3, 0), (0, 0, 0.5), (0, 0, -1), (1, 2, -3), (1e-6, 1.0, 1.0)])
 def test_orthogonal_space_is_a_rotation_with_the_axis_in_its_third_column(axis):
     frame = almath.orthogonalSpace(almath.Position3D(axis))
     assert frame.isTransform(1e-9)

@@ -163,9 +163,7 @@ def test_a_number_of_numpy_scales_from_the_left():
     assert numpy.float64(2.0) * almath.Pose2D(1.0, 2.0, 3.0) == almath.Pose2D(2.0, 4.0, 6.0)
 
 
-@pytest.mark.parametrize(
-    "twin_of", [copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))]
-)
+@pytest.mark.parametrize("twin_of", [copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))])
 def test_values_can_be_copied_and_pickled(twin_of):
     transform = almath.Transform.fromPosition(1.0, 2.0, 3.0, 0.1, 0.2, 0.3)
     twin = twin_of(transform)

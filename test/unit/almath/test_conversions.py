@@ -25,9 +25,7 @@ def test_position_and_transform_are_inverse(random_positions, random_transforms)
         transform = almath.transformFromPosition6D(position)
         assert almath.position6DFromTransform(transform).isNear(position, 1e-9)
     for transform in random_transforms:
-        assert almath.transformFromPosition6D(almath.position6DFromTransform(transform)).isNear(
-            transform, 1e-9
-        )
+        assert almath.transformFromPosition6D(almath.position6DFromTransform(transform)).isNear(transform, 1e-9)
 
 
 def test_parts_of_a_transform(random_positions):
@@ -60,9 +58,7 @@ def test_quaternion_and_transform_are_inverse(random_transforms, random_quaterni
         assert again.isNear(quaternion, 1e-9)
 
 
-@pytest.mark.parametrize(
-    "about", [almath.transformFromRotX, almath.transformFromRotY, almath.transformFromRotZ]
-)
+@pytest.mark.parametrize("about", [almath.transformFromRotX, almath.transformFromRotY, almath.transformFromRotZ])
 def test_quaternion_of_half_a_turn_is_its_axis(about):
     w, *axis = almath.quaternionFromTransform(about(math.pi)).toVector()
     assert w == pytest.approx(0.0, abs=1e-12)
@@ -126,9 +122,7 @@ def test_rotation_and_point_join_to_a_transform():
     assert almath.transformFromRotationPosition3D(rotation, point) == expected
     assert almath.transformFromRotationPosition3D(rotation, 0.1, -0.2, 0.3) == expected
     assert almath.transformFromPosition3D(point) * almath.transformFromRotation(rotation) == expected
-    assert almath.transformFromRotation3D(almath.Rotation3D(0.4, -0.5, 0.6)) == almath.transformFromRotation(
-        rotation
-    )
+    assert almath.transformFromRotation3D(almath.Rotation3D(0.4, -0.5, 0.6)) == almath.transformFromRotation(rotation)
 
 
 IN_PLACE = [
@@ -150,9 +144,7 @@ def test_in_place_forms_write_what_the_others_return(function, value, out):
     in_place = getattr(almath, function.__name__ + "InPlace")
     assert in_place(value, out) is None
     assert out == function(value)
-    with pytest.raises(
-        almath.AlmathError, match=f"{function.__name__}InPlace takes a {type(out).__name__}, got None"
-    ):
+    with pytest.raises(almath.AlmathError, match=f"{function.__name__}InPlace takes a {type(out).__name__}, got None"):
         in_place(value, None)
 
 
@@ -170,13 +162,9 @@ def test_position_splits_into_quaternion_and_point():
     quaternion, point = almath.Quaternion(), almath.Position3D()
     almath.quaternionPosition3DFromPosition6D(POSITION, quaternion, point)
     displacement = almath.Displacement(point, quaternion)
-    assert almath.transformFromDisplacement(displacement).isNear(
-        almath.transformFromPosition6D(POSITION), 1e-12
-    )
+    assert almath.transformFromDisplacement(displacement).isNear(almath.transformFromPosition6D(POSITION), 1e-12)
 
 
 def test_arguments_of_another_class_are_named():
-    with pytest.raises(
-        almath.AlmathError, match=r"transformFromPosition6D takes a Position6D, got Pose2D\(x=0"
-    ):
+    with pytest.raises(almath.AlmathError, match=r"transformFromPosition6D takes a Position6D, got Pose2D\(x=0"):
         almath.transformFromPosition6D(almath.Pose2D())

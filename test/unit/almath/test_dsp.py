@@ -24,11 +24,7 @@ def test_filter_is_the_difference_equation(rng):
     outputs = [filtered.processFilter(sample) for sample in samples]
     assert outputs[:2] == pytest.approx(samples[:2])
     for now in range(2, 30):
-        expected = (
-            (0.2 * samples[now - 1] + 0.3 * samples[now]) / 2.0
-            + 0.1 * outputs[now - 2]
-            + 0.5 * outputs[now - 1]
-        )
+        expected = (0.2 * samples[now - 1] + 0.3 * samples[now]) / 2.0 + 0.1 * outputs[now - 2] + 0.5 * outputs[now - 1]
         assert outputs[now] == pytest.approx(expected)
 
 

@@ -40,9 +40,7 @@ def test_driving_arc_straight_and_arc_leads_to_the_target(rng):
         assert abs(start.theta) <= 2.0 * math.pi
         assert driven(almath.Pose2D(), start.theta, radius).isNear(start, 1e-9)
         straight = almath.Pose2D(start.distance(end), 0.0, 0.0)
-        assert math.remainder((start * straight).theta - end.theta, 2.0 * math.pi) == pytest.approx(
-            0.0, abs=1e-9
-        )
+        assert math.remainder((start * straight).theta - end.theta, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
         assert (start * straight).distance(end) < 1e-9
         assert driven(end, target.theta - end.theta, radius).isNear(target, 1e-9)
 

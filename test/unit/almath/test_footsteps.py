@@ -7,12 +7,8 @@ import pytest
 import almath
 
 # Corners of the feet of a NAO, in m: front left, front right, rear right, rear left.
-LEFT_FOOT = [
-    almath.Position2D(*c) for c in ((0.080, 0.050), (0.080, -0.038), (-0.047, -0.038), (-0.047, 0.050))
-]
-RIGHT_FOOT = [
-    almath.Position2D(*c) for c in ((0.080, 0.038), (0.080, -0.050), (-0.047, -0.050), (-0.047, 0.038))
-]
+LEFT_FOOT = [almath.Position2D(*c) for c in ((0.080, 0.050), (0.080, -0.038), (-0.047, -0.038), (-0.047, 0.050))]
+RIGHT_FOOT = [almath.Position2D(*c) for c in ((0.080, 0.038), (0.080, -0.050), (-0.047, -0.050), (-0.047, 0.038))]
 SQUARE = [almath.Position2D(*c) for c in ((1, 1), (1, -1), (-1, -1), (-1, 1))]
 
 
@@ -98,9 +94,7 @@ def test_corners_may_be_poses_and_any_sequence():
     almath.avoidFootCollision(almath.vectorPose2D(left), tuple(right), False, step)
     almath.avoidFootCollision(LEFT_FOOT, RIGHT_FOOT, False, same)
     assert step == same
-    with pytest.raises(
-        almath.AlmathError, match=r"avoidFootCollision takes a list of Position2D, got \(0, 1\) in it"
-    ):
+    with pytest.raises(almath.AlmathError, match=r"avoidFootCollision takes a list of Position2D, got \(0, 1\) in it"):
         almath.avoidFootCollision([(0, 1)], right, False, step)
 
 

@@ -53,7 +53,5 @@ def test_pose_is_turned_about_the_origin_and_keeps_its_heading():
 
 
 def test_result_must_be_of_the_class_of_the_vector():
-    with pytest.raises(
-        almath.AlmathError, match="changeReferencePosition3D takes a Position3D, got Position6D"
-    ):
+    with pytest.raises(almath.AlmathError, match="changeReferencePosition3D takes a Position3D, got Position6D"):
         almath.changeReferencePosition3D(almath.Transform(), almath.Position3D(), almath.Position6D())

@@ -13,9 +13,7 @@ def random_pose(rng):
 
 def test_a_pose_places_what_lies_ahead_along_its_heading():
     facing_left = almath.Pose2D(1.0, 2.0, math.pi / 2)
-    assert (facing_left * almath.Pose2D(3.0, 0.0, 0.5)).isNear(
-        almath.Pose2D(1.0, 5.0, math.pi / 2 + 0.5), 1e-12
-    )
+    assert (facing_left * almath.Pose2D(3.0, 0.0, 0.5)).isNear(almath.Pose2D(1.0, 5.0, math.pi / 2 + 0.5), 1e-12)
     assert (facing_left * almath.Position2D(0.0, 1.0)).isNear(almath.Position2D(0.0, 2.0), 1e-12)
 
 

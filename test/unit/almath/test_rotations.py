@@ -82,9 +82,7 @@ def test_rotation_about_an_axis_leaves_the_axis_and_turns_by_the_angle(rng):
         assert almath.rotationFromAngleDirection(angle, axis.x, axis.y, axis.z) == rotation
 
 
-@pytest.mark.parametrize(
-    "axis, about", [((1, 0, 0), almath.Rotation.fromRotX), ((0, 1, 0), almath.Rotation.fromRotY)]
-)
+@pytest.mark.parametrize("axis, about", [((1, 0, 0), almath.Rotation.fromRotX), ((0, 1, 0), almath.Rotation.fromRotY)])
 def test_rotation_about_a_coordinate_axis_has_its_sign(axis, about):
     assert almath.Rotation.fromAngleDirection(0.7, *axis).isNear(about(0.7), 1e-12)
 

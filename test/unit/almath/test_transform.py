@@ -17,9 +17,7 @@ def test_made_from_nothing_it_is_the_identity():
 
 
 def test_three_numbers_are_a_translation():
-    assert almath.Transform(1.0, 2.0, 3.0) * almath.Position3D(0.5, 0.5, 0.5) == almath.Position3D(
-        1.5, 2.5, 3.5
-    )
+    assert almath.Transform(1.0, 2.0, 3.0) * almath.Position3D(0.5, 0.5, 0.5) == almath.Position3D(1.5, 2.5, 3.5)
 
 
 def test_product_and_inverse_agree_with_numpy(random_transforms):
@@ -62,9 +60,7 @@ def test_all_spellings_of_the_inverse_agree(random_transforms):
     out, turned = almath.Transform(), almath.Transform(transform)
     assert almath.transformInverse(transform, out) is None
     almath.transformInvertInPlace(turned)
-    assert (
-        transform.inverse() == almath.transformInverse(transform) == almath.pinv(transform) == out == turned
-    )
+    assert transform.inverse() == almath.transformInverse(transform) == almath.pinv(transform) == out == turned
 
 
 def test_in_place_products_from_either_side(random_transforms):

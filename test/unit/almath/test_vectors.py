@@ -81,7 +81,4 @@ def test_slices_are_of_the_same_kind_and_can_be_replaced():
 
 def test_they_print_their_items():
     assert repr(almath.vectorFloat([1, 0.25])) == "vectorFloat([1, 0.25])"
-    assert (
-        repr(almath.vectorPosition2D([almath.Position2D(0.1, 2)]))
-        == "vectorPosition2D([Position2D(x=0.1, y=2)])"
-    )
+    assert repr(almath.vectorPosition2D([almath.Position2D(0.1, 2)])) == "vectorPosition2D([Position2D(x=0.1, y=2)])"

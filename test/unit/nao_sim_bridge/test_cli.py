@@ -20,9 +20,8 @@ def test_the_defaults_are_a_robot_on_the_loopback_in_real_time():
 
 
 def test_every_option_reaches_the_server():
-    chosen = options(
-        *"--port 0 --listen 0.0.0.0 --speed 2.5 --gui --world my.yaml --seed 7 --robot V5 --posture Stand --paused".split()
-    )
+    network, scene = "--port 0 --listen 0.0.0.0", "--world my.yaml --seed 7 --robot V5 --posture Stand"
+    chosen = options(*f"{network} {scene} --speed 2.5 --gui --paused".split())
     assert chosen == ServerOptions(Scene("my.yaml", "V5", "Stand", 7), "0.0.0.0", 0, 2.5, True, True)
 
 

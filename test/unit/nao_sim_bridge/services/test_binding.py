@@ -76,7 +76,7 @@ def proxy(serve, motion):
 
 
 def flat(values):
-    """The single values of nested lists; floats travel as single precision and want pytest.approx, which has no nests."""
+    """The single values of nested lists: floats travel as single precision, and pytest.approx takes no nests."""
     return [leaf for value in values for leaf in (flat(value) if isinstance(value, (list, tuple)) else [value])]
 
 

@@ -6,7 +6,6 @@ from bisect import bisect_right
 from dataclasses import dataclass, field
 from typing import Sequence
 
-
 # Sums of ticks are not exact: a curve whose end is this close, in s, is at its end and not a hair before.
 ROUNDING = 1e-9
 
