@@ -68,7 +68,7 @@ class LostRobot(unittest.TestCase):
         self.wait_until_it_works()
         self.wait_for_level(DiagnosticStatus.OK)
 
-        for stop, reason in ((signal.SIGKILL, "closed by the robot"), (signal.SIGSTOP, "heartbeat")):
+        for stop, reason in ((signal.SIGKILL, "closed"), (signal.SIGSTOP, "heartbeat")):
             run = self.play(HALF, LONG)
             run.wait_for_function(1)
             began = time.monotonic()

@@ -4,22 +4,15 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List
 
-from .errors import BrokerError, NaoError, RobotUnreachable
+from .errors import BrokerError, NaoError
 from .registry import CONNECT_TIMEOUT, connection
-from .remote import ANSWERED_BY_ALL, RemoteModule
-from .session import Live, answered, connect_session
+from .serving_session import STEP_LIMIT, ServingSession
 from .state import State
 from .worker import Worker
 
 logger = logging.getLogger("naoqi")
-
-ANY_ADDRESS = ("", "0.0.0.0")
-STEP_LIMIT = 5.0
-"""Time limit of each step of registering a module, in s."""
-NAME_IN_USE = "already registered"
 
 _open_brokers: List[ALBroker] = []
 _open_brokers_lock = threading.Lock()
@@ -59,22 +52,16 @@ class ALBroker:
             BrokerError: If the own port is not free.
         """
         self._name = name
-        self._listen_ip = listen_ip
         self._listen_port = listen_port
         self._lock = threading.RLock()  # guards session and modules, and keeps two restorations apart
-        self._live: Optional[Live] = None
-        self._generation = 0
         self._modules: Dict[str, Any] = {}
-        self._service_ids: Dict[str, int] = {}
         self._down = threading.Event()
         self._worker = Worker(f"naoqi broker {name}")
         self.connection = connection(robot_ip, robot_port, connect_timeout=connect_timeout)
-        try:
-            with self._lock:
-                self._open(self._listen_port)
-        except NaoError:
-            self._close_session()
-            raise
+        self._session = ServingSession(
+            name, self.connection, listen_ip, self._down, lambda: self._worker.submit(self._follow)
+        )
+        self._session.open(listen_port)
         self.connection.add_listener(self._on_state)
         with _open_brokers_lock:
             _open_brokers.append(self)
@@ -89,13 +76,12 @@ class ALBroker:
 
     def getIP(self) -> str:
         """Address on which it listens."""
-        return self._host_to_listen_on()
+        return self._session.host
 
     def getPort(self) -> int:
         """TCP port on which it listens; 0 while it does not."""
         with self._lock:
-            endpoints = self._live.session.endpoints() if self._live is not None else []
-        return int(endpoints[0].rsplit(":", 1)[1]) if endpoints else 0
+            return self._session.port
 
     def isModulePresent(self, name: str) -> bool:
         """Whether the robot, or this broker, has a module of that name."""
@@ -109,8 +95,8 @@ class ALBroker:
                 _open_brokers.remove(self)
         self.connection.remove_listener(self._on_state)
         self._worker.close()
-        self._close_session()
         with self._lock:
+            self._session.close()
             names = list(self._modules)
             self._modules.clear()
         for each in names:
@@ -132,13 +118,13 @@ class ALBroker:
                 raise BrokerError(self._name, "it has been shut down")
             if name in self._modules:
                 raise BrokerError(self._name, f"it serves a module {name!r} already")
-            if self._live is None:
+            if not self._session.is_open:
                 raise self.connection.unreachable()
             self.connection.presence.lend(served)
             try:
-                self._register(name, served, patience=0.0)
+                self._session.register(name, served, patience=0.0)
             except NaoError:
-                self._withdraw(name)
+                self._session.unregister(name)
                 raise
             self._modules[name] = served
             self.connection.subscriptions.own(name)
@@ -149,95 +135,18 @@ class ALBroker:
         Raises:
             NaoError: As `serve` does; then the module is served no more.
         """
-        subscriptions = self.connection.subscriptions
         with self._lock:
-            self._withdraw(name)
+            self._modules.pop(name, None)
+            self._session.unregister(name)
             self.serve(name, served)
-        subscriptions.renew([name])
+        self.connection.subscriptions.renew([name])
 
     def withdraw(self, name: str) -> None:
         """Take a module back; one that is not served is no error."""
         with self._lock:
-            self._withdraw(name)
+            self._modules.pop(name, None)
+            self._session.unregister(name)
         self.connection.subscriptions.forget_module(name)
-
-    # Called with the lock held.
-
-    def _open(self, port: int) -> None:
-        live = Live(on_break=lambda: self._worker.submit(self._follow))
-        host = self._host_to_listen_on()
-        robot = self.connection
-        generation = robot.generation
-        try:
-            live.session.listen(f"tcp://{host}:{port}")
-            connect_session(live.session, robot.host, robot.port, robot.timing.connect_limit)
-        except RobotUnreachable:
-            live.close()
-            raise
-        except RuntimeError as error:
-            live.close()
-            raise BrokerError(self._name, f"cannot listen on {host}:{port} ({str(error).strip()})") from error
-        self._live, self._generation = live, generation
-
-    def _withdraw(self, name: str) -> None:
-        self._modules.pop(name, None)
-        service_id = self._service_ids.pop(name, None)
-        if service_id is not None and self._live is not None:
-            answered(self._live.session.unregisterService(service_id, _async=True), STEP_LIMIT)
-
-    def _register(self, name: str, served: Any, patience: float) -> None:
-        """Register one module; a name in use is tried again until the patience (s) is over.
-
-        A robot that was silent for a while may learn late that our former session is gone.
-        """
-        end, delay = time.monotonic() + patience, 0.05
-        while True:
-            future = self._live.session.registerService(name, served, _async=True)
-            if not answered(future, STEP_LIMIT):
-                reason = f"no answer to the registration of {name}"
-                raise RobotUnreachable(self.connection.host, self.connection.port, reason)
-            if not future.hasError():
-                self._service_ids[name] = future.value()
-                self._wait_until_served(name)
-                return
-            text = future.error().strip()
-            if NAME_IN_USE not in text:
-                raise BrokerError(self._name, f"module {name!r} cannot be registered: {text}")
-            if time.monotonic() >= end or self._down.wait(delay):
-                raise BrokerError(self._name, f"the robot has a module {name!r} already; choose another name")
-            logger.info("broker %s: the name %s is still taken; trying again", self._name, name)
-            delay = min(2.0 * delay, 0.5)
-
-    def _wait_until_served(self, name: str) -> None:
-        """Wait until the module answers; for some ms after its registration libqi may still refuse calls.
-
-        Raises:
-            BrokerError: If it does not.
-        """
-        module = RemoteModule(name, self.connection, STEP_LIMIT)
-        end, delay = time.monotonic() + STEP_LIMIT, 0.005
-        while True:
-            try:
-                self.connection.forget_service(name)  # of a module that had the name before
-                module.method(ANSWERED_BY_ALL)()
-                return
-            except NaoError as error:
-                if time.monotonic() >= end or self._down.wait(delay):
-                    raise BrokerError(self._name, f"module {name!r} does not answer: {error}") from error
-                delay = min(2.0 * delay, 0.5)
-
-    def _host_to_listen_on(self) -> str:
-        if self._listen_ip not in ANY_ADDRESS:
-            return self._listen_ip
-        robot = self.connection.host
-        return "127.0.0.1" if robot == "localhost" or robot.startswith("127.") else "0.0.0.0"
-
-    def _close_session(self) -> None:
-        with self._lock:
-            live, self._live = self._live, None
-            self._service_ids.clear()
-        if live is not None:
-            live.close()
 
     # Called by the connection and by libqi; the work is done in the thread of the broker.
 
@@ -250,7 +159,8 @@ class ALBroker:
     def _follow(self) -> None:
         """Bring the own session to where the connection stands now."""
         if self.connection.state is not State.CONNECTED:
-            self._close_session()
+            with self._lock:
+                self._session.close()
         elif self._restored():
             self._register_again()
 
@@ -259,9 +169,9 @@ class ALBroker:
         delay = 0.2
         while not self._down.is_set() and self.connection.state is State.CONNECTED:
             with self._lock:
-                if self._is_healthy():
+                if self._session.is_healthy:
                     return False
-                self._close_session()
+                self._session.close()
                 try:
                     self._reopen()
                     return True
@@ -273,26 +183,20 @@ class ALBroker:
             delay = min(2.0 * delay, 2.0)
         return False
 
-    def _is_healthy(self) -> bool:
-        """Whether the session stands, and is not left over from before a loss: then it may only seem to."""
-        if self._live is None or self._generation != self.connection.generation:
-            return False
-        return self._live.session.isConnected()
-
     def _reopen(self) -> None:
         try:
-            self._open(self._listen_port)
+            self._session.open(self._listen_port)
         except BrokerError as error:
             # Our own former connections may keep a fixed port busy for a minute; the robot is told.
             logger.warning("%s; taking another port", error)
-            self._open(0)
+            self._session.open(0)
 
     def _register_again(self) -> None:
         done = []
         with self._lock:
             for name, served in self._modules.items():
                 try:
-                    self._register(name, served, patience=STEP_LIMIT)
+                    self._session.register(name, served, patience=STEP_LIMIT)
                     done.append(name)
                 except NaoError as error:
                     logger.error("%s", error)

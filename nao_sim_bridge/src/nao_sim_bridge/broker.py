@@ -8,6 +8,7 @@ import socket
 import struct
 import threading
 import time
+from pathlib import Path
 from typing import Any, Callable
 
 import qi
@@ -17,6 +18,8 @@ log = logging.getLogger("nao_sim.broker")
 # A port may still be held by connections of a simulator that has just ended: how long to keep trying, s.
 BIND_PATIENCE = 65.0
 BIND_PAUSE = 0.5
+# State of a listening socket in the tables of /proc.
+LISTENS = "0A"
 # libqi reports each service it registers, and warns that it deduces paths it has no use for here.
 QUIET_LIBQI = "qi.path.sdklayout=silent:qimessaging.servicedirectory=warning"
 
@@ -118,13 +121,30 @@ def _free_port_on_exit(port: int) -> None:
     folder = "/proc/self/fd"
     if not os.path.isdir(folder):
         return
+    listening = _listening_sockets(port)
     for descriptor in os.listdir(folder):
         try:
-            if not os.readlink(f"{folder}/{descriptor}").startswith("socket:"):
+            if os.readlink(f"{folder}/{descriptor}") not in listening:
                 continue
+            blocking = os.get_blocking(int(descriptor))
             with socket.socket(fileno=os.dup(int(descriptor))) as candidate:
-                listens = candidate.getsockopt(socket.SOL_SOCKET, socket.SO_ACCEPTCONN)
-                if listens and candidate.getsockname()[1] == port:
-                    candidate.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+                # A copy shares its mode with the original, and where Python has a default timeout (rospy sets one) it
+                # makes every socket non-blocking that it gets to see.
+                os.set_blocking(int(descriptor), blocking)
+                candidate.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
         except OSError:
-            continue  # a descriptor that closed meanwhile, or no network socket
+            continue  # a descriptor that closed meanwhile
+
+
+def _listening_sockets(port: int) -> set[str]:
+    """What the descriptors of sockets that listen on a TCP port lead to, as /proc spells it."""
+    found = set()
+    for table in ("/proc/self/net/tcp", "/proc/self/net/tcp6"):
+        try:
+            lines = Path(table).read_text(encoding="ascii").splitlines()[1:]
+        except OSError:
+            continue  # a kernel without this family
+        for _, local, _, state, *_, inode in (line.split()[:10] for line in lines):
+            if state == LISTENS and int(local.rsplit(":", 1)[1], 16) == port:
+                found.add(f"socket:[{inode}]")
+    return found

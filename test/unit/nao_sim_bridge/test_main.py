@@ -17,8 +17,8 @@ LISTENS = re.compile(r"listens on 127\.0\.0\.1:(\d+)")
 class Program:
     """A running simulator."""
 
-    def __init__(self, *arguments):
-        command = [sys.executable, "-m", "nao_sim_bridge", "--port", "0", *arguments]
+    def __init__(self, *arguments, port=0):
+        command = [sys.executable, "-m", "nao_sim_bridge", "--port", str(port), *arguments]
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
         self.process = subprocess.Popen(
             command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment
@@ -45,8 +45,8 @@ def program():
     """Starts programs; those that still run are killed after the test."""
     started = []
 
-    def start(*arguments):
-        started.append(Program(*arguments))
+    def start(*arguments, **options):
+        started.append(Program(*arguments, **options))
         return started[-1]
 
     yield start
@@ -82,6 +82,18 @@ def test_a_signal_ends_it_in_order_while_calls_run(program, used, patience, numb
     used(running.port())
     running.process.send_signal(number)
     assert running.status(patience) == 0, running.said
+
+
+def test_after_a_kill_it_can_start_again_on_its_port_at_once(program, used, patience):
+    """Neither its clients nor the process that draws pictures may keep the port."""
+    killed = program("--paused")
+    port = killed.port()
+    assert used(port).service("NaoSimulation").picture("front", 16, 16)
+    killed.process.kill()
+    killed.status(patience)
+    again = program("--paused", port=port)
+    assert again.port() == port
+    assert not any("waiting" in line for line in again.said)
 
 
 def test_a_client_can_shut_it_down(program, used, patience):

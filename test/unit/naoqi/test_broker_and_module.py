@@ -302,7 +302,7 @@ class TestAfterALoss:
         eventually(lambda: subscribers(memory) == expected, "both are back")
 
     def test_a_broker_whose_own_session_breaks_serves_again(self, broker, raised, caplog, eventually):
-        broker._live.session.close()  # as if only that socket had been cut
+        broker._session._live.session.close()  # as if only that socket had been cut
         eventually(lambda: "made again" in caplog.text, "the log says so")
         raised(6.0, [6.0])
         assert broker.connection.generation == 1

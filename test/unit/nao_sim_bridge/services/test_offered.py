@@ -8,6 +8,10 @@ from nao_sim_bridge.services.api import COMMON, module_methods
 from nao_sim_bridge.services.binding import offered
 
 HEAD = ["HeadYaw", "HeadPitch"]
+# The left hand in the frame of the torso (0), by position only (7).
+HAND = [0.12, 0.12, 0.0, 0.0, 0.0, 0.0]
+HAND_MATRIX = [1.0, 0.0, 0.0, 0.12, 0.0, 1.0, 0.0, 0.12, 0.0, 0.0, 1.0, 0.0]
+NO_CHANGE = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]
 KEY, EVENT = "Test/Key", "Test/Event"
 # Method -> arguments.
 COMMON_CALLS = {
@@ -81,25 +85,41 @@ CALLS = {
         "angleInterpolationWithSpeed": (HEAD, [0.1, 0.1], 1.0),
         "areResourcesAvailable": (HEAD,),
         "changeAngles": (HEAD, 0.1, 0.5),
+        "changePosition": ("LArm", 0, [0.01, 0.0, 0.0, 0.0, 0.0, 0.0], 0.5, 7),
+        "changeTransform": ("LArm", 0, NO_CHANGE, 0.5, 7),
         "closeHand": ("LHand",),
         "getAngles": ("Body", True),
         "getBodyNames": ("Body",),
+        "getCOM": ("Body", 2, True),
         "getJointNames": ("Body",),
         "getLimits": ("Body",),
+        "getMass": ("Body",),
         "getMotionCycleTime": (),
+        "getPosition": ("LArm", 0, True),
         "getRobotConfig": (),
+        "getSensorNames": (),
         "getStiffnesses": ("Body",),
         "getSummary": (),
+        "getSupportPolygon": (2, True),
         "getTaskList": (),
+        "getTransform": ("LArm", 0, True),
         "killAll": (),
         "killTask": (1,),
         "killTasksUsingResources": (HEAD,),
         "openHand": ("LHand",),
+        "positionInterpolation": ("LArm", 0, HAND, 7, [0.5], True),
+        "positionInterpolations": (["LArm"], 0, [HAND], [7], [0.5], True),
         "rest": (),
         "robotIsWakeUp": (),
         "setAngles": (HEAD, 0.1, 0.5),
+        "setPosition": ("LArm", 0, HAND, 0.5, 7),
+        "setPositions": ("LArm", 0, HAND, 0.5, 7),
         "setStiffnesses": ("Body", 1.0),
+        "setTransform": ("LArm", 0, HAND_MATRIX, 0.5, 7),
+        "setTransforms": ("LArm", 0, HAND_MATRIX, 0.5, 7),
         "stiffnessInterpolation": (HEAD, 1.0, 0.1),
+        "transformInterpolation": ("LArm", 0, HAND_MATRIX, 7, [0.5], True),
+        "transformInterpolations": (["LArm"], 0, [HAND_MATRIX], [7], [0.5], True),
         "wakeUp": (),
     },
     "ALSystem": {

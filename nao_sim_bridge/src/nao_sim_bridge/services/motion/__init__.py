@@ -7,6 +7,8 @@ from typing import Any
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.services.motion.angles import Angles
 from nao_sim_bridge.services.motion.body import Body
+from nao_sim_bridge.services.motion.cartesian import Cartesian
+from nao_sim_bridge.services.motion.mass import Mass
 from nao_sim_bridge.services.motion.stiffness import Stiffness
 from nao_sim_bridge.services.motion.task_list import TaskList
 from nao_sim_bridge.services.motion.wake import Wake
@@ -22,4 +24,6 @@ def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore)
         Stiffness(simulation, runner),
         Wake(simulation, runner, memory),
         TaskList(simulation, runner),
+        Cartesian(simulation, runner),
+        Mass(simulation, runner),
     ]

@@ -1,0 +1,151 @@
+"""The session over which a broker serves its modules."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from typing import TYPE_CHECKING, Any, Callable, Dict, Optional
+
+from .errors import BrokerError, NaoError, RobotUnreachable
+from .remote import ANSWERED_BY_ALL, RemoteModule
+from .session import Live, answered, connect_session
+
+if TYPE_CHECKING:
+    from .robot_connection import Connection
+
+logger = logging.getLogger("naoqi")
+
+ANY_ADDRESS = ("", "0.0.0.0")
+STEP_LIMIT = 5.0
+"""Time limit of each step of registering a module, in s."""
+NAME_IN_USE = "already registered"
+
+
+class ServingSession:
+    """A listening session and the modules registered on it; can be opened again. Its owner guards it by a lock.
+
+    Attributes:
+        host: Address on which it listens.
+    """
+
+    def __init__(
+        self,
+        broker: str,
+        connection: Connection,
+        listen_ip: str,
+        down: threading.Event,
+        on_break: Callable[[], None],
+    ) -> None:
+        """Prepare a session; nothing is opened yet.
+
+        Args:
+            broker: Name of the broker, for texts.
+            connection: The connection to the robot.
+            listen_ip: Address on which to listen, or any.
+            down: Set when the broker is shut down; ends all waiting.
+            on_break: Called in a thread of libqi when the session breaks.
+        """
+        self._broker = broker
+        self._connection = connection
+        self._down = down
+        self._on_break = on_break
+        self._live: Optional[Live] = None
+        self._generation = 0
+        self._service_ids: Dict[str, int] = {}
+        on_this_computer = connection.host == "localhost" or connection.host.startswith("127.")
+        any_address = "127.0.0.1" if on_this_computer else "0.0.0.0"
+        self.host = any_address if listen_ip in ANY_ADDRESS else listen_ip
+
+    @property
+    def is_open(self) -> bool:
+        """Whether there is a session, healthy or not."""
+        return self._live is not None
+
+    @property
+    def is_healthy(self) -> bool:
+        """Whether the session stands, and is not left over from before a loss: then it may only seem to."""
+        if self._live is None or self._generation != self._connection.generation:
+            return False
+        return self._live.session.isConnected()
+
+    @property
+    def port(self) -> int:
+        """TCP port on which it listens; 0 while it does not."""
+        endpoints = self._live.session.endpoints() if self._live is not None else []
+        return int(endpoints[0].rsplit(":", 1)[1]) if endpoints else 0
+
+    def open(self, port: int) -> None:
+        """Listen, and connect to the robot.
+
+        Raises:
+            BrokerError: If the port is not free.
+            RobotUnreachable: If the robot is not there.
+        """
+        live = Live(self._on_break)
+        robot, generation = self._connection, self._connection.generation
+        try:
+            live.session.listen(f"tcp://{self.host}:{port}")
+            connect_session(live.session, robot.host, robot.port, robot.timing.connect_limit)
+        except RobotUnreachable:
+            live.close()
+            raise
+        except RuntimeError as error:
+            live.close()
+            reason = f"cannot listen on {self.host}:{port} ({str(error).strip()})"
+            raise BrokerError(self._broker, reason) from error
+        self._live, self._generation = live, generation
+
+    def close(self) -> None:
+        """Free the port and the names of the modules."""
+        live, self._live = self._live, None
+        self._service_ids.clear()
+        if live is not None:
+            live.close()
+
+    def register(self, name: str, served: Any, patience: float) -> None:
+        """Register one module; a name in use is tried again until the patience (s) is over.
+
+        A robot that was silent for a while may learn late that our former session is gone.
+
+        Raises:
+            BrokerError: If the name is taken, or the module cannot be called.
+            RobotUnreachable: If the robot does not answer.
+        """
+        end, delay = time.monotonic() + patience, 0.05
+        while True:
+            future = self._live.session.registerService(name, served, _async=True)
+            if not answered(future, STEP_LIMIT):
+                reason = f"no answer to the registration of {name}"
+                raise RobotUnreachable(self._connection.host, self._connection.port, reason)
+            if not future.hasError():
+                self._service_ids[name] = future.value()
+                self._wait_until_served(name)
+                return
+            text = future.error().strip()
+            if NAME_IN_USE not in text:
+                raise BrokerError(self._broker, f"module {name!r} cannot be registered: {text}")
+            if time.monotonic() >= end or self._down.wait(delay):
+                raise BrokerError(self._broker, f"the robot has a module {name!r} already; choose another name")
+            logger.info("broker %s: the name %s is still taken; trying again", self._broker, name)
+            delay = min(2.0 * delay, 0.5)
+
+    def unregister(self, name: str) -> None:
+        """Take a module back; one that is not registered is no error."""
+        service_id = self._service_ids.pop(name, None)
+        if service_id is not None and self._live is not None:
+            answered(self._live.session.unregisterService(service_id, _async=True), STEP_LIMIT)
+
+    def _wait_until_served(self, name: str) -> None:
+        """Wait until the module answers; for some ms after its registration libqi may still refuse calls."""
+        module = RemoteModule(name, self._connection, STEP_LIMIT)
+        end, delay = time.monotonic() + STEP_LIMIT, 0.005
+        while True:
+            try:
+                self._connection.forget_service(name)  # of a module that had the name before
+                module.method(ANSWERED_BY_ALL)()
+                return
+            except NaoError as error:
+                if time.monotonic() >= end or self._down.wait(delay):
+                    raise BrokerError(self._broker, f"module {name!r} does not answer: {error}") from error
+                delay = min(2.0 * delay, 0.5)
