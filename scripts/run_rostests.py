@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import concurrent.futures
 import os
+import random
 import shutil
 import signal
 import socket
@@ -35,6 +36,8 @@ PATIENCE = 30.0
 """How long an interrupted rostest may take to end its nodes, in s; it gives each of them 15 s."""
 MARK = "NAO_LIBRARY_SCENARIO"
 """Environment variable by which the processes of a scenario are known."""
+PORTS = range(20000, 32000, 2)
+"""Ports for NAOqi: below those that Linux gives to outgoing connections, of which ROS makes many."""
 
 
 def time_limit(scenario: Path) -> float:
@@ -60,10 +63,20 @@ def _number(text: str | None, default: float) -> float:
 
 
 def free_port() -> int:
-    """Return a TCP port of the loopback interface that nobody uses at the moment."""
+    """Return a TCP port of the loopback interface that nobody uses at the moment, nor the one after it."""
+    while True:
+        port = random.choice(PORTS)
+        if _is_free(port) and _is_free(port + 1):
+            return port
+
+
+def _is_free(port: int) -> bool:
     with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+        try:
+            probe.bind(("127.0.0.1", port))
+        except OSError:
+            return False
+    return True
 
 
 def processes_of(mark: str) -> dict[int, str]:

@@ -49,9 +49,10 @@ class ChainsAndPreemption(unittest.TestCase):
         wait_until(lambda: self.robot.led(led(light)) < 0.95, 10.0, "the fade")
 
     def test_functions_run_in_order_with_their_waits(self):
-        waits = (0.5, 1.0, 0.75)
+        waits = (0.2, 0.6, 0.4)
         chain = [intensity(f"Brain{i}", 0.1 * i, wait) for i, wait in enumerate(waits)]
-        run = send(self.client, NaoLedGoal(chain)).wait()
+        with self.robot.at_speed(0.2):
+            run = send(self.client, NaoLedGoal(chain)).wait()
         self.assertEqual(run.state, GoalStatus.SUCCEEDED)
         steps = [(f.index, f.function, f.count) for _, f in run.feedback]
         self.assertEqual(steps, [(i, "setIntensity", 3) for i in range(3)])

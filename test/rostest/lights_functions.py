@@ -82,9 +82,9 @@ class LightsFunctions(unittest.TestCase):
             ("fade", {"lights": ["BrainLeds"], "i_values": [0.2]}, {BRAIN0: 0.2}),
             ("fadeRGB", {"lights": ["FaceLeds"], "i_values": [0, 0, 1]}, eyes(0, 0, 1)),
         ):
-            began = rospy.get_time()
-            self.play(function, duration=1.0, **fields)
-            self.assertAlmostEqual(rospy.get_time() - began, 1.0, delta=0.3, msg=function)
+            with self.robot.at_speed(0.25):
+                result = self.play(function, duration=0.5, **fields)
+            self.assertAlmostEqual(result.results[0].elapsed.to_sec(), 0.5, delta=0.15, msg=function)
             self.check(wanted)
 
     def test_fade_list_ends_in_its_last_colour(self):
@@ -103,9 +103,9 @@ class LightsFunctions(unittest.TestCase):
             ),
         ):
             self.robot.reset()
-            began = rospy.get_time()
-            self.play(function, **fields)
-            self.assertAlmostEqual(rospy.get_time() - began, 0.6, delta=0.3, msg=function)
+            with self.robot.at_speed(0.25):
+                result = self.play(function, **fields)
+            self.assertAlmostEqual(result.results[0].elapsed.to_sec(), 0.6, delta=0.15, msg=function)
             colours = self.eye_colours()
             self.assertTrue(shown(colours), (function, colours))
 

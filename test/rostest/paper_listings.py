@@ -84,9 +84,10 @@ class PaperListings(unittest.TestCase):
             time=Duration(2),
             revert=True,
         )
-        run = send(self.led_client, nao_library_actions.msg.NaoLedGoal([green_eyes]))
-        self.robot.wait_for_leds(GREEN)
-        run.wait()
+        with self.robot.at_speed(0.5):
+            run = send(self.led_client, nao_library_actions.msg.NaoLedGoal([green_eyes]))
+            self.robot.wait_for_leds(GREEN)
+            run.wait()
         self.assertEqual(run.state, GoalStatus.SUCCEEDED)
         self.assertEqual(self.robot.leds(WHITE), WHITE)
         self.assertAlmostEqual(run.ended - run.sent, 2.0, delta=0.3)

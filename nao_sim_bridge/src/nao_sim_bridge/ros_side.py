@@ -65,6 +65,7 @@ class RosSide:
             rospy.Service("get_truepose", GetTruepose, self._on_true_pose),
         ]
         self._closing = threading.Event()
+        rospy.on_shutdown(self.close)  # topics close next
         self._thread = threading.Thread(target=self._publish, name="ros publisher", daemon=True)
         self._thread.start()
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import threading
 import time
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Callable, Iterable, Mapping, Sequence
+from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
 
 import actionlib
 import qi
@@ -202,6 +203,23 @@ class SimulatedRobot:
     def resume(self) -> None:
         """Let time pass again."""
         self._resume()
+
+    @contextmanager
+    def at_speed(self, speed: float) -> Iterator[None]:
+        """Let time pass at another speed for a while: below 1 where a test measures time.
+
+        What the machine does meanwhile delays a message by wall time; the slower the simulation, the less that counts.
+
+        Args:
+            speed: Simulated seconds per wall second, 0 for as fast as possible.
+        """
+        simulation = self.module("NaoSimulation")
+        before = simulation.speed()
+        simulation.setSpeed(speed)
+        try:
+            yield
+        finally:
+            simulation.setSpeed(before)
 
     def push(self, force: Sequence[float], seconds: float, link: str = "torso") -> None:
         """Push a link with `force` (x, y, z in N, in world) for a while."""

@@ -140,6 +140,19 @@ def test_a_port_is_free_again_at_once_after_a_kill_with_clients_connected(connec
     assert listening(port=port).port == port
 
 
+def test_other_sockets_of_the_process_stay_as_they_are(listening):
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        # As rospy does once a node has subscribed; then whatever turns a descriptor into a socket changes its mode.
+        socket.setdefaulttimeout(60.0)
+        try:
+            listening()
+        finally:
+            socket.setdefaulttimeout(None)
+        assert os.get_blocking(other.fileno())
+
+
 # --- serving and calling ----------------------------------------------------------------------------------------------
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 SOURCES = Path(__file__).parents[3] / "nao_library_modules" / "src"
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(SOURCES)}
 
 SDK_STYLE = """
 import sys
@@ -71,8 +73,7 @@ test.add(1, 2)
 
 def run(script, robot, **options):
     command = [sys.executable, "-c", script, str(robot.port)]
-    environment = {"PYTHONPATH": str(SOURCES), "PATH": "/usr/bin:/bin"}
-    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False, **options)
+    return subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True, timeout=60, check=False, **options)
 
 
 def test_a_program_of_the_sdk_runs_with_python_3_syntax_only(robot):
@@ -114,8 +115,7 @@ def test_ctrl_c_ends_a_call_that_waits_and_cancels_it_on_the_robot(robot, proxy,
     before, running = proxy.cancellations(), proxy.begun()
     last = "import naoqi.calls; naoqi.calls.FIRST_SLICE_MS = 0; test.begin()"  # to be in the long wait at once
     command = [sys.executable, "-c", USE_AND_LEAVE.format(last=last), str(robot.port)]
-    environment = {"PYTHONPATH": str(SOURCES), "PATH": "/usr/bin:/bin"}
-    program = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True)
+    program = subprocess.Popen(command, env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
     eventually(lambda: proxy.begun() == running + 1, "the call arrives")
     program.send_signal(signal.SIGINT)
     _, stderr = program.communicate(timeout=10.0)

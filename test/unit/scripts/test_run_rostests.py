@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+import run_rostests
 from run_rostests import MARGIN, MARK, free_port, processes_of, time_limit
 
 
@@ -27,9 +28,20 @@ def test_a_scenario_may_take_as_long_as_its_tests_and_a_margin(tmp_path, text, s
 
 def test_a_free_port_can_be_listened_on():
     port = free_port()
+    for wanted in (port, port + 1):
+        with socket.socket() as server:
+            server.bind(("127.0.0.1", wanted))
+            assert server.getsockname() == ("127.0.0.1", wanted)
+
+
+def test_ports_in_use_are_left_out(monkeypatch):
     with socket.socket() as server:
-        server.bind(("127.0.0.1", port))
-        assert server.getsockname() == ("127.0.0.1", port)
+        server.bind(("127.0.0.1", 0))
+        used = server.getsockname()[1]
+        other = free_port()
+        choices = iter([used, used - 1, other])
+        monkeypatch.setattr(run_rostests.random, "choice", lambda ports: next(choices))
+        assert free_port() == other
 
 
 def test_processes_are_known_by_their_mark_until_they_end():

@@ -204,12 +204,12 @@ def test_ears_show_an_angle(robot, stays):
         ("listGroup", ("FaceLed",), "unknown group 'FaceLed': did you mean 'FaceLeds'"),
     ],
 )
-def test_wrong_arguments_name_what_is_allowed_and_change_nothing(robot, method, arguments, message):
-    before = robot.ALLeds.getIntensity("AllLeds")
+def test_wrong_arguments_name_what_is_allowed_and_change_nothing(shared_robot, method, arguments, message):
+    before = shared_robot.ALLeds.getIntensity("AllLeds")
     with pytest.raises(RuntimeError, match=message):
-        getattr(robot.ALLeds, method)(*arguments)
-    robot.advance(0.1)
-    assert robot.ALLeds.getIntensity("AllLeds") == before
+        getattr(shared_robot.ALLeds, method)(*arguments)
+    shared_robot.advance(0.05)
+    assert shared_robot.ALLeds.getIntensity("AllLeds") == before
 
 
 # --- names ------------------------------------------------------------------------------------------------------------

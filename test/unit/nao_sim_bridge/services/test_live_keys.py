@@ -72,8 +72,8 @@ def test_documented_keys_answer_with_plausible_numbers(readings, pattern, low, h
         assert low - 1e-6 <= value <= high + 1e-6, key
 
 
-def test_all_of_them_are_listed(robot):
-    assert set(DOCUMENTED) <= set(robot.ALMemory.getDataListName())
+def test_all_of_them_are_listed(shared_robot):
+    assert set(DOCUMENTED) <= set(shared_robot.ALMemory.getDataListName())
 
 
 @pytest.mark.parametrize("version", ["V6", "V5"])

@@ -12,8 +12,8 @@ SENSOR = "Device/SubDeviceList/HeadYaw/Position/Sensor/Value"
 
 
 @pytest.fixture
-def memory(robot):
-    return robot.ALMemory
+def memory(shared_robot):
+    return shared_robot.ALMemory
 
 
 @pytest.fixture
@@ -101,7 +101,8 @@ def test_kind_and_description(memory):
     assert ["Test/DescribedEvent", "Event", ""] in memory.getDescriptionList([])
 
 
-def test_timestamps_are_simulated_time(robot):
+def test_timestamps_are_simulated_time(shared_robot):
+    robot = shared_robot
     robot.ALMemory.insertData("Test/Time", "x")
     written = robot.now.time
     robot.advance(1.25)
@@ -112,7 +113,8 @@ def test_timestamps_are_simulated_time(robot):
     assert seconds + 1e-6 * microseconds == pytest.approx(robot.now.time, abs=2e-6)
 
 
-def test_waiting_for_a_change_blocks_nobody(robot):
+def test_waiting_for_a_change_blocks_nobody(shared_robot):
+    robot = shared_robot
     robot.ALMemory.insertData("Test/Change", 1)
     future = robot.post("ALMemory", "getDataOnChange", "Test/Change", 0)
     assert robot.ALMemory.getData("Test/Change") == 1

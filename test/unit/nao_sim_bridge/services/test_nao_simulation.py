@@ -12,8 +12,8 @@ from nao_sim_bridge.sim.simulation import Scene
 
 
 @pytest.fixture
-def simulation(robot):
-    return robot.NaoSimulation
+def simulation(shared_robot):
+    return shared_robot.NaoSimulation
 
 
 # --- time -------------------------------------------------------------------------------------------------------------

@@ -11,8 +11,8 @@ from nao_sim_bridge.services.system import ALSystem
 
 
 @pytest.fixture
-def system(robot):
-    return robot.ALSystem
+def system(shared_robot):
+    return shared_robot.ALSystem
 
 
 def test_the_name_can_be_changed_and_is_announced(robot):

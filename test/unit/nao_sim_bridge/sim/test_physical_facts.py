@@ -158,7 +158,7 @@ def test_a_limp_robot_with_bent_knees_collapses(bench):
 def test_a_crouching_robot_rests_without_stiffness(bench):
     one = bench("Crouch", 0.0)
     settled = one.run(1.0)
-    end = one.run(4.0)
+    end = one.run(3.0)
     assert math.dist(settled.torso.position, end.torso.position) < 1e-3
     assert tilt(end) < math.radians(10.0)
     assert sum(loads(end)) == pytest.approx(WEIGHT, rel=0.02)

@@ -189,10 +189,11 @@ def test_a_hand_opens_and_closes(stiff_robot, hand):
         ("openHand", ("LArm",), "unknown hand 'LArm'"),
     ],
 )
-def test_wrong_arguments_name_what_is_allowed_and_move_nothing(stiff_robot, method, arguments, message):
-    before = commands(stiff_robot, "Body")
+def test_wrong_arguments_name_what_is_allowed_and_move_nothing(shared_robot, method, arguments, message):
+    shared_robot.ALMotion.killAll()
+    before = commands(shared_robot, "Body")
     with pytest.raises(RuntimeError, match=message):
-        getattr(stiff_robot.ALMotion, method)(*arguments)
-    stiff_robot.advance(0.1)
-    assert commands(stiff_robot, "Body") == before
-    assert stiff_robot.ALMotion.getTaskList() == []
+        getattr(shared_robot.ALMotion, method)(*arguments)
+    shared_robot.advance(0.05)
+    assert commands(shared_robot, "Body") == before
+    assert shared_robot.ALMotion.getTaskList() == []

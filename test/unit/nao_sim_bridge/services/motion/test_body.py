@@ -10,8 +10,8 @@ MODEL = load_model()
 
 
 @pytest.fixture
-def motion(robot):
-    return robot.ALMotion
+def motion(shared_robot):
+    return shared_robot.ALMotion
 
 
 @pytest.mark.parametrize(
@@ -41,9 +41,9 @@ def test_limits_are_those_of_the_tables(motion):
     assert len(motion.getLimits("Body")) == 26
 
 
-def test_the_cycle_is_the_tick(robot):
-    tick_ms = 1000 * robot.server.simulation.settings.tick_s
-    assert robot.ALMotion.getMotionCycleTime() == pytest.approx(tick_ms, abs=0.5)
+def test_the_cycle_is_the_tick(shared_robot):
+    tick_ms = 1000 * shared_robot.server.simulation.settings.tick_s
+    assert shared_robot.ALMotion.getMotionCycleTime() == pytest.approx(tick_ms, abs=0.5)
 
 
 def test_the_configuration_is_a_nao_h25_v6(motion):

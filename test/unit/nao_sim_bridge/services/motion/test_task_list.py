@@ -82,9 +82,9 @@ def test_kill_all_stops_everything(stiff_robot):
 
 
 @pytest.mark.parametrize("method", ["areResourcesAvailable", "killTasksUsingResources"])
-def test_unknown_resources_offer_the_closest(robot, method):
+def test_unknown_resources_offer_the_closest(shared_robot, method):
     with pytest.raises(RuntimeError, match=f"ALMotion::{method} unknown joint or chain 'Hed': did you mean 'Head'"):
-        getattr(robot.ALMotion, method)(["Hed"])
+        getattr(shared_robot.ALMotion, method)(["Hed"])
 
 
 def test_a_posted_motion_can_be_stopped_by_its_number(stiff_robot):
