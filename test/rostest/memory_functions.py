@@ -51,8 +51,17 @@ class MemoryFunctions(unittest.TestCase):
             arrived.set()
 
         topic = rospy.Subscriber("memory_events", MemoryEvent, on_event)
-        self.ask(("subscribeToEvent", "Test/Event"))
-        wait_until(lambda: topic.get_num_connections() > 0, 10.0, "the connection to memory_events")
+        self.ask(("subscribeToEvent", "Test/Hello"), ("subscribeToEvent", "Test/Event"))
+
+        def heard():
+            self.robot.module("ALMemory").raiseEvent("Test/Hello", 0)
+            return arrived.wait(0.5)
+
+        # A publisher may take up a connection a moment after its subscriber counts it.
+        wait_until(heard, 10.0, "the connection to memory_events")
+        self.ask(("unsubscribeToEvent", "Test/Hello"))
+        messages.clear()
+        arrived.clear()
         self.robot.module("ALMemory").raiseEvent("Test/Event", [1, "a"])
         self.assertTrue(arrived.wait(10.0))
         self.assertEqual((messages[0].name, json.loads(messages[0].value)), ("Test/Event", [1, "a"]))

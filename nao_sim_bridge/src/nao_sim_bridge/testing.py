@@ -88,12 +88,16 @@ class GoalRun:
     def wait_for_function(self, index: int, limit: float = 30.0) -> GoalRun:
         """Wait until function `index` (from 0) of the chain begins, at most `limit` s of wall time.
 
+        The end of a goal and its feedback come on different topics: when the end is there first, its result tells.
+
         Raises:
             StackNotReady: It has not begun in time, or the goal ended before.
         """
 
         def begun() -> bool:
-            return any(feedback.index >= index for _, feedback in self.feedback)
+            if any(feedback.index >= index for _, feedback in self.feedback):
+                return True
+            return self._end is not None and (self.state == GoalStatus.SUCCEEDED or len(self.result.results) > index)
 
         self._wait(lambda: begun() or self._end is not None, limit, f"feedback of function {index}")
         if not begun():
