@@ -120,7 +120,7 @@ class ALBroker:
                 raise BrokerError(self._name, f"it serves a module {name!r} already")
             if not self._session.is_open:
                 raise self.connection.unreachable()
-            self.connection.presence.lend(served)
+            self.connection.presence.serve(served)
             try:
                 self._session.register(name, served, patience=0.0)
             except NaoError:

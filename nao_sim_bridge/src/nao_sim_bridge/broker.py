@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import queue
 import socket
 import struct
 import threading
@@ -41,6 +42,7 @@ class Broker:
         self.port = 0
         self._session = qi.Session()
         self._services: dict[str, tuple[int, Any]] = {}
+        self._callers: dict[str, _Caller] = {}
         self._lock = threading.Lock()
 
     def listen(self, address: str, port: int, still_wanted: Callable[[], bool] = lambda: True) -> None:
@@ -87,23 +89,41 @@ class Broker:
         return self._session.service(module)
 
     def call(self, module: str, method: str, arguments: list) -> None:
-        """Call a module of a client without waiting; failures are logged."""
-
-        def called(future: Any) -> None:
-            if future.hasError():
-                log.warning("callback %s.%s failed: %s", module, method, future.error())
-
-        def found(future: Any) -> None:
-            if future.hasError():
-                log.warning("callback %s.%s lost: no such module: %s", module, method, future.error())
-            else:
-                future.value().call(method, *arguments, _async=True).addCallback(called)
-
-        self._session.service(module, _async=True).addCallback(found)
+        """Call a module of a client without waiting, in the order of the calls; failures are logged."""
+        with self._lock:
+            if module not in self._callers:
+                self._callers[module] = _Caller(module, self._session)
+        self._callers[module].calls.put((method, arguments))
 
     def close(self) -> None:
         """Stop listening and drop all connections."""
         self._session.close()
+
+
+class _Caller:
+    """Calls one module in a thread of its own: a client that hangs must not keep others from their events.
+
+    Not in libqi's callbacks: a call made in one needs the very thread that runs it, now and then.
+    """
+
+    def __init__(self, module: str, session: Any) -> None:
+        self.calls: queue.Queue[tuple[str, list]] = queue.Queue()
+        self._module = module
+        self._session = session
+        threading.Thread(target=self._run, name=f"calls of {module}", daemon=True).start()
+
+    def _run(self) -> None:
+        while True:
+            method, arguments = self.calls.get()
+            try:
+                service = self._session.service(self._module)
+            except RuntimeError as error:
+                log.warning("callback %s.%s lost: no such module: %s", self._module, method, error)
+                continue
+            try:
+                service.call(method, *arguments)
+            except (RuntimeError, AttributeError) as error:
+                log.warning("callback %s.%s failed: %s", self._module, method, error)
 
 
 def _somebody_listens(address: str, port: int) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import weakref
 
 import pytest
 
@@ -29,12 +30,40 @@ def test_the_waiting_thread_itself_does_not_count():
     assert presence.wait_until_empty(0.0)
 
 
-def test_a_lent_object_has_left_when_nobody_holds_it():
+def test_a_lent_callback_has_left_when_nobody_holds_it():
     presence = Presence()
     lent = threading.Event()
     presence.lend(lent)
     assert not presence.wait_until_empty(0.0)
     del lent
+    assert presence.wait_until_empty(0.0)
+
+
+def test_a_served_object_dies_in_the_hands_of_who_waits():
+    presence = Presence()
+    died_in = []
+    served = threading.Event()
+    weakref.finalize(served, lambda: died_in.append(threading.current_thread()))
+    presence.serve(served)
+    assert not presence.wait_until_empty(0.0)
+    other = threading.Thread(target=lambda kept=served: None)
+    del served
+    assert died_in == []
+    other.start()
+    other.join()
+    del other
+    assert presence.wait_until_empty(0.0)
+    assert died_in == [threading.main_thread()]
+
+
+def test_a_served_object_is_waited_for_until_its_queue_is_dropped_too():
+    presence = Presence()
+    served = threading.Event()
+    strand = served.__qi_strand__ = object()
+    presence.serve(served)
+    del served
+    assert not presence.wait_until_empty(0.01)
+    del strand
     assert presence.wait_until_empty(0.0)
 
 
