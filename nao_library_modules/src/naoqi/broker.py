@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 
 from .errors import BrokerError, NaoError
 from .registry import CONNECT_TIMEOUT, connection
@@ -55,6 +55,7 @@ class ALBroker:
         self._listen_port = listen_port
         self._lock = threading.RLock()  # guards session and modules, and keeps two restorations apart
         self._modules: Dict[str, Any] = {}
+        self._workers: Dict[str, Worker] = {}
         self._down = threading.Event()
         self._worker = Worker(f"naoqi broker {name}")
         self.connection = connection(robot_ip, robot_port, connect_timeout=connect_timeout)
@@ -97,17 +98,20 @@ class ALBroker:
         self._worker.close()
         with self._lock:
             self._session.close()
-            names = list(self._modules)
+            workers = dict(self._workers)
             self._modules.clear()
-        for each in names:
-            self.connection.subscriptions.forget_module(each)
+            self._workers.clear()
+        for name, worker in workers.items():
+            worker.close()
+            self.connection.subscriptions.forget_module(name)
 
-    def serve(self, name: str, served: Any) -> None:
+    def serve(self, name: str, served: Any, worker: Worker) -> None:
         """Register a module with the robot.
 
         Args:
             name: Name of the module.
             served: The object whose methods libqi serves.
+            worker: Does what is asked of it; closed when the broker is shut down.
 
         Raises:
             BrokerError: If the name is taken, or the broker is shut down.
@@ -127,6 +131,7 @@ class ALBroker:
                 self._session.unregister(name)
                 raise
             self._modules[name] = served
+            self._workers[name] = worker
             self.connection.subscriptions.own(name)
 
     def exchange(self, name: str, served: Any) -> None:
@@ -136,17 +141,24 @@ class ALBroker:
             NaoError: As `serve` does; then the module is served no more.
         """
         with self._lock:
-            self._modules.pop(name, None)
-            self._session.unregister(name)
-            self.serve(name, served)
+            worker = self._remove(name)
+            if worker is None:
+                raise BrokerError(self._name, f"it serves no module {name!r}")
+            self.serve(name, served, worker)
         self.connection.subscriptions.renew([name])
 
     def withdraw(self, name: str) -> None:
         """Take a module back; one that is not served is no error."""
         with self._lock:
-            self._modules.pop(name, None)
-            self._session.unregister(name)
+            worker = self._remove(name)
+        if worker is not None:
+            worker.close()
         self.connection.subscriptions.forget_module(name)
+
+    def _remove(self, name: str) -> Optional[Worker]:
+        self._modules.pop(name, None)
+        self._session.unregister(name)
+        return self._workers.pop(name, None)
 
     # Called by the connection and by libqi; the work is done in the thread of the broker.
 

@@ -42,7 +42,7 @@ class ALModule:
         self.__broker: ALBroker = current_broker()
         self.__worker = Worker(f"naoqi module {name}")
         self.__methods: List[str] = public_methods(self, ALModule)
-        self.__broker.serve(name, self.__served())
+        self.__broker.serve(name, self.__served(), self.__worker)
 
     def getName(self) -> str:
         """Name of the module."""
@@ -59,7 +59,6 @@ class ALModule:
     def exit(self) -> None:
         """Take the module back from the robot; it is not called any more."""
         self.__broker.withdraw(self.__name)
-        self.__worker.close()
 
     def BIND_PYTHON(self, module_name: str, method: str, _parameters: int = -1) -> None:
         """Serve a method that is not served by itself: one with a leading underscore, or one added later.

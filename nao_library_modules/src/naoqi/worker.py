@@ -69,3 +69,6 @@ class Worker:
                 job()
             except BaseException:  # a callback may call sys.exit(): the thread serves others too
                 logger.exception("a callback in %s failed", self.name)
+            # While this thread waits, it must hold nothing of libqi's: the end of the program would delete it
+            # with the frame of this thread, too late for libqi.
+            job = None
