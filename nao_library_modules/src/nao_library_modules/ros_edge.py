@@ -6,11 +6,11 @@ import logging
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import actionlib
 import rospy
 
 from nao_library_msgs.msg import MemoryEvent
 
+from .action_server import PromptActionServer
 from .answers import json_of
 from .diagnostics import DiagnosticsPublisher
 from .health import Report
@@ -40,7 +40,7 @@ class RosEdge:
 
     def action_server(
         self, name: str, action: type, execute: Callable[[Any], None], on_preempt: Callable[[], None]
-    ) -> actionlib.SimpleActionServer:
+    ) -> PromptActionServer:
         """Make an action server; it is not started.
 
         Args:
@@ -49,7 +49,7 @@ class RosEdge:
             execute: Carries out a goal, in the server's own thread.
             on_preempt: Called under actionlib's lock: it must do no more than set a flag.
         """
-        server = actionlib.SimpleActionServer(name, action, execute_cb=execute, auto_start=False)
+        server = PromptActionServer(name, action, execute_cb=execute, auto_start=False)
         server.register_preempt_callback(on_preempt)
         return server
 
