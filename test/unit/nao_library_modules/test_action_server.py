@@ -19,11 +19,13 @@ class Server(PromptActionServer):
         self.terminate_mutex = threading.RLock()
         self.need_to_terminate = False
         self.execute_callback = execute
-        self.execute_thread = None
         self.goals = list(goals)
         self.aborted = []
         self.active = False
         self.execute_condition.wait = self.wait
+
+    def __del__(self):
+        """There is no thread to be joined."""
 
     def wait(self, timeout):
         self.need_to_terminate = True

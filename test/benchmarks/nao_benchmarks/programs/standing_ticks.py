@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times ticks of a robot that stands awake against bare physics steps of the same robot in the same state.
 
-The server has all its services registered; nobody calls them. Prints JSON: `ours` and `bare`, s of each tick.
+The server has all its services registered; nobody calls them. Prints JSON: `ours` and `reference`, s of each tick.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def time_ticks(simulation: Simulation, rounds: int) -> dict[str, list[float]]:
         check_alike(simulation.snapshot, twin)
     finally:
         twin.close()
-    return {"ours": list(ours.seconds), "bare": list(bare.seconds)}
+    return {"ours": list(ours.seconds), "reference": list(bare.seconds)}
 
 
 def check_alike(snapshot: Snapshot, twin: Physics) -> None:

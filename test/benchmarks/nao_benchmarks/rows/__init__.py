@@ -6,6 +6,7 @@ from ..row import Row
 from .chained_functions import ChainedFunctions
 from .goal_round_trip import GoalRoundTrip
 from .memory import Memory
+from .moving_tick import MovingTick
 from .physics_tick import PhysicsTick
 from .proxy_call import ProxyCall
 from .real_time_factor import RealTimeFactor
@@ -13,6 +14,7 @@ from .real_time_factor import RealTimeFactor
 # Those that compute come first, while nothing else runs yet.
 ROWS: tuple[Row, ...] = (
     PhysicsTick(),
+    MovingTick(),
     RealTimeFactor(),
     ProxyCall(),
     GoalRoundTrip(),

@@ -2,19 +2,10 @@
 
 from __future__ import annotations
 
-import json
-import os
-import sys
-from pathlib import Path
-
-from ..errors import BenchmarkError
-from ..places import PROGRAMS
-from ..program import Program
 from ..row import Figures, Row, at_most
 from ..stack import Stack
-from ..stats import Sample
+from ..timings import run_timings
 
-LIMIT = 60.0
 ROUNDS = 3000
 
 
@@ -28,14 +19,5 @@ class PhysicsTick(Row):
     bound = at_most(1.25)
 
     def measure(self, stack: Stack) -> Figures:
-        """Measure in a process of its own: threads of ours would take the interpreter from it."""
-        package = str(Path(__file__).resolve().parents[2])
-        path = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
-        command = [sys.executable, str(PROGRAMS / "standing_ticks.py"), "--rounds", str(ROUNDS)]
-        with Program("standing_ticks", command, {"PYTHONPATH": path}) as program:
-            lines = program.wait(LIMIT).splitlines()
-        try:
-            times = json.loads(next(line for line in reversed(lines) if line.startswith("{")))
-        except (StopIteration, ValueError):
-            raise BenchmarkError("standing_ticks printed no times") from None
-        return Figures.compared(Sample(tuple(times["ours"])), Sample(tuple(times["bare"])), scale=1e6)
+        """Measure in a process of its own."""
+        return Figures.compared(*run_timings("standing_ticks", ROUNDS), scale=1e6)
