@@ -19,6 +19,8 @@ log = logging.getLogger("nao_sim.broker")
 # A port may still be held by connections of a simulator that has just ended: how long to keep trying, s.
 BIND_PATIENCE = 65.0
 BIND_PAUSE = 0.5
+# The thread that calls a client's module ends after this time without a call, s.
+CALLER_IDLE = 20.0
 # State of a listening socket in the tables of /proc.
 LISTENS = "0A"
 # libqi reports each service it registers, and warns that it deduces paths it has no use for here.
@@ -43,6 +45,7 @@ class Broker:
         self._session = qi.Session()
         self._services: dict[str, tuple[int, Any]] = {}
         self._callers: dict[str, _Caller] = {}
+        self._closed = False
         self._lock = threading.Lock()
 
     def listen(self, address: str, port: int, still_wanted: Callable[[], bool] = lambda: True) -> None:
@@ -91,12 +94,29 @@ class Broker:
     def call(self, module: str, method: str, arguments: list) -> None:
         """Call a module of a client without waiting, in the order of the calls; failures are logged."""
         with self._lock:
-            if module not in self._callers:
-                self._callers[module] = _Caller(module, self._session)
-        self._callers[module].calls.put((method, arguments))
+            if self._closed:
+                return
+            caller = self._callers.get(module)
+            if caller is None:
+                caller = self._callers[module] = _Caller(module, self._session, self._end_if_idle)
+            caller.calls.put((method, arguments))
+
+    def _end_if_idle(self, caller: _Caller) -> bool:
+        """Forget a caller that has nothing to do; under the lock, so that no call is handed to a thread that ends."""
+        with self._lock:
+            if not caller.calls.empty():
+                return False
+            if self._callers.get(caller.module) is caller:
+                del self._callers[caller.module]
+            return True
 
     def close(self) -> None:
-        """Stop listening and drop all connections."""
+        """Stop listening and drop all connections; calls that wait for their turn are not made any more."""
+        with self._lock:
+            self._closed = True
+            callers = list(self._callers.values())
+        for caller in callers:
+            caller.end()
         self._session.close()
 
 
@@ -106,24 +126,44 @@ class _Caller:
     Not in libqi's callbacks: a call made in one needs the very thread that runs it, now and then.
     """
 
-    def __init__(self, module: str, session: Any) -> None:
-        self.calls: queue.Queue[tuple[str, list]] = queue.Queue()
-        self._module = module
+    def __init__(self, module: str, session: Any, ends: Callable[[_Caller], bool]) -> None:
+        self.module = module
+        self.calls: queue.Queue[tuple[str, list] | None] = queue.Queue()
         self._session = session
+        self._ends = ends
         threading.Thread(target=self._run, name=f"calls of {module}", daemon=True).start()
+
+    def end(self) -> None:
+        """End the thread once the call it makes, if any, is over; drop the calls behind it."""
+        while True:
+            try:
+                self.calls.get_nowait()
+            except queue.Empty:
+                break
+        self.calls.put(None)
 
     def _run(self) -> None:
         while True:
-            method, arguments = self.calls.get()
             try:
-                service = self._session.service(self._module)
-            except RuntimeError as error:
-                log.warning("callback %s.%s lost: no such module: %s", self._module, method, error)
+                call = self.calls.get(timeout=CALLER_IDLE)
+            except queue.Empty:
+                if self._ends(self):
+                    return
                 continue
-            try:
-                service.call(method, *arguments)
-            except (RuntimeError, AttributeError) as error:
-                log.warning("callback %s.%s failed: %s", self._module, method, error)
+            if call is None:
+                return
+            self._make(*call)
+
+    def _make(self, method: str, arguments: list) -> None:
+        try:
+            service = self._session.service(self.module)
+        except RuntimeError as error:
+            log.warning("callback %s.%s lost: no such module: %s", self.module, method, error)
+            return
+        try:
+            service.call(method, *arguments)
+        except (RuntimeError, AttributeError) as error:
+            log.warning("callback %s.%s failed: %s", self.module, method, error)
 
 
 def _somebody_listens(address: str, port: int) -> bool:

@@ -70,7 +70,7 @@ class SimulatorServer:
         self.options = options
         self.ended = threading.Event()
         self.simulation = Simulation(options.scene)
-        self.runner = SimulationRunner(self.simulation, options.speed, options.paused)
+        self.runner = SimulationRunner(self.simulation, options.speed, options.paused, on_end=self.ended.set)
         self.memory = MemoryStore(lambda: self.runner.snapshot.time)
         self.broker = Broker()
         self.pictures = Pictures(self.simulation, self.runner)

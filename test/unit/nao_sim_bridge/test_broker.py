@@ -9,6 +9,7 @@ import re
 import socket
 import subprocess
 import sys
+import threading
 
 import pytest
 import qi
@@ -198,3 +199,62 @@ def test_a_callback_that_fails_is_logged(listening, connect, patience, monkeypat
 
 def test_its_name_is_what_modules_report(listening):
     assert listening(name="mine").name == "mine"
+
+
+class Stuck:
+    """A module whose method does not come back until it is let go."""
+
+    def __init__(self):
+        self.entered, self.let_go = threading.Event(), threading.Event()
+
+    @qi.bind(qi.Void, [qi.Dynamic])
+    def hear(self, value):
+        self.entered.set()
+        self.let_go.wait(30.0)
+
+
+def callers_of(name):
+    return [thread for thread in threading.enumerate() if thread.name == f"calls of {name}"]
+
+
+def test_a_module_that_hangs_keeps_no_other_from_its_calls(listening, connect, patience):
+    broker, stuck, echo = listening(), Stuck(), Echo()
+    client = connect(broker.port)
+    client.listen("tcp://127.0.0.1:0")
+    client.registerService("Stuck", stuck)
+    client.registerService("Echo", echo)
+    try:
+        broker.call("Stuck", "hear", [1])
+        assert stuck.entered.wait(patience)
+        broker.call("Stuck", "hear", [2])
+        broker.call("Echo", "hear", [3])
+        assert echo.calls.get(timeout=patience) == 3
+    finally:
+        stuck.let_go.set()
+
+
+def test_a_thread_that_calls_a_module_ends_when_idle_and_the_next_call_gets_a_new_one(listening, patience, monkeypatch):
+    monkeypatch.setattr(module, "CALLER_IDLE", 0.01)
+    broker, echo = listening(), Echo()
+    broker.register("Idle", echo)
+    broker.call("Idle", "hear", [1])
+    (first,) = callers_of("Idle") or [None]
+    assert echo.calls.get(timeout=patience) == 1
+    if first is not None:
+        first.join(patience)
+        assert not first.is_alive()
+    broker.call("Idle", "hear", [2])
+    assert echo.calls.get(timeout=patience) == 2
+
+
+def test_a_broker_that_closes_ends_its_threads(listening, patience):
+    broker, echo = listening(), Echo()
+    broker.register("Closing", echo)
+    broker.call("Closing", "hear", [1])
+    assert echo.calls.get(timeout=patience) == 1
+    (thread,) = callers_of("Closing")
+    broker.close()
+    thread.join(patience)
+    assert not thread.is_alive()
+    broker.call("Closing", "hear", [2])
+    assert callers_of("Closing") == []

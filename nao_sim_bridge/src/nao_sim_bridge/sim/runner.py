@@ -32,12 +32,20 @@ class SimulationRunner:
         simulation: What to run; from `start` on it belongs to the thread.
         speed: Simulated seconds per wall second; `FASTEST` (infinity) for as fast as possible.
         paused: Start without time passing.
+        on_end: Called in the thread when it has ended, by `stop` or because the simulation failed.
     """
 
-    def __init__(self, simulation: Simulation, speed: float = 1.0, paused: bool = False) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        speed: float = 1.0,
+        paused: bool = False,
+        on_end: Callable[[], None] = lambda: None,
+    ) -> None:
         self._simulation = simulation
         self._speed = _checked_speed(speed)
         self._paused = paused
+        self._on_end = on_end
         self._ids = TaskIds()
         self._commands: deque[tuple[Task, Callable[[], Any]]] = deque()
         self._advances: deque[tuple[Task, int]] = deque()
@@ -162,6 +170,7 @@ class SimulationRunner:
         self._simulation.close()
         with self._ticked:
             self._ticked.notify_all()
+        self._on_end()
 
     def _next_work(self) -> bool:
         """Wait for a command or a tick that is due and do it. Returns False when it is time to stop."""

@@ -20,9 +20,9 @@ def start():
     """Starts a runner of a simulation of its own."""
     runners = []
 
-    def make(speed=1.0, paused=True):
+    def make(speed=1.0, paused=True, **options):
         simulation = Simulation(Scene())
-        runner = SimulationRunner(simulation, speed, paused)
+        runner = SimulationRunner(simulation, speed, paused, **options)
         runners.append(runner)
         runner.start()
         return runner, simulation
@@ -190,3 +190,11 @@ def test_a_failing_simulation_tells_everybody_why(start, patience, monkeypatch):
         runner.advance(1.0).result(patience)
     runner.stop(patience)
     assert not runner.running
+
+
+def test_whoever_asked_is_told_that_a_failing_simulation_has_ended(start, patience, monkeypatch):
+    ended = threading.Event()
+    runner, simulation = start(on_end=ended.set)
+    monkeypatch.setattr(simulation, "tick", lambda: 1 / 0)
+    runner.advance(1.0)
+    assert ended.wait(patience)
