@@ -13,6 +13,7 @@ from nao_sim_bridge.pictures import Pictures
 from nao_sim_bridge.services import motion
 from nao_sim_bridge.services.arguments import number, numbers
 from nao_sim_bridge.services.binding import make_service
+from nao_sim_bridge.services.fall_events import FallEvents
 from nao_sim_bridge.services.leds import ALLeds
 from nao_sim_bridge.services.live_keys import constants, live_keys
 from nao_sim_bridge.services.memory import ALMemory
@@ -20,6 +21,8 @@ from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.services.motion.wake import AWAKE
 from nao_sim_bridge.services.nao_simulation import NAME as NAO_SIMULATION
 from nao_sim_bridge.services.nao_simulation import NaoSimulation
+from nao_sim_bridge.services.posture import ALRobotPosture
+from nao_sim_bridge.services.posture_events import PostureEvents
 from nao_sim_bridge.services.system import ALSystem
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.runner import SimulationRunner
@@ -87,6 +90,8 @@ class SimulatorServer:
         self.memory.add_live(live_keys(self.runner, self.simulation.model, self.simulation.led_layout, robot_leds))
         for key, value in constants(self.options.scene.version).items():
             self.memory.insert(key, value)
+        self.simulation.after_tick.append(PostureEvents(self.simulation.model, self.memory))
+        self.simulation.after_tick.append(FallEvents(self.simulation, self.memory))
         self.runner.start()
         for name, parts in self.modules().items():
             self.broker.register(name, make_service(name, parts, self.broker))
@@ -102,6 +107,7 @@ class SimulatorServer:
             "ALMemory": [ALMemory(self.memory, self.broker)],
             "ALLeds": [ALLeds(self.simulation, self.runner)],
             "ALMotion": motion.parts(self.simulation, self.runner, self.memory),
+            "ALRobotPosture": [ALRobotPosture(self.simulation, self.runner, self.memory)],
             "ALSystem": [ALSystem(self.memory, self.reset_task, self.ended.set)],
         }
 

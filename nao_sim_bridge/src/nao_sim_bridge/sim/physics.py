@@ -19,12 +19,14 @@ from nao_sim_bridge.sim.readings import BodyReadings, Contact, JointReadings, Po
 from nao_sim_bridge.sim.rotations import Vector3
 from nao_sim_bridge.sim.settings import Settings
 from nao_sim_bridge.sim.urdf import physics_urdf
-from nao_sim_bridge.sim.world import World, build_world
+from nao_sim_bridge.sim.world import FLOOR, World, build_world
 
 # Columns of PyBullet's joint info and contact point tuples.
 JOINT_NAME, LINK_NAME, PARENT_FRAME_POSITION = 1, 12, 14
-BODY_B, LINK_A, POSITION_ON_A, NORMAL_ON_B, NORMAL_FORCE = 2, 3, 5, 7, 9
+BODY_B, LINK_A, POSITION_ON_A, NORMAL_ON_B, DISTANCE, NORMAL_FORCE = 2, 3, 5, 7, 8, 9
 NO_PUSHES: Mapping[str, Vector3] = {}
+# From the torso's origin no part of the robot is further away than this, m.
+REACH = 0.6
 
 
 class Physics:
@@ -35,9 +37,17 @@ class Physics:
         world: What else there is.
         settings: Time step, gains, friction.
         angles: (26,) joint angles to start with, rad (hands 0..1).
+        pitch: Of the torso at the start, rad, for a robot that is not on its feet; see `place`.
     """
 
-    def __init__(self, model: RobotModel, world: World, settings: Settings, angles: Sequence[float]) -> None:
+    def __init__(
+        self,
+        model: RobotModel,
+        world: World,
+        settings: Settings,
+        angles: Sequence[float],
+        pitch: float | None = None,
+    ) -> None:
         self._model = model
         self._settings = settings
         self.client = pybullet.connect(pybullet.DIRECT)
@@ -64,7 +74,7 @@ class Physics:
         local_position, local_orientation = pybullet.getDynamicsInfo(self.robot, -1, physicsClientId=self.client)[3:5]
         self._torso_to_com = (local_position, local_orientation)
         self._com_to_torso = pybullet.invertTransform(local_position, local_orientation)
-        self.place(angles)
+        self.place(angles, pitch=pitch)
 
     def close(self) -> None:
         """Free the engine's memory; the object is of no use afterwards."""
@@ -72,10 +82,31 @@ class Physics:
 
     # --- moving ---------------------------------------------------------------------------------------------------
 
-    def place(self, angles: Sequence[float], yaw: float = 0.0, xy: tuple[float, float] = (0.0, 0.0)) -> None:
-        """Put the robot at rest with these joint angles, its left sole flat on the floor below the torso's origin."""
+    def place(
+        self,
+        angles: Sequence[float],
+        yaw: float = 0.0,
+        xy: tuple[float, float] = (0.0, 0.0),
+        pitch: float | None = None,
+        roll: float = 0.0,
+    ) -> None:
+        """Put the robot at rest on the floor.
+
+        Args:
+            angles: (26,) joint angles, rad (hands 0..1).
+            yaw: Heading, rad.
+            xy: Of the torso's origin in world, m.
+            pitch: Of the torso in world, rad, positive with the face down; the lowest point of the body touches the
+                floor. Without it the left sole is flat on the floor.
+            roll: Of the torso in world, rad, positive with the left side up; of no meaning without a pitch.
+        """
         for index, angle in zip(self._indices, self._to_engine(angles)):
             pybullet.resetJointState(self.robot, index, angle, 0.0, physicsClientId=self.client)
+        if pitch is not None:
+            orientation = pybullet.getQuaternionFromEuler((roll, pitch, yaw))
+            self._reset_base((0.0, 0.0, REACH), orientation)
+            self._reset_base((xy[0], xy[1], REACH - self._clearance()), orientation)
+            return
         self._reset_base((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
         foot_orientation = self.link_pose("l_ankle").orientation
         upright = pybullet.invertTransform((0, 0, 0), foot_orientation)[1]
@@ -89,10 +120,10 @@ class Physics:
     def drive(self, joints: JointCommands) -> None:
         """Tell the motors commands and stiffnesses; a limp joint has only the friction of its gears."""
         motor = self._settings.motor
-        stiffness = np.array(joints.stiffnesses)
+        stiffness = np.array(joints.efforts)
         stiff = stiffness > 0.0
-        targets = np.where(stiff, self._to_engine(joints.commands), self._to_engine(joints.rests))
-        velocities = np.array(self._to_engine_speeds(joints.velocities)) * motor.feed_forward
+        targets = np.where(stiff, self._to_engine(joints.aims), self._to_engine(joints.rests))
+        velocities = np.array(self._to_engine_speeds(joints.aim_velocities)) * motor.feed_forward
         pybullet.setJointMotorControlArray(
             self.robot,
             self._indices,
@@ -262,6 +293,12 @@ class Physics:
             maxForce=self._settings.motor.coupling_force_n,
             physicsClientId=self.client,
         )
+
+    def _clearance(self) -> float:
+        """Height of the lowest point of the body over the floor, m; below 2 m of it."""
+        floor = self.objects[FLOOR]
+        points = pybullet.getClosestPoints(self.robot, floor, 2.0, physicsClientId=self.client)
+        return min(point[DISTANCE] for point in points)
 
     def _reset_base(self, position: Vector3, orientation: Sequence[float]) -> None:
         com, turn = pybullet.multiplyTransforms(position, orientation, *self._torso_to_com)

@@ -13,15 +13,19 @@ from nao_sim_bridge.sim.leds_layout import LedLayout
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.motion.engine import MotionEngine
 from nao_sim_bridge.sim.motion.joints import JointCommands
+from nao_sim_bridge.sim.motion.whole_body import WholeBody
+from nao_sim_bridge.sim.odometry import Odometry
 from nao_sim_bridge.sim.physics import Physics
-from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.readings import Contact, Pose
+from nao_sim_bridge.sim.reflexes import Reflexes
 from nao_sim_bridge.sim.rotations import Vector3
 from nao_sim_bridge.sim.sensors.body import BodySensors
 from nao_sim_bridge.sim.sensors.inertial import InertialUnit
 from nao_sim_bridge.sim.sensors.power import PowerSystem
 from nao_sim_bridge.sim.sensors.sonar import Sonars
 from nao_sim_bridge.sim.settings import Settings
-from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.snapshot import Imu, Snapshot
+from nao_sim_bridge.sim.stability import Stability
 from nao_sim_bridge.sim.tasks import TaskIds
 
 
@@ -39,8 +43,12 @@ class SimulatedRobot:
         model: Its tables.
         joints: Command angles and stiffnesses.
         motion: Tasks and targets of the joints.
+        stability: Balance and fall manager.
+        whole_body: Control of all joints at once.
+        reflexes: What protects the robot from itself, from obstacles and from heat, and moves idle chains.
         leds: The LEDs.
         random: The only source of chance, so that a seed decides everything.
+        getting_up: True while a move runs that takes the robot off its feet or back on them: leaning is no fall then.
 
     Its clock starts at 0 with it: after a reset equal commands must meet equal times, to the last bit.
 
@@ -69,18 +77,24 @@ class SimulatedRobot:
         self.random = random.Random(seed)
         self.joints = JointCommands(model, angles)
         self.motion = MotionEngine(self.joints, task_ids)
+        self.stability = Stability(model, settings, self.joints, self.motion)
+        self.whole_body = WholeBody(model, self.joints, self.motion)
+        self.reflexes = Reflexes(model, self.joints, self.motion, lambda: self._sensed)
         self.leds = LedBank(len(leds.devices), task_ids)
         self.task_ids = task_ids
         self.leds.set(power_on(leds))
         self._sensors = BodySensors(model, settings, physics.links)
         self._physics = physics
         self._imu = InertialUnit(model.imu["Accelerometer"].position, settings.gravity_m_s2)
+        self._odometry: Odometry | None = None
         self._sonars = Sonars(model)
         self._power = PowerSystem(len(model.joints), settings)
         self._pushes: list[_Push] = []
         self._fingers: frozenset[str] = frozenset()
         self._link_names = {index: name for name, index in physics.links.items()}
+        self.getting_up = False
         self._measured = tuple(angles)
+        self._sensed: Snapshot | None = None
         self._dt = settings.tick_s
         self._ticks = 0
 
@@ -88,6 +102,10 @@ class SimulatedRobot:
     def time(self) -> float:
         """Simulated time since the robot was put into the world, s."""
         return self._ticks * self._dt
+
+    def link_name(self, index: int) -> str:
+        """Name of the link that a contact names by its index."""
+        return self._link_names.get(index, "torso")
 
     def push(self, force: Vector3, duration: float, link: str = "torso") -> None:
         """Push a link with `force` (N, in world) for `duration` s from now on."""
@@ -112,8 +130,14 @@ class SimulatedRobot:
         self._ticks += 1
         now = self.time
         self.leds.tick(now)
+        self.whole_body.suspended = self.getting_up
+        self.reflexes.prepare(self._sensed, self.getting_up or self.stability.falls.falling, self.stability.on_feet)
         self.motion.tick(now, self._dt)
+        if self._sensed is not None:
+            self.stability.act(self._sensed, self.getting_up, self._dt)
         self.joints.slip(self._measured)
+        if self._sensed is not None:
+            self.reflexes.limit_efforts(self._sensed, self._dt)
         if self.joints.changed:
             self._physics.drive(self.joints)
             self.joints.changed = False
@@ -129,8 +153,9 @@ class SimulatedRobot:
         self._measured = joints.positions
         body = self._physics.read_body()
         contacts = self._physics.read_contacts()
+        imu = self._imu.read(body, self._dt)
         self._power.advance(lambda: self._sensors.currents(joints.torques), self._dt)
-        return Snapshot(
+        self._sensed = Snapshot(
             tick=tick,
             time=now,
             positions=joints.positions,
@@ -142,7 +167,8 @@ class SimulatedRobot:
             torso=body.pose,
             linear_velocity=body.linear_velocity,
             angular_velocity=body.angular_velocity,
-            imu=self._imu.read(body, self._dt),
+            imu=imu,
+            odometry=self._reckon(joints.positions, imu, contacts),
             sonars=self._sonars.read(self.time, body.pose, self._physics.nearest_hits),
             battery_charge=self._power.charge,
             battery_current=self._power.current,
@@ -152,6 +178,13 @@ class SimulatedRobot:
             fingers=self._fingers,
             sensors=self._sensors,
         )
+        return self._sensed
+
+    def _reckon(self, positions: Sequence[float], imu: Imu, contacts: Sequence[Contact]) -> Pose:
+        if self._odometry is None:
+            ankles = [self._physics.links[name] for name in ("l_ankle", "r_ankle")]
+            self._odometry = Odometry(self.model, ankles, positions, imu.angles)
+        return self._odometry.update(positions, imu.angles, contacts)
 
     def _pose_of(self, link: int, torso: Pose) -> Pose:
         return torso if link < 0 else self._physics.link_pose(self._link_names[link])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Callable
 
 from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.model import load_model
@@ -11,6 +12,7 @@ from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.robot import SimulatedRobot
 from nao_sim_bridge.sim.settings import Settings, load_settings
 from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.start_lean import start_pitch
 from nao_sim_bridge.sim.tasks import TaskIds
 from nao_sim_bridge.sim.world import load_world
 
@@ -42,6 +44,7 @@ class Simulation:
         robot: The robot; replaced at a reset.
         task_ids: Source of the numbers of all tasks.
         snapshot: What was sensed at the last tick; any thread may read it.
+        after_tick: Called with the snapshot at the end of every tick; they stay at a reset.
     """
 
     def __init__(self, scene: Scene = Scene(), settings: Settings | None = None) -> None:
@@ -53,6 +56,7 @@ class Simulation:
         self._physics: Physics | None = None
         self._tick = 0
         self.task_ids = TaskIds()
+        self.after_tick: list[Callable[[Snapshot], None]] = []
         self.robot: SimulatedRobot
         self.snapshot: Snapshot
         self.reset()
@@ -74,7 +78,8 @@ class Simulation:
             self.robot.leds.kill_all()
             self._physics.close()
         angles = posture(self.model, self.scene.posture)
-        self._physics = Physics(self.model, self._world, self.settings, angles)
+        pitch = start_pitch(self.scene.posture)
+        self._physics = Physics(self.model, self._world, self.settings, angles, pitch)
         self.robot = SimulatedRobot(
             self.model, self.led_layout, self.settings, self._physics, angles, self.scene.seed, self.task_ids
         )
@@ -85,6 +90,8 @@ class Simulation:
         self._tick += 1
         self.robot.act()
         self.snapshot = self.robot.sense(self._tick, self.time)
+        for look in self.after_tick:
+            look(self.snapshot)
         return self.snapshot
 
     def run(self, seconds: float) -> Snapshot:

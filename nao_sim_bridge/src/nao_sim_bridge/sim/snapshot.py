@@ -48,6 +48,7 @@ class Snapshot:
         linear_velocity: True velocity of the torso in world, m/s.
         angular_velocity: True angular velocity of the torso in world, rad/s.
         imu: The inertial unit.
+        odometry: Pose of the torso as the robot itself reckons it, in the frame where it stood at the start.
         sonars: Echo distances left and right, m.
         battery_charge: 0..1.
         battery_current: A, positive while it discharges.
@@ -70,6 +71,7 @@ class Snapshot:
     linear_velocity: Vector3
     angular_velocity: Vector3
     imu: Imu
+    odometry: Pose
     sonars: Tuple[float, ...]
     battery_charge: float
     battery_current: float

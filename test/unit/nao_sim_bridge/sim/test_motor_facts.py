@@ -49,7 +49,7 @@ def test_stiffness_decides_on_what_a_motor_can_hold(bench):
 
 @pytest.mark.parametrize(
     "name, target",
-    [("HeadYaw", -2.0), ("LShoulderPitch", -1.0), ("LElbowYaw", 1.0), ("RWristYaw", 1.5), ("LHand", 1.0)],
+    [("HeadYaw", -2.0), ("LShoulderPitch", -1.0), ("LElbowYaw", -2.0), ("RWristYaw", 1.5), ("LHand", 1.0)],
 )
 def test_no_motor_turns_faster_than_it_can(bench, name, target):
     one = bench()

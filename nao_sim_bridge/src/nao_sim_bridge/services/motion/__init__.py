@@ -8,10 +8,12 @@ from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.services.motion.angles import Angles
 from nao_sim_bridge.services.motion.body import Body
 from nao_sim_bridge.services.motion.cartesian import Cartesian
+from nao_sim_bridge.services.motion.falls import Falls
 from nao_sim_bridge.services.motion.mass import Mass
 from nao_sim_bridge.services.motion.stiffness import Stiffness
 from nao_sim_bridge.services.motion.task_list import TaskList
 from nao_sim_bridge.services.motion.wake import Wake
+from nao_sim_bridge.services.motion.whole_body import WholeBody
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
 
@@ -26,4 +28,6 @@ def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore)
         TaskList(simulation, runner),
         Cartesian(simulation, runner),
         Mass(simulation, runner),
+        WholeBody(simulation, runner),
+        Falls(simulation, runner),
     ]

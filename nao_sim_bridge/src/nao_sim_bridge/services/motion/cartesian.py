@@ -20,10 +20,15 @@ from nao_sim_bridge.services.motion.cartesian_arguments import (
 from nao_sim_bridge.services.motion.part import MotionPart
 from nao_sim_bridge.services.motion.placements import placement, space_of
 from nao_sim_bridge.sim.frames import Placement, frame_of, sensor_places, space_in_torso
+from nao_sim_bridge.sim.motion.body_kinematics import body_kinematics
+from nao_sim_bridge.sim.motion.cartesian_move import CartesianMove, EffectorMove, moving_joints
 from nao_sim_bridge.sim.motion.cartesian_path import PosePath, joint_curves
 from nao_sim_bridge.sim.motion.inverse_kinematics import solve
+from nao_sim_bridge.sim.motion.whole_body_tasks import end_paths, lead_to, led_joints, start_paths
 from nao_sim_bridge.sim.tasks import Task
 
+# Top speeds of an effector under whole body control, m/s and rad/s.
+LEAD_SPEED = (0.5, 3.0)
 PoseReader = Callable[[Any], np.ndarray]
 
 
@@ -88,10 +93,6 @@ class Cartesian(MotionPart):
         frame = frame_of(self._model, name)
         return np.linalg.inv(space_in_torso(self._model, space_of(space), placed)) @ placed.in_torso(frame)
 
-    def _chain(self, name: str) -> list[int]:
-        joints = (self._model.joint_index[joint] for joint in self._model.chains[name])
-        return [i for i in joints if not self._model.joints[i].is_hand]
-
     def _set_many(
         self, call: str, names: Any, spaces: Any, targets: Any, pose: PoseReader, fraction: float, masks: Any
     ) -> Task:
@@ -104,14 +105,21 @@ class Cartesian(MotionPart):
     ) -> Task:
         names = effectors(names)
         fraction = number(fraction, "fractionMaxSpeed", 0.01, 1.0)
-        placed, commands = self._placement(False), self._robot.joints.commands
-        targets: dict[int, float] = {}
         masks, spaces = one_each(masks, len(names), "axisMask"), one_each(spaces, len(names), "spaces")
-        for name, space, pose, mask in zip(names, spaces, poses, masks):
-            frame, chain = space_in_torso(self._model, space_of(space), placed), self._chain(name)
-            at = frame_of(self._model, name)
-            found = solve(self._model, chain, at, frame @ pose, mask_of(mask), frame[:3, :3], commands)
-            targets.update(zip(chain, found))
+        moves = [
+            EffectorMove(name, space_of(space), mask_of(mask), lambda _, pose=pose: pose)
+            for name, space, pose, mask in zip(names, spaces, poses, masks)
+        ]
+        if self._robot.whole_body.active:
+            speed = (fraction * LEAD_SPEED[0], fraction * LEAD_SPEED[1])
+            return self._runner.execute(
+                lambda: lead_to(self._robot.whole_body, moves, speed, self._placement(False)), call
+            )
+        commands = self._robot.joints.commands
+        body = body_kinematics(self._model)
+        move = CartesianMove(body, moves, self._placement(False))
+        found = solve(body, move.indices, move.goals_at(0.0), commands, move.footing_at(0.0))
+        targets = {i: float(found[i]) for i in move.indices}
         top = {i: fraction * self._model.joints[i].max_velocity for i in targets}
         # All joints arrive together, so that the effector goes about straight.
         duration = max(abs(angle - commands[i]) / top[i] for i, angle in targets.items())
@@ -126,19 +134,36 @@ class Cartesian(MotionPart):
         masks = [mask_of(mask) for mask in one_each(masks, len(names), "axisMasks")]
         spaces = [space_of(space) for space in one_each(spaces, len(names), "spaces")]
         keys = paths_of(paths, times, len(names), pose)
-        chains = [self._chain(name) for name in names]
+        indices = moving_joints(self._model, names)
+        durations = [at[-1] for at, _ in keys]
 
-        def curves(commands: Sequence[float]) -> dict:
-            placed = self._placement(False)
-            found: dict = {}
-            for name, space, mask, chain, (at, poses) in zip(names, spaces, masks, chains, keys):
-                frame, now = space_in_torso(self._model, space, placed), self._pose(name, space, placed)
+        def moves_from(placed: Placement) -> list[EffectorMove]:
+            moves = []
+            for name, space, mask, (at, poses) in zip(names, spaces, masks, keys):
+                now = self._pose(name, space, placed)
                 ahead = poses if absolute else [_moved(now, change) for change in poses]
-                path, moments, moving = PosePath((0.0, *at), [now, *ahead]), (0.0, *at), frame_of(self._model, name)
-                found.update(joint_curves(self._model, chain, moving, path, moments, mask, frame, commands))
-            return found
+                moves.append(EffectorMove(name, space, mask, PosePath((0.0, *at), [now, *ahead]).pose))
+            return moves
 
-        return self._follow(call, [i for chain in chains for i in chain], curves)
+        def start() -> Task:
+            robot, owner = self._robot, object()
+
+            def curves(commands: Sequence[float]) -> dict:
+                placed = self._placement(False)
+                moves = moves_from(placed)
+                if robot.whole_body.active:
+                    start_paths(robot.whole_body, owner, moves, durations, placed)
+                    return dict(led_joints(robot.joints, indices, max(durations)))
+                body = body_kinematics(self._model)
+                move = CartesianMove(body, moves, placed)
+                moments = sorted({moment for at, _ in keys for moment in at})
+                return joint_curves(body, indices, move.goals_at, moments, commands, move.footing_at)
+
+            task = robot.motion.follow(call, indices, curves)
+            task.add_done_callback(lambda done: end_paths(robot.whole_body, owner, names, done.killed))
+            return task
+
+        return self._runner.execute(start, call)
 
 
 def _moved(pose: np.ndarray, change: np.ndarray) -> np.ndarray:

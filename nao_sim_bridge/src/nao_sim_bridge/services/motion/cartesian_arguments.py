@@ -10,12 +10,12 @@ from nao_sim_bridge.services.arguments import numbers
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.kinematics import matrix_rpy, rpy_matrix, transform
 
-EFFECTORS = ("Head", "LArm", "RArm", "LLeg", "RLeg")
+EFFECTORS = ("Head", "LArm", "RArm", "LLeg", "RLeg", "Torso")
 LARGEST_MASK = 63
 
 
 def effectors(names: Any) -> list[str]:
-    """Effectors that a chain moves, each once.
+    """Effectors, each once.
 
     Raises:
         UnknownName: One is no such effector.

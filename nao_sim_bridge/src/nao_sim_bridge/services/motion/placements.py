@@ -25,6 +25,6 @@ def space_of(value: Any) -> int:
 
 def placement(model: RobotModel, robot: SimulatedRobot, now: Snapshot, use_sensors: bool) -> Placement:
     """Where the links are measured to be, or commanded to be."""
-    torso = transform(quaternion_matrix(now.torso.orientation), now.torso.position)
+    torso = transform(quaternion_matrix(now.odometry.orientation), now.odometry.position)
     measured = Placement(link_transforms(model, now.positions), torso)
     return measured if use_sensors else commanded(model, robot.joints.commands, measured)

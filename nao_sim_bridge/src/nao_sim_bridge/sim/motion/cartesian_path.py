@@ -1,26 +1,35 @@
-"""Paths of an effector through poses, as curves of its joints. Pure."""
+"""Paths of effectors through poses, as curves of the joints. Pure.
+
+The joints pass through an exact solution every `SAMPLE_TIME` and are interpolated between. Solutions are found when
+time comes near them, so that a long path costs no more in one tick than a short one.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import Sequence
+from bisect import bisect_right
+from dataclasses import dataclass
+from typing import Callable, Iterable, Sequence
 
 import numpy as np
 
-from nao_sim_bridge.sim.frames import Frame
 from nao_sim_bridge.sim.kinematics import axis_matrix, transform
-from nao_sim_bridge.sim.model import RobotModel
-from nao_sim_bridge.sim.motion.curves import SmoothCurve
-from nao_sim_bridge.sim.motion.inverse_kinematics import rotation_vector, solve
+from nao_sim_bridge.sim.motion.body_kinematics import BodyKinematics
+from nao_sim_bridge.sim.motion.curves import ROUNDING, SmoothCurve
+from nao_sim_bridge.sim.motion.grounded_pose import Footing
+from nao_sim_bridge.sim.motion.inverse_kinematics import Goal, rotation_vector, solve
 
-# Joint curves pass through an exact solution this often, s; between them they deviate by less than a motor does. Long
-# paths have fewer, so that starting one does not delay a tick by much.
-SAMPLE_TIME = 0.1
-MAX_SAMPLES = 24
+# Between two solutions the joints deviate from the path by less than a motor does. Seconds.
+SAMPLE_TIME = 0.05
+# A solution is close to the one before, so that few iterations do; more would be felt in the tick.
+SAMPLE_ITERATIONS = 12
 
 
 class PosePath:
     """A smooth path through poses, at rest at both ends.
+
+    Attributes:
+        duration: Time of the last pose, s.
 
     Args:
         times: Times of the poses, s, the first is 0.
@@ -28,6 +37,7 @@ class PosePath:
     """
 
     def __init__(self, times: Sequence[float], poses: Sequence[np.ndarray]) -> None:
+        self.duration = times[-1]
         self._start = poses[0][:3, :3]
         turns = [rotation_vector(self._start.T @ pose[:3, :3]) for pose in poses]
         points = [(*pose[:3, 3], *turn) for pose, turn in zip(poses, turns)]
@@ -41,44 +51,112 @@ class PosePath:
         return transform(self._start @ turn, values[:3])
 
 
-def sample_times(times: Sequence[float]) -> list[float]:
-    """Rising times in s from `times[0]` = 0 to the end: every key time, and steps between them."""
-    step = max(SAMPLE_TIME, times[-1] / MAX_SAMPLES)
+def sample_times(times: Iterable[float]) -> list[float]:
+    """Rising times in s from 0 to the last of `times`: every one of them, and steps between."""
     found = [0.0]
-    for start, end in zip(times, times[1:]):
-        count = max(1, math.ceil((end - start) / step))
-        found += [start + (end - start) * k / count for k in range(1, count)] + [end]
+    for end in times:
+        start = found[-1]
+        count = max(1, math.ceil((end - start) / SAMPLE_TIME - ROUNDING))
+        found += [start + (end - start) * k / count for k in range(1, count)] + [end] * (end > start)
     return found
 
 
-def joint_curves(
-    model: RobotModel,
-    indices: Sequence[int],
-    frame: Frame,
-    path: PosePath,
-    times: Sequence[float],
-    mask: int,
-    space: np.ndarray,
-    commands: Sequence[float],
-) -> dict[int, SmoothCurve]:
-    """Curves of joints that move `frame` along a path.
+class SolvedPath:
+    """Joint angles along a path, solved when they are needed.
 
     Args:
-        model: The robot.
-        indices: Joints from the torso to `frame`, without hands.
-        frame: What moves.
-        path: Poses in the space.
-        times: Key times of the path, s, the first is 0.
-        mask: Axes that count, as in `solve`.
-        space: (4, 4) pose of the space in the torso frame.
-        commands: (26,) angles to begin at, rad.
+        times: When to solve, s, rising from 0.
+        first: (n,) angles at time 0, rad.
+        solve_at: (time in s, angles of the sample before) -> angles then.
     """
-    at = sample_times(times)
-    angles = list(commands)
-    solved = [[angles[i] for i in indices]]
-    for moment in at[1:]:
-        solution = solve(model, indices, frame, space @ path.pose(moment), mask, space[:3, :3], angles)
-        for index, angle in zip(indices, solution):
-            angles[index] = angle
-        solved.append(solution)
-    return {index: SmoothCurve(tuple(at), values) for index, values in zip(indices, zip(*solved))}
+
+    def __init__(
+        self, times: Sequence[float], first: np.ndarray, solve_at: Callable[[float, np.ndarray], np.ndarray]
+    ) -> None:
+        self.times = times
+        self._solved = [first]
+        self._solve_at = solve_at
+        self._latest: tuple[float, np.ndarray] | None = None
+
+    def angles(self, elapsed: float) -> np.ndarray:
+        """(n,) angles after `elapsed` seconds; holds the end points outside."""
+        # Every joint asks for the same time in turn.
+        if self._latest is None or self._latest[0] != elapsed:
+            self._latest = (elapsed, self._interpolated(elapsed))
+        return self._latest[1]
+
+    def _interpolated(self, elapsed: float) -> np.ndarray:
+        last = len(self.times) - 1
+        if elapsed >= self.times[-1] - ROUNDING:
+            return self._sample(last)
+        i = max(bisect_right(self.times, elapsed) - 1, 0)
+        length = self.times[i + 1] - self.times[i]
+        s = min(max((elapsed - self.times[i]) / length, 0.0), 1.0)
+        t = 1.0 - s
+        start, end = self._sample(i), self._sample(i + 1)
+        slope_start, slope_end = self._slope(i) * length, self._slope(i + 1) * length
+        return t * t * ((1 + 2 * s) * start + s * slope_start) + s * s * ((1 + 2 * t) * end - t * slope_end)
+
+    def _sample(self, i: int) -> np.ndarray:
+        while len(self._solved) <= i:
+            self._solved.append(self._solve_at(self.times[len(self._solved)], self._solved[-1]))
+        return self._solved[i]
+
+    def _slope(self, i: int) -> np.ndarray:
+        """(n,) slope at a sample by the monotone rule of `SmoothCurve`: no joint leaves the range of its samples."""
+        if i in (0, len(self.times) - 1):
+            return np.zeros(len(self._solved[0]))
+        before, here, after = (self._sample(k) for k in (i - 1, i, i + 1))
+        a = (here - before) / (self.times[i] - self.times[i - 1])
+        b = (after - here) / (self.times[i + 1] - self.times[i])
+        same = a * b > 0.0
+        return np.where(same, 2.0 * a * b / np.where(same, a + b, 1.0), 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedCurve:
+    """One joint of a solved path.
+
+    Attributes:
+        path: The path of all joints.
+        index: The joint.
+    """
+
+    path: SolvedPath
+    index: int
+
+    @property
+    def duration(self) -> float:
+        """Time of the end, s."""
+        return self.path.times[-1]
+
+    def value(self, elapsed: float) -> float:
+        """Angle in rad after `elapsed` seconds."""
+        return float(self.path.angles(elapsed)[self.index])
+
+
+def joint_curves(
+    body: BodyKinematics,
+    indices: Iterable[int],
+    goals_at: Callable[[float], Sequence[Goal]],
+    times: Sequence[float],
+    commands: Sequence[float],
+    footing_at: Callable[[float], Footing | None] = lambda _: None,
+) -> dict[int, SolvedCurve]:
+    """Curves of joints that bring frames along paths.
+
+    Args:
+        body: The robot.
+        indices: Joints that move.
+        goals_at: The goals at a time in s.
+        times: Key times of the paths, s, rising.
+        commands: (26,) angles to begin at, rad.
+        footing_at: The foot that stands at a time in s; None while the torso stays where it is.
+    """
+    indices = list(indices)
+
+    def solve_at(moment: float, before: np.ndarray) -> np.ndarray:
+        return solve(body, indices, goals_at(moment), before, footing_at(moment), SAMPLE_ITERATIONS)
+
+    path = SolvedPath(sample_times(times), np.array(commands, dtype=float), solve_at)
+    return {index: SolvedCurve(path, index) for index in indices}

@@ -29,6 +29,15 @@ class Ramp:
         """Time from start to target, in s."""
         return abs(self.target - self.start) / self.speed
 
+    @property
+    def extremes(self) -> tuple[float, float]:
+        """Smallest and largest angle, in rad."""
+        return min(self.start, self.target), max(self.start, self.target)
+
+    def peak_speed(self) -> float:
+        """Largest speed along the ramp, in rad/s."""
+        return self.speed
+
     def value(self, elapsed: float) -> float:
         """Angle in rad after `elapsed` seconds; holds start before and target afterwards."""
         duration = self.duration
@@ -53,6 +62,7 @@ class SmoothCurve:
     times: Sequence[float]
     values: Sequence[float]
     _slopes: tuple[float, ...] = field(init=False, repr=False, compare=False)
+    _segments: tuple[tuple[float, ...], ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if len(self.times) != len(self.values) or len(self.times) < 2:
@@ -60,6 +70,8 @@ class SmoothCurve:
         if any(b <= a for a, b in zip(self.times, self.times[1:])):
             raise ValueError(f"times {list(self.times)} do not rise strictly")
         object.__setattr__(self, "_slopes", _monotone_slopes(self.times, self.values))
+        ends = zip(self.times, self.times[1:], self.values, self.values[1:], self._slopes, self._slopes[1:])
+        object.__setattr__(self, "_segments", tuple(_hermite(*end) for end in ends))
 
     @property
     def duration(self) -> float:
@@ -74,22 +86,18 @@ class SmoothCurve:
         if elapsed >= times[-1] - ROUNDING:
             return values[-1]
         i = bisect_right(times, elapsed) - 1
-        length = times[i + 1] - times[i]
-        s = (elapsed - times[i]) / length
-        return _hermite(s, values[i], values[i + 1], self._slopes[i] * length, self._slopes[i + 1] * length)
+        start, length, c0, c1, c2, c3 = self._segments[i]
+        share = (elapsed - start) / length
+        return c0 + share * (c1 + share * (c2 + share * c3))
 
-    def peak_speed(self, samples_per_segment: int = 16) -> float:
-        """Largest speed along the curve, in rad/s, sampled."""
-        peak = 0.0
-        for i in range(len(self.times) - 1):
-            length = self.times[i + 1] - self.times[i]
-            rise = self.values[i + 1] - self.values[i]
-            a, b = self._slopes[i] * length, self._slopes[i + 1] * length
-            for k in range(samples_per_segment + 1):
-                s = k / samples_per_segment
-                slope = 6 * s * (1 - s) * rise + (1 - s) * (1 - 3 * s) * a + s * (3 * s - 2) * b
-                peak = max(peak, abs(slope) / length)
-        return peak
+    @property
+    def extremes(self) -> tuple[float, float]:
+        """Smallest and largest angle, in rad: the curve does not leave the range of its points."""
+        return min(self.values), max(self.values)
+
+    def peak_speed(self) -> float:
+        """Largest speed along the curve, in rad/s."""
+        return max(_peak_slope(*segment[2:]) / segment[1] for segment in self._segments)
 
 
 def _monotone_slopes(times: Sequence[float], values: Sequence[float]) -> tuple[float, ...]:
@@ -98,7 +106,19 @@ def _monotone_slopes(times: Sequence[float], values: Sequence[float]) -> tuple[f
     return (0.0, *inner, 0.0)
 
 
-def _hermite(s: float, p0: float, p1: float, m0: float, m1: float) -> float:
-    """Cubic through p0 and p1 with end slopes m0 and m1 (per unit of s), at s in [0, 1]."""
-    t = 1.0 - s
-    return t * t * ((1 + 2 * s) * p0 + s * m0) + s * s * ((1 + 2 * t) * p1 - t * m1)
+def _hermite(t0: float, t1: float, p0: float, p1: float, v0: float, v1: float) -> tuple[float, ...]:
+    """Start and length in s of the cubic from (t0, p0) to (t1, p1) with end speeds v0 and v1, and its coefficients.
+
+    The coefficients belong to rising powers of the share of the length that has passed.
+    """
+    length = t1 - t0
+    m0, m1, rise = v0 * length, v1 * length, p1 - p0
+    return t0, length, p0, m0, 3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise
+
+
+def _peak_slope(_: float, c1: float, c2: float, c3: float) -> float:
+    """Largest magnitude of the slope of a cubic on [0, 1]: at an end or where the slope turns."""
+    shares = [0.0, 1.0]
+    if c3 != 0.0 and 0.0 < -c2 / (3.0 * c3) < 1.0:
+        shares.append(-c2 / (3.0 * c3))
+    return max(abs(c1 + share * (2.0 * c2 + 3.0 * c3 * share)) for share in shares)

@@ -7,23 +7,44 @@ Two kinds of motion share the joints, as in ALMotion:
 - a *target* (setAngles and kin) is no task: a newer one replaces it at any time. It gives way to a task that starts on
   its joint, and one set while a task holds the joint is taken up when that task ends.
 
+Joints that neither moves are idle, and somebody may move them for as long as they are.
+
 Only the simulation thread calls anything here.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Callable, Iterable, Mapping, Sequence, Union
+from typing import AbstractSet, Callable, Iterable, Mapping, Protocol, Sequence, Union
 
+from nao_sim_bridge.sim.motion.bezier import BezierCurve
 from nao_sim_bridge.sim.motion.curves import ROUNDING, Ramp, SmoothCurve
 from nao_sim_bridge.sim.motion.joints import JointCommands
+from nao_sim_bridge.sim.motion.wishes import Notices
 from nao_sim_bridge.sim.tasks import Task, TaskIds
 
-Curve = Union[Ramp, SmoothCurve]
+Curve = Union[Ramp, SmoothCurve, BezierCurve]
 CurveBuilder = Callable[[Sequence[float]], Mapping[int, Curve]]
 
 # A command is "there" when it is this close; float rounding only, commands are exact.
 REACHED = 1e-9
+
+
+class Corrector(Protocol):
+    """Changes what tasks and targets want before the joints are told, as whole body control does."""
+
+    def correct(self, wanted: dict[int, float], dt: float) -> dict[int, float]:
+        """What the joints are told instead of `wanted` (rad by index) at a tick of `dt` s; called at every tick."""
+
+    def stop(self, indices: Iterable[int]) -> None:
+        """Leave these joints where they are: somebody has killed what moves them."""
+
+
+class IdleMotion(Protocol):
+    """Moves joints that nobody else moves, as breathing does."""
+
+    def wishes(self, busy: AbstractSet[int], dt: float) -> Mapping[int, float]:
+        """Where idle joints go at a tick of `dt` s, rad by index; none of `busy`, which somebody else moves."""
 
 
 @dataclass(eq=False)
@@ -44,6 +65,11 @@ class _Job:
 class MotionEngine:
     """Advances all joint motion.
 
+    Attributes:
+        corrector: Who changes what tasks and targets want; None when nobody does.
+        idle: Who moves idle joints; None when nobody does.
+        notices: Tells in the log what cannot be done as it was asked.
+
     Args:
         joints: Where commands and stiffnesses go.
         task_ids: Source of the tasks' numbers.
@@ -56,6 +82,9 @@ class MotionEngine:
         self._targets: dict[int, tuple[float, float]] = {}
         self._ramps: dict[int, tuple[Ramp, float]] = {}
         self._now = 0.0
+        self.corrector: Corrector | None = None
+        self.idle: IdleMotion | None = None
+        self.notices = Notices(joints)
 
     # --- what callers ask for -------------------------------------------------------------------------------------
 
@@ -69,8 +98,9 @@ class MotionEngine:
 
     def set_targets(self, targets: Mapping[int, float], speeds: Mapping[int, float]) -> None:
         """Move joints to `targets` (rad) at `speeds` (rad/s) from now on; replaces older targets."""
+        self.notices.check_targets(targets)
         for index, target in targets.items():
-            self._targets[index] = (self._joints.clamp(index, target), speeds[index])
+            self._targets[index] = (self._joints.clamp_alone(index, target), speeds[index])
             self._ramps.pop(index, None)
 
     def target_of(self, index: int) -> float:
@@ -103,6 +133,8 @@ class MotionEngine:
         for index in wanted:
             self._targets.pop(index, None)
             self._ramps.pop(index, None)
+        if self.corrector is not None:
+            self.corrector.stop(wanted)
 
     def kill_all(self) -> None:
         """Kill every task and drop every target."""
@@ -110,6 +142,8 @@ class MotionEngine:
             job.task.kill()
         self._targets.clear()
         self._ramps.clear()
+        if self.corrector is not None:
+            self.corrector.stop(range(len(self._joints.commands)))
 
     # --- the tick -------------------------------------------------------------------------------------------------
 
@@ -117,22 +151,34 @@ class MotionEngine:
         """Advance everything to time `now` (s), `dt` seconds after the last tick."""
         self._now = now
         if not (self._jobs or self._targets):
-            self._joints.step({}, dt)
+            self._command({} if self.idle is None else dict(self.idle.wishes(frozenset(), dt)), dt)
             return
         self._start_jobs(now - dt)
         wanted: dict[int, float] = {}
-        self._advance_targets(wanted, now, dt)
+        if self.idle is not None:
+            wanted.update(self.idle.wishes(self._moved(), dt))
+        if self._targets:
+            self._advance_targets(wanted, now, dt)
         for job in self._jobs:
             if job.started is None:
                 continue
             elapsed = now - job.started
-            values = {index: curve.value(elapsed) for index, curve in job.curves.items()}
             if job.stiffness:
-                self._joints.set_stiffness(values)
-            else:
-                wanted.update(values)
-        self._joints.step(wanted, dt)
+                self._joints.set_stiffness({index: curve.value(elapsed) for index, curve in job.curves.items()})
+                continue
+            for index, curve in job.curves.items():
+                wanted[index] = curve.value(elapsed)
+        self._command(wanted, dt)
         self._finish_jobs(now)
+
+    def _moved(self) -> AbstractSet[int]:
+        """Joints that tasks and targets move."""
+        return {*self._targets, *(i for job in self._jobs if not job.stiffness for i in job.indices)}
+
+    def _command(self, wanted: dict[int, float], dt: float) -> None:
+        if self.corrector is not None:
+            wanted = self.corrector.correct(wanted, dt)
+        self._joints.step(wanted, dt)
 
     def _add(self, name: str, indices: Iterable[int], build: CurveBuilder, stiffness: bool) -> Task:
         task = self._ids.make(name, on_kill=self._drop)
@@ -149,6 +195,7 @@ class MotionEngine:
             job.started = now
             job.curves = job.build(self._joints.stiffnesses if job.stiffness else self._joints.commands)
             if not job.stiffness:
+                self.notices.check_curves(job.task.name, job.curves)
                 for index in job.indices:
                     self._targets.pop(index, None)
                     self._ramps.pop(index, None)
@@ -174,10 +221,15 @@ class MotionEngine:
                 job.task.finish()
 
     def _commands_reached(self, job: _Job) -> bool:
-        """False while a motor's speed limit still keeps a command from the end of its curve."""
+        """False while a motor's speed limit still keeps a command from the end of its curve.
+
+        A command that something else keeps from there, an arm before a collision for example, is as far as it gets.
+        """
+        if self.corrector is not None:
+            return True  # it may have kept the command somewhere else
         commands = self._joints.commands
         return all(
             abs(commands[i] - self._joints.clamp(i, curve.value(curve.duration))) <= REACHED
             for i, curve in job.curves.items()
-            if not self._joints.overruled(i, job.curves)
+            if not (i in self._joints.blocked or self._joints.overruled(i, job.curves))
         )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Callable, Iterable, Iterator, Optional, Sequence
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
 
 from nao_sim_bridge.sim.motion.curves import Ramp, SmoothCurve
+from nao_sim_bridge.sim.posture_recognition import CROUCHING, STANDING, recognise
 from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.robot import SimulatedRobot
 from nao_sim_bridge.sim.snapshot import Snapshot
@@ -17,17 +18,18 @@ REST_POSTURE = "Crouch"
 # Time to stiffen or release the body, s, and to move between standing and crouching.
 STIFFEN_TIME = 0.2
 POSTURE_TIME = 2.0
-# Beyond this lean (rad) the robot lies: getting up is more than one motion.
-MAX_LEAN = 0.8
 
 
-def run_steps(robot: SimulatedRobot, name: str, steps: Iterable[Step]) -> Task:
+def run_steps(
+    robot: SimulatedRobot, name: str, steps: Iterable[Step], outcome: Callable[[], Any] = lambda: None
+) -> Task:
     """Run steps one after the other; each returns the task to wait for, or None.
 
     Args:
         robot: Whose task numbers are used.
         name: NAOqi name of the whole.
         steps: Called in order, each when the one before has ended; a killed step ends the whole.
+        outcome: Called at the end, also at one before time; what it returns is the result of the whole.
     """
     remaining: Iterator[Step] = iter(steps)
     running: list[Task] = []
@@ -35,6 +37,7 @@ def run_steps(robot: SimulatedRobot, name: str, steps: Iterable[Step]) -> Task:
     def stop(_: Task) -> None:
         for task in running:
             task.kill()
+        whole.finish(outcome())
 
     whole = robot.task_ids.make(name, on_kill=stop)
 
@@ -50,20 +53,19 @@ def run_steps(robot: SimulatedRobot, name: str, steps: Iterable[Step]) -> Task:
                 running[:] = [task]
                 task.add_done_callback(proceed)
                 return
-        whole.finish()
+        whole.finish(outcome())
 
     proceed()
     return whole
 
 
-def is_upright(snapshot: Snapshot) -> bool:
-    """Whether the torso leans so little that the robot is on its feet or its seat."""
-    roll, pitch, _ = snapshot.imu.angles
-    return abs(roll) < MAX_LEAN and abs(pitch) < MAX_LEAN
+def is_on_feet(robot: SimulatedRobot, snapshot: Snapshot) -> bool:
+    """Whether the robot stands or crouches: from anywhere else, standing up is more than one motion."""
+    return recognise(robot.model, snapshot).family in (STANDING, CROUCHING)
 
 
 def wake_up(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
-    """Stiffen the body where it is and, when upright, stand up; `on_end` is called after the last step."""
+    """Stiffen the body where it is and, when on its feet, stand up; `on_end` is called after the last step."""
     body = range(len(robot.model.joints))
 
     def stiffen() -> Task:
@@ -73,17 +75,17 @@ def wake_up(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Cal
         return stiffness_task(robot, "wakeUp", body, 1.0, STIFFEN_TIME)
 
     def stand() -> Task | None:
-        return posture_task(robot, "wakeUp", AWAKE_POSTURE) if is_upright(snapshot()) else None
+        return posture_task(robot, "wakeUp", AWAKE_POSTURE) if is_on_feet(robot, snapshot()) else None
 
     return run_steps(robot, "wakeUp", [stiffen, stand, on_end])
 
 
 def rest(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
-    """Crouch when upright and stiff, then release all motors; `on_end` is called after the last step."""
+    """Crouch when on its feet and stiff, then release all motors; `on_end` is called after the last step."""
     body = range(len(robot.model.joints))
 
     def crouch() -> Task | None:
-        standing = is_upright(snapshot()) and min(robot.joints.stiffnesses) > 0.0
+        standing = is_on_feet(robot, snapshot()) and min(robot.joints.stiffnesses) > 0.0
         return posture_task(robot, "rest", REST_POSTURE) if standing else None
 
     def release() -> Task:

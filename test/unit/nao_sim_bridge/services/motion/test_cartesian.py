@@ -44,6 +44,34 @@ def test_a_relative_path_shifts_the_hand_in_time(stiff_robot):
     assert hand(stiff_robot) == pytest.approx([before[0] + 0.02, before[1], before[2] + 0.04], abs=0.006)
 
 
+def test_the_world_is_where_the_robot_stood_at_its_start(robot):
+    feet = [robot.ALMotion.getPosition(name, WORLD, True) for name in ("LLeg", "RLeg")]
+    assert [sum(both) / 2 for both in zip(*feet)] == pytest.approx([0.0] * 6, abs=0.01)
+
+
+def test_the_torso_moves_over_feet_that_stay(stiff_robot):
+    stiff_robot.advance(0.5)
+    feet = [stiff_robot.ALMotion.getPosition(name, WORLD, True)[:3] for name in ("LLeg", "RLeg")]
+    before = stiff_robot.ALMotion.getPosition("Torso", WORLD, True)
+    change = [0.01, 0.02, -0.03, 0.0, 0.0, 0.0]
+    stiff_robot.finish("ALMotion", "positionInterpolation", "Torso", WORLD, change, 63, [1.5], False, after=1.7)
+    moved = stiff_robot.ALMotion.getPosition("Torso", WORLD, True)
+    assert [b - a for a, b in zip(before, moved)][:3] == pytest.approx(change[:3], abs=0.005)
+    after = [stiff_robot.ALMotion.getPosition(name, WORLD, True)[:3] for name in ("LLeg", "RLeg")]
+    assert sum(after, []) == pytest.approx(sum(feet, []), abs=0.005)
+
+
+def test_effectors_that_are_all_out_of_reach_end_in_time(stiff_robot):
+    far = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    names = ["LArm", "RArm", "Head"]
+    path = stiff_robot.post("ALMotion", "positionInterpolations", names, TORSO, [far] * 3, 63, 1.0)
+    stiff_robot.handed_over("ALMotion")
+    stiff_robot.advance(0.95)
+    assert path.isRunning()
+    stiff_robot.advance(0.3)
+    stiff_robot.answer(path)
+
+
 @pytest.mark.parametrize(
     "method, arguments, message",
     [

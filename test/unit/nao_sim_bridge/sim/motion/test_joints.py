@@ -127,3 +127,36 @@ def test_a_right_hip_is_overruled_only_while_the_left_is_wanted(joints):
     assert not joints.overruled(RIGHT, {RIGHT: 0.1})
     assert not joints.overruled(LEFT, {LEFT: 0.0, RIGHT: 0.1})
     assert not joints.overruled(YAW, {LEFT: 0.0, YAW: 0.1})
+
+
+def test_corrections_change_what_motors_are_told_and_not_the_commands(joints):
+    joints.correct({YAW: 0.05}, DT)
+    assert joints.commands[YAW] == 0.0
+    assert joints.aims[YAW] == pytest.approx(0.05)
+    assert joints.aim_velocities[YAW] == pytest.approx(0.05 / DT)
+    assert joints.changed
+    joints.correct({YAW: 0.05}, DT)
+    assert joints.aims[YAW] == pytest.approx(0.05)
+    assert joints.aim_velocities[YAW] == 0.0
+
+
+def test_corrections_keep_to_the_speed_of_the_motors(joints):
+    reach = MODEL.joints[YAW].max_velocity * DT
+    joints.correct({YAW: 1.0}, DT)
+    assert joints.aims[YAW] == pytest.approx(reach)
+    joints.correct({}, DT)
+    assert joints.aims[YAW] == pytest.approx(0.0)
+    assert joints.aim_velocities[YAW] == pytest.approx(-MODEL.joints[YAW].max_velocity)
+
+
+def test_corrected_aims_keep_to_the_limits_of_the_joint(joints):
+    joints.correct({ELBOW: 0.05}, DT)
+    assert joints.commands[ELBOW] == 0.0
+    assert joints.aims[ELBOW] == pytest.approx(-0.0349066)
+
+
+def test_motors_are_told_nothing_new_while_nothing_is_corrected(joints):
+    joints.correct({}, DT)
+    assert not joints.changed
+    assert joints.aims is joints.commands
+    assert joints.aim_velocities is joints.velocities

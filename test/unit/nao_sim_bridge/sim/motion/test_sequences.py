@@ -30,7 +30,7 @@ def test_waking_up_from_a_limp_crouch_stands_stiff(bench, ended):
     assert ended == ["awake"]
     assert one.now.stiffnesses == (1.0,) * 26
     assert one.now.torso.position[2] == pytest.approx(0.331, abs=0.005)
-    assert sequences.is_upright(one.now)
+    assert sequences.is_on_feet(one.robot, one.now)
 
 
 def test_waking_up_does_not_make_a_limp_joint_jump(bench, ended):
@@ -68,14 +68,32 @@ def test_waking_up_on_the_floor_only_stiffens(bench, ended):
     one = bench("Stand")
     one.push((60.0, 0.0, 0.0), 0.2)
     one.run(2.0)
-    assert not sequences.is_upright(one.now)
+    assert not sequences.is_on_feet(one.robot, one.now)
     one.stiffen(0.0)
     one.run(0.5)
     task = wake_up(one, ended)
     one.run(2.5)
     assert task.finished and ended == ["awake"]
     assert one.now.stiffnesses == (1.0,) * 26
-    assert not sequences.is_upright(one.now)
+    assert not sequences.is_on_feet(one.robot, one.now)
+
+
+@pytest.mark.parametrize("posture", ["SitRelax", "LyingBelly", "LyingBack"])
+def test_off_its_feet_it_only_stiffens_and_lets_go(bench, ended, posture):
+    one = bench(posture, 0.0)
+    one.run(0.5)
+    # Where the weight of the body presses limp fingers to is no command they can have.
+    before = [one.robot.joints.clamp(i, angle) for i, angle in enumerate(one.now.positions)]
+    wake_up(one, ended)
+    one.run(2.5)
+    assert one.now.commands == pytest.approx(before, abs=0.03)
+    assert one.now.stiffnesses == (1.0,) * 26
+    commands = one.now.commands
+    rest(one, ended)
+    one.run(1.0)
+    assert one.now.commands == commands
+    assert one.now.stiffnesses == (0.0,) * 26
+    assert ended == ["awake", "asleep"]
 
 
 @pytest.mark.parametrize("seconds", [0.1, 1.0])

@@ -1,0 +1,28 @@
+"""Part of ALMotion: switches of fall manager and push recovery."""
+
+from __future__ import annotations
+
+from nao_sim_bridge.services.motion.part import MotionPart
+from nao_sim_bridge.sim.tasks import Task
+
+
+class Falls(MotionPart):
+    """What keeps the robot on its feet, switched on and off; on after each start."""
+
+    def getFallManagerEnabled(self) -> bool:
+        return self._robot.stability.falls.enabled
+
+    def setFallManagerEnabled(self, enabled: bool) -> Task:
+        def switch() -> None:
+            self._robot.stability.falls.enabled = enabled
+
+        return self._runner.execute(switch, "setFallManagerEnabled")
+
+    def getPushRecoveryEnabled(self) -> bool:
+        return self._robot.stability.balance.enabled
+
+    def setPushRecoveryEnabled(self, enabled: bool) -> Task:
+        def switch() -> None:
+            self._robot.stability.balance.enabled = enabled
+
+        return self._runner.execute(switch, "setPushRecoveryEnabled")

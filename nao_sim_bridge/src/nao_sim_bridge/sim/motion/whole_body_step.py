@@ -1,0 +1,187 @@
+"""One step of whole body control: joint changes that keep feet and balance, serve effectors, hold the posture. Pure.
+
+By rank: feet that must stay; the centre of mass, on its way or within its region; effectors; an upright torso; the
+posture. Each has what those before it leave free.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Sequence
+
+import numpy as np
+
+from nao_sim_bridge.sim.motion.balance_region import BalanceRegion
+from nao_sim_bridge.sim.motion.body_kinematics import BodyKinematics
+from nao_sim_bridge.sim.motion.grounded_pose import GroundedPose
+from nao_sim_bridge.sim.motion.inverse_kinematics import Goal
+from nao_sim_bridge.sim.motion.task_solver import Wish, ranked_step
+
+FEET_DAMPING, COM_DAMPING, EFFECTOR_DAMPING, TORSO_DAMPING = 1e-8, 1e-6, 1e-3, 1e-4
+# The centre of mass comes back into its region at this speed, m/s, and follows its path at up to twice that.
+COM_SPEED = 0.12
+# m/s2; a lower centre of mass than this, m, is no pendulum over feet.
+GRAVITY, LEAST_HEIGHT = 9.81, 0.05
+# Errors of effectors and of the torso are made up for at up to these speeds, m/s and rad/s.
+EFFECTOR_SPEED, TORSO_SPEED = 0.6, 0.5
+# Joints that nobody moves go back to their posture at up to this speed, rad/s, and end softly at this rate, 1/s.
+RETURN_SPEED, RETURN_RATE = 0.5, 3.0
+# Joints move at this share of their top speed at most; the rest is for the motors to follow.
+SPEED_SHARE = 0.8
+# A joint that is outside its limits comes back at this speed, rad/s.
+COME_BACK = 0.1
+# Feet that are not where they should be get there at this speed, m/s: no jerk when soles become flat.
+FEET_SPEED = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Demands:
+    """What is asked for at one tick.
+
+    Attributes:
+        now: The body as it is, on the foot that stays.
+        feet: What the other foot must keep.
+        effectors: Goals of effectors.
+        com: (2,) where the centre of mass should be over the ground, m; None when it only has to stay in `region`.
+        region: Where the centre of mass may be; None for anywhere.
+        upright: (3, 3) orientation in the ground frame that the torso should keep as far as `lean_axes` go.
+        lean_axes: 0 for the roll of the torso, 1 for its pitch.
+        anchor: (2,) where the centre of mass should stay if nothing else is against it, m; None for anywhere.
+    """
+
+    now: GroundedPose
+    feet: Sequence[Goal] = ()
+    effectors: Sequence[Goal] = ()
+    com: np.ndarray | None = None
+    region: BalanceRegion | None = None
+    upright: np.ndarray = field(default_factory=lambda: np.eye(3))
+    lean_axes: Sequence[int] = ()
+    anchor: np.ndarray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Freedom:
+    """What the joints may do in one tick.
+
+    Attributes:
+        preferred: (26,) change that the posture asks for, rad.
+        lower: (26,) least change, rad.
+        upper: (26,) largest change, rad.
+        mobility: (26,) how readily a joint helps.
+    """
+
+    preferred: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    mobility: np.ndarray
+
+
+def joint_freedom(
+    body: BodyKinematics,
+    angles: np.ndarray,
+    posture: np.ndarray,
+    moved: Sequence[int],
+    mobility: np.ndarray,
+    dt: float,
+) -> Freedom:
+    """What the joints may do in a tick of `dt` s.
+
+    Args:
+        body: The robot.
+        angles: (26,) where the joints are, rad.
+        posture: (26,) where they should be, rad.
+        moved: Joints that go there with all their speed; the others drift.
+        mobility: (26,) how readily a joint helps.
+        dt: s.
+    """
+    away = posture - angles
+    preferred = np.clip(away * min(1.0, RETURN_RATE * dt), -RETURN_SPEED * dt, RETURN_SPEED * dt)
+    preferred[moved] = away[moved]
+    reach = SPEED_SHARE * body.max_velocities * dt
+    bounds = (np.clip(limit - angles, -reach, reach) for limit in body.limits(angles))
+    lower, upper = (np.where(body.movable, bound, 0.0) for bound in bounds)
+    # A joint outside its limits comes back slowly: postures go a little beyond those that depend on other joints.
+    lower, upper = np.minimum(lower, COME_BACK * dt), np.maximum(upper, -COME_BACK * dt)
+    return Freedom(preferred, lower, upper, mobility)
+
+
+def whole_body_step(demands: Demands, freedom: Freedom, dt: float) -> np.ndarray:
+    """(26,) change of the joints in one tick, rad.
+
+    Args:
+        demands: What is asked for.
+        freedom: What the joints may do.
+        dt: Length of the tick, s.
+    """
+    now = demands.now
+    first = [_goals(demands.feet, now, FEET_DAMPING, FEET_SPEED * dt)] if demands.feet else []
+    last = [_goals(demands.effectors, now, EFFECTOR_DAMPING, EFFECTOR_SPEED * dt)] if demands.effectors else []
+    center = now.center_of_mass()
+    place, rows = center[:2], now.com_jacobian()[:2]
+    if demands.anchor is not None:
+        last.append(Wish(rows, _at_most(demands.anchor - place, COM_SPEED * dt), TORSO_DAMPING))
+    if demands.lean_axes:
+        last.append(_upright(demands, TORSO_SPEED * dt))
+    if demands.com is not None:
+        change = _at_most(demands.com - place, 2.0 * COM_SPEED * dt)
+        return _solved([*first, Wish(rows, change, COM_DAMPING), *last], freedom)
+    frequency = math.sqrt(GRAVITY / max(center[2], LEAST_HEIGHT))
+    approach = frequency * dt / (1.0 + frequency * dt)
+    return _within(demands.region, place, rows, first, last, freedom, COM_SPEED * dt, approach)
+
+
+def _within(
+    region: BalanceRegion | None,
+    place: np.ndarray,
+    rows: np.ndarray,
+    first: Sequence[Wish],
+    last: Sequence[Wish],
+    freedom: Freedom,
+    reach: float,
+    approach: float,
+) -> np.ndarray:
+    """The step that keeps the centre of mass in a region: edges that it would cross become wishes, two at most.
+
+    Near an edge it moves no faster than a pendulum may that should come to rest over it.
+    """
+    step = _solved([*first, *last], freedom)
+    if region is None:
+        return step
+    held: list[int] = []
+    outside = region.excess(place)
+    allowed = np.where(outside > 0.0, -np.minimum(outside, reach), -outside * approach)
+    for _ in range(2):
+        excess = region.normals @ (rows @ step) - allowed
+        excess[held] = 0.0
+        worst = int(np.argmax(excess))
+        if excess[worst] <= 1e-9:
+            break
+        held.append(worst)
+        step = _solved([*first, Wish(region.normals[held] @ rows, allowed[held], COM_DAMPING), *last], freedom)
+    return step
+
+
+def _solved(wishes: Sequence[Wish], freedom: Freedom) -> np.ndarray:
+    return ranked_step(wishes, freedom.preferred, freedom.lower, freedom.upper, freedom.mobility)
+
+
+def _goals(goals: Sequence[Goal], now: GroundedPose, damping: float, reach: float) -> Wish:
+    parts = [goal.rows(now) for goal in goals]
+    return Wish(
+        np.concatenate([rows for rows, _ in parts]), np.concatenate([_at_most(e, reach) for _, e in parts]), damping
+    )
+
+
+def _upright(demands: Demands, reach: float) -> Wish:
+    """Keep the lean of the torso: its vertical axis tells, whatever the heading."""
+    up, wanted = demands.now.torso[:3, 2], demands.upright[:, 2]
+    turn = np.array([up[1] * wanted[2] - up[2] * wanted[1], up[2] * wanted[0] - up[0] * wanted[2]])
+    axes = list(demands.lean_axes)
+    rows = demands.now.torso_jacobian()[3:5]
+    return Wish(rows[axes], _at_most(turn[axes], reach), TORSO_DAMPING)
+
+
+def _at_most(change: np.ndarray, reach: float) -> np.ndarray:
+    length = math.sqrt(change @ change)
+    return change if length <= reach else change * (reach / length)
