@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""Takes a pose by its name: `take_pose.py crouch`, or a posture of the robot: `take_pose.py --speed 0.5 StandInit`.
+
+Needs a running driver, for example `roslaunch nao_library nao_sim.launch`. The motors have to be on.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+
+from nao_library_actions.msg import (
+    BodyPoseAction,
+    BodyPoseGoal,
+    BodyPoseWithSpeedAction,
+    BodyPoseWithSpeedGoal,
+)
+
+LIMIT = rospy.Duration(20)
+
+
+def main() -> int:
+    """Take the pose; the exit status tells whether the robot is there."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("name", help="name of a pose: init, zero, crouch, or one of your own")
+    parser.add_argument("--speed", type=float, help="take a posture that the robot knows, with this share of its speed")
+    options = parser.parse_args(rospy.myargv()[1:])
+    rospy.init_node("take_pose", anonymous=True)
+    rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
+    if options.speed is None:
+        client = actionlib.SimpleActionClient("body_pose", BodyPoseAction)
+        goal = BodyPoseGoal(options.name)
+    else:
+        client = actionlib.SimpleActionClient("body_pose_naoqi", BodyPoseWithSpeedAction)
+        goal = BodyPoseWithSpeedGoal(options.name, options.speed)
+    if not client.wait_for_server(LIMIT):
+        print("there is no pose_manager: start it with roslaunch nao_library nao_sim.launch")
+        return 1
+    state = client.send_goal_and_wait(goal, LIMIT)
+    print(f"{options.name}: {GoalStatus.to_string(state).lower()} {client.get_goal_status_text()}".rstrip())
+    return 0 if state == GoalStatus.SUCCEEDED else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,158 @@
+"""Goals of one action side by side: those that share nothing do not disturb each other."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from ..errors import Preempted
+from ..health import GoalCounter
+from ..interrupt import Interrupt
+
+log = logging.getLogger(__name__)
+
+NEWER_GOAL = "a newer goal needs {}"
+CANCELED = "canceled"
+
+
+@dataclass
+class Outcome:
+    """How a goal ended, as its executor tells it.
+
+    Attributes:
+        result: Result message.
+        preempted: Whether it was ended before time.
+    """
+
+    result: Any
+    preempted: bool = False
+
+
+@dataclass(eq=False)
+class _Member:
+    """A goal under way."""
+
+    handle: Any
+    interrupt: Interrupt = field(default_factory=Interrupt)
+    ended: threading.Event = field(default_factory=threading.Event)
+    claims: frozenset[str] = frozenset()
+    reason: str = CANCELED
+
+
+class GoalCrowd:
+    """Carries out every goal in a thread of its own; one that claims what older ones have ends these first.
+
+    A client of nao_robot that sends a goal for the same joints ends its goal before, as ever. Clients that move
+    different joints do not know of each other.
+
+    Threads: goals and cancels come under actionlib's lock, so they start a thread or set a flag and no more. The lock
+    here guards the list of goals.
+    """
+
+    def __init__(self, claims: Callable[[Any], frozenset[str]], execute: Callable[[Any, Interrupt], Outcome]) -> None:
+        """Take no goals yet; an action server hands them over.
+
+        Args:
+            claims: What a goal needs for itself, the names of joints. Raises NaoError for a goal that will not do.
+            execute: Carries out a goal until its interrupt comes. Raises NaoError if it fails.
+        """
+        self._claims = claims
+        self._execute = execute
+        self._lock = threading.Lock()
+        self._members: list[_Member] = []
+        self._closed = False
+        self.counter = GoalCounter()
+
+    def on_goal(self, handle: Any) -> None:
+        """Take a goal; called by actionlib."""
+        member = _Member(handle)
+        with self._lock:
+            self._members.append(member)
+            if self._closed:
+                member.interrupt.trigger()
+        handle.set_accepted()
+        threading.Thread(target=self._run, args=(member,), name="goal", daemon=True).start()
+
+    def on_cancel(self, handle: Any) -> None:
+        """End a goal; called by actionlib."""
+        with self._lock:
+            members = [m for m in self._members if m.handle == handle]
+        for member in members:
+            member.interrupt.trigger()
+
+    def interrupt_all(self, reason: Exception | None = None) -> None:
+        """End all goals.
+
+        Args:
+            reason: What their executors get; Preempted if none is given.
+        """
+        with self._lock:
+            members = list(self._members)
+        for member in members:
+            member.interrupt.trigger(reason)
+
+    def close(self, limit: float) -> None:
+        """End all goals, those that come later too, and wait for it.
+
+        Args:
+            limit: s, for all together.
+        """
+        with self._lock:
+            self._closed = True
+            members = list(self._members)
+        self.interrupt_all()
+        for member in members:
+            member.ended.wait(limit / max(1, len(members)))
+
+    def _run(self, member: _Member) -> None:
+        try:
+            end, result, text = self._carry_out(member)
+            handle = member.handle
+            tell = {"succeeded": handle.set_succeeded, "preempted": handle.set_canceled, "aborted": handle.set_aborted}
+            self.counter.ended(end, text)
+            tell[end](result, text)
+        finally:
+            with self._lock:
+                self._members.remove(member)
+            member.ended.set()
+
+    def _carry_out(self, member: _Member) -> tuple[str, Any, str]:
+        """End state, result and text."""
+        try:
+            member.interrupt.check()
+            goal = member.handle.get_goal()
+            self._make_room(member, self._claims(goal))
+            member.interrupt.check()
+            outcome = self._execute(goal, member.interrupt)
+        except Preempted:
+            return "preempted", None, member.reason
+        except NaoError as error:
+            return "aborted", None, str(error)
+        except Exception as error:
+            log.exception("a goal failed")
+            return "aborted", None, f"unexpected error: {error!r}"
+        if outcome.preempted:
+            return "preempted", outcome.result, member.reason
+        return "succeeded", outcome.result, ""
+
+    def _make_room(self, member: _Member, claims: frozenset[str]) -> None:
+        """End older goals on the same joints. Of two that come at once, the later one in the list wins."""
+        with self._lock:
+            member.claims = claims
+            older = self._members[: self._members.index(member)]
+            younger = self._members[self._members.index(member) + 1 :]
+            overtaken = [m for m in younger if m.claims & claims]
+            in_the_way = [m for m in older if m.claims & claims]
+        for other in in_the_way:
+            other.reason = NEWER_GOAL.format(", ".join(sorted(other.claims & claims)))
+            other.interrupt.trigger()
+        if overtaken:  # its thread was slower than that of the goal after it
+            member.reason = NEWER_GOAL.format(", ".join(sorted(overtaken[0].claims & claims)))
+            raise Preempted()
+        for other in in_the_way:
+            other.ended.wait()

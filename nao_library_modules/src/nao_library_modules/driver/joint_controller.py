@@ -1,0 +1,215 @@
+"""Moving and stiffening joints for nao_controller: ALMotion called the way nao_robot did. No ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import BadGoal, Preempted
+from ..interrupt import Interrupt
+from ..joint_names import MOTION, JointNames
+from ..joint_trajectory import KeyFrames, check_range, expand_names, one_each, read_trajectory
+from .robot_task import run_task
+
+LIFE = "ALAutonomousLife"
+STIFFEN_TIME = 0.5
+"""s in which the whole body gets stiff or limp."""
+QUICK_LIMIT = 2.0
+"""s that a call which does not wait for motion may take."""
+SERVICE_LIMIT = 60.0
+"""s that waking up or going to rest may take."""
+ALIVE, LIFELESS = "solitary", "disabled"
+
+
+@dataclass(frozen=True)
+class Reached:
+    """What a motion came to.
+
+    Attributes:
+        values: Measured angles in rad (stiffnesses: 0..1), one for each joint behind the names.
+        preempted: Whether it was ended before time.
+    """
+
+    values: list[float]
+    preempted: bool
+
+
+class JointController:
+    """Joint motion of one robot. Every method may be called from any thread.
+
+    What concerns no goal (`set_angles` and the like) returns when the robot has taken it.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Keep the robot; it need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+        """
+        self._robot = robot
+        self.names = JointNames(robot)
+
+    # --- at once --------------------------------------------------------------------------------------------------
+
+    def set_angles(self, names: Sequence[str], angles: Sequence[float], speed: float, relative: bool) -> None:
+        """Start moving joints; a newer call replaces an older one.
+
+        Args:
+            names: Joints and chains.
+            angles: One for each joint, or one for all, in rad.
+            speed: Fraction of the top speed, above 0 to 1.
+            relative: Whether angles are added to where the joints are heading.
+
+        Raises:
+            NaoError: If an argument is wrong or the robot refuses.
+        """
+        joints, values, speed = self._angles(names, angles, speed)
+        self._quick("changeAngles" if relative else "setAngles", list(joints), list(values), speed)
+
+    def set_stiffnesses(self, names: Sequence[str], stiffnesses: Sequence[float]) -> None:
+        """Set stiffnesses (0..1), one for each joint or one for all.
+
+        Raises:
+            NaoError: If an argument is wrong or the robot refuses.
+        """
+        chains = self.names.chains
+        joints = expand_names(names, chains, "name")
+        values = one_each(stiffnesses, names, chains, "effort")
+        for joint, value in zip(joints, values):
+            if not 0.0 <= value <= 1.0:
+                raise BadGoal("effort", value, "0 to 1", problem=f"the stiffness of {joint} is to be {value:g}")
+        self._quick("setStiffnesses", list(joints), list(values))
+
+    # --- goals ----------------------------------------------------------------------------------------------------
+
+    def trajectory(self, trajectory: Any, relative: bool) -> KeyFrames:
+        """Check a trajectory of angles.
+
+        Raises:
+            NaoError: If it will not do, or the robot cannot be asked for its joints.
+        """
+        return read_trajectory(trajectory, self.names.chains, relative)
+
+    def stiffness_trajectory(self, trajectory: Any) -> KeyFrames:
+        """Check a trajectory of stiffnesses; velocities in it are not looked at.
+
+        Raises:
+            NaoError: If it will not do, or the robot cannot be asked for its joints.
+        """
+        frames = read_trajectory(trajectory, self.names.chains)
+        check_range(frames, 0.0, 1.0)
+        return frames
+
+    def joints_of(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Joints behind names.
+
+        Raises:
+            NaoError: If a name is unknown, or the robot cannot be asked.
+        """
+        return expand_names(names, self.names.chains)
+
+    def follow(self, frames: KeyFrames, interrupt: Interrupt) -> Reached:
+        """Move joints along key frames, to the end or to the interrupt.
+
+        Raises:
+            NaoError: If the robot refuses or is lost.
+        """
+        motion = self._robot.proxy(MOTION)
+        joints = list(frames.joints)
+        if frames.velocities is None:
+            call = motion.call_async("angleInterpolation", *frames.interpolation_arguments())
+        else:
+            # From the commands, as the robot counts relative angles, and not from what a loaded joint sags to.
+            start = self._quick("getAngles", joints, False) if frames.relative else ()
+            call = motion.call_async("angleInterpolationBezier", *frames.absolute(start).bezier_arguments())
+        return self._motion_ended(call, joints, interrupt)
+
+    def move(
+        self, names: Sequence[str], angles: Sequence[float], speed: float, relative: bool, interrupt: Interrupt
+    ) -> Reached:
+        """Move joints to angles, to the end or to the interrupt.
+
+        Args:
+            names: Joints and chains.
+            angles: One for each joint, or one for all, in rad.
+            speed: Fraction of the top speed, above 0 to 1.
+            relative: Whether angles are added to the measured ones.
+            interrupt: Ends it.
+
+        Raises:
+            NaoError: If an argument is wrong, the robot refuses or is lost.
+        """
+        joints, values, speed = self._angles(names, angles, speed)
+        if relative:
+            values = tuple(now + step for now, step in zip(self._quick("getAngles", list(joints), True), values))
+        motion = self._robot.proxy(MOTION)
+        call = motion.call_async("angleInterpolationWithSpeed", list(joints), list(values), speed)
+        return self._motion_ended(call, list(joints), interrupt)
+
+    def stiffen(self, frames: KeyFrames, interrupt: Interrupt) -> Reached:
+        """Bring stiffnesses along key frames, to the end or to the interrupt.
+
+        Raises:
+            NaoError: If the robot refuses or is lost.
+        """
+        joints = list(frames.joints)
+        call = self._robot.proxy(MOTION).call_async("stiffnessInterpolation", *frames.interpolation_arguments()[:3])
+
+        def stop() -> None:
+            self._quick("setStiffnesses", joints, self._quick("getStiffnesses", joints))
+
+        preempted = self._ended(call, interrupt, stop)
+        return Reached(self._quick("getStiffnesses", joints), preempted)
+
+    # --- services -------------------------------------------------------------------------------------------------
+
+    def set_body_stiffness(self, stiffness: float) -> None:
+        """Bring the whole body to a stiffness (0..1), in half a second."""
+        self._service(MOTION, "stiffnessInterpolation", "Body", float(stiffness), STIFFEN_TIME)
+
+    def wake_up(self) -> None:
+        """Switch the motors on and stand up, if the robot can."""
+        self._service(MOTION, "wakeUp")
+
+    def rest(self) -> None:
+        """Go to a safe posture and switch the motors off."""
+        self._service(MOTION, "rest")
+
+    def set_life(self, alive: bool) -> None:
+        """Switch autonomous life to `solitary` or off."""
+        self._service(LIFE, "setState", ALIVE if alive else LIFELESS)
+
+    def life_state(self) -> str:
+        """State of autonomous life."""
+        return str(self._service(LIFE, "getState"))
+
+    # --- parts ----------------------------------------------------------------------------------------------------
+
+    def _angles(
+        self, names: Sequence[str], angles: Sequence[float], speed: float
+    ) -> tuple[tuple[str, ...], tuple[float, ...], float]:
+        chains = self.names.chains
+        joints = expand_names(names, chains)
+        values = one_each(angles, names, chains, "joint_angles")
+        if not 0.0 < speed <= 1.0:
+            raise BadGoal("speed", speed, "above 0 to 1")
+        return joints, values, float(speed)
+
+    def _motion_ended(self, call: Any, joints: list[str], interrupt: Interrupt) -> Reached:
+        preempted = self._ended(call, interrupt, lambda: self._quick("killTasksUsingResources", joints))
+        return Reached(self._quick("getAngles", joints, True), preempted)
+
+    @staticmethod
+    def _ended(call: Any, interrupt: Interrupt, stop: Callable[[], Any]) -> bool:
+        try:
+            run_task(call, interrupt, stop)
+        except Preempted:
+            return True
+        return False
+
+    def _quick(self, method: str, *arguments: Any) -> Any:
+        return self._robot.proxy(MOTION).call_async(method, *arguments).result(timeout=QUICK_LIMIT)
+
+    def _service(self, module: str, method: str, *arguments: Any) -> Any:
+        return self._robot.proxy(module).call_async(method, *arguments).result(timeout=SERVICE_LIMIT)

@@ -1,0 +1,188 @@
+"""The node nao_controller: joints and stiffness, with the names of nao_robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import rospy
+from actionlib import ActionServer
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+from std_srvs.srv import Empty, EmptyResponse, Trigger, TriggerResponse
+
+from nao_library_actions.msg import (
+    JointAnglesWithSpeedAction,
+    JointAnglesWithSpeedResult,
+    JointTrajectoryAction,
+    JointTrajectoryResult,
+)
+from nao_library_msgs.msg import JointAnglesWithSpeed
+from naoqi.errors import NaoError
+
+from ..errors import RobotLost
+from ..health import Report
+from ..interrupt import Interrupt
+from .goal_crowd import GoalCrowd, Outcome
+from .joint_controller import JointController, Reached
+
+COMPLAINT_PERIOD = 5.0
+"""s between two complaints about messages of one topic that cannot be carried out."""
+SHUTDOWN_LIMIT = 2.0
+"""s that the end of the node waits for running goals to be interrupted."""
+START_STIFFNESS = "init_stiffness"
+
+
+class NaoController:
+    """Joint control of one robot.
+
+    Goals of one action for different joints run side by side; one for joints that an older goal moves ends the older
+    one. A cancelled goal ends the motion on the robot at once, and its result tells where the joints are then.
+
+    ROS API (relative names):
+        Subscribes `joint_angles` (nao_library_msgs/JointAnglesWithSpeed), `joint_stiffness` (sensor_msgs/JointState:
+        name and effort).
+        Publishes `get_life_state` (std_msgs/String, latched): state of autonomous life when a service asked or
+        changed it.
+        Actions `joint_trajectory`, `joint_stiffness_trajectory` (nao_library_actions/JointTrajectory),
+        `joint_angles_action` (nao_library_actions/JointAnglesWithSpeed).
+        Services `body_stiffness/enable`, `body_stiffness/disable`, `wakeup`, `rest`, `life/enable`, `life/disable`
+        (std_srvs/Empty), `life/get_state` (std_srvs/Trigger).
+        Parameter `~init_stiffness` (0): stiffness that the body gets when the robot is reached, if above 0.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+        """
+        self._robot = robot
+        self._joints = JointController(robot)
+        self._init_stiffness = float(rospy.get_param(f"~{START_STIFFNESS}", 0.0))
+        if not 0.0 <= self._init_stiffness <= 1.0:
+            raise NaoError(f"~{START_STIFFNESS} is {self._init_stiffness:g}: 0 to 1")
+        self._crowds = [
+            self._serve("joint_trajectory", JointTrajectoryAction, self._trajectory_joints, self._trajectory),
+            self._serve("joint_stiffness_trajectory", JointTrajectoryAction, self._trajectory_joints, self._stiffness),
+            self._serve("joint_angles_action", JointAnglesWithSpeedAction, self._angles_joints, self._angles),
+        ]
+        self._life = rospy.Publisher("get_life_state", String, queue_size=1, latch=True)
+        self._offer("body_stiffness/enable", lambda: self._joints.set_body_stiffness(1.0))
+        self._offer("body_stiffness/disable", lambda: self._joints.set_body_stiffness(0.0))
+        self._offer("wakeup", self._joints.wake_up)
+        self._offer("rest", self._joints.rest)
+        self._offer("life/enable", lambda: self._set_life(True))
+        self._offer("life/disable", lambda: self._set_life(False))
+        rospy.Service("life/get_state", Trigger, self._on_life_state)
+        robot.connection.add_listener(self._connection_changed)
+        self._connection_changed()
+        rospy.Subscriber("joint_angles", JointAnglesWithSpeed, self._on_angles, queue_size=10)
+        rospy.Subscriber("joint_stiffness", JointState, self._on_stiffness, queue_size=10)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {f"goals {name}": crowd.counter.report for name, crowd in zip(self._names, self._crowds)}
+
+    _names = ("joint_trajectory", "joint_stiffness_trajectory", "joint_angles_action")
+
+    def close(self) -> None:
+        """End all goals."""
+        self._robot.connection.remove_listener(self._connection_changed)
+        for crowd in self._crowds:
+            crowd.close(SHUTDOWN_LIMIT / len(self._crowds))
+
+    # --- actions --------------------------------------------------------------------------------------------------
+
+    def _serve(
+        self,
+        name: str,
+        action: type,
+        claims: Callable[[Any], frozenset[str]],
+        execute: Callable[[Any, Interrupt], Outcome],
+    ) -> GoalCrowd:
+        crowd = GoalCrowd(claims, execute)
+        ActionServer(name, action, crowd.on_goal, crowd.on_cancel, auto_start=False).start()
+        return crowd
+
+    def _trajectory_joints(self, goal: Any) -> frozenset[str]:
+        return frozenset(self._joints.joints_of(goal.trajectory.joint_names))
+
+    def _angles_joints(self, goal: Any) -> frozenset[str]:
+        return frozenset(self._joints.joints_of(goal.joint_angles.joint_names))
+
+    def _trajectory(self, goal: Any, interrupt: Interrupt) -> Outcome:
+        frames = self._joints.trajectory(goal.trajectory, relative=goal.relative != 0)
+        reached = self._joints.follow(frames, interrupt)
+        return _outcome(JointTrajectoryResult(), goal.trajectory.joint_names, reached)
+
+    def _stiffness(self, goal: Any, interrupt: Interrupt) -> Outcome:
+        frames = self._joints.stiffness_trajectory(goal.trajectory)
+        reached = self._joints.stiffen(frames, interrupt)
+        return _outcome(JointTrajectoryResult(), goal.trajectory.joint_names, reached)
+
+    def _angles(self, goal: Any, interrupt: Interrupt) -> Outcome:
+        asked = goal.joint_angles
+        names, angles = asked.joint_names, asked.joint_angles
+        reached = self._joints.move(names, angles, asked.speed, asked.relative != 0, interrupt)
+        return _outcome(JointAnglesWithSpeedResult(), names, reached)
+
+    # --- topics and services --------------------------------------------------------------------------------------
+
+    def _on_angles(self, message: JointAnglesWithSpeed) -> None:
+        try:
+            self._joints.set_angles(message.joint_names, message.joint_angles, message.speed, message.relative != 0)
+        except NaoError as error:
+            rospy.logerr_throttle(COMPLAINT_PERIOD, f"joint_angles: {error}")
+
+    def _on_stiffness(self, message: JointState) -> None:
+        try:
+            self._joints.set_stiffnesses(message.name, message.effort)
+        except NaoError as error:
+            rospy.logerr_throttle(COMPLAINT_PERIOD, f"joint_stiffness: {error}")
+
+    def _offer(self, name: str, action: Callable[[], None]) -> None:
+        def serve(_request: Any) -> EmptyResponse:
+            try:
+                action()
+            except NaoError as error:
+                rospy.logerr("%s: %s", name, error)
+                raise rospy.ServiceException(str(error)) from error
+            return EmptyResponse()
+
+        rospy.Service(name, Empty, serve)
+
+    def _set_life(self, alive: bool) -> None:
+        self._joints.set_life(alive)
+        self._life.publish(self._joints.life_state())
+
+    def _on_life_state(self, _request: Any) -> TriggerResponse:
+        try:
+            state = self._joints.life_state()
+        except NaoError as error:
+            return TriggerResponse(False, str(error))
+        self._life.publish(state)
+        return TriggerResponse(True, state)
+
+    # --- the connection -------------------------------------------------------------------------------------------
+
+    def _connection_changed(self, *_: Any) -> None:
+        """Called from the thread that the connection has for its listeners; they may call the robot."""
+        connection = self._robot.connection
+        if connection.state == "lost":
+            lost = RobotLost(self._robot.address, connection.last_error or "no answer")
+            for crowd in self._crowds:
+                crowd.interrupt_all(lost)
+        elif connection.state == "connected" and self._init_stiffness > 0.0:
+            stiffness, self._init_stiffness = self._init_stiffness, 0.0  # once: a robot that restarts stays limp
+            try:
+                self._joints.set_body_stiffness(stiffness)
+            except NaoError as error:
+                rospy.logerr("~%s: %s", START_STIFFNESS, error)
+
+
+def _outcome(result: Any, names: Sequence[str], reached: Reached) -> Outcome:
+    result.goal_position.header.stamp = rospy.Time.now()
+    result.goal_position.name = list(names)
+    result.goal_position.position = reached.values
+    return Outcome(result, reached.preempted)

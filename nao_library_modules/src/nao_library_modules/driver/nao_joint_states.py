@@ -1,0 +1,151 @@
+"""The node nao_joint_states: joints, inertial unit and odometry of the robot, read in one go."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+from nav_msgs.msg import Odometry
+from rospy import Time
+from sensor_msgs.msg import Imu, JointState
+from tf2_ros import TransformBroadcaster
+
+from naoqi.errors import NaoError
+
+from ..clock import WallClock
+from ..health import Level, Report
+from ..interrupt import Interrupt
+from ..joint_names import JointNames
+from ..ros_clock import RosClock
+from . import state_messages as messages
+from .feet import LEG_JOINTS, footprint
+from .joint_sensors import JointSensors, Reading
+from .pacer import Pacer
+from .slope import SlopeEstimator
+
+DEFAULT_RATE = 50.0
+FASTEST = 0.008
+"""s of real time from one reading to the next at least, however fast simulated time runs."""
+RETRY = 0.5
+"""s between two attempts to read a robot that cannot be read."""
+COMPLAINT_PERIOD = 10.0
+END_LIMIT = 2.0
+
+
+class NaoJointStates:
+    """Publishes the state of one robot, at an even rate.
+
+    Threads: one reads and publishes; `close` and the diagnostics come from others and touch only what is set once.
+
+    ROS API (relative names):
+        Publishes `joint_states` (sensor_msgs/JointState; efforts are torques in N m as the motor currents tell them),
+        `imu` (sensor_msgs/Imu, in the frame of the torso), `odom` (nav_msgs/Odometry), and on /tf the frames odom ->
+        base_link and base_link -> base_footprint (REP 105, REP 120).
+        Parameters `~sensor_rate` (50 Hz; `~torso_odom_rate` is its older name), `~base_frame_id` (base_link),
+        `~footprint_frame_id` (base_footprint), `~odom_frame_id` (odom), `~use_joint_sensors` (true; false publishes
+        commanded angles), `~use_odometry` (true; false leaves `odom` and its frame to others), `tf_prefix` (searched
+        upwards; put before all frames).
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Begin; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+
+        Raises:
+            NaoError: If a parameter is wrong.
+        """
+        self._robot = robot
+        self._names = JointNames(robot)
+        rate = rospy.get_param("~sensor_rate", rospy.get_param("~torso_odom_rate", DEFAULT_RATE))
+        if isinstance(rate, bool) or not isinstance(rate, (int, float)) or not 0.0 < rate <= 1.0 / FASTEST:
+            raise NaoError(f"~sensor_rate is {rate!r}: above 0 to {1.0 / FASTEST:g} Hz")
+        self._period = 1.0 / rate
+        prefix = _tf_prefix()
+        self._base = prefix + rospy.get_param("~base_frame_id", "base_link").lstrip("/")
+        self._footprint = prefix + rospy.get_param("~footprint_frame_id", "base_footprint").lstrip("/")
+        self._odom = prefix + rospy.get_param("~odom_frame_id", "odom").lstrip("/")
+        self._use_sensors = bool(rospy.get_param("~use_joint_sensors", True))
+        self._use_odometry = bool(rospy.get_param("~use_odometry", True))
+        self._joint_states = rospy.Publisher("joint_states", JointState, queue_size=10)
+        self._imu = rospy.Publisher("imu", Imu, queue_size=10)
+        self._odometry = rospy.Publisher("odom", Odometry, queue_size=10) if self._use_odometry else None
+        self._frames = TransformBroadcaster()
+        self._interrupt = Interrupt()
+        self._problem = "nothing was read yet"
+        self._wall = WallClock()
+        self._last_read = self._wall.now()
+        self._thread = threading.Thread(target=self._run, name="joint states", daemon=True)
+        self._thread.start()
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {"readings": self._report}
+
+    def close(self) -> None:
+        """Publish no more."""
+        self._interrupt.stop()
+        self._thread.join(END_LIMIT)
+
+    def _report(self) -> Report:
+        age = self._wall.now() - self._last_read
+        values = {"asked for every (ms)": f"{1000 * self._period:.0f}", "last one (s ago)": f"{age:.2f}"}
+        if self._problem:
+            return Report(Level.ERROR, self._problem, values)
+        return Report(Level.OK, "joints, inertial unit and odometry are read", values)
+
+    # --- the thread -----------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        while not self._interrupt.is_set():
+            try:
+                self._robot.connection.wait_connected(RETRY)
+                sensors = JointSensors(self._robot, self._names.body, self._use_sensors, self._use_odometry)
+                self._read_on(sensors)
+            except NaoError as error:
+                self._problem = str(error)
+                rospy.logwarn_throttle(COMPLAINT_PERIOD, f"joints cannot be read: {error}")
+                self._interrupt.wait(RETRY)
+            except rospy.ROSException:
+                return  # the topics were closed before this thread
+
+    def _read_on(self, sensors: JointSensors) -> None:
+        """Read and publish until the robot cannot be read, or the node ends."""
+        clock = RosClock()
+        pacer = Pacer(clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
+        velocities, speeds = SlopeEstimator(), SlopeEstimator()
+        while pacer.wait():
+            before = clock.now()
+            reading = sensors.read()
+            # The robot answered somewhere between question and answer.
+            now = (before + clock.now()) / 2
+            stamp = Time.from_sec(now)
+            changes = velocities.add(now, reading.positions)
+            self._joint_states.publish(messages.joint_state(stamp, sensors.joints, reading, changes))
+            self._imu.publish(messages.imu(stamp, self._base, reading))
+            transforms = self._foot_transforms(stamp, sensors, reading)
+            if self._odometry is not None and reading.torso is not None:
+                speed = speeds.add(now, reading.torso[:3])
+                self._odometry.publish(messages.odometry(stamp, self._odom, self._base, reading, speed))
+                transforms.insert(0, messages.odometry_transform(stamp, self._odom, self._base, reading))
+            if transforms:
+                self._frames.sendTransform(transforms)
+            self._problem = ""
+            self._last_read = self._wall.now()
+
+    def _foot_transforms(self, stamp: Time, sensors: JointSensors, reading: Reading) -> list[Any]:
+        angles = dict(zip(sensors.joints, reading.positions))
+        if not all(joint in angles for joints in LEG_JOINTS.values() for joint in joints):
+            return []  # a robot without legs
+        # Level as far as the frame above knows: there, the two lines of the feet are level exactly.
+        roll, pitch = (reading.roll, reading.pitch) if reading.torso is None else reading.torso[3:5]
+        return [messages.transform(stamp, self._base, self._footprint, *footprint(angles, roll, pitch))]
+
+
+def _tf_prefix() -> str:
+    found = rospy.search_param("tf_prefix")
+    prefix = str(rospy.get_param(found)).strip("/") if found else ""
+    return f"{prefix}/" if prefix else ""

@@ -1,0 +1,51 @@
+"""What all driver nodes do alike: arguments, robot, diagnostics, spin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import rospy
+
+from naoqi.errors import NaoError
+
+from ..diagnostics import DiagnosticsPublisher
+from ..health import connection_report
+from ..node import FORWARDED_LOGGERS, robot_address, robot_parser
+from ..robot import Robot
+from ..ros_edge import forward_logs
+
+
+def run_driver(make: Callable[[Robot], Any], name: str, description: str, argv: Sequence[str] | None = None) -> int:
+    """Start a driver node and keep it until it ends.
+
+    Args:
+        make: Makes the node's object for a robot: it has `close()`, and `reports()` for /diagnostics.
+        name: Default name of the node.
+        description: What `--help` says.
+        argv: Arguments, those of the process by default.
+
+    Returns:
+        Exit status.
+
+    ROS API:
+        Parameters `~pip`, `~pport`: the robot. Publishes `/diagnostics`.
+    """
+    arguments = rospy.myargv(argv)[1:]
+    options = robot_parser(description).parse_args(arguments)
+    rospy.init_node(name)
+    forward_logs(*FORWARDED_LOGGERS)
+    try:
+        ip, port = robot_address(options, rospy.get_param)
+        robot = Robot(ip, port)
+        node = make(robot)
+    except NaoError as error:
+        rospy.logfatal("%s", error)
+        return 1
+    reports = {"robot": lambda: connection_report(robot.address, robot.connection), **node.reports()}
+    own_name = rospy.get_name().rpartition("/")[2]
+    diagnostics = DiagnosticsPublisher(robot.address, {f"{own_name} {what}": tell for what, tell in reports.items()})
+    rospy.on_shutdown(node.close)
+    rospy.on_shutdown(diagnostics.close)
+    rospy.spin()
+    return 0

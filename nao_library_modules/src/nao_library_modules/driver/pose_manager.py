@@ -1,0 +1,140 @@
+"""The node pose_manager: poses by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+from actionlib import ActionServer
+from std_srvs.srv import Empty
+
+from nao_library_actions.msg import (
+    BodyPoseAction,
+    BodyPoseGoal,
+    BodyPoseResult,
+    BodyPoseWithSpeedAction,
+    BodyPoseWithSpeedGoal,
+    BodyPoseWithSpeedResult,
+)
+from naoqi.errors import NaoError
+
+from ..errors import BadGoal, RobotLost
+from ..health import Report
+from ..interrupt import Interrupt
+from ..joint_names import MOTION
+from .goal_crowd import GoalCrowd, Outcome
+from .joint_controller import QUICK_LIMIT, STIFFEN_TIME
+from .poses import Pose, UnknownPose, built_in, library, pose_table
+from .robot_task import run_task
+from .trajectory_client import TrajectoryClient
+
+POSTURE = "ALRobotPosture"
+STOP_WALK = "stop_walk_srv"
+BODY = frozenset({"Body"})
+SHUTDOWN_LIMIT = 2.0
+
+
+class PoseManager:
+    """Takes poses that have a name. One at a time: a new goal ends the one before.
+
+    ROS API (relative names):
+        Actions `body_pose` (nao_library_actions/BodyPose: a pose of the tables below), `body_pose_naoqi`
+        (nao_library_actions/BodyPoseWithSpeed: a posture that the robot knows; the motors are switched on first).
+        Calls the action `joint_trajectory`, and the service `stop_walk_srv` (std_srvs/Empty) if there is one.
+        Parameters `~poses`: name -> joint_names, positions, time_from_start; read again when a goal names a pose that
+        nobody knows. `~xap`: path, or list of paths, of pose libraries of Choregraphe.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+        """
+        self._robot = robot
+        self._poses = self._read_poses()
+        self._trajectory = TrajectoryClient()
+        self._stop_walk = rospy.ServiceProxy(STOP_WALK, Empty)
+        self._crowds = {
+            "body_pose": GoalCrowd(lambda _: BODY, self._take_pose),
+            "body_pose_naoqi": GoalCrowd(lambda _: BODY, self._take_posture),
+        }
+        for (name, crowd), action in zip(self._crowds.items(), (BodyPoseAction, BodyPoseWithSpeedAction)):
+            ActionServer(name, action, crowd.on_goal, crowd.on_cancel, auto_start=False).start()
+        robot.connection.add_listener(self._connection_changed)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {f"goals {name}": crowd.counter.report for name, crowd in self._crowds.items()}
+
+    def close(self) -> None:
+        """End all goals."""
+        self._robot.connection.remove_listener(self._connection_changed)
+        for crowd in self._crowds.values():
+            crowd.close(SHUTDOWN_LIMIT / len(self._crowds))
+
+    # --- poses of the tables --------------------------------------------------------------------------------------
+
+    def _take_pose(self, goal: BodyPoseGoal, interrupt: Interrupt) -> Outcome:
+        pose = self._pose(goal.pose_name)
+        self._end_walk()
+        self._trajectory.take(pose, interrupt)
+        return Outcome(BodyPoseResult())
+
+    def _pose(self, name: str) -> Pose:
+        if name not in self._poses:
+            self._poses = self._read_poses()  # somebody may have loaded more meanwhile
+        if name not in self._poses:
+            raise UnknownPose(name, self._poses)
+        return self._poses[name]
+
+    @staticmethod
+    def _read_poses() -> dict[str, Pose]:
+        """All poses; a table that cannot be read is left out, and said to be."""
+        poses = built_in()
+        paths = rospy.get_param("~xap", [])
+        for path in [paths] if isinstance(paths, str) else list(paths):
+            if path:
+                _add(poses, lambda path=path: library(path))
+        _add(poses, lambda: pose_table(rospy.get_param("~poses", {})))
+        return poses
+
+    def _end_walk(self) -> None:
+        try:
+            self._stop_walk()
+        except rospy.ServiceException as error:
+            rospy.logdebug("%s: %s", STOP_WALK, error)  # nobody walks where nobody offers it
+
+    # --- postures of the robot ------------------------------------------------------------------------------------
+
+    def _take_posture(self, goal: BodyPoseWithSpeedGoal, interrupt: Interrupt) -> Outcome:
+        if not 0.0 < goal.speed <= 1.0:
+            raise BadGoal("speed", goal.speed, "above 0 to 1")
+        posture = self._robot.proxy(POSTURE)
+        known = posture.call_async("getPostureList").result(timeout=QUICK_LIMIT)
+        if goal.posture_name not in known:
+            raise UnknownPose(goal.posture_name, known, "posture")
+        motion = self._robot.proxy(MOTION)
+        run_task(motion.call_async("stiffnessInterpolation", "Body", 1.0, STIFFEN_TIME), interrupt, lambda: None)
+
+        def stop() -> None:
+            posture.call_async("stopMove").result(timeout=QUICK_LIMIT)
+
+        if not run_task(posture.call_async("goToPosture", goal.posture_name, goal.speed), interrupt, stop):
+            raise NaoError(f"the robot did not reach the posture {goal.posture_name}")
+        return Outcome(BodyPoseWithSpeedResult())
+
+    def _connection_changed(self, *_: Any) -> None:
+        """Called from the thread that the connection has for its listeners."""
+        connection = self._robot.connection
+        if connection.state == "lost":
+            lost = RobotLost(self._robot.address, connection.last_error or "no answer")
+            self._crowds["body_pose_naoqi"].interrupt_all(lost)  # of the other one, nao_controller takes care
+
+
+def _add(poses: dict[str, Pose], read: Callable[[], dict[str, Pose]]) -> None:
+    try:
+        poses.update(read())
+    except NaoError as error:
+        rospy.logerr("%s", error)

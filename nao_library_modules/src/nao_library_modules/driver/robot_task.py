@@ -1,0 +1,63 @@
+"""A long call to the robot that ends when it must: on preemption, and when the robot is lost."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from ..interrupt import Interrupt
+from ..robot import CANCEL_LIMIT, QUICK_ANSWER
+
+log = logging.getLogger(__name__)
+
+CANCEL_PATIENCE = 0.1
+"""s that a cancelled call has to end by itself, as it does on a robot that knows cancellation."""
+
+
+def run_task(call: Any, interrupt: Interrupt, stop: Callable[[], None]) -> Any:
+    """Wait for a call; an interrupt cancels it, and stops what it started if that is not enough.
+
+    Args:
+        call: What `proxy.call_async` returned.
+        interrupt: Ends the wait.
+        stop: Stops by other means what the call started, for robots whose calls cannot be cancelled. It may raise
+            NaoError.
+
+    Returns:
+        What the call returned. If it had ended by the time of the interrupt, that counts.
+
+    Raises:
+        NaoError: If the call failed.
+        Preempted: Or whatever reason the interrupt has.
+    """
+    if not call.wait(QUICK_ANSWER):  # quicker than to set up the wait for both
+        _wait(call, interrupt)
+    if not call.done():
+        end_call(call, stop)
+        interrupt.check()
+    return call.result(timeout=0)
+
+
+def end_call(call: Any, stop: Callable[[], None]) -> None:
+    """Cancel a call and see it end, so that it changes nothing any more."""
+    call.cancel()
+    if call.wait(CANCEL_PATIENCE):
+        return
+    try:
+        stop()
+    except NaoError as error:
+        log.warning("what was interrupted may go on: %s", error)
+        return
+    if not call.wait(CANCEL_LIMIT):
+        log.warning("what was interrupted goes on: the robot did not end it within %g s", CANCEL_LIMIT)
+
+
+def _wait(call: Any, interrupt: Interrupt) -> None:
+    news = threading.Event()
+    call.add_done_callback(lambda _: news.set())
+    with interrupt.waking(news.set):
+        news.wait()  # no limit: the proxy layer fails calls to a lost robot

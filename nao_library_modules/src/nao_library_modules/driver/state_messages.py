@@ -1,0 +1,94 @@
+"""A reading of the robot as ROS messages."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from geometry_msgs.msg import Point, Quaternion, TransformStamped, Twist, Vector3
+from nav_msgs.msg import Odometry
+from rospy import Time
+from sensor_msgs.msg import Imu, JointState
+
+from .joint_sensors import Reading
+from .rotation import from_roll_pitch_yaw, inverse, rotate
+
+# Rough figures for filters that fuse sensors, on the diagonal: the robot publishes none.
+TILT_VARIANCE, YAW_VARIANCE, UNKNOWN = 1e-4, 1e-2, 1e6
+TURN_VARIANCE, ACCELERATION_VARIANCE = 1e-4, 1e-2
+PLACE_VARIANCE, HEIGHT_VARIANCE, VELOCITY_VARIANCE = 1e-2, 1e-3, 1e-3
+
+
+def joint_state(stamp: Time, joints: Sequence[str], reading: Reading, velocities: Sequence[float]) -> JointState:
+    """Positions (rad), velocities (rad/s) and efforts (N m) of the joints."""
+    message = JointState(name=list(joints), position=reading.positions, velocity=velocities, effort=reading.efforts)
+    message.header.stamp = stamp
+    return message
+
+
+def imu(stamp: Time, frame: str, reading: Reading) -> Imu:
+    """The inertial unit, in the frame of the torso. The heading is that of odometry, and unknown without it."""
+    yaw = 0.0 if reading.torso is None else reading.torso[5]
+    message = Imu()
+    message.header.stamp, message.header.frame_id = stamp, frame
+    message.orientation = Quaternion(*from_roll_pitch_yaw(reading.roll, reading.pitch, yaw))
+    message.orientation_covariance = diagonal(
+        TILT_VARIANCE, TILT_VARIANCE, UNKNOWN if reading.torso is None else YAW_VARIANCE
+    )
+    message.angular_velocity = Vector3(*reading.angular_velocity)
+    message.angular_velocity_covariance = diagonal(*[TURN_VARIANCE] * 3)
+    message.linear_acceleration = Vector3(*reading.acceleration)
+    message.linear_acceleration_covariance = diagonal(*[ACCELERATION_VARIANCE] * 3)
+    return message
+
+
+def odometry(stamp: Time, frame: str, base: str, reading: Reading, velocity: Sequence[float]) -> Odometry:
+    """The torso in the robot's own odometry.
+
+    Args:
+        stamp: When it was read.
+        frame: Name of the frame of odometry.
+        base: Name of the frame of the torso.
+        reading: With the place of the torso.
+        velocity: (3,) of the torso in `frame`, m/s. The message has it in `base`, as REP 105 asks.
+    """
+    x, y, z, roll, pitch, yaw = _torso(reading)
+    turn = from_roll_pitch_yaw(roll, pitch, yaw)
+    message = Odometry()
+    message.header.stamp, message.header.frame_id, message.child_frame_id = stamp, frame, base
+    message.pose.pose.position = Point(x, y, z)
+    message.pose.pose.orientation = Quaternion(*turn)
+    message.pose.covariance = diagonal(
+        PLACE_VARIANCE, PLACE_VARIANCE, HEIGHT_VARIANCE, TILT_VARIANCE, TILT_VARIANCE, YAW_VARIANCE
+    )
+    ahead = rotate(inverse(turn), (velocity[0], velocity[1], velocity[2]))
+    message.twist.twist = Twist(Vector3(*ahead), Vector3(*reading.angular_velocity))
+    message.twist.covariance = diagonal(*[VELOCITY_VARIANCE] * 3, *[TURN_VARIANCE] * 3)
+    return message
+
+
+def transform(stamp: Time, parent: str, child: str, place: Sequence[float], turn: Sequence[float]) -> TransformStamped:
+    """Pose of `child` in `parent`: place in m, turn as a quaternion (x, y, z, w)."""
+    message = TransformStamped(child_frame_id=child)
+    message.header.stamp, message.header.frame_id = stamp, parent
+    message.transform.translation = Vector3(*place)
+    message.transform.rotation = Quaternion(*turn)
+    return message
+
+
+def odometry_transform(stamp: Time, frame: str, base: str, reading: Reading) -> TransformStamped:
+    """Pose of the torso in odometry."""
+    place = _torso(reading)
+    return transform(stamp, frame, base, place[:3], from_roll_pitch_yaw(*place[3:]))
+
+
+def diagonal(*variances: float) -> list[float]:
+    """A covariance matrix, row by row, of values that do not depend on each other."""
+    count = len(variances)
+    return [variances[i // count] if i % (count + 1) == 0 else 0.0 for i in range(count * count)]
+
+
+def _torso(reading: Reading) -> tuple[float, ...]:
+    if reading.torso is None or not all(map(math.isfinite, reading.torso)):
+        raise ValueError(f"the place of the torso is {reading.torso}")
+    return reading.torso

@@ -1,0 +1,75 @@
+"""Names of joints and chains, asked of the robot once for each connection."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from naoqi.errors import NaoError, RobotError
+
+MOTION = "ALMotion"
+CHAINS = (
+    "Body",
+    "Head",
+    "LArm",
+    "RArm",
+    "LLeg",
+    "RLeg",
+    "Arms",
+    "Legs",
+    "Joints",
+    "Actuators",
+    "JointActuators",
+    "BodyJoints",
+    "BodyActuators",
+)
+"""Names that stand for several joints. Not every robot knows all of them."""
+LIMIT = 5.0
+"""s that the robot may take to answer."""
+
+
+class JointNames:
+    """Chains of one robot. Any thread may ask; at worst two ask the robot at the same time."""
+
+    def __init__(self, robot: Any) -> None:
+        """Ask nothing yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+        """
+        self._robot = robot
+        self._known: tuple[int, Mapping[str, tuple[str, ...]]] | None = None
+
+    @property
+    def chains(self) -> Mapping[str, tuple[str, ...]]:
+        """Chain -> its joints.
+
+        Raises:
+            NaoError: If the robot cannot be asked.
+        """
+        generation = self._robot.connection.generation
+        if self._known is None or self._known[0] != generation:
+            self._known = (generation, self._ask())
+        return self._known[1]
+
+    @property
+    def body(self) -> tuple[str, ...]:
+        """All joints, in the robot's order.
+
+        Raises:
+            NaoError: If the robot cannot be asked.
+        """
+        return self.chains["Body"]
+
+    def _ask(self) -> dict[str, tuple[str, ...]]:
+        motion = self._robot.proxy(MOTION)
+        calls = {chain: motion.call_async("getBodyNames", chain) for chain in CHAINS}
+        chains = {}
+        for chain, call in calls.items():
+            try:
+                chains[chain] = tuple(call.result(timeout=LIMIT))
+            except RobotError:
+                continue  # a robot without this chain says so
+        if "Body" not in chains:
+            raise NaoError(f"the robot at {self._robot.address} does not tell the names of its joints")
+        return chains

@@ -1,0 +1,240 @@
+"""From trajectory_msgs/JointTrajectory to what ALMotion takes: checked key frames of joints. No ROS, no robot.
+
+The message is read by its fields, so anything that has them will do. What nao_robot's clients send is understood:
+
+- `joint_names` holds joints, chains ("Body", "Head", "LArm", ...) or both;
+- a point holds one position for each joint, or a single one for all;
+- a first point at time 0 is the place the joints start from. The robot starts from where it is, so it is left out;
+- points with velocities are joined by cubic Hermite segments with these velocities, points without by ALMotion's own
+  interpolation.
+
+Accelerations and efforts are not looked at: ALMotion knows neither.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from .errors import BadGoal
+from .function_chain import seconds
+from .suggestion import did_you_mean
+
+H25_BODY = tuple(
+    """HeadYaw HeadPitch LShoulderPitch LShoulderRoll LElbowYaw LElbowRoll LWristYaw LHand
+    LHipYawPitch LHipRoll LHipPitch LKneePitch LAnklePitch LAnkleRoll
+    RHipYawPitch RHipRoll RHipPitch RKneePitch RAnklePitch RAnkleRoll
+    RShoulderPitch RShoulderRoll RElbowYaw RElbowRoll RWristYaw RHand""".split()
+)
+"""The chain Body of a NAO with moving wrists and hands. Poses written for it are sent to NAOs without them as well."""
+BEZIER = 3
+"""ALMotion's number for a control point with tangents."""
+
+Chains = Mapping[str, Sequence[str]]
+
+
+@dataclass(frozen=True)
+class KeyFrames:
+    """Values of joints at common times.
+
+    Attributes:
+        joints: Names of the joints.
+        times: s from the start, rising, the first above 0.
+        values: Of each joint its values at the times, in rad (hands and stiffnesses: 0..1).
+        velocities: Of each joint its velocities at the times, in rad/s; None leaves them to the robot.
+        relative: Whether the values are added to those at the start.
+    """
+
+    joints: tuple[str, ...]
+    times: tuple[float, ...]
+    values: tuple[tuple[float, ...], ...]
+    velocities: tuple[tuple[float, ...], ...] | None = None
+    relative: bool = False
+
+    @property
+    def duration(self) -> float:
+        """Time of the last key frame, in s."""
+        return self.times[-1]
+
+    @property
+    def targets(self) -> dict[str, float]:
+        """Joint -> its value in the last key frame."""
+        return {joint: values[-1] for joint, values in zip(self.joints, self.values)}
+
+    def absolute(self, start: Sequence[float]) -> KeyFrames:
+        """The same frames with values that are not relative.
+
+        Args:
+            start: Values of the joints at the start, in their order.
+        """
+        if not self.relative:
+            return self
+        moved = tuple(tuple(first + value for value in values) for first, values in zip(start, self.values))
+        return replace(self, values=moved, relative=False)
+
+    def interpolation_arguments(self) -> tuple[list[str], list[list[float]], list[list[float]], bool]:
+        """Arguments of ALMotion.angleInterpolation: names, angleLists, timeLists, isAbsolute."""
+        times = [list(self.times) for _ in self.joints]
+        return list(self.joints), [list(values) for values in self.values], times, not self.relative
+
+    def bezier_arguments(self) -> tuple[list[str], list[list[float]], list[list[list[Any]]]]:
+        """Arguments of ALMotion.angleInterpolationBezier: jointNames, times, controlPoints.
+
+        A Bezier segment whose tangents reach a third of its time is the cubic Hermite segment of these velocities.
+
+        Raises:
+            ValueError: If there are no velocities, or the values are relative, which this method of the robot is not.
+        """
+        if self.velocities is None or self.relative:
+            raise ValueError("Bezier curves need velocities and absolute values")
+        starts = (0.0, *self.times[:-1])
+        before = [time - start for start, time in zip(starts, self.times)]
+        after = [*before[1:], 0.0]
+        points = [
+            [
+                [value, [BEZIER, -left / 3.0, -velocity * left / 3.0], [BEZIER, right / 3.0, velocity * right / 3.0]]
+                for value, velocity, left, right in zip(values, velocities, before, after)
+            ]
+            for values, velocities in zip(self.values, self.velocities)
+        ]
+        return list(self.joints), [list(self.times) for _ in self.joints], points
+
+
+def read_trajectory(trajectory: Any, chains: Chains, relative: bool = False, field: str = "trajectory") -> KeyFrames:
+    """Check a trajectory and bring it into one shape.
+
+    Args:
+        trajectory: A trajectory_msgs/JointTrajectory.
+        chains: Chain -> its joints on this robot; "Body" tells what joints there are.
+        relative: Whether positions are added to the present ones.
+        field: What errors call the trajectory.
+
+    Raises:
+        BadGoal: Names the field that is wrong, what it holds and what is allowed.
+    """
+    names = [str(name) for name in trajectory.joint_names]
+    joints = expand_names(names, chains, f"{field}.joint_names")
+    points = list(trajectory.points)
+    if not points:
+        raise BadGoal(f"{field}.points", [], "at least one point", problem="there is no point")
+    times = _times(points, field)
+    source = _body_order(names, joints, len(points[0].positions))
+    values = [_row(point.positions, source, joints, f"{field}.points[{i}].positions") for i, point in enumerate(points)]
+    velocities = _velocities(points, source, joints, field)
+    first = 1 if times[0] == 0.0 else 0
+    return KeyFrames(
+        joints,
+        tuple(times[first:]),
+        tuple(zip(*values[first:])),
+        None if velocities is None else tuple(zip(*velocities[first:])),
+        bool(relative),
+    )
+
+
+def expand_names(names: Sequence[str], chains: Chains, field: str = "joint_names") -> tuple[str, ...]:
+    """Joints behind joint and chain names, in order.
+
+    Args:
+        names: Names of joints and chains.
+        chains: Chain -> its joints; "Body" tells what joints there are.
+        field: What errors call the names.
+
+    Raises:
+        BadGoal: If there is none, one is unknown, or a joint comes twice.
+    """
+    known = tuple(chains["Body"])
+    if not names:
+        raise BadGoal(field, list(names), "joints or chains", problem="no joint is named")
+    joints: list[str] = []
+    for name in names:
+        if name in chains:
+            joints.extend(chains[name])
+        elif name in known:
+            joints.append(name)
+        else:
+            near = did_you_mean(name, [*chains, *known])
+            allowed = f"joints {', '.join(known)}; chains {', '.join(chains)}"
+            raise BadGoal(field, name, allowed, problem=f"{name!r} is no joint and no chain{near}")
+    twice = sorted({joint for joint in joints if joints.count(joint) > 1})
+    if twice:
+        raise BadGoal(field, list(names), "every joint once", problem=f"named twice: {', '.join(twice)}")
+    return tuple(joints)
+
+
+def one_each(values: Sequence[float], names: Sequence[str], chains: Chains, field: str) -> tuple[float, ...]:
+    """One value for each joint behind `names`, as a point of a trajectory holds them.
+
+    Args:
+        values: One value, one for each joint, or a whole H25 body for a robot that has fewer joints.
+        names: Names of joints and chains.
+        chains: Chain -> its joints; "Body" tells what joints there are.
+        field: What errors call the values; the names are called joint_names.
+
+    Raises:
+        BadGoal: If names or values are wrong.
+    """
+    joints = expand_names(names, chains)
+    return _row(values, _body_order(names, joints, len(values)), joints, field)
+
+
+def check_range(frames: KeyFrames, low: float, high: float, field: str = "trajectory") -> None:
+    """See that all values are within a range, as stiffnesses are.
+
+    Raises:
+        BadGoal: Names the joint, the value and the range.
+    """
+    for joint, values in zip(frames.joints, frames.values):
+        for value in values:
+            if not low <= value <= high:
+                raise BadGoal(f"{field}.points", value, f"{low:g} to {high:g}", problem=f"{joint} is to be {value:g}")
+
+
+def _times(points: Sequence[Any], field: str) -> list[float]:
+    times = [seconds(point.time_from_start) for point in points]
+    what = "times that rise, the first above 0 s (or 0 s where more points follow)"
+    if times[0] < 0.0 or times == [0.0]:
+        raise BadGoal(f"{field}.points[0].time_from_start", times[0], what)
+    for i, (before, time) in enumerate(zip(times, times[1:]), start=1):
+        if not time > before:
+            name = f"{field}.points[{i}].time_from_start"
+            raise BadGoal(name, time, what, problem=f"{time:g} s after {before:g} s")
+    return times
+
+
+def _velocities(
+    points: Sequence[Any], source: Sequence[int] | None, joints: Sequence[str], field: str
+) -> list[tuple[float, ...]] | None:
+    given = [len(point.velocities) > 0 for point in points]
+    if not any(given):
+        return None
+    if not all(given):
+        i = given.index(False)
+        problem = f"point {i} has no velocities, others have"
+        raise BadGoal(f"{field}.points[{i}].velocities", [], "velocities in every point or in none", problem=problem)
+    return [_row(point.velocities, source, joints, f"{field}.points[{i}].velocities") for i, point in enumerate(points)]
+
+
+def _body_order(names: Sequence[str], joints: Sequence[str], count: int) -> Sequence[int] | None:
+    """Where the joints are in a pose of the whole H25 body, if this is one for a robot that has fewer joints."""
+    if list(names) != ["Body"] or count != len(H25_BODY) or len(joints) == count:
+        return None
+    return [H25_BODY.index(joint) for joint in joints] if set(joints) < set(H25_BODY) else None
+
+
+def _row(
+    numbers: Sequence[float], source: Sequence[int] | None, joints: Sequence[str], field: str
+) -> tuple[float, ...]:
+    row = [float(number) for number in numbers]
+    for number in row:
+        if not math.isfinite(number):
+            raise BadGoal(field, number, "finite numbers")
+    if source is not None and len(row) == len(H25_BODY):
+        row = [row[i] for i in source]
+    if len(row) == 1:
+        row = row * len(joints)
+    if len(row) != len(joints):
+        problem = f"{len(row)} values for {len(joints)} joints ({', '.join(joints)})"
+        raise BadGoal(field, row, f"{len(joints)} values, or 1 for all joints", problem=problem)
+    return tuple(row)

@@ -1,0 +1,291 @@
+#!/usr/bin/env python3
+"""Joints and poses under the names of nao_robot: topics, services and actions, to success, abort and preemption."""
+
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import rospkg
+import rospy
+import rostest
+from actionlib import SimpleActionClient
+from actionlib_msgs.msg import GoalStatus
+from rospy import Duration
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Empty
+from trajectory_msgs.msg import JointTrajectoryPoint
+
+from nao_library_actions.msg import (
+    BodyPoseAction,
+    BodyPoseGoal,
+    BodyPoseWithSpeedAction,
+    BodyPoseWithSpeedGoal,
+    JointAnglesWithSpeedAction,
+    JointAnglesWithSpeedGoal,
+    JointTrajectoryAction,
+    JointTrajectoryGoal,
+)
+from nao_library_msgs.msg import JointAnglesWithSpeed
+from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+
+CROUCH = (
+    [0.0, 0.0, 1.545, 0.33, -1.57, -0.486, 0.0, 0.0, -0.3, 0.057, -0.744, 2.1, -1.122, -0.035]
+    + [-0.3, -0.057, -0.744, 2.1, -1.122, 0.035]
+    + [1.545, -0.33, 1.57, 0.486, 0.0, 0.0]
+)
+
+
+def trajectory(names, *points, relative=0):
+    """A goal of points: time, positions, and velocities if there is a third."""
+    goal = JointTrajectoryGoal(relative=relative)
+    goal.trajectory.joint_names = names
+    for time, positions, *velocities in points:
+        point = JointTrajectoryPoint(time_from_start=Duration(time), positions=positions)
+        point.velocities = velocities[0] if velocities else []
+        goal.trajectory.points.append(point)
+    return goal
+
+
+def angles(names, values, speed, relative=0):
+    message = JointAnglesWithSpeed(joint_names=names, joint_angles=values, speed=speed, relative=relative)
+    return JointAnglesWithSpeedGoal(message)
+
+
+class DriverGoals(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.trajectories = cls.client("joint_trajectory", JointTrajectoryAction)
+        cls.stiffness = cls.client("joint_stiffness_trajectory", JointTrajectoryAction)
+        cls.angles = cls.client("joint_angles_action", JointAnglesWithSpeedAction)
+        cls.poses = cls.client("body_pose", BodyPoseAction)
+        cls.postures = cls.client("body_pose_naoqi", BodyPoseWithSpeedAction)
+        # Everything that speaks to the robot has reached it.
+        near = trajectory(["HeadYaw"], (0.1, [0.0]))
+        crouch = BodyPoseWithSpeedGoal("Crouch", 1.0)
+        for client, goal in ((cls.trajectories, near), (cls.postures, crouch)):
+            wait_until(lambda c=client, g=goal: send(c, g).wait().state == GoalStatus.SUCCEEDED, 30.0, client)
+
+    @classmethod
+    def client(cls, name, action):
+        client = SimpleActionClient(name, action)
+        wait_until(lambda: client.wait_for_server(Duration(0.01)), 30.0, name)
+        return client
+
+    def setUp(self):
+        self.robot.reset()
+        self.serve("body_stiffness/enable")
+
+    def serve(self, name):
+        rospy.wait_for_service(name, 10.0)
+        rospy.ServiceProxy(name, Empty)()
+
+    def play(self, client, goal, end=GoalStatus.SUCCEEDED):
+        run = send(client, goal).wait()
+        self.assertEqual(run.state, end, run.text)
+        return run
+
+    def sensed(self, joint):
+        return self.robot.module("ALMotion").getAngles(joint, True)[0]
+
+    def commanded(self, joint):
+        return self.robot.module("ALMotion").getAngles(joint, False)[0]
+
+    def close(self, found, wanted, tolerance=0.03):
+        self.assertEqual(len(found), len(wanted))
+        for i, (value, target) in enumerate(zip(found, wanted)):
+            self.assertAlmostEqual(value, target, delta=tolerance, msg=f"value {i}")
+
+    # --- what nao_robot's own test program does --------------------------------------------------------------------
+
+    def test_one_joint_many_points(self):
+        run = self.play(self.trajectories, trajectory(["HeadYaw"], (1.0, [1.0]), (2.0, [-1.0]), (2.5, [0.0])))
+        self.assertEqual(run.result.goal_position.name, ["HeadYaw"])
+        self.close(run.result.goal_position.position, [0.0])
+        self.assertGreater(run.ended - run.sent, 2.4)
+
+    def test_the_whole_body_in_one_point(self):
+        run = self.play(self.trajectories, trajectory(["Body"], (1.5, CROUCH)))
+        self.assertEqual(run.result.goal_position.name, ["Body"])
+        self.close(run.result.goal_position.position, CROUCH, 0.08)
+        self.assertLess(self.robot.true_pose().position.z, 0.26)
+
+    def test_many_joints_many_points_and_one_point(self):
+        names = ["HeadYaw", "HeadPitch"]
+        self.play(self.trajectories, trajectory(names, (0.5, [1.0, 0.4]), (1.0, [1.0, 0.0]), (1.5, [0.0, 0.0])))
+        self.close([self.sensed("HeadYaw"), self.sensed("HeadPitch")], [0.0, 0.0])
+        run = self.play(self.trajectories, trajectory(names, (0.5, [0.5, 0.3])))
+        self.close(run.result.goal_position.position, [0.5, 0.3])
+
+    def test_angles_with_speed(self):
+        run = self.play(self.angles, angles(["HeadYaw", "HeadPitch"], [1.0, 0.0], 0.2))
+        self.assertEqual(run.result.goal_position.name, ["HeadYaw", "HeadPitch"])
+        self.close(run.result.goal_position.position, [1.0, 0.0])
+        self.play(self.angles, angles(["HeadYaw"], [-0.25], 0.2, relative=1))
+        self.assertAlmostEqual(self.sensed("HeadYaw"), 0.75, delta=0.04)
+
+    def test_stiffness(self):
+        run = self.play(self.stiffness, trajectory(["Body"], (0.5, [0.0])))
+        self.assertEqual(list(run.result.goal_position.position), [0.0] * 26)
+        run = self.play(self.stiffness, trajectory(["HeadYaw", "LHand"], (0.2, [1.0, 0.5])))
+        self.close(run.result.goal_position.position, [1.0, 0.5], 0.001)
+
+    def test_relative_trajectories_start_where_the_joint_is(self):
+        self.play(self.trajectories, trajectory(["HeadYaw"], (0.5, [0.4])))
+        self.play(self.trajectories, trajectory(["HeadYaw"], (0.5, [0.3]), (1.0, [-0.2]), relative=1))
+        self.assertAlmostEqual(self.commanded("HeadYaw"), 0.2, delta=0.01)
+
+    # --- preemption ------------------------------------------------------------------------------------------------
+
+    def cancel_on_the_way(self, client, goal, value):
+        """Cancel when `value()` has begun to change; returns it at the end, and the run."""
+        start = value()
+        run = send(client, goal)
+        wait_until(lambda: abs(value() - start) > 0.05, 10.0, "the motion")
+        run.cancel()
+        run.wait()
+        self.assertEqual(run.state, GoalStatus.PREEMPTED, run.text)
+        self.assertEqual(self.robot.module("ALMotion").getTaskList(), [])
+        stopped = value()
+        self.robot.advance(0.5)
+        self.assertEqual(value(), stopped)
+        return stopped, run
+
+    def test_a_cancelled_goal_stops_the_joint_where_it_is(self):
+        there = lambda: self.commanded("HeadYaw")  # noqa: E731
+        stopped, run = self.cancel_on_the_way(self.trajectories, trajectory(["HeadYaw"], (20.0, [1.5])), there)
+        self.assertLess(stopped, 1.4)
+        self.assertAlmostEqual(run.result.goal_position.position[0], stopped, delta=0.05)
+        stopped, _ = self.cancel_on_the_way(self.angles, angles(["HeadYaw"], [-1.5], 0.01), there)
+        self.assertGreater(stopped, -1.4)
+
+    def test_a_cancelled_stiffness_stays_where_it_is(self):
+        stiffness = lambda: self.robot.module("ALMotion").getStiffnesses("HeadYaw")[0]  # noqa: E731
+        stopped, run = self.cancel_on_the_way(self.stiffness, trajectory(["HeadYaw"], (20.0, [0.0])), stiffness)
+        self.assertGreater(stopped, 0.1)
+        self.assertAlmostEqual(run.result.goal_position.position[0], stopped, delta=0.05)
+
+    def test_clients_of_different_joints_do_not_know_of_each_other(self):
+        head = send(self.trajectories, trajectory(["HeadYaw"], (3.0, [1.0])))
+        arm = send(self.trajectories, trajectory(["LElbowYaw"], (1.0, [-0.5])))
+        self.assertEqual(arm.wait().state, GoalStatus.SUCCEEDED, arm.text)
+        self.assertEqual(head.wait().state, GoalStatus.SUCCEEDED, head.text)
+        self.assertLess(head.ended - head.sent, 3.6)
+        self.close([self.sensed("HeadYaw"), self.sensed("LElbowYaw")], [1.0, -0.5], 0.04)
+
+    def test_a_newer_goal_for_the_same_joint_ends_the_older_one(self):
+        old = send(self.trajectories, trajectory(["Head"], (20.0, [1.0, 0.0])))
+        wait_until(lambda: self.commanded("HeadYaw") > 0.02, 10.0, "the motion")
+        new = send(self.trajectories, trajectory(["HeadYaw"], (0.5, [-0.5])))
+        self.assertEqual(old.wait().state, GoalStatus.PREEMPTED)
+        self.assertEqual(old.text, "a newer goal needs HeadYaw")
+        self.assertEqual(new.wait().state, GoalStatus.SUCCEEDED, new.text)
+        self.assertAlmostEqual(self.sensed("HeadYaw"), -0.5, delta=0.03)
+
+    # --- what will not do ------------------------------------------------------------------------------------------
+
+    def test_bad_goals_are_aborted_with_a_text_and_move_nothing(self):
+        before = self.robot.module("ALMotion").getAngles("Body", False)
+        for client, goal, words in (
+            (self.trajectories, trajectory(["HeadJaw"], (1, [0.0])), "did you mean 'HeadYaw'"),
+            (self.trajectories, trajectory(["Head"], (1, [0.1, 0.2, 0.3])), "3 values for 2 joints"),
+            (self.trajectories, trajectory(["Head"], (2, [0.1]), (1, [0.2])), "1 s after 2 s"),
+            (self.trajectories, trajectory(["Head"]), "there is no point"),
+            (self.stiffness, trajectory(["Head"], (1, [1.5])), "0 to 1"),
+            (self.angles, angles(["Head"], [0.1], 1.5), "field speed"),
+            (self.poses, BodyPoseGoal("inti"), "did you mean 'init'"),
+            (self.postures, BodyPoseWithSpeedGoal("Stadn", 0.5), "did you mean 'Stand'"),
+            (self.postures, BodyPoseWithSpeedGoal("Stand", 0.0), "field speed"),
+        ):
+            self.assertIn(words, self.play(client, goal, GoalStatus.ABORTED).text)
+        self.assertEqual(self.robot.module("ALMotion").getAngles("Body", False), before)
+
+    # --- topics and services ---------------------------------------------------------------------------------------
+
+    def publisher(self, name, kind):
+        publisher = rospy.Publisher(name, kind, queue_size=10)
+        self.addCleanup(publisher.unregister)
+        wait_until(lambda: publisher.get_num_connections() > 0, 10.0, f"subscriber of {name}")
+        return publisher
+
+    def test_topics_set_angles_and_stiffness(self):
+        publisher = self.publisher("joint_angles", JointAnglesWithSpeed)
+        publisher.publish(angles(["HeadYaw", "HeadPitch"], [0.6, 0.2], 0.5).joint_angles)
+        wait_until(lambda: abs(self.sensed("HeadYaw") - 0.6) < 0.03, 10.0, "HeadYaw at 0.6")
+        publisher.publish(angles(["HeadYaw"], [-0.2], 0.5, relative=1).joint_angles)
+        wait_until(lambda: abs(self.sensed("HeadYaw") - 0.4) < 0.03, 10.0, "HeadYaw at 0.4")
+        self.publisher("joint_stiffness", JointState).publish(JointState(name=["HeadYaw"], effort=[0.3]))
+        stiffness = lambda: self.robot.module("ALMotion").getStiffnesses("HeadYaw")[0]  # noqa: E731
+        wait_until(lambda: abs(stiffness() - 0.3) < 0.001, 10.0, "stiffness 0.3")
+
+    def test_services_switch_the_motors(self):
+        motion = self.robot.module("ALMotion")
+        self.serve("body_stiffness/disable")
+        self.assertEqual(set(motion.getStiffnesses("Body")), {0.0})
+        self.serve("wakeup")
+        self.assertTrue(motion.robotIsWakeUp())
+        self.assertGreater(min(motion.getStiffnesses("Body")), 0.5)
+        self.serve("rest")
+        self.assertFalse(motion.robotIsWakeUp())
+
+    # --- poses -----------------------------------------------------------------------------------------------------
+
+    def test_poses_by_name(self):
+        self.play(self.poses, BodyPoseGoal("init"))
+        self.assertAlmostEqual(self.sensed("LShoulderPitch"), 1.4, delta=0.05)
+        self.assertGreater(self.robot.true_pose().position.z, 0.3)
+        self.play(self.poses, BodyPoseGoal("ArmsForward"))  # of the pose library
+        self.assertAlmostEqual(self.sensed("LShoulderPitch"), 0.2, delta=0.08)
+        self.play(self.poses, BodyPoseGoal("crouch"))
+        self.assertLess(self.robot.true_pose().position.z, 0.26)
+
+    def test_a_pose_that_was_loaded_meanwhile(self):
+        nod = {"nod": {"joint_names": ["HeadPitch"], "positions": [0.4], "time_from_start": 0.5}}
+        self.play(self.poses, BodyPoseGoal("nod"), GoalStatus.ABORTED)
+        rospy.set_param("pose_manager/poses", nod)
+        self.addCleanup(rospy.delete_param, "pose_manager/poses")
+        self.play(self.poses, BodyPoseGoal("nod"))
+        self.assertAlmostEqual(self.commanded("HeadPitch"), 0.4, delta=0.01)
+
+    def test_a_cancelled_pose_stops(self):
+        slow = {"slow": {"joint_names": "HeadYaw", "positions": [1.5], "time_from_start": 20.0}}
+        rospy.set_param("pose_manager/poses", slow)
+        self.addCleanup(rospy.delete_param, "pose_manager/poses")
+        self.cancel_on_the_way(self.poses, BodyPoseGoal("slow"), lambda: self.commanded("HeadYaw"))
+
+    def test_postures_of_the_robot(self):
+        self.serve("body_stiffness/disable")  # the goal switches the motors on itself
+        self.play(self.postures, BodyPoseWithSpeedGoal("StandInit", 0.8))
+        self.assertEqual(self.robot.module("ALRobotPosture").getPosture(), "StandInit")
+        run = send(self.postures, BodyPoseWithSpeedGoal("Crouch", 0.1))
+        wait_until(lambda: self.commanded("LKneePitch") > 0.8, 10.0, "bent knees")
+        run.cancel()
+        self.assertEqual(run.wait().state, GoalStatus.PREEMPTED, run.text)
+        self.assertLess(self.commanded("LKneePitch"), 2.0)
+
+    # --- examples --------------------------------------------------------------------------------------------------
+
+    def start_example(self, name, *arguments):
+        path = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples" / name
+        command = [sys.executable, str(path), *arguments]
+        return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    def end_of(self, example, status):
+        text, _ = example.communicate(timeout=30.0)
+        self.assertEqual(example.returncode, status, text)
+        return text
+
+    def test_examples(self):
+        state = self.start_example("robot_state.py")
+        mistyped = self.start_example("take_pose.py", "--speed", "0.5", "Crowch")
+        moves = self.start_example("joint_trajectory_client.py")
+        self.assertRegex(self.end_of(state, 0), r"torso   x -?0.0\d m, y -?0.0\d m, z 0.3\d m")
+        self.assertIn("did you mean 'Crouch'", self.end_of(mistyped, 1))
+        self.assertEqual(self.end_of(moves, 0).count("succeeded"), 3)
+        self.assertEqual(self.end_of(self.start_example("take_pose.py", "init"), 0).strip(), "init: succeeded")
+
+
+if __name__ == "__main__":
+    rospy.init_node("driver_goals_test")
+    rostest.rosrun("nao_library_tests", "driver_goals", DriverGoals)
