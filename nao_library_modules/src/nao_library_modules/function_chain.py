@@ -140,11 +140,12 @@ class FunctionChain:
         except KeyError:
             raise UnknownFunction(name, self._table) from None
 
-    def read(self, messages: Sequence[Any]) -> list[Step]:
+    def read(self, messages: Sequence[Any], before_check: Callable[[int], None] = lambda _: None) -> list[Step]:
         """Check a whole chain and bind it; nothing runs.
 
         Args:
             messages: Function messages with at least the fields `function` and `time`.
+            before_check: Called with the place of each function, counted from 1, before it is checked.
 
         Raises:
             BadGoal: If the chain is empty.
@@ -157,6 +158,7 @@ class FunctionChain:
         bindings = [self._guarded(i, message, self._bind) for i, message in enumerate(messages, start=1)]
         steps = []
         for i, (message, binding) in enumerate(zip(messages, bindings), start=1):
+            before_check(i)
             step = Step(i, message.function, binding.arguments(message, context), seconds(message.time))
             if binding.check is not None:
                 self._guarded(i, message, lambda m, b=binding: b.check(*b.check_arguments(m, context)))

@@ -15,6 +15,7 @@ from naoqi.errors import NaoError
 from .answers import Outcome, values_of
 from .errors import FunctionFailed, Preempted, RobotLost
 from .event_relay import EventRelay
+from .function_chain import Step
 from .function_runner import FunctionRunner
 from .health import GoalCounter, connection_report, launch_report
 from .launcher import LaunchPath, launch_supervisor
@@ -177,6 +178,21 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
     def begin_chain(self) -> None:
         """Called before a chain is checked. For modules that keep account of what a chain does."""
 
+    def begin_check(self, position: int) -> None:
+        """Called before the function at a place of the chain, counted from 1, is checked."""
+
+    def steps_to_run(self, goal: Any, steps: Sequence[Step], outcomes: list[Outcome]) -> Sequence[Step]:
+        """What of a checked chain is to be run: all of it.
+
+        For modules whose goals can ask for less.
+
+        Args:
+            goal: The goal.
+            steps: The whole chain.
+            outcomes: Where answers go of what is not run.
+        """
+        return steps
+
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Fill the result message. Modules with more fields extend it.
 
@@ -195,7 +211,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         position, function = 0, ""
         try:
             self.interrupt.check()
-            steps = self.chain.read(messages)
+            steps = self.steps_to_run(goal, self.chain.read(messages, self.begin_check), outcomes)
             for step in steps:
                 position, function = step.position, step.function
                 self.interrupt.check()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import rospy
@@ -63,7 +63,13 @@ def launch_path(value: Any) -> tuple[str, str] | None:
     raise NaoError(f"~launchpath {value!r}: it is 'package launchfile'")
 
 
-def run_module(module: Callable[..., Any], name: str, description: str, argv: Sequence[str] | None = None) -> int:
+def run_module(
+    module: Callable[..., Any],
+    name: str,
+    description: str,
+    argv: Sequence[str] | None = None,
+    parameters: Mapping[str, Any] | None = None,
+) -> int:
     """Start a module as a node and keep it until the node ends.
 
     Args:
@@ -71,6 +77,7 @@ def run_module(module: Callable[..., Any], name: str, description: str, argv: Se
         name: Default name of the node.
         description: What `--help` says.
         argv: Arguments, those of the process by default.
+        parameters: Name -> default of further private parameters, which the module takes by name.
 
     Returns:
         Exit status.
@@ -90,6 +97,7 @@ def run_module(module: Callable[..., Any], name: str, description: str, argv: Se
             port,
             autostart=bool(rospy.get_param("~autostart", False)),
             launchpath=launch_path(rospy.get_param("~launchpath", "")),
+            **{name: rospy.get_param(f"~{name}", default) for name, default in (parameters or {}).items()},
         )
     except NaoError as error:
         rospy.logfatal("%s", error)

@@ -1,0 +1,129 @@
+"""The module for motion: angles, trajectories, poses, postures, stiffness, effectors, recorded motions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from nao_library_actions.msg import NaoMotionAction
+
+from .answers import Outcome
+from .function_chain import Step
+from .motion_cartesian import CartesianFunctions
+from .motion_facts import MotionAccess
+from .motion_gaze import GazeFunctions
+from .motion_joints import JointMotion
+from .motion_plan import MotionPlan
+from .motion_poses import NamedPoses
+from .motion_postures import PostureFunctions
+from .motion_recording import MotionRecording
+from .motion_state import MotionState
+from .motion_stiffness import StiffnessFunctions
+from .motion_store import MotionStore
+from .motion_switches import MotionSwitches
+from .nao_basic import NaoBasic
+
+DRIVER = ("nao_library", "nao_driver.launch")
+MOTIONS = Path("~/.ros/nao_motions")
+"""Folder for recorded motions and pose libraries where none is configured."""
+# Functions whose joints only the client moves on: what setAngles began goes on after the function.
+ASKING = frozenset({"getAngles"})
+
+
+class NaoMotion(
+    NaoBasic,
+    JointMotion,
+    StiffnessFunctions,
+    PostureFunctions,
+    CartesianFunctions,
+    GazeFunctions,
+    MotionState,
+    MotionSwitches,
+    MotionRecording,
+):
+    """Motion goals: ALMotion and ALRobotPosture, poses, trajectories, gaze, recorded motions.
+
+    A chain is checked as a whole before anything moves. With `dry_run` nothing moves at all.
+
+    Attributes:
+        access: Facts and state of the joints.
+        plan: What the chain that is checked, or runs, does.
+        poses: Poses by name.
+        store: Recorded motions by name.
+
+    ROS API:
+        Action `NaoMotion` (nao_library_actions/NaoMotionAction) and what NaoBasic offers. Parameter `~motion_dir`:
+        folder of recorded motions and pose libraries.
+    """
+
+    typed_answers = ASKING
+
+    def __init__(self, ip: str, port: int, motion_dir: str | Path = MOTIONS, **options: Any) -> None:
+        """Start the server.
+
+        Args:
+            ip: Address of the robot.
+            port: Port of its NAOqi.
+            motion_dir: Folder of recorded motions and pose libraries.
+            options: As NaoBasic takes them.
+        """
+        options["launchpath"] = options.get("launchpath") or DRIVER
+        super().__init__(ip, port, **options)
+        folder = Path(motion_dir).expanduser()
+        self.access = MotionAccess(self.robot, self.call)
+        self.poses = NamedPoses(folder)
+        self.store = MotionStore(folder)
+        self.plan = self._new_plan()
+        self._dry_run = False
+        for functions in (
+            self.joint_functions(),
+            self.stiffness_functions(),
+            self.posture_functions(),
+            self.gaze_functions(),
+            self.cartesian_functions(),
+            self.recording_functions(),
+            self.state_functions(),
+            self.switch_functions(),
+        ):
+            self.function_table.update(functions)
+        self.serve("NaoMotion", NaoMotionAction)
+
+    # The life of a goal
+
+    def begin_chain(self) -> None:
+        """Forget what the last chain did."""
+        self.plan = self._new_plan()
+        self._dry_run = False
+
+    def begin_check(self, position: int) -> None:
+        """Tell the plan which function comes."""
+        self.plan.begin_function(position)
+
+    def steps_to_run(self, goal: Any, steps: Sequence[Step], outcomes: list[Outcome]) -> Sequence[Step]:
+        """Nothing for a dry run: each function answers how long it would take, with the wait after it, s."""
+        self._dry_run = any(function.dry_run for function in goal.functions)
+        if not self._dry_run:
+            return steps
+        for step in steps:
+            duration = self.plan.durations[step.position] + step.sleep_time
+            outcomes.append(Outcome(step.position, step.function, [f"{duration:.3f}"], 0.0))
+        return []
+
+    def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
+        """Add the joints that the chain moved or asked for; what an interrupted chain has set going is stopped."""
+        super().fill_result(result, outcomes)
+        joints = list(self.plan.touched)
+        if self.interrupt.is_set():
+            self.hold(joints)
+        if not joints:
+            return
+        if self._dry_run:
+            joints = [joint for joint in joints if self.plan.angle(joint) is not None]
+            result.position = [self.plan.angle(joint) for joint in joints]
+        else:
+            result.position = list(self.call_now(self.robot.proxy("ALMotion"), "getAngles", joints, True))
+        result.name = joints
+
+    def _new_plan(self) -> MotionPlan:
+        return MotionPlan(lambda: self.access.facts, self.access.state)

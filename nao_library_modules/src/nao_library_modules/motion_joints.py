@@ -1,0 +1,323 @@
+"""Motion functions that move joints to angles: targets, key frames, trajectories, poses, hands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from .errors import BadGoal
+from .function_chain import checked_by
+from .joint_trajectory import KeyFrames, read_trajectory
+from .motion_base import DEFAULT_SPEED, MotionBase
+from .motion_facts import one_each
+from .motion_plan import MotionPlan, require_fraction, require_rising
+from .motion_poses import NamedPoses
+
+OPEN, CLOSED = 1.0, 0.0
+# A hand closes or opens in about this time, s.
+HAND_TIME = 0.6
+
+
+def _angles_of(plan: MotionPlan, names: Sequence[str], angles: Sequence[float]) -> dict[str, float]:
+    joints = plan.facts.joints(names)
+    return dict(zip(joints, one_each(angles, joints, "angles")))
+
+
+def _fractions(joints: Sequence[str], speed: float, speeds: Sequence[float]) -> list[float]:
+    if not speeds:
+        return [require_fraction("speed", speed, DEFAULT_SPEED)] * len(joints)
+    for value in speeds:
+        require_fraction("speeds", value, DEFAULT_SPEED)
+    return [value or DEFAULT_SPEED for value in one_each(speeds, joints, "speeds")]
+
+
+def _key_angles(
+    plan: MotionPlan, names: Sequence[str], angles: Sequence[float], times: Sequence[float], field: str = "angles"
+) -> dict[str, list[float]]:
+    """Joint -> its values at the times, from one flat list: one joint after the other."""
+    joints = plan.facts.joints(names)
+    require_rising(times)
+    count = len(times)
+    if len(angles) == count:
+        return {joint: list(angles) for joint in joints}
+    if len(angles) != count * len(joints):
+        raise BadGoal(
+            field,
+            list(angles),
+            f"{count} for all joints, or {count * len(joints)}: {count} for each joint, one joint after the other",
+            problem=f"{len(angles)} values for {len(joints)} joints and {count} times",
+        )
+    return {joint: list(angles[i * count : (i + 1) * count]) for i, joint in enumerate(joints)}
+
+
+def _key_frames(plan: MotionPlan, names: Sequence[str], trajectory: Any, relative: bool) -> KeyFrames:
+    """The trajectory of a message; its joints are named in it, or in `names`."""
+    if not trajectory.joint_names:
+        trajectory.joint_names = list(names)
+    elif names and list(names) != list(trajectory.joint_names):
+        raise BadGoal("names", list(names), "nothing, or the joint_names of the trajectory")
+    return read_trajectory(trajectory, plan.facts.chains, relative)
+
+
+def check_joints(self: MotionBase, names: Sequence[str]) -> None:
+    """Known joints, at least one."""
+    self.plan.touch(self.plan.facts.joints(names))
+
+
+def check_angles(
+    self: MotionBase,
+    names: Sequence[str],
+    angles: Sequence[float],
+    speed: float,
+    speeds: Sequence[float],
+    stiffness: float,
+    relative: bool,
+) -> None:
+    """Known stiff joints, angles in their limits, fractions of speed."""
+    wanted = _angles_of(self.plan, names, angles)
+    _fractions(list(wanted), speed, speeds)
+    self.plan.require_stiff(list(wanted), stiffness)
+    # Nobody waits for targets: they take no time.
+    self.plan.move(self.plan.targets(wanted, relative), 0.0)
+
+
+def check_changes(
+    self: MotionBase, names: Sequence[str], angles: Sequence[float], speed: float, stiffness: float
+) -> None:
+    """As setAngles, relative to where the joints are by then."""
+    check_angles(self, names, angles, speed, (), stiffness, True)
+
+
+def check_with_speed(
+    self: MotionBase, names: Sequence[str], angles: Sequence[float], speed: float, stiffness: float
+) -> None:
+    """Known stiff joints, angles in their limits, a fraction of speed."""
+    wanted = _angles_of(self.plan, names, angles)
+    fraction = require_fraction("speed", speed, DEFAULT_SPEED)
+    self.plan.require_stiff(list(wanted), stiffness)
+    self.plan.move_with_speed(self.plan.targets(wanted, False), dict.fromkeys(wanted, fraction))
+
+
+def check_interpolation(
+    self: MotionBase,
+    names: Sequence[str],
+    angles: Sequence[float],
+    times: Sequence[float],
+    relative: bool,
+    stiffness: float,
+) -> None:
+    """Known stiff joints, key angles in their limits, times the joints can keep."""
+    values = _key_angles(self.plan, names, angles, times)
+    self.plan.require_stiff(list(values), stiffness)
+    self.plan.follow(values, times, relative)
+
+
+def check_trajectory(self: MotionBase, names: Sequence[str], trajectory: Any, relative: bool, stiffness: float) -> None:
+    """As angleInterpolation, the key frames in a trajectory."""
+    frames = _key_frames(self.plan, names, trajectory, relative)
+    self.plan.require_stiff(frames.joints, stiffness)
+    if frames.relative and frames.velocities is not None and any(self.plan.angle(j) is None for j in frames.joints):
+        raise BadGoal("relative", relative, "false, where the trajectory has velocities and an earlier function moves")
+    self.plan.follow(dict(zip(frames.joints, frames.values)), frames.times, frames.relative, "trajectory.points")
+
+
+def check_bezier(self: MotionBase, names: Sequence[str], trajectory: Any, stiffness: float) -> None:
+    """As setTrajectory, with velocities."""
+    if any(not point.velocities for point in trajectory.points):
+        raise BadGoal("trajectory.points", "no velocities", "velocities in every point; setTrajectory needs none")
+    check_trajectory(self, names, trajectory, False, stiffness)
+
+
+def check_pose(
+    self: JointMotion,
+    names: Sequence[str],
+    angles: Sequence[float],
+    str_param: str,
+    trajectory: Any,
+    speed: float,
+    duration: float,
+    stiffness: float,
+) -> None:
+    """Known stiff joints, angles in their limits, a speed or a time they can keep."""
+    pose, time = self.pose(names, angles, str_param, trajectory, duration)
+    self.plan.require_stiff(list(pose), stiffness)
+    if time > 0.0:
+        self.plan.follow({joint: [angle] for joint, angle in pose.items()}, [time], False)
+        return
+    fraction = require_fraction("speed", speed, DEFAULT_SPEED)
+    self.plan.move_with_speed(self.plan.targets(pose, False), dict.fromkeys(pose, fraction))
+
+
+def check_hands(self: MotionBase, names: Sequence[str], stiffness: float) -> None:
+    """Known hands that can move; NAOqi stiffens a hand itself."""
+    hands = self.plan.facts.joints(names)
+    known = [joint for joint in self.plan.facts.limits if joint.endswith("Hand")]
+    for hand in hands:
+        if hand not in known:
+            raise BadGoal("names", hand, ", ".join(known), problem=f"{hand!r} is no hand")
+    self.plan.touch(hands)
+    self.plan.forget(hands)
+    self.plan.takes(HAND_TIME)
+
+
+class JointMotion(MotionBase):
+    """Functions of ALMotion for angles, and poses and trajectories. Parameters are fields of MotionFunction."""
+
+    poses: NamedPoses
+
+    def joint_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "getAngles": self.get_angles,
+            "setAngles": self.set_angles,
+            "changeAngles": self.change_angles,
+            "angleInterpolation": self.angle_interpolation,
+            "angleInterpolationWithSpeed": self.angle_interpolation_with_speed,
+            "angleInterpolationBezier": self.angle_interpolation_bezier,
+            "setTrajectory": self.set_trajectory,
+            "setPose": self.set_pose,
+            "openHand": self.open_hand,
+            "closeHand": self.close_hand,
+        }
+
+    @checked_by(check_joints)
+    def get_angles(self, names: Sequence[str], commanded: bool) -> list[float]:
+        """Angles of joints and chains now, measured or as told; the result has them in `name` and `position`."""
+        return list(self.motion("getAngles", self.joints(names), not commanded))
+
+    @checked_by(check_angles)
+    def set_angles(
+        self,
+        names: Sequence[str],
+        angles: Sequence[float],
+        speed: float,
+        speeds: Sequence[float],
+        stiffness: float,
+        relative: bool,
+    ) -> None:
+        """Give joints targets and go on at once; newer targets replace older ones."""
+        wanted = _angles_of(self.plan, names, angles)
+        fractions = _fractions(list(wanted), speed, speeds)
+        self.stiffen(list(wanted), stiffness)
+        if relative:
+            now = self.motion("getAngles", list(wanted), False)
+            wanted = {joint: angle + before for (joint, angle), before in zip(wanted.items(), now)}
+        self.motion("setAngles", list(wanted), list(wanted.values()), fractions if speeds else fractions[0])
+
+    @checked_by(check_changes)
+    def change_angles(self, names: Sequence[str], angles: Sequence[float], speed: float, stiffness: float) -> None:
+        """Change the targets of joints and go on at once."""
+        wanted = _angles_of(self.plan, names, angles)
+        self.stiffen(list(wanted), stiffness)
+        self.motion("changeAngles", list(wanted), list(wanted.values()), speed or DEFAULT_SPEED)
+
+    @checked_by(check_interpolation)
+    def angle_interpolation(
+        self,
+        names: Sequence[str],
+        angles: Sequence[float],
+        times: Sequence[float],
+        relative: bool,
+        stiffness: float,
+    ) -> None:
+        """Move joints through key angles at given times, and wait for the end."""
+        values = _key_angles(self.plan, names, angles, times)
+        self.stiffen(list(values), stiffness)
+        moments = [list(times)] * len(values)
+        self.motion("angleInterpolation", list(values), list(values.values()), moments, not relative)
+
+    @checked_by(check_with_speed)
+    def angle_interpolation_with_speed(
+        self, names: Sequence[str], angles: Sequence[float], speed: float, stiffness: float
+    ) -> None:
+        """Move joints to angles at a fraction of their top speed, and wait for the end."""
+        self._go(_angles_of(self.plan, names, angles), speed, stiffness)
+
+    @checked_by(check_trajectory)
+    def set_trajectory(self, names: Sequence[str], trajectory: Any, relative: bool, stiffness: float) -> None:
+        """Move joints along a trajectory: through its positions, with its velocities where it has some."""
+        frames = _key_frames(self.plan, names, trajectory, relative)
+        self.stiffen(frames.joints, stiffness)
+        if frames.velocities is None:
+            self.motion("angleInterpolation", *frames.interpolation_arguments())
+            return
+        if frames.relative:
+            frames = frames.absolute(self.motion("getAngles", list(frames.joints), False))
+        self.motion("angleInterpolationBezier", *frames.bezier_arguments())
+
+    @checked_by(check_bezier)
+    def angle_interpolation_bezier(self, names: Sequence[str], trajectory: Any, stiffness: float) -> None:
+        """Move joints along the smooth curves of a trajectory with velocities."""
+        self.set_trajectory(names, trajectory, False, stiffness)
+
+    @checked_by(check_pose)
+    def set_pose(
+        self,
+        names: Sequence[str],
+        angles: Sequence[float],
+        str_param: str,
+        trajectory: Any,
+        speed: float,
+        duration: float,
+        stiffness: float,
+    ) -> None:
+        """Take a pose of one or several chains at a speed or in a time: angles, a point, or a pose by name."""
+        pose, time = self.pose(names, angles, str_param, trajectory, duration)
+        if time > 0.0:
+            self.stiffen(list(pose), stiffness)
+            self.motion("angleInterpolation", list(pose), [[a] for a in pose.values()], [[time]] * len(pose), True)
+        else:
+            self._go(pose, speed, stiffness)
+
+    @checked_by(check_hands)
+    def open_hand(self, names: Sequence[str]) -> None:
+        """Open hands, and wait until they are; they are limp then."""
+        self._hands("openHand", names)
+
+    @checked_by(check_hands)
+    def close_hand(self, names: Sequence[str]) -> None:
+        """Close hands, and wait until they are; they are limp then."""
+        self._hands("closeHand", names)
+
+    def pose(
+        self, names: Sequence[str], angles: Sequence[float], str_param: str, trajectory: Any, duration: float
+    ) -> tuple[Mapping[str, float], float]:
+        """The pose that a message means, and the time to take it in, s; 0 where a speed is meant.
+
+        Raises:
+            BadGoal: If the message gives none, or more than one.
+        """
+        given = [bool(angles), bool(trajectory.points), bool(str_param.strip())]
+        if sum(given) != 1:
+            problem = "there is no pose" if not any(given) else "there is more than one pose"
+            raise BadGoal(
+                "angles",
+                list(angles),
+                "either angles, or one point in trajectory, or a pose's name in str_param",
+                problem=problem,
+            )
+        if duration < 0.0:
+            raise BadGoal("duration", duration, "0 s or more")
+        if angles:
+            return _angles_of(self.plan, names, angles), duration
+        if trajectory.points:
+            if len(trajectory.points) > 1:
+                raise BadGoal("trajectory.points", len(trajectory.points), "one point; setTrajectory takes more")
+            joints = list(trajectory.joint_names) or list(names)
+            point = trajectory.points[0]
+            return _angles_of(self.plan, joints, point.positions), duration or point.time_from_start.to_sec()
+        pose = self.poses.find(str_param, self.plan.facts.limits)
+        if names:
+            wanted = self.plan.facts.joints(names)
+            pose = {joint: angle for joint, angle in pose.items() if joint in wanted}
+        return pose, duration
+
+    def _go(self, pose: Mapping[str, float], speed: float, stiffness: float) -> None:
+        self.stiffen(list(pose), stiffness)
+        self.motion("angleInterpolationWithSpeed", list(pose), list(pose.values()), speed or DEFAULT_SPEED)
+
+    def _hands(self, method: str, names: Sequence[str]) -> None:
+        hands: Any = self.robot.proxy("ALMotion")
+        self.call_all(hands, method, [(hand,) for hand in self.joints(names)])
+
+    call_all: Callable[..., list[Any]]  # of NaoBasic

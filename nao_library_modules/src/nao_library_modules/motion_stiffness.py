@@ -1,0 +1,106 @@
+"""Motion functions for stiffness, waking up and resting."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from .errors import BadGoal
+from .function_chain import checked_by
+from .motion_base import MotionBase
+from .motion_facts import BODY, one_each
+from .motion_plan import POSTURE_TIME, require_rising
+
+
+def _require_stiffnesses(values: Sequence[float]) -> None:
+    for value in values:
+        if not (math.isfinite(value) and 0.0 <= value <= 1.0):
+            raise BadGoal("angles", value, "stiffnesses from 0 (limp) to 1", problem=f"{value:g} is no stiffness")
+
+
+def check_stiffnesses(self: MotionBase, names: Sequence[str], angles: Sequence[float]) -> None:
+    """Known joints, stiffnesses 0..1, one for all or one each."""
+    joints = self.plan.facts.joints(names)
+    values = one_each(angles, joints, "angles")
+    _require_stiffnesses(values)
+    self.plan.set_stiffness(dict(zip(joints, values)))
+
+
+def check_stiffness_interpolation(
+    self: MotionBase, names: Sequence[str], angles: Sequence[float], times: Sequence[float]
+) -> None:
+    """Known joints, stiffnesses 0..1 at rising times."""
+    require_rising(times)
+    _require_stiffnesses(angles)
+    if len(angles) != len(times):
+        raise BadGoal("angles", list(angles), f"{len(times)}, one a time, the same for all joints")
+    self.plan.set_stiffness(dict.fromkeys(self.plan.facts.joints(names), angles[-1]))
+    self.plan.takes(times[-1])
+
+
+def check_stiffness_names(self: MotionBase, names: Sequence[str]) -> None:
+    """Known joints, at least one."""
+    self.plan.facts.joints(names)
+
+
+def check_wake_up(self: MotionBase) -> None:
+    """Everything is stiff afterwards."""
+    body = list(self.plan.facts.chains[BODY])
+    self.plan.set_stiffness(dict.fromkeys(body, 1.0))
+    self.plan.forget(body)
+    self.plan.touch(body)
+    self.plan.takes(POSTURE_TIME)
+
+
+def check_rest(self: MotionBase) -> None:
+    """Everything is limp afterwards."""
+    check_wake_up(self)
+    self.plan.set_stiffness(dict.fromkeys(self.plan.facts.chains[BODY], 0.0))
+
+
+class StiffnessFunctions(MotionBase):
+    """Functions of ALMotion for stiffness. Parameters are fields of MotionFunction."""
+
+    def stiffness_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "wakeUp": self.wake_up,
+            "rest": self.rest,
+            "robotIsWakeUp": self.robot_is_wake_up,
+            "setStiffnesses": self.set_stiffnesses,
+            "getStiffnesses": self.get_stiffnesses,
+            "stiffnessInterpolation": self.stiffness_interpolation,
+        }
+
+    @checked_by(check_wake_up)
+    def wake_up(self) -> None:
+        """Switch the motors on; a robot on its feet stands up."""
+        self.motion("wakeUp")
+
+    @checked_by(check_rest)
+    def rest(self) -> None:
+        """Go to a safe posture and switch the motors off."""
+        self.motion("rest")
+
+    def robot_is_wake_up(self) -> bool:
+        """Whether the robot is awake."""
+        return bool(self.motion("robotIsWakeUp"))
+
+    @checked_by(check_stiffnesses)
+    def set_stiffnesses(self, names: Sequence[str], angles: Sequence[float]) -> None:
+        """Make joints and chains stiff (1) or limp (0) at once."""
+        joints = self.joints(names)
+        self.motion("setStiffnesses", joints, one_each(angles, joints, "angles"))
+
+    @checked_by(check_stiffness_names)
+    def get_stiffnesses(self, names: Sequence[str]) -> list[float]:
+        """Stiffnesses of joints and chains, 0..1."""
+        return list(self.motion("getStiffnesses", self.joints(names)))
+
+    @checked_by(check_stiffness_interpolation)
+    def stiffness_interpolation(self, names: Sequence[str], angles: Sequence[float], times: Sequence[float]) -> None:
+        """Change stiffness along key values at given times, and wait for the end."""
+        joints = self.joints(names)
+        count = len(joints)
+        self.motion("stiffnessInterpolation", joints, [list(angles)] * count, [list(times)] * count)

@@ -1,0 +1,248 @@
+"""Motion functions that switch what the robot does by itself, and whole body control."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from .errors import BadGoal
+from .function_chain import checked_by
+from .motion_base import MotionBase
+from .motion_facts import BODY
+from .suggestion import did_you_mean
+
+CHAINS = ("Body", "Head", "LArm", "RArm", "Arms", "LLeg", "RLeg", "Legs")
+ARMS = ("LArm", "RArm", "Arms")
+COLLISION_PARTS = ("All", "Move", "LArm", "RArm", "Arms")
+EFFECTORS = ("Head", "LArm", "RArm")
+LEGS = ("LLeg", "RLeg", "Legs")
+ONE_LEG_OR_BOTH = ("LLeg", "RLeg", "Legs")
+FOOT_STATES = ("Fixed", "Plane", "Free")
+BREATH_KEYS = ("Bpm", "Amplitude")
+
+
+def _require(field: str, value: str, allowed: Sequence[str]) -> str:
+    if value not in allowed:
+        raise BadGoal(
+            field,
+            value,
+            f"one of {', '.join(allowed)}",
+            problem=f"{value!r} is not known{did_you_mean(value, allowed)}",
+        )
+    return value
+
+
+def _chains_check(allowed: Sequence[str]) -> Callable[..., None]:
+    def check(_self: object, names: Sequence[str]) -> None:
+        if not names:
+            raise BadGoal("names", [], f"one or more of {', '.join(allowed)}", problem="nothing is named")
+        for name in names:
+            _require("names", name, allowed)
+
+    return check
+
+
+def check_leg(_self: object, str_param: str) -> None:
+    """A leg, or both."""
+    _require("str_param", str_param, LEGS)
+
+
+def check_foot_state(_self: object, texts: Sequence[str], str_param: str) -> None:
+    """The state of a foot, and a leg."""
+    if len(texts) != 1:
+        raise BadGoal("texts", list(texts), f"one of {', '.join(FOOT_STATES)}")
+    _require("texts", texts[0], FOOT_STATES)
+    _require("str_param", str_param, LEGS)
+
+
+def check_balance(self: MotionBase, str_param: str, duration: float) -> None:
+    """A leg, or both, and a time."""
+    _require("str_param", str_param, ONE_LEG_OR_BOTH)
+    if not (math.isfinite(duration) and duration > 0.0):
+        raise BadGoal("duration", duration, "more than 0 s")
+    body = self.plan.facts.chains[BODY]
+    self.plan.forget(body)
+    self.plan.takes(duration)
+
+
+def check_effector(_self: object, names: Sequence[str], values: Sequence[float]) -> None:
+    """One effector and its target: rotations for the head, a position or a pose for an arm."""
+    if len(names) != 1:
+        raise BadGoal("names", list(names), f"one of {', '.join(EFFECTORS)}")
+    _require("names", names[0], EFFECTORS)
+    if len(values) not in (3, 6) or not all(map(math.isfinite, values)):
+        raise BadGoal("values", list(values), "wx wy wz (Head), x y z or x y z wx wy wz (arms)")
+
+
+def check_breath(_self: object, texts: Sequence[str], values: Sequence[float]) -> None:
+    """Known settings of breathing, a value each."""
+    for text in texts:
+        _require("texts", text, BREATH_KEYS)
+    if not texts or len(values) != len(texts):
+        raise BadGoal("values", list(values), f"one for each of {', '.join(texts) or ', '.join(BREATH_KEYS)}")
+
+
+class MotionSwitches(MotionBase):
+    """Functions of ALMotion for what the robot does by itself. Parameters are fields of MotionFunction."""
+
+    def switch_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "setBreathEnabled": self.set_breath_enabled,
+            "getBreathEnabled": self.get_breath_enabled,
+            "setBreathConfig": self.set_breath_config,
+            "getBreathConfig": self.get_breath_config,
+            "setIdlePostureEnabled": self.set_idle_posture_enabled,
+            "getIdlePostureEnabled": self.get_idle_posture_enabled,
+            "setSmartStiffnessEnabled": self.set_smart_stiffness_enabled,
+            "getSmartStiffnessEnabled": self.get_smart_stiffness_enabled,
+            "setCollisionProtectionEnabled": self.set_collision_protection_enabled,
+            "getCollisionProtectionEnabled": self.get_collision_protection_enabled,
+            "isCollision": self.is_collision,
+            "setExternalCollisionProtectionEnabled": self.set_external_collision_protection_enabled,
+            "getExternalCollisionProtectionEnabled": self.get_external_collision_protection_enabled,
+            "setFallManagerEnabled": self.set_fall_manager_enabled,
+            "getFallManagerEnabled": self.get_fall_manager_enabled,
+            "setPushRecoveryEnabled": self.set_push_recovery_enabled,
+            "getPushRecoveryEnabled": self.get_push_recovery_enabled,
+            "setDiagnosisEffectEnabled": self.set_diagnosis_effect_enabled,
+            "getDiagnosisEffectEnabled": self.get_diagnosis_effect_enabled,
+            "wbEnable": self.wb_enable,
+            "wbFootState": self.wb_foot_state,
+            "wbEnableBalanceConstraint": self.wb_enable_balance_constraint,
+            "wbGoToBalance": self.wb_go_to_balance,
+            "wbEnableEffectorControl": self.wb_enable_effector_control,
+            "wbSetEffectorControl": self.wb_set_effector_control,
+            "wbEnableEffectorOptimization": self.wb_enable_effector_optimization,
+        }
+
+    # Life-like motion
+
+    @checked_by(_chains_check(CHAINS))
+    def set_breath_enabled(self, names: Sequence[str], enable: bool) -> None:
+        """Let chains breathe, or stop it."""
+        self._each("setBreathEnabled", names, enable)
+
+    @checked_by(_chains_check(CHAINS))
+    def get_breath_enabled(self, names: Sequence[str]) -> list[bool]:
+        """Whether chains breathe."""
+        return self._each("getBreathEnabled", names)
+
+    @checked_by(check_breath)
+    def set_breath_config(self, texts: Sequence[str], values: Sequence[float]) -> None:
+        """How the robot breathes: Bpm (breaths a minute) and Amplitude (0..1)."""
+        self.motion("setBreathConfig", [list(pair) for pair in zip(texts, values)])
+
+    def get_breath_config(self) -> list[list[Any]]:
+        """How the robot breathes."""
+        return [list(pair) for pair in self.motion("getBreathConfig")]
+
+    @checked_by(_chains_check(CHAINS))
+    def set_idle_posture_enabled(self, names: Sequence[str], enable: bool) -> None:
+        """Let chains go back to their idle posture when nothing moves them, or stop it."""
+        self._each("setIdlePostureEnabled", names, enable)
+
+    @checked_by(_chains_check(CHAINS))
+    def get_idle_posture_enabled(self, names: Sequence[str]) -> list[bool]:
+        """Whether chains go back to their idle posture."""
+        return self._each("getIdlePostureEnabled", names)
+
+    # Protections
+
+    def set_smart_stiffness_enabled(self, enable: bool) -> None:
+        """Let the robot lower the stiffness of joints that hold little."""
+        self.motion("setSmartStiffnessEnabled", enable)
+
+    def get_smart_stiffness_enabled(self) -> bool:
+        """Whether it does."""
+        return bool(self.motion("getSmartStiffnessEnabled"))
+
+    @checked_by(_chains_check(ARMS))
+    def set_collision_protection_enabled(self, names: Sequence[str], enable: bool) -> list[bool]:
+        """Keep arms from hitting the body; tells whether that could be switched."""
+        return self._each("setCollisionProtectionEnabled", names, enable)
+
+    @checked_by(_chains_check(ARMS[:2]))
+    def get_collision_protection_enabled(self, names: Sequence[str]) -> list[bool]:
+        """Whether arms are kept from hitting the body."""
+        return self._each("getCollisionProtectionEnabled", names)
+
+    @checked_by(_chains_check(ARMS))
+    def is_collision(self, names: Sequence[str]) -> list[str]:
+        """Whether arms touch the body: none, near or collision."""
+        return self._each("isCollision", names)
+
+    @checked_by(_chains_check(COLLISION_PARTS))
+    def set_external_collision_protection_enabled(self, names: Sequence[str], enable: bool) -> None:
+        """Keep arms and walk from hitting what is around."""
+        self._each("setExternalCollisionProtectionEnabled", names, enable)
+
+    @checked_by(_chains_check(COLLISION_PARTS))
+    def get_external_collision_protection_enabled(self, names: Sequence[str]) -> list[bool]:
+        """Whether they are kept from it."""
+        return self._each("getExternalCollisionProtectionEnabled", names)
+
+    def set_fall_manager_enabled(self, enable: bool) -> None:
+        """Let the robot protect itself when it falls."""
+        self.motion("setFallManagerEnabled", enable)
+
+    def get_fall_manager_enabled(self) -> bool:
+        """Whether it does."""
+        return bool(self.motion("getFallManagerEnabled"))
+
+    def set_push_recovery_enabled(self, enable: bool) -> None:
+        """Let the robot balance when it is pushed."""
+        self.motion("setPushRecoveryEnabled", enable)
+
+    def get_push_recovery_enabled(self) -> bool:
+        """Whether it does."""
+        return bool(self.motion("getPushRecoveryEnabled"))
+
+    def set_diagnosis_effect_enabled(self, enable: bool) -> None:
+        """Let faults and heat limit the robot's motion."""
+        self.motion("setDiagnosisEffectEnabled", enable)
+
+    def get_diagnosis_effect_enabled(self) -> bool:
+        """Whether they do."""
+        return bool(self.motion("getDiagnosisEffectEnabled"))
+
+    # Whole body
+
+    def wb_enable(self, enable: bool) -> None:
+        """Switch whole body control."""
+        self.motion("wbEnable", enable)
+
+    @checked_by(check_foot_state)
+    def wb_foot_state(self, texts: Sequence[str], str_param: str) -> None:
+        """What a foot does under whole body control: Fixed, Plane or Free."""
+        self.motion("wbFootState", texts[0], str_param)
+
+    @checked_by(check_leg)
+    def wb_enable_balance_constraint(self, enable: bool, str_param: str) -> None:
+        """Keep the centre of mass over one foot or both, or stop it."""
+        self.motion("wbEnableBalanceConstraint", enable, str_param)
+
+    @checked_by(check_balance)
+    def wb_go_to_balance(self, str_param: str, duration: float) -> bool:
+        """Move the centre of mass over one foot or both in a time; tells whether it got there."""
+        return bool(self.motion("wbGoToBalance", str_param, duration))
+
+    @checked_by(_chains_check(EFFECTORS))
+    def wb_enable_effector_control(self, names: Sequence[str], enable: bool) -> None:
+        """Let effectors follow wbSetEffectorControl, or stop it."""
+        self._each("wbEnableEffectorControl", names, enable)
+
+    @checked_by(check_effector)
+    def wb_set_effector_control(self, names: Sequence[str], values: Sequence[float]) -> None:
+        """Where an effector is to go, in FRAME_ROBOT: rotation of the head (rad), position of an arm (m)."""
+        self.motion("wbSetEffectorControl", names[0], list(values))
+
+    @checked_by(_chains_check(EFFECTORS))
+    def wb_enable_effector_optimization(self, names: Sequence[str], enable: bool) -> None:
+        """Let effectors use what whole body control leaves free, or stop it."""
+        self._each("wbEnableEffectorOptimization", names, enable)
+
+    def _each(self, method: str, names: Sequence[str], *args: Any) -> list[Any]:
+        answers = [self.motion(method, name, *args) for name in names]
+        return [answer for answer in answers if answer is not None]
