@@ -1,7 +1,7 @@
 # Everything a user types. Each target installs and builds what it needs first; with nothing to do that takes no time.
 
 .DEFAULT_GOAL := help
-.PHONY: docs urdf help setup build demo test unit rostest bench lint format clean
+.PHONY: docs pictures urdf help setup build demo test unit rostest bench lint format clean
 
 # Tests for `make unit` and `make rostest`: parts of their names (TESTS="lights walk"). Scenarios at once: JOBS=2.
 TESTS ?=
@@ -43,6 +43,9 @@ urdf: setup ## Generate the robot's URDF anew from its tables
 
 docs: build ## Write the tables of README.md anew from the code
 	@scripts/ros-env python3 scripts/readme_tables.py
+
+pictures: setup ## Draw the pictures of README.md anew
+	@PYTHONPATH=nao_sim_bridge/src .venv/bin/python scripts/readme_pictures.py
 
 clean: ## Remove the workspace, the virtual environment and what the demonstration left
 	rm -rf .ws .venv demo_output

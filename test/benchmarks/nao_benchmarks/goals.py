@@ -1,15 +1,16 @@
-"""Goals for the lights, and a client that measures round trips instead of its own waiting."""
+"""Goals for lights and motion, and a client that measures round trips instead of its own waiting."""
 
 from __future__ import annotations
 
 import threading
+from typing import Any
 
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_msgs.msg import LedFunction
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal, NaoMotionGoal
+from nao_library_msgs.msg import LedFunction, MotionFunction
 
 from .errors import BenchmarkError
 
@@ -29,6 +30,17 @@ def set_intensity(light: str, count: int) -> NaoLedGoal:
     )
 
 
+def set_angles(joint: str, angle: float, speed: float) -> NaoMotionGoal:
+    """A goal that gives a joint a target (rad) at a fraction of its top speed, and is over then."""
+    return NaoMotionGoal([MotionFunction(function="setAngles", names=[joint], angles=[angle], speed=speed)])
+
+
+def interpolate(joint: str, angle: float, duration: float) -> NaoMotionGoal:
+    """A goal that moves a joint to an angle (rad) in a time (s)."""
+    function = MotionFunction(function="angleInterpolation", names=[joint], angles=[angle], times=[duration])
+    return NaoMotionGoal([function])
+
+
 class GoalClient:
     """Sends goals to one server and waits for their ends.
 
@@ -38,18 +50,23 @@ class GoalClient:
     Args:
         server: Name of the action.
         limit: Longest wait for the server, in s.
+        action: Its type.
 
     Raises:
         BenchmarkError: If the server does not come up.
     """
 
-    def __init__(self, server: str, limit: float) -> None:
+    def __init__(self, server: str, limit: float, action: type = NaoLedAction) -> None:
         self._server = server
-        self._client = actionlib.ActionClient(server, NaoLedAction)
+        self._client = actionlib.ActionClient(server, action)
         if not self._client.wait_for_server(rospy.Duration(limit)):
             raise BenchmarkError(f"no action server {server} within {limit:g} s")
 
-    def run(self, goal: NaoLedGoal) -> None:
+    def send(self, goal: Any) -> actionlib.ClientGoalHandle:
+        """Send a goal and go on; the handle cancels it."""
+        return self._client.send_goal(goal)
+
+    def run(self, goal: Any) -> None:
         """Send a goal and wait until it has succeeded.
 
         Raises:

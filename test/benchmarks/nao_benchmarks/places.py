@@ -8,3 +8,4 @@ ROOT = Path(__file__).resolve().parents[3]
 PROGRAMS = Path(__file__).resolve().parent / "programs"
 SIMULATOR_NODE = ROOT / "nao_sim_bridge" / "nodes" / "nao_sim"
 LIGHTS_NODE = ROOT / "nao_library_modules" / "nodes" / "nao_lights"
+MOTION_NODE = ROOT / "nao_library_modules" / "nodes" / "nao_motion"

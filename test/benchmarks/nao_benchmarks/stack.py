@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from .places import LIGHTS_NODE, PROGRAMS
+from .places import LIGHTS_NODE, MOTION_NODE, PROGRAMS
 from .program import Program
 from .simulator import Simulator
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 START_LIMIT = 40.0
 OUR_SERVER = "NaoLights"
 BARE_SERVER = "bare_lights"
+MOTION_SERVER = "NaoMotion"
 # s; a client must still find its goal in the list when the result takes longer than the state.
 FORGET_AFTER = 0.2
 
@@ -73,6 +74,19 @@ class Stack:
         makes hundreds in that time, a user a few; these servers forget them soon.
         """
         return self._goal_servers("rare", FORGET_AFTER)
+
+    @cached_property
+    def motion_client(self) -> GoalClient:
+        """A client of our server for motion; the robot is awake."""
+        self.start_ros()
+        from nao_library_actions.msg import NaoMotionAction  # not above: it needs the built workspace
+
+        from .goals import GoalClient
+
+        self.simulator.wake_up()
+        robot = ["--pip", "127.0.0.1", "--pport", str(self.simulator.port)]
+        self._start("nao_motion", [str(MOTION_NODE), *robot])
+        return GoalClient(MOTION_SERVER, START_LIMIT, NaoMotionAction)
 
     def _goal_servers(self, name: str, forget_after: float | None = None) -> tuple[GoalClient, GoalClient]:
         self.start_ros()

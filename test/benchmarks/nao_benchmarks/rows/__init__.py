@@ -6,6 +6,7 @@ from ..row import Row
 from .chained_functions import ChainedFunctions
 from .goal_round_trip import GoalRoundTrip
 from .memory import Memory
+from .motion_latency import MotionStart, MotionStop
 from .moving_tick import MovingTick
 from .physics_tick import PhysicsTick
 from .proxy_call import ProxyCall
@@ -19,5 +20,7 @@ ROWS: tuple[Row, ...] = (
     ProxyCall(),
     GoalRoundTrip(),
     ChainedFunctions(),
+    MotionStart(),
+    MotionStop(),
     Memory(),
 )
