@@ -75,6 +75,7 @@ class NaoMotion(
         self.poses = NamedPoses(folder)
         self.store = MotionStore(folder)
         self.plan = self._new_plan()
+        self.recording_names = set()
         self._dry_run = False
         for functions in (
             self.joint_functions(),
@@ -94,6 +95,7 @@ class NaoMotion(
     def begin_chain(self) -> None:
         """Forget what the last chain did."""
         self.plan = self._new_plan()
+        self.recording_names.clear()
         self._dry_run = False
 
     def begin_check(self, position: int) -> None:

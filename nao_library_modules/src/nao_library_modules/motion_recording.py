@@ -1,0 +1,174 @@
+"""Motion functions that record what joints do, replay it, and keep it under names."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from .errors import BadGoal, Preempted
+from .function_chain import checked_by
+from .motion_base import DEFAULT_SPEED, MotionBase
+from .motion_facts import BODY
+from .motion_store import MotionStore
+from .recorded_motion import RecordedMotion, recorded
+
+RATE = 25.0
+"""Samples a second where a message leaves it to us."""
+FASTEST_RATE = 100.0
+LONGEST = 3600.0
+# The way to the first pose of a motion takes that long at least, s.
+APPROACH = 0.5
+
+
+def check_recording(self: MotionRecording, str_param: str, names: Sequence[str], duration: float, rate: float) -> None:
+    """A name for the motion, known joints, a duration, a rate."""
+    self.store.path(str_param)
+    joints = self.plan.facts.joints(names or [BODY])
+    if not (math.isfinite(duration) and 0.0 < duration <= LONGEST):
+        raise BadGoal("duration", duration, f"above 0 to {LONGEST:g} s")
+    if not (math.isfinite(rate) and 0.0 <= rate <= FASTEST_RATE):
+        raise BadGoal("rate", rate, f"above 0 to {FASTEST_RATE:g} a second, or 0 for {RATE:g}")
+    self.plan.touch(joints)
+    self.plan.forget(joints)
+    self.plan.takes(duration)
+    self.recording_names.add(str_param)
+
+
+def check_replay(self: MotionRecording, str_param: str, speed: float, mirror: bool, stiffness: float) -> None:
+    """A recorded motion that the joints can follow at that speed."""
+    if not (math.isfinite(speed) and speed >= 0.0):
+        raise BadGoal("speed", speed, "a factor above 0, or 0 for the speed of the recording")
+    if str_param in self.recording_names:
+        return  # recorded by an earlier function of this chain: nothing is known of it yet
+    motion = self.replay(str_param, speed, mirror)
+    self.plan.facts.joints(motion.joints, f"str_param ({str_param})")
+    self.plan.require_stiff(motion.joints, stiffness)
+    self.plan.move_with_speed(dict(motion.start), dict.fromkeys(motion.joints, DEFAULT_SPEED))
+    if len(motion.times) > 1:
+        values = {joint: [row[i] for row in motion.angles[1:]] for i, joint in enumerate(motion.joints)}
+        self.plan.follow(values, motion.times[1:], False, f"str_param ({str_param})")
+
+
+def check_rename(self: MotionRecording, texts: Sequence[str]) -> None:
+    """One new name."""
+    if len(texts) != 1:
+        raise BadGoal("texts", list(texts), "the new name, and nothing else")
+    self.store.path(texts[0], "texts")
+
+
+class MotionRecording(MotionBase):
+    """Recorded motions. Parameters are fields of MotionFunction.
+
+    Attributes:
+        store: Recorded motions by name.
+        recording_names: Motions that the chain records.
+    """
+
+    store: MotionStore
+    recording_names: set[str]
+    clock: Any  # of NaoBasic
+    wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
+    after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
+
+    def recording_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "recordMotion": self.record_motion,
+            "playMotion": self.play_motion,
+            "listMotions": self.list_motions,
+            "renameMotion": self.rename_motion,
+            "deleteMotion": self.delete_motion,
+        }
+
+    @checked_by(check_recording)
+    def record_motion(
+        self, str_param: str, names: Sequence[str], duration: float, rate: float, limp: bool
+    ) -> dict[str, Any]:
+        """Record joints for a time, or until the goal is cancelled; with `limp` they can be moved by hand."""
+        joints = self.joints(names or [BODY])
+        if limp:
+            self._let_go(joints)
+        samples: list[tuple[float, list[float]]] = []
+        try:
+            self._sample(joints, duration, 1.0 / (rate or RATE), samples)
+        except Preempted:
+            # Whoever teaches by hand does not know beforehand how long it takes, and cancels at the end.
+            self._save(str_param, joints, samples)
+            raise
+        return self._save(str_param, joints, samples)
+
+    @checked_by(check_replay)
+    def play_motion(self, str_param: str, speed: float, mirror: bool, stiffness: float) -> float:
+        """Replay a recorded motion, from wherever the joints are; answers how long it took, s."""
+        motion = self.replay(str_param, speed, mirror)
+        joints = list(motion.joints)
+        self.stiffen(joints, stiffness)
+        began = self.clock.now()
+        self._approach(motion)
+        if len(motion.times) > 1:
+            paths = [[row[i] for row in motion.angles[1:]] for i in range(len(joints))]
+            self.motion("angleInterpolation", joints, paths, [list(motion.times[1:])] * len(joints), True)
+        return self.clock.now() - began
+
+    def list_motions(self) -> list[str]:
+        """Names of the recorded motions."""
+        return self.store.names()
+
+    @checked_by(check_rename)
+    def rename_motion(self, str_param: str, texts: Sequence[str]) -> None:
+        """Give a recorded motion the name in `texts`."""
+        self.store.rename(str_param, texts[0])
+
+    def delete_motion(self, str_param: str) -> None:
+        """Delete a recorded motion."""
+        self.store.delete(str_param)
+
+    def replay(self, name: str, speed: float, mirror: bool) -> RecordedMotion:
+        """A recorded motion as a message wants it, thinned out to key frames."""
+        motion = self.store.load(name).key_frames().faster(speed or 1.0)
+        return motion.mirrored() if mirror else motion
+
+    def _let_go(self, joints: list[str]) -> None:
+        before = self.motion("getStiffnesses", joints)
+
+        def stiffen() -> None:
+            proxy = self.robot.proxy("ALMotion")
+            # Where the hand left them: stiffened joints must not jump back.
+            self.call_now(proxy, "setAngles", joints, self.call_now(proxy, "getAngles", joints, True), 1.0)
+            self.call_now(proxy, "setStiffnesses", joints, list(before))
+
+        self.after_wait(stiffen)
+        self.motion("setStiffnesses", joints, [0.0] * len(joints))
+
+    def _sample(
+        self, joints: list[str], duration: float, period: float, samples: list[tuple[float, list[float]]]
+    ) -> None:
+        began = self.clock.now()
+        while True:
+            now = self.clock.now() - began
+            samples.append((now, list(self.motion("getAngles", joints, True))))
+            if now >= duration:
+                return
+            # Counted from the start, so that the samples do not drift.
+            due = (math.floor(now / period + 0.5) + 1) * period
+            self.wait(max(0.0, min(due, duration) - (self.clock.now() - began)))
+
+    def _save(self, name: str, joints: list[str], samples: list[tuple[float, list[float]]]) -> dict[str, Any]:
+        rising = [row for i, row in enumerate(samples) if i == 0 or row[0] > samples[i - 1][0]]
+        if not rising:
+            return {}
+        motion = recorded(joints, rising)
+        self.store.save(name, motion)
+        return {"motion": name, "samples": len(motion.times), "duration": round(motion.duration, 3)}
+
+    def _approach(self, motion: RecordedMotion) -> None:
+        now = self.motion("getAngles", list(motion.joints), False)
+        limits = self.access.facts.limits
+        slowest = max(
+            abs(angle - before) / (DEFAULT_SPEED * limits[joint].max_speed)
+            for (joint, angle), before in zip(motion.start.items(), now)
+        )
+        time = max(APPROACH, slowest)
+        angles = [[angle] for angle in motion.start.values()]
+        self.motion("angleInterpolation", list(motion.joints), angles, [[time]] * len(angles), True)
