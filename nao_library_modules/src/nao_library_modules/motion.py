@@ -117,7 +117,7 @@ class NaoMotion(
         super().fill_result(result, outcomes)
         joints = list(self.plan.touched)
         if self.interrupt.is_set():
-            self.hold(joints)
+            self.halt()
         if not joints:
             return
         if self._dry_run:

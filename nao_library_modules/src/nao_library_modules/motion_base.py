@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from naoqi.errors import NaoError
@@ -50,15 +50,15 @@ class MotionBase:
         if limp:
             self.motion("setStiffnesses", limp, [stiffness] * len(limp))
 
-    def hold(self, joints: Iterable[str]) -> None:
-        """Stop joints where they are, whatever moves them; preemption does not interrupt this."""
-        names = list(joints)
-        if not names:
-            return
+    def halt(self) -> None:
+        """Stop what the chain has set going, where the joints are; preemption does not interrupt this."""
         proxy = self.robot.proxy(MOTION)
+        touched, aimed = list(self.plan.touched), list(self.plan.aimed)
         try:
-            self.call_now(proxy, "killTasksUsingResources", names)
-            # What setAngles has set going is no task: a new target, where the joints are told to be, ends it.
-            self.call_now(proxy, "setAngles", names, self.call_now(proxy, "getAngles", names, False), 1.0)
+            if touched:
+                self.call_now(proxy, "killTasksUsingResources", touched)
+            if aimed:
+                # A target is no task: a new one, where the joint is told to be, ends it.
+                self.call_now(proxy, "setAngles", aimed, self.call_now(proxy, "getAngles", aimed, False), 1.0)
         except NaoError as error:
             log.warning("joints may go on moving: %s", error)

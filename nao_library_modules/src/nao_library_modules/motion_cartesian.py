@@ -10,7 +10,7 @@ from .errors import BadGoal
 from .function_chain import checked_by
 from .motion_base import DEFAULT_SPEED, MotionBase
 from .motion_facts import BODY
-from .motion_plan import require_fraction, require_rising
+from .motion_plan import MotionPlan, require_fraction, require_rising
 from .suggestion import did_you_mean
 
 FRAMES = ("FRAME_TORSO", "FRAME_WORLD", "FRAME_ROBOT")
@@ -75,7 +75,8 @@ def check_frame(_self: MotionBase, frame: int) -> None:
     require_frame(frame)
 
 
-def _check_move(plan: Any, names: Sequence[str], frame: int, axis_mask: int, stiffness: float) -> None:
+def _check_move(plan: MotionPlan, names: Sequence[str], frame: int, axis_mask: int, stiffness: float) -> list[str]:
+    """See that effectors can move; the joints that will."""
     require_frame(frame)
     if not 0 <= axis_mask <= ALL_AXES:
         raise BadGoal("axis_mask", axis_mask, "1..63: the sum of 1 x, 2 y, 4 z, 8 wx, 16 wy, 32 wz; 0 for 7")
@@ -84,6 +85,7 @@ def _check_move(plan: Any, names: Sequence[str], frame: int, axis_mask: int, sti
     plan.require_stiff(joints, stiffness)
     plan.touch(joints)
     plan.forget(joints)
+    return joints
 
 
 def _check_with_speed(
@@ -96,7 +98,7 @@ def _check_with_speed(
     speed: float,
     stiffness: float,
 ) -> None:
-    _check_move(self.plan, names, frame, axis_mask, stiffness)
+    self.plan.aim(_check_move(self.plan, names, frame, axis_mask, stiffness))
     _rows(values, len(names), size)
     require_fraction("speed", speed, DEFAULT_SPEED)
 

@@ -79,6 +79,7 @@ def check_angles(
     self.plan.require_stiff(list(wanted), stiffness)
     # Nobody waits for targets: they take no time.
     self.plan.move(self.plan.targets(wanted, relative), 0.0)
+    self.plan.aim(wanted)
 
 
 def check_changes(

@@ -24,6 +24,7 @@ class MotionPlan:
 
     Attributes:
         touched: Joints that the chain moves or asks for, in order, each once.
+        aimed: Those that the chain gives targets without waiting for them.
         durations: Place of each function in the chain, counted from 1 -> how long it takes as far as known, s.
 
     Args:
@@ -33,6 +34,7 @@ class MotionPlan:
 
     def __init__(self, facts: Callable[[], MotionFacts], read_state: Callable[[], JointState]) -> None:
         self.touched: dict[str, None] = {}
+        self.aimed: dict[str, None] = {}
         self.durations: dict[int, float] = {}
         self._read_facts = facts
         self._read_state = read_state
@@ -61,6 +63,10 @@ class MotionPlan:
     def touch(self, joints: Iterable[str]) -> None:
         """Note joints for the result."""
         self.touched.update(dict.fromkeys(joints))
+
+    def aim(self, joints: Iterable[str]) -> None:
+        """Joints get targets that nobody waits for."""
+        self.aimed.update(dict.fromkeys(joints))
 
     def angle(self, joint: str) -> float | None:
         """Where a joint is by then, rad; None where it is not known any more."""

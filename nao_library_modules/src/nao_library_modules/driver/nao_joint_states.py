@@ -117,8 +117,12 @@ class NaoJointStates:
         clock = RosClock()
         pacer = Pacer(clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
         velocities, speeds = SlopeEstimator(), SlopeEstimator()
+        last = None
         while pacer.wait():
             before = clock.now()
+            if before == last:
+                continue  # a step of simulated time may be longer than the wait: frames come once for a moment
+            last = before
             reading = sensors.read()
             # The robot answered somewhere between question and answer.
             now = (before + clock.now()) / 2
