@@ -102,6 +102,8 @@ class JointSensors:
         for joint, position in zip(self.joints, positions):
             if not isinstance(position, (int, float)):
                 raise NaoError(f"the robot's memory holds {position!r} as the angle of {joint}")
+        if torso is not None and (len(torso) != 6 or not all(math.isfinite(value) for value in torso)):
+            raise NaoError(f"the robot says that its torso is at {torso}: six numbers are a place")
         efforts = tuple(
             _number(current) * torque * math.copysign(1.0, _number(command) - _number(position))
             for current, torque, command, position in zip(currents, self._torque, commanded, measured)

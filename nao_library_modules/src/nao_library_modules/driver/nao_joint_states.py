@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -24,6 +25,8 @@ from .feet import LEG_JOINTS, footprint
 from .joint_sensors import JointSensors, Reading
 from .pacer import Pacer
 from .slope import SlopeEstimator
+
+log = logging.getLogger(__name__)
 
 DEFAULT_RATE = 50.0
 FASTEST = 0.008
@@ -111,6 +114,10 @@ class NaoJointStates:
                 self._interrupt.wait(RETRY)
             except rospy.ROSException:
                 return  # the topics were closed before this thread
+            except Exception as error:  # a mistake in here must not leave a node that lives and says nothing
+                self._problem = f"unexpected error: {error!r}"
+                log.exception("joints cannot be read")
+                self._interrupt.wait(RETRY)
 
     def _read_on(self, sensors: JointSensors) -> None:
         """Read and publish until the robot cannot be read, or the node ends."""

@@ -43,8 +43,7 @@ def run_driver(make: Callable[[Robot], Any], name: str, description: str, argv: 
         rospy.logfatal("%s", error)
         return 1
     reports = {"robot": lambda: connection_report(robot.address, robot.connection), **node.reports()}
-    own_name = rospy.get_name().rpartition("/")[2]
-    diagnostics = DiagnosticsPublisher(robot.address, {f"{own_name} {what}": tell for what, tell in reports.items()})
+    diagnostics = DiagnosticsPublisher(robot.address, reports)  # it puts the name of the node before each
     rospy.on_shutdown(node.close)
     rospy.on_shutdown(diagnostics.close)
     rospy.spin()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from geometry_msgs.msg import Point, Quaternion, TransformStamped, Twist, Vector3
@@ -52,7 +51,7 @@ def odometry(stamp: Time, frame: str, base: str, reading: Reading, velocity: Seq
         reading: With the place of the torso.
         velocity: (3,) of the torso in `frame`, m/s. The message has it in `base`, as REP 105 asks.
     """
-    x, y, z, roll, pitch, yaw = _torso(reading)
+    x, y, z, roll, pitch, yaw = reading.torso
     turn = from_roll_pitch_yaw(roll, pitch, yaw)
     message = Odometry()
     message.header.stamp, message.header.frame_id, message.child_frame_id = stamp, frame, base
@@ -78,7 +77,7 @@ def transform(stamp: Time, parent: str, child: str, place: Sequence[float], turn
 
 def odometry_transform(stamp: Time, frame: str, base: str, reading: Reading) -> TransformStamped:
     """Pose of the torso in odometry."""
-    place = _torso(reading)
+    place = reading.torso
     return transform(stamp, frame, base, place[:3], from_roll_pitch_yaw(*place[3:]))
 
 
@@ -86,9 +85,3 @@ def diagonal(*variances: float) -> list[float]:
     """A covariance matrix, row by row, of values that do not depend on each other."""
     count = len(variances)
     return [variances[i // count] if i % (count + 1) == 0 else 0.0 for i in range(count * count)]
-
-
-def _torso(reading: Reading) -> tuple[float, ...]:
-    if reading.torso is None or not all(map(math.isfinite, reading.torso)):
-        raise ValueError(f"the place of the torso is {reading.torso}")
-    return reading.torso

@@ -59,7 +59,8 @@ class TrajectoryClient:
 
         handle = self._client.send_goal(_goal(pose), look)
         with interrupt.waking(wake.trigger):
-            in_time = not self._clock.wait(pose.time + MARGIN, wake)
+            # The motion has a margin in its own time, and messages have one in real time: simulated time may be faster.
+            in_time = not self._clock.wait(pose.time + MARGIN, wake) or wake.wait(MARGIN)
         if not done.is_set():
             handle.cancel()
             done.wait(CANCEL_LIMIT)  # what comes next finds the joints free

@@ -91,6 +91,13 @@ def test_older_robots_lack_some_values(make_sensors, memory):
     assert reading.angular_velocity[2] == 0.0
 
 
+@pytest.mark.parametrize("place", [[0.0] * 3, [math.nan] * 6])
+def test_a_torso_that_is_nowhere_is_an_error(make_sensors, monkeypatch, place):
+    monkeypatch.setitem(globals(), "TORSO", place)
+    with pytest.raises(NaoError, match="six numbers are a place"):
+        make_sensors().read()
+
+
 def test_a_joint_without_angle_is_an_error(make_sensors, memory):
     memory[KEY.format("HeadYaw/Position/Sensor")] = None
     with pytest.raises(NaoError, match="None as the angle of HeadYaw"):

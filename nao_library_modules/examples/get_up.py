@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Pushes the simulated robot over and has it get up again.
+
+Needs a running simulator with servers: `roslaunch nao_library nao_sim.launch`.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import Vector3
+
+from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal
+from nao_library_msgs.msg import MotionFunction
+from nao_library_msgs.srv import PushRobot
+
+SERVER_LIMIT = 20.0
+GOAL_LIMIT = rospy.Duration(120)
+# Backwards, N: far more than the robot can balance.
+FORCE = Vector3(-120.0, 0.0, 0.0)
+PUSH_TIME, FALL_TIME = rospy.Duration(0.3), rospy.Duration(3)
+
+
+def play(motion: actionlib.SimpleActionClient, *functions: MotionFunction) -> list[str]:
+    """Play a chain; its answers.
+
+    Raises:
+        RuntimeError: If it did not succeed.
+    """
+    state = motion.send_goal_and_wait(NaoMotionGoal(list(functions)), GOAL_LIMIT)
+    if state != GoalStatus.SUCCEEDED:
+        raise RuntimeError(f"{GoalStatus.to_string(state).lower()}: {motion.get_goal_status_text()}")
+    return motion.get_result().memList
+
+
+def main() -> int:
+    """Push, wait for the fall, get up; the exit status tells whether the robot stands."""
+    rospy.init_node("get_up", anonymous=True)
+    rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
+    motion = actionlib.SimpleActionClient("NaoMotion", NaoMotionAction)
+    push = rospy.ServiceProxy("nao_sim/push", PushRobot)
+    try:
+        push.wait_for_service(SERVER_LIMIT)
+        if not motion.wait_for_server(rospy.Duration.from_sec(SERVER_LIMIT)):
+            raise RuntimeError("there is no server NaoMotion")
+        play(motion, MotionFunction(function="wakeUp"))
+        push("torso", FORCE, PUSH_TIME)
+        # The wait after a function leaves the robot its time to fall.
+        play(motion, MotionFunction(function="getPosture", time=FALL_TIME))
+        print(f"fallen: {play(motion, MotionFunction(function='getPostureFamily'))[0]}")
+        stand = MotionFunction(function="goToPosture", str_param="Stand")
+        print(f"got up: {play(motion, stand, MotionFunction(function='getPosture'))[-1]}")
+    except (rospy.ROSException, RuntimeError) as error:
+        print(f"{error}; start the simulator with roslaunch nao_library nao_sim.launch")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

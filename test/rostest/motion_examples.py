@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""The examples for NaoMotion, started as users start them."""
+
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import rospkg
+import rospy
+import rostest
+
+from nao_sim_bridge.testing import SimulatedRobot
+
+EXAMPLES = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples"
+SENSOR = "Device/SubDeviceList/{}/Position/Sensor/Value"
+
+
+class MotionExamples(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+
+    def setUp(self):
+        self.robot.reset()
+
+    def run_example(self, name, *arguments):
+        """Run an example to its end, which must be a good one; what it printed."""
+        command = [sys.executable, str(EXAMPLES / name), *arguments]
+        ended = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+        self.assertEqual(ended.returncode, 0, ended.stdout)
+        return ended.stdout
+
+    def angle(self, joint):
+        return self.robot.value(SENSOR.format(joint))
+
+    def test_motion_client(self):
+        text = self.run_example("motion_client.py")
+        self.assertIn("setPose: succeeded", text)
+        rows = [line.split() for line in text.splitlines() if "is at" in line]
+        self.assertEqual(len(rows), 6)
+        for name, _, _, _, wanted, _, _, reached in rows:
+            self.assertAlmostEqual(float(reached), float(wanted), delta=0.05, msg=name)
+
+    def test_nod_stand_wave(self):
+        text = self.run_example("nod_stand_wave.py")
+        self.assertIn("4 of 5: angleInterpolation", text)
+        self.assertIn("succeeded", text)
+        self.assertGreater(self.robot.true_pose().position.z, 0.28)
+
+    def test_teach_by_hand(self):
+        text = self.run_example("teach_by_hand.py", "rostest_sinking", "--seconds", "2")
+        self.assertIn("rostest_sinking: succeeded", text)
+        for joint, sign in (("ShoulderPitch", 1.0), ("ShoulderRoll", -1.0), ("ElbowRoll", -1.0)):
+            left, right = self.angle(f"L{joint}"), self.angle(f"R{joint}")
+            self.assertAlmostEqual(left, sign * right, delta=0.1, msg=joint)
+
+    def test_get_up(self):
+        text = self.run_example("get_up.py")
+        self.assertRegex(text, "fallen: (Lying|Sitting)")
+        self.assertIn("got up: Stand", text)
+        self.assertGreater(self.robot.true_pose().position.z, 0.28)
+
+
+if __name__ == "__main__":
+    rospy.init_node("motion_examples_test")
+    rostest.rosrun("nao_library_tests", "motion_examples", MotionExamples)
