@@ -24,6 +24,8 @@ PAIRS = {
 }
 SIZE = len(PAIRS) + 1
 SHORTEST, LONGEST = 0.25, 2.0
+# Angles that differ by less than this are the same, rad: the limits of both sides do, too.
+TOLERANCE = 0.02
 
 
 def to_vector(model: RobotModel, frames: Sequence[KeyFrame]) -> np.ndarray:
@@ -65,3 +67,13 @@ def least_duration(model: RobotModel, before: KeyFrame, angles: dict[int, float]
     """Time that the slowest joint needs from one frame to the next on a smooth curve, s."""
     common = before.angles.keys() & angles.keys()
     return max(PEAK * abs(angles[i] - before.angles[i]) / model.joints[i].max_velocity for i in common)
+
+
+def mirrored(model: RobotModel, frames: Sequence[KeyFrame]) -> bool:
+    """Whether all frames name both arms and legs, the right side as the mirror image of the left one."""
+    for frame in frames:
+        for name, opposite in PAIRS.items():
+            left, right = (frame.angles.get(model.joint_index[side + name]) for side in "LR")
+            if left is None or right is None or abs(left + right if opposite else left - right) > TOLERANCE:
+                return False
+    return True

@@ -15,6 +15,7 @@ from nao_sim_bridge.sim.leds_layout import LedLayout
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.readings import FootForces
 from nao_sim_bridge.sim.runner import SimulationRunner
+from nao_sim_bridge.sim.sensors.heat import heat_status
 from nao_sim_bridge.sim.sensors.sonar import NO_ECHO
 from nao_sim_bridge.sim.snapshot import Snapshot
 
@@ -22,14 +23,12 @@ FILE = "naoqi_memory_keys.json"
 GRAVITY = 9.81
 Read = Callable[[Snapshot], Any]
 
-# Motor temperatures in degC from which the status is 1 (at limit), 2 (very hot) and 3 (critical).
-HOT = (68.0, 74.0, 80.0)
 JOINT_SUFFIXES: Mapping[str, Callable[[int], Read]] = {
     "Position/Actuator/Value": lambda i: lambda s: s.commands[i],
     "Position/Sensor/Value": lambda i: lambda s: s.positions[i],
     "ElectricCurrent/Sensor/Value": lambda i: lambda s: s.currents[i],
     "Temperature/Sensor/Value": lambda i: lambda s: s.temperatures[i],
-    "Temperature/Sensor/Status": lambda i: lambda s: sum(s.temperatures[i] >= limit for limit in HOT),
+    "Temperature/Sensor/Status": lambda i: lambda s: heat_status(s.temperatures[i]),
     "Hardness/Actuator/Value": lambda i: lambda s: s.stiffnesses[i],
 }
 CORNERS = ("FrontLeft", "FrontRight", "RearLeft", "RearRight")

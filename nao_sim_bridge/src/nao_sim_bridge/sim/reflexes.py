@@ -35,6 +35,7 @@ class Reflexes:
         smart_stiffness: Saves torque while the robot keeps still.
         idle: Moves chains that nobody else moves.
         diagnosis_enabled: Whether chains with motors that are too hot are put to rest.
+        wake_forbidden: Whether the robot must not wake up before its legs have cooled down.
         switches: Of `SWITCHES`, those of whoever walks among them.
 
     Args:
@@ -57,6 +58,7 @@ class Reflexes:
         self.smart_stiffness = SmartStiffness([joint.max_torque for joint in model.joints])
         self.idle = Idle(model, joints, self._reference, lambda: self._recognised().family == STANDING)
         self.diagnosis_enabled = True
+        self.wake_forbidden = False
         self.switches = dict(SWITCHES)
         self._ticks = 0
 
@@ -65,13 +67,12 @@ class Reflexes:
 
         Args:
             sensed: At the last tick.
-            getting_up: Moves between lying and standing have been tried with all their contacts: nothing is in their
-                way, and they take the ankles further than the coupled limits do.
+            getting_up: Moves between lying and standing have been tried with all their contacts, and falls are no time
+                for manners: nothing keeps arms from the body then.
             on_feet: Whether the robot is on its feet; lying on its belly, the sonars see the floor.
         """
         self.self_collision.suspended = getting_up
         self.idle.suspended = getting_up
-        self._joints.coupled = not getting_up
         self._motion.idle = self.idle if self.idle.active else None
         self._ticks += 1
         if sensed is not None and self._ticks % LOOK_EVERY == 0:

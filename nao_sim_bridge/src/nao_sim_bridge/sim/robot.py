@@ -103,6 +103,21 @@ class SimulatedRobot:
         """Simulated time since the robot was put into the world, s."""
         return self._ticks * self._dt
 
+    @property
+    def snapshot(self) -> Snapshot | None:
+        """What was sensed at the last tick; None before the first one."""
+        return self._sensed
+
+    def warm_up(self, joint: str, celsius: float) -> None:
+        """Put a motor to a temperature, degC, from where it goes on by itself.
+
+        Raises:
+            UnknownName: There is no such joint.
+        """
+        if joint not in self.model.joint_index:
+            raise UnknownName("joint", joint, self.model.joint_index)
+        self._power.warm_up(self.model.joint_index[joint], celsius)
+
     def link_name(self, index: int) -> str:
         """Name of the link that a contact names by its index."""
         return self._link_names.get(index, "torso")

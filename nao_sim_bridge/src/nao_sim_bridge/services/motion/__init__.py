@@ -6,11 +6,15 @@ from typing import Any
 
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.services.motion.angles import Angles
+from nao_sim_bridge.services.motion.bezier import Bezier
 from nao_sim_bridge.services.motion.body import Body
 from nao_sim_bridge.services.motion.cartesian import Cartesian
+from nao_sim_bridge.services.motion.collisions import Collisions
 from nao_sim_bridge.services.motion.falls import Falls
+from nao_sim_bridge.services.motion.idling import Idling
 from nao_sim_bridge.services.motion.mass import Mass
 from nao_sim_bridge.services.motion.stiffness import Stiffness
+from nao_sim_bridge.services.motion.switches import Switches
 from nao_sim_bridge.services.motion.task_list import TaskList
 from nao_sim_bridge.services.motion.wake import Wake
 from nao_sim_bridge.services.motion.whole_body import WholeBody
@@ -23,6 +27,7 @@ def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore)
     return [
         Body(simulation, runner),
         Angles(simulation, runner),
+        Bezier(simulation, runner),
         Stiffness(simulation, runner),
         Wake(simulation, runner, memory),
         TaskList(simulation, runner),
@@ -30,4 +35,7 @@ def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore)
         Mass(simulation, runner),
         WholeBody(simulation, runner),
         Falls(simulation, runner),
+        Collisions(simulation, runner),
+        Idling(simulation, runner),
+        Switches(simulation, runner),
     ]

@@ -57,14 +57,17 @@ class Angles(MotionPart):
         indices = self._indices(names)
         targets = dict(zip(indices, per_item(angles, len(indices), "targetAngles")))
         speeds = self._speeds(indices, fraction)
-        joints = self._robot.joints
+        call = "angleInterpolationWithSpeed"
 
         def ramps(commands: Sequence[float]) -> dict[int, Ramp]:
-            return {i: Ramp(commands[i], joints.clamp(i, target), speeds[i]) for i, target in targets.items()}
+            self._robot.motion.notices.check_targets(call, targets)
+            clamp = self._robot.joints.clamp_alone  # what is beyond a limit takes no time
+            return {i: Ramp(commands[i], clamp(i, target), speeds[i]) for i, target in targets.items()}
 
-        return self._follow("angleInterpolationWithSpeed", indices, ramps)
+        return self._follow(call, indices, ramps)
 
     def openHand(self, name: str) -> Task:
+        """The motor of the hand is stiff while it moves, and off afterwards: its gears hold what it has."""
         return self._move_hand("openHand", name, OPEN)
 
     def closeHand(self, name: str) -> Task:
@@ -75,4 +78,13 @@ class Angles(MotionPart):
             raise UnknownName("hand", name, ["LHand", "RHand"])
         index = self._model.joint_index[name]
         speed = HAND_SPEED * self._model.joints[index].max_velocity
-        return self._follow(call, [index], lambda commands: {index: Ramp(commands[index], value, speed)})
+
+        def start() -> Task:
+            self._hold_limp([index])
+            motion = self._robot.motion
+            motion.set_stiffness_now({index: 1.0})
+            task = motion.follow(call, [index], lambda commands: {index: Ramp(commands[index], value, speed)})
+            task.add_done_callback(lambda _: motion.set_stiffness_now({index: 0.0}))
+            return task
+
+        return self._runner.execute(start, call)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Callable
 
+from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.services.motion.part import MotionPart
 from nao_sim_bridge.sim.motion import sequences
@@ -59,6 +60,8 @@ class Wake(MotionPart):
                 self._set_awake(False)
 
         def start() -> Task:
+            if awake and self._robot.reflexes.wake_forbidden:
+                raise NaoqiError("the motors of the legs are too hot, the robot wakes up when they have cooled down")
             self._memory.raise_event(f"ALMotion/Stiffness/{name}Started", True)
             if awake:
                 self._set_awake(True)

@@ -13,6 +13,7 @@ import numpy as np
 
 from nao_sim_bridge.sim.frames import Frame
 from nao_sim_bridge.sim.model import RobotModel
+from nao_sim_bridge.sim.motion.coupled import couplings
 
 LEFT_HIP, RIGHT_HIP = "LHipYawPitch", "RHipYawPitch"
 
@@ -56,17 +57,16 @@ class BodyKinematics:
         self.carried_mass = self.carried @ self.masses
         self.max_velocities = np.array([j.max_velocity for j in model.joints])
         self._limits = model.limits_array()
-        self._coupled_limits = [
-            (self.row[limit.joint], self.row[limit.by_joint], limit) for limit in model.coupled_limits.values()
-        ]
+        self._couplings = couplings(model)
         for constant in (self.movable, self.moves, self.carried):
             constant.flags.writeable = False
 
     def limits(self, angles: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
         """(26,) lower and upper limits in rad; some depend on where another joint is."""
         lower, upper = self._limits[:, 0].copy(), self._limits[:, 1].copy()
-        for joint, by_joint, limit in self._coupled_limits:
-            least, most = limit.limits_at(angles[by_joint])
+        for coupling in self._couplings:
+            joint = coupling.joint
+            least, most = coupling.limits_at(float(angles[coupling.by]))
             lower[joint], upper[joint] = max(lower[joint], least), min(upper[joint], most)
         return lower, upper
 

@@ -15,7 +15,7 @@ Only the simulation thread calls anything here.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import AbstractSet, Callable, Iterable, Mapping, Protocol, Sequence, Union
+from typing import AbstractSet, Callable, Container, Iterable, Mapping, Protocol, Sequence, Union
 
 from nao_sim_bridge.sim.motion.bezier import BezierCurve
 from nao_sim_bridge.sim.motion.curves import ROUNDING, Ramp, SmoothCurve
@@ -98,7 +98,7 @@ class MotionEngine:
 
     def set_targets(self, targets: Mapping[int, float], speeds: Mapping[int, float]) -> None:
         """Move joints to `targets` (rad) at `speeds` (rad/s) from now on; replaces older targets."""
-        self.notices.check_targets(targets)
+        self.notices.check_targets("setAngles", targets)
         for index, target in targets.items():
             self._targets[index] = (self._joints.clamp_alone(index, target), speeds[index])
             self._ramps.pop(index, None)
@@ -209,7 +209,7 @@ class MotionEngine:
                 self._ramps[index] = (Ramp(self._joints.commands[index], target, speed), now - dt)
             ramp, started = self._ramps[index]
             wanted[index] = ramp.value(now - started)
-            if now - started >= ramp.duration:
+            if now - started >= ramp.duration and self._arrived(index, target, self._targets):
                 del self._targets[index], self._ramps[index]
 
     def _finish_jobs(self, now: float) -> None:
@@ -225,11 +225,14 @@ class MotionEngine:
 
         A command that something else keeps from there, an arm before a collision for example, is as far as it gets.
         """
-        if self.corrector is not None:
-            return True  # it may have kept the command somewhere else
-        commands = self._joints.commands
-        return all(
-            abs(commands[i] - self._joints.clamp(i, curve.value(curve.duration))) <= REACHED
-            for i, curve in job.curves.items()
-            if not (i in self._joints.blocked or self._joints.overruled(i, job.curves))
+        return all(self._arrived(i, curve.value(curve.duration), job.curves) for i, curve in job.curves.items())
+
+    def _arrived(self, index: int, goal: float, moved: Container[int]) -> bool:
+        """Whether a joint, moved together with `moved`, has got as near to its goal (rad) as it gets."""
+        joints = self._joints
+        return (
+            self.corrector is not None  # it may have kept the command somewhere else
+            or abs(joints.commands[index] - joints.clamp(index, goal)) <= REACHED
+            or index in joints.blocked
+            or joints.overruled(index, moved)
         )

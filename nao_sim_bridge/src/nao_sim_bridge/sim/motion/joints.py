@@ -33,7 +33,6 @@ class JointCommands:
         speed_shares: Joint index to the share of its top speed that it may use, for those that may not use all.
         guard: Who keeps joints from where they must not go; None when nobody does.
         blocked: Joints that the guard kept in their place in the last step.
-        coupled: Whether limits that depend on other joints hold.
         kept_limp: Joints whose stiffness stays 0 whatever anybody wants.
         changed: True when the motors must be told anew.
     """
@@ -56,7 +55,6 @@ class JointCommands:
         self.speed_shares: Mapping[int, float] = {}
         self.guard: Guard | None = None
         self.blocked: Collection[int] = ()
-        self.coupled = True
         self.kept_limp: frozenset[int] = frozenset()
         self._couplings = couplings(model)
         self._coupling_of = {coupling.joint: coupling for coupling in self._couplings}
@@ -89,7 +87,7 @@ class JointCommands:
     def limits(self, index: int) -> tuple[float, float]:
         """Lower and upper limit of joint `index` where the other joints are now, rad (hands 0..1)."""
         coupling = self._coupling_of.get(index)
-        if coupling is None or not self.coupled:
+        if coupling is None:
             return self._lower[index], self._upper[index]
         return self.limits_beside(index, self.commands[coupling.by])
 
@@ -100,7 +98,7 @@ class JointCommands:
     def coupled_by(self, index: int) -> int | None:
         """The joint that the limits of joint `index` depend on, if any."""
         coupling = self._coupling_of.get(index)
-        return None if coupling is None or not self.coupled else coupling.by
+        return None if coupling is None else coupling.by
 
     def limits_beside(self, index: int, other: float) -> tuple[float, float]:
         """Lower and upper limit of a coupled joint when the joint it depends on is at `other`, all in rad."""
@@ -149,8 +147,7 @@ class JointCommands:
             commands[self._right] = commands[self._left]
         elif self._right in wanted:
             commands[self._left] = commands[self._right]
-        if self.coupled:
-            self._keep_coupled(wanted, commands, dt)
+        self._keep_coupled(wanted, commands, dt)
         self.blocked = self.guard(before, commands) if self.guard is not None else ()
         for index in self.blocked:
             commands[index] = before[index]

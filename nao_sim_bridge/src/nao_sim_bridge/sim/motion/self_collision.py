@@ -19,8 +19,19 @@ ARMS = ("LArm", "RArm")
 CONTACT = -0.006
 # From this distance on, m, an arm is near something.
 NEAR = 0.02
-# A point of one shape comes closer to another by at most this for each rad that a joint turns, m.
-REACH = 0.35
+# How far a shape comes at most for each rad that a joint turns, m, by kind of joint; others move no shape.
+REACH = {
+    "HeadYaw": 0.04,
+    "HeadPitch": 0.08,
+    "ShoulderPitch": 0.23,
+    "ShoulderRoll": 0.23,
+    "ElbowYaw": 0.12,
+    "ElbowRoll": 0.12,
+    "HipYawPitch": 0.2,
+    "HipRoll": 0.2,
+    "HipPitch": 0.2,
+    "KneePitch": 0.1,
+}
 ROUNDING = 1e-9
 NONE, CLOSE, COLLISION = "none", "near", "collision"
 NOBODY: frozenset[int] = frozenset()
@@ -53,7 +64,8 @@ class SelfCollision:
         self._ends = np.array([_ends(shape) for shape in shapes])
         radii = np.array([shape.radius for shape in shapes])
         self._radii = radii[self._first] + radii[self._second]
-        # What the joints may still turn, in rad, before anything can touch; known for these commands.
+        self._reach = [REACH.get(_kind(joint.name), 0.0) for joint in model.joints]
+        # How far shapes may still come, in m, before anything can touch; known for these commands.
         self._slack = 0.0
         self._seen: Sequence[float] = ()
         # Distances where an arm was kept last: it is likely to be kept there for a while.
@@ -65,14 +77,14 @@ class SelfCollision:
         if self.suspended or not self.enabled:
             self._seen = ()
             return NOBODY
-        turned = sum([abs(new - old) for new, old in zip(commands, before)])
+        come = sum([abs(new - old) * reach for new, old, reach in zip(commands, before, self._reach)])
         known = before == self._seen
         self._seen = tuple(commands)
-        if known and turned < self._slack:
-            self._slack -= turned
+        if known and come < self._slack:
+            self._slack -= come
             return NOBODY
         after = self.distances(commands)
-        self._slack = max(float(after.min()) - CONTACT, 0.0) / REACH
+        self._slack = max(float(after.min()) - CONTACT, 0.0)
         closing = after < CONTACT
         if not closing.any():
             return NOBODY
@@ -97,6 +109,10 @@ class SelfCollision:
         if least < CONTACT:
             return COLLISION
         return CLOSE if least < NEAR else NONE
+
+
+def _kind(joint: str) -> str:
+    return joint if joint.startswith("Head") else joint[1:]
 
 
 def _link(shape: CollisionShape) -> str:

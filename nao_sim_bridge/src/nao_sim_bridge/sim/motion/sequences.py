@@ -85,13 +85,18 @@ def rest(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callab
     body = range(len(robot.model.joints))
 
     def crouch() -> Task | None:
-        standing = is_on_feet(robot, snapshot()) and min(robot.joints.stiffnesses) > 0.0
+        standing = is_on_feet(robot, snapshot()) and _body_is_stiff(robot)
         return posture_task(robot, "rest", REST_POSTURE) if standing else None
 
     def release() -> Task:
         return stiffness_task(robot, "rest", body, 0.0, STIFFEN_TIME)
 
     return run_steps(robot, "rest", [crouch, release, on_end])
+
+
+def _body_is_stiff(robot: SimulatedRobot) -> bool:
+    """Whether nothing but hands is limp: these often are, and bear nothing."""
+    return all(stiff for stiff, joint in zip(robot.joints.stiffnesses, robot.model.joints) if not joint.is_hand)
 
 
 def posture_task(robot: SimulatedRobot, name: str, target: str, duration: float = POSTURE_TIME) -> Task:

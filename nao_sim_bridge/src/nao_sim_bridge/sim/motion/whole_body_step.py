@@ -23,6 +23,8 @@ FEET_DAMPING, COM_DAMPING, EFFECTOR_DAMPING, TORSO_DAMPING = 1e-8, 1e-6, 1e-3, 1
 COM_SPEED = 0.12
 # m/s2; a lower centre of mass than this, m, is no pendulum over feet.
 GRAVITY, LEAST_HEIGHT = 9.81, 0.05
+# What an edge is overstepped by, m, when it is not.
+NEGLIGIBLE = 1e-9
 # Errors of effectors and of the torso are made up for at up to these speeds, m/s and rad/s.
 EFFECTOR_SPEED, TORSO_SPEED = 0.6, 0.5
 # Joints that nobody moves go back to their posture at up to this speed, rad/s, and end softly at this rate, 1/s.
@@ -115,55 +117,46 @@ def whole_body_step(demands: Demands, freedom: Freedom, dt: float) -> np.ndarray
         dt: Length of the tick, s.
     """
     now = demands.now
-    first = [_goals(demands.feet, now, FEET_DAMPING, FEET_SPEED * dt)] if demands.feet else []
-    last = [_goals(demands.effectors, now, EFFECTOR_DAMPING, EFFECTOR_SPEED * dt)] if demands.effectors else []
     center = now.center_of_mass()
     place, rows = center[:2], now.com_jacobian()[:2]
+    first = [_goals(demands.feet, now, FEET_DAMPING, FEET_SPEED * dt)] if demands.feet else []
+    last = [_goals(demands.effectors, now, EFFECTOR_DAMPING, EFFECTOR_SPEED * dt)] if demands.effectors else []
     if demands.anchor is not None:
         last.append(Wish(rows, _at_most(demands.anchor - place, COM_SPEED * dt), TORSO_DAMPING))
     if demands.lean_axes:
         last.append(_upright(demands, TORSO_SPEED * dt))
+
+    def step_with(*balance: Wish) -> np.ndarray:
+        wishes = [*first, *balance, *last]
+        return ranked_step(wishes, freedom.preferred, freedom.lower, freedom.upper, freedom.mobility)
+
     if demands.com is not None:
-        change = _at_most(demands.com - place, 2.0 * COM_SPEED * dt)
-        return _solved([*first, Wish(rows, change, COM_DAMPING), *last], freedom)
-    frequency = math.sqrt(GRAVITY / max(center[2], LEAST_HEIGHT))
-    approach = frequency * dt / (1.0 + frequency * dt)
-    return _within(demands.region, place, rows, first, last, freedom, COM_SPEED * dt, approach)
-
-
-def _within(
-    region: BalanceRegion | None,
-    place: np.ndarray,
-    rows: np.ndarray,
-    first: Sequence[Wish],
-    last: Sequence[Wish],
-    freedom: Freedom,
-    reach: float,
-    approach: float,
-) -> np.ndarray:
-    """The step that keeps the centre of mass in a region: edges that it would cross become wishes, two at most.
-
-    Near an edge it moves no faster than a pendulum may that should come to rest over it.
-    """
-    step = _solved([*first, *last], freedom)
-    if region is None:
+        return step_with(Wish(rows, _at_most(demands.com - place, 2.0 * COM_SPEED * dt), COM_DAMPING))
+    step = step_with()
+    if demands.region is None:
         return step
+    # Edges that the centre of mass would come too close to become wishes: two at most, as in a corner.
+    allowed = _allowed(demands.region, center, dt)
     held: list[int] = []
-    outside = region.excess(place)
-    allowed = np.where(outside > 0.0, -np.minimum(outside, reach), -outside * approach)
     for _ in range(2):
-        excess = region.normals @ (rows @ step) - allowed
+        excess = demands.region.normals @ (rows @ step) - allowed
         excess[held] = 0.0
         worst = int(np.argmax(excess))
-        if excess[worst] <= 1e-9:
+        if excess[worst] <= NEGLIGIBLE:
             break
         held.append(worst)
-        step = _solved([*first, Wish(region.normals[held] @ rows, allowed[held], COM_DAMPING), *last], freedom)
+        step = step_with(Wish(demands.region.normals[held] @ rows, allowed[held], COM_DAMPING))
     return step
 
 
-def _solved(wishes: Sequence[Wish], freedom: Freedom) -> np.ndarray:
-    return ranked_step(wishes, freedom.preferred, freedom.lower, freedom.upper, freedom.mobility)
+def _allowed(region: BalanceRegion, center: np.ndarray, dt: float) -> np.ndarray:
+    """(n,) how far the (3,) centre of mass may move towards each edge in a tick, m; negative where it must come back.
+
+    Near an edge it moves no faster than a pendulum may that should come to rest over it.
+    """
+    outside = region.excess(center[:2])
+    turn = math.sqrt(GRAVITY / max(center[2], LEAST_HEIGHT)) * dt
+    return np.where(outside > 0.0, -np.minimum(outside, COM_SPEED * dt), -outside * turn / (1.0 + turn))
 
 
 def _goals(goals: Sequence[Goal], now: GroundedPose, damping: float, reach: float) -> Wish:

@@ -27,9 +27,9 @@ class Notices:
         self._joints = joints
         self.enabled = True
 
-    def check_targets(self, targets: Mapping[int, float]) -> None:
-        """Look at angles (rad by joint index) that joints are sent to at once."""
-        self._tell("setAngles", self._beyond({i: (angle, angle) for i, angle in targets.items()}, targets))
+    def check_targets(self, name: str, targets: Mapping[int, float]) -> None:
+        """Look at angles (rad by joint index) that a call sends joints to."""
+        self._tell(name, self._beyond({i: (angle, angle) for i, angle in targets.items()}, targets))
 
     def check_curves(self, name: str, curves: Mapping[int, Any]) -> None:
         """Look at the curves of a task; those without extremes come from who knows the limits."""

@@ -30,6 +30,10 @@ class PowerSystem:
         self.current = settings.battery.idle_current_a
         self._elapsed = 0.0
 
+    def warm_up(self, motor: int, celsius: float) -> None:
+        """Put a motor to a temperature, degC."""
+        self.temperatures = (*self.temperatures[:motor], celsius, *self.temperatures[motor + 1 :])
+
     def advance(self, read_currents: Callable[[], Sequence[float]], dt: float) -> None:
         """Let `dt` s pass; `read_currents()` gives the motors' currents in A when they are needed."""
         self._elapsed += dt

@@ -197,3 +197,50 @@ def test_wrong_arguments_name_what_is_allowed_and_move_nothing(shared_robot, met
     shared_robot.advance(0.05)
     assert commands(shared_robot, "Body") == before
     assert shared_robot.ALMotion.getTaskList() == []
+
+
+# --- hands ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_hand_is_stiff_while_it_moves_and_limp_afterwards(robot):
+    """Also one that was limp before; what it has reached, its gears hold."""
+    motion = robot.ALMotion
+    for method, reached in (("openHand", 1.0), ("closeHand", 0.0)):
+        future = robot.post("ALMotion", method, "LHand")
+        robot.handed_over("ALMotion")
+        robot.advance(0.1)
+        assert motion.getStiffnesses("LHand") == [1.0]
+        robot.advance(3.0)
+        assert robot.answer(future) is None
+        assert motion.getStiffnesses(["LHand", "RHand"]) == [0.0, 0.0]
+        assert sensed(robot, "LHand") == pytest.approx([reached], abs=0.05)
+
+
+def test_a_hand_that_is_stopped_is_limp_too(stiff_robot):
+    future = stiff_robot.post("ALMotion", "openHand", "RHand")
+    stiff_robot.handed_over("ALMotion")
+    stiff_robot.advance(0.1)
+    stiff_robot.ALMotion.killAll()
+    stiff_robot.answer(future)
+    assert stiff_robot.ALMotion.getStiffnesses("RHand") == [0.0]
+
+
+# --- limits -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_head_that_looks_aside_nods_less(stiff_robot):
+    stiff_robot.finish("ALMotion", "angleInterpolationWithSpeed", HEAD, [1.5, 0.5], 0.5, after=2.0)
+    upper = MODEL.coupled_limits["HeadPitch"].limits_at(1.5)[1]
+    assert commands(stiff_robot) == pytest.approx([1.5, upper])
+    assert sensed(stiff_robot) == pytest.approx([1.5, upper], abs=0.01)
+
+
+def test_key_frames_faster_than_a_joint_end_when_it_has_arrived(stiff_robot):
+    begun = stiff_robot.now.time
+    future = stiff_robot.post("ALMotion", "angleInterpolation", "HeadYaw", 2.0, 0.05, True)
+    stiff_robot.handed_over("ALMotion")
+    while future.isRunning() and stiff_robot.now.time < begun + 1.0:
+        stiff_robot.advance(1 / 120)
+    needed = 2.0 / MODEL.joint("HeadYaw").max_velocity
+    assert stiff_robot.now.time - begun == pytest.approx(needed, abs=2.1 / 60)
+    assert commands(stiff_robot, "HeadYaw") == [2.0]

@@ -276,3 +276,51 @@ def test_a_ramp_as_curve_ends_when_it_arrives(motion):
     motion.run(0.02)
     assert task.finished
     assert motion.angle(YAW) == 0.5
+
+
+# --- what keeps commands from their goals -----------------------------------------------------------------------------
+
+
+def test_a_target_is_kept_up_while_the_joint_may_not_go_as_fast_as_asked(motion):
+    motion.joints.speed_shares = {YAW: 0.1}
+    motion.engine.set_targets({YAW: 1.0}, {YAW: 5.0})
+    motion.run(0.5)
+    assert motion.angle(YAW) == pytest.approx(0.05 * MODEL.joints[YAW].max_velocity)
+    motion.run(1.5)
+    assert motion.angle(YAW) == 1.0
+    assert motion.engine.target_of(YAW) == 1.0
+
+
+def test_motion_ends_where_a_guard_keeps_it_and_goes_on_when_it_lets_go(motion):
+    """A guard as of the arms, at 0.3 rad."""
+    motion.joints.guard = lambda before, after: {YAW} if after[YAW] > 0.3 else ()
+    task = motion.glide(YAW, to=1.0)
+    motion.run(1.0)
+    assert task.finished and not task.killed
+    assert 0.25 < motion.angle(YAW) <= 0.3
+    motion.engine.set_targets({YAW: 0.6, PITCH: 0.2}, {YAW: 1.0, PITCH: 1.0})
+    motion.run(2.0)
+    assert motion.angle(YAW) <= 0.3 and motion.angle(PITCH) == 0.2
+    motion.engine.set_targets({YAW: 0.0}, {YAW: 1.0})
+    motion.run(1.0)
+    assert motion.angle(YAW) == 0.0
+
+
+def test_idle_joints_are_moved_by_whoever_minds_them_and_everybody_else_comes_first(motion):
+    class Nodding:
+        seen = []
+
+        def wishes(self, busy, dt):
+            self.seen.append(busy)
+            return {} if PITCH in busy else {PITCH: 0.1}
+
+    motion.engine.idle = Nodding()
+    motion.run(0.1)
+    assert motion.angle(PITCH) == 0.1
+    motion.glide(PITCH, to=0.3, duration=0.5)
+    motion.engine.set_targets({YAW: 0.5}, {YAW: 1.0})
+    motion.run(0.45)
+    assert motion.angle(PITCH) > 0.25
+    assert {PITCH, YAW} == set(Nodding.seen[-1])
+    motion.run(0.5)
+    assert motion.angle(PITCH) == 0.1

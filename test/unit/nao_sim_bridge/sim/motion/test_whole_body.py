@@ -211,13 +211,27 @@ def test_an_arm_that_reaches_takes_the_body_with_it(body):
     one = body()
     goal = one.control.goal_here("LArm", 7)
     target = goal.pose.copy()
-    target[:3, 3] += (0.2, 0.0, -0.05)
+    target[:3, 3] += (0.15, 0.0, -0.03)
     one.control.lead("LArm", TargetAim(goal, target, SPEED))
     places = []
     one.run(3.0, lambda: places.append(one.outside()))
     assert one.now.pose(ARM)[:3, 3] == pytest.approx(target[:3, 3], abs=1e-3)
-    assert one.now.torso[0, 3] - Body("StandInit").now.torso[0, 3] > 0.005
+    assert np.abs(one.now.torso - Body("StandInit").now.torso).max() > 0.05
     assert max(places) < 1e-3
+    assert foot_error(one) < 1e-3
+
+
+def test_an_arm_stops_before_it_would_tip_the_robot_over(body):
+    one = body()
+    goal = one.control.goal_here("LArm", 7)
+    target = goal.pose.copy()
+    target[0, 3] += 0.4
+    one.control.lead("LArm", TargetAim(goal, target, SPEED))
+    places = []
+    one.run(4.0, lambda: places.append(one.outside()))
+    assert max(places) < 1e-3
+    assert places[-1] == pytest.approx(0.0, abs=1e-3)
+    assert one.now.pose(ARM)[0, 3] - goal.pose[0, 3] > 0.1
     assert foot_error(one) < 1e-3
 
 

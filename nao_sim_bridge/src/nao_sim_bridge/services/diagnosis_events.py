@@ -1,0 +1,41 @@
+"""The events of ALMotion about chains that are kept limp because their motors are too hot."""
+
+from __future__ import annotations
+
+from nao_sim_bridge.services.memory_store import MemoryStore
+from nao_sim_bridge.services.motion.wake import AWAKE
+from nao_sim_bridge.sim.diagnosis import LEGS, DiagnosisEffect
+from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.snapshot import Snapshot
+
+DEVICES, FEATURES = "ALMotion/Protection/DisabledDevicesChanged", "ALMotion/Protection/DisabledFeaturesChanged"
+
+
+class DiagnosisEvents:
+    """Runs the diagnosis effect and tells what it has changed; called after every tick, in the simulation thread.
+
+    Args:
+        simulation: Of the robot that it looks at.
+        memory: Where events go.
+    """
+
+    def __init__(self, simulation: Simulation, memory: MemoryStore) -> None:
+        self._memory = memory
+        self._effect = DiagnosisEffect(lambda: simulation.robot, self._rested)
+        self._told: frozenset[str] = frozenset()
+        for event in (DEVICES, FEATURES):
+            memory.declare_event(event, "ALMotion")
+
+    def __call__(self, snapshot: Snapshot) -> None:
+        """Look at the robot."""
+        self._effect(snapshot)
+        disabled = self._effect.disabled
+        if disabled != self._told:
+            changed = sorted(disabled ^ self._told)
+            self._told = disabled
+            self._memory.raise_event(DEVICES, [["Body" if n == LEGS else n, n in disabled] for n in changed])
+            self._memory.raise_event(FEATURES, [[f"{name}Stiffness", name in disabled] for name in changed])
+
+    def _rested(self) -> None:
+        if self._memory.get(AWAKE):
+            self._memory.raise_event(AWAKE, False)
