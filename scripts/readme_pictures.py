@@ -20,7 +20,7 @@ SPEED = 0.8
 # Until nothing swings any more, s.
 SETTLE = 0.5
 LIMIT = 60.0
-WAVE = {"HeadYaw": 0.2, "RShoulderPitch": -0.2, "RShoulderRoll": -0.7, "RElbowYaw": 1.3, "RElbowRoll": 1.3, "RHand": 1.0}
+WAVE = {"RShoulderPitch": -0.2, "RShoulderRoll": -0.7, "RElbowYaw": 1.3, "RElbowRoll": 1.3, "RHand": 1.0}
 
 
 def draw(folder: Path) -> None:

@@ -50,11 +50,21 @@ def check_replay(self: MotionRecording, str_param: str, speed: float, mirror: bo
         self.plan.follow(values, motion.times[1:], False, f"str_param ({str_param})")
 
 
-def check_rename(self: MotionRecording, texts: Sequence[str]) -> None:
-    """One new name."""
+def check_rename(self: MotionRecording, str_param: str, texts: Sequence[str]) -> None:
+    """A recorded motion, one new name that is free."""
     if len(texts) != 1:
         raise BadGoal("texts", list(texts), "the new name, and nothing else")
-    self.store.path(texts[0], "texts")
+    check_deletion(self, str_param)
+    self.store.require_free(texts[0])
+    self.recording_names.add(texts[0])
+
+
+def check_deletion(self: MotionRecording, str_param: str) -> None:
+    """A recorded motion, or one that the chain records."""
+    if str_param in self.recording_names:
+        self.recording_names.remove(str_param)
+    else:
+        self.store.require(str_param)
 
 
 class MotionRecording(MotionBase):
@@ -62,7 +72,7 @@ class MotionRecording(MotionBase):
 
     Attributes:
         store: Recorded motions by name.
-        recording_names: Motions that the chain records.
+        recording_names: Motions that the chain records or gives these names.
     """
 
     store: MotionStore
@@ -120,14 +130,16 @@ class MotionRecording(MotionBase):
         """Give a recorded motion the name in `texts`."""
         self.store.rename(str_param, texts[0])
 
+    @checked_by(check_deletion)
     def delete_motion(self, str_param: str) -> None:
         """Delete a recorded motion."""
         self.store.delete(str_param)
 
     def replay(self, name: str, speed: float, mirror: bool) -> RecordedMotion:
-        """A recorded motion as a message wants it, thinned out to key frames."""
+        """A recorded motion as a message wants it, thinned out to key frames, measured angles put within limits."""
         motion = self.store.load(name).key_frames().faster(speed or 1.0)
-        return motion.mirrored() if mirror else motion
+        limits = {joint: (each.lower, each.upper) for joint, each in self.access.facts.limits.items()}
+        return (motion.mirrored() if mirror else motion).within(limits)
 
     def _let_go(self, joints: list[str]) -> None:
         before = self.motion("getStiffnesses", joints)

@@ -74,9 +74,7 @@ class MotionStore:
         Raises:
             BadGoal: If there is none of that name, or one of the new name already.
         """
-        path, target = self._existing(name), self.path(new_name, "texts")
-        if target.exists():
-            raise BadGoal("texts", new_name, "a name that is free", problem=f"there is a motion {new_name!r} already")
+        path, target = self._existing(name), self.require_free(new_name)
         path.rename(target)
 
     def delete(self, name: str) -> None:
@@ -86,6 +84,25 @@ class MotionStore:
             BadGoal: If there is none of that name.
         """
         self._existing(name).unlink()
+
+    def require(self, name: str) -> None:
+        """See that there is a motion.
+
+        Raises:
+            BadGoal: If there is none of that name.
+        """
+        self._existing(name)
+
+    def require_free(self, name: str) -> Path:
+        """File of a new motion, for a message that has its name in `texts`.
+
+        Raises:
+            BadGoal: If the name will not do, or there is a motion of that name already.
+        """
+        path = self.path(name, "texts")
+        if path.exists():
+            raise BadGoal("texts", name, "a name that is free", problem=f"there is a motion {name!r} already")
+        return path
 
     def path(self, name: str, field: str = "str_param") -> Path:
         """File of a motion of that name, whether it is there or not.

@@ -12,6 +12,9 @@ from .errors import BadGoal
 # Between two key frames of a replayed motion a joint may be off the recording by this, rad: what the encoders tell
 # apart, several times over.
 THINNING = math.radians(0.2)
+# A joint that leans on its stop measures a little more than its limit, and the limits of the two sides differ by up to
+# half a degree: so far, in rad, a recorded angle may be off the limits of the joint that replays it.
+SLACK = math.radians(1.5)
 # Joints whose sign changes in the mirror, by the end of their names.
 TURNED = ("Roll", "Yaw")
 
@@ -52,6 +55,21 @@ class RecordedMotion:
             self,
             joints=joints,
             angles=tuple(tuple(sign * angle for sign, angle in zip(signs, row)) for row in self.angles),
+        )
+
+    def within(self, limits: Mapping[str, tuple[float, float]], slack: float = SLACK) -> RecordedMotion:
+        """The motion with angles that are beyond a limit by no more than `slack` put on the limit.
+
+        Args:
+            limits: Joint -> lowest and highest angle, rad. Joints that are not in it stay as they are.
+            slack: rad. What is farther off stays as it is: it is no measurement of such a joint.
+        """
+        ranges = [limits.get(joint, (-math.inf, math.inf)) for joint in self.joints]
+        return replace(
+            self,
+            angles=tuple(
+                tuple(_put_within(angle, *range_, slack) for angle, range_ in zip(row, ranges)) for row in self.angles
+            ),
         )
 
     def key_frames(self, tolerance: float = THINNING) -> RecordedMotion:
@@ -119,6 +137,11 @@ def _broken(where: str, problem: str) -> BadGoal:
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _put_within(angle: float, lower: float, upper: float, slack: float) -> float:
+    nearest = min(max(angle, lower), upper)
+    return nearest if abs(nearest - angle) <= slack else angle
 
 
 def _other_side(joint: str) -> str:

@@ -119,13 +119,15 @@ def test_speed_and_mirror(motion, robot):
         (f("recordMotion", str_param="x"), "field duration"),
         (f("recordMotion", str_param="x", duration=1.0, rate=1000.0), "field rate"),
         (f("renameMotion", str_param="wave"), "field texts"),
+        (f("renameMotion", str_param="wave", texts=["wide"]), "there is a motion 'wide' already"),
+        (f("renameMotion", str_param="wafe", texts=["greet"]), "did you mean 'wave'"),
         (f("deleteMotion", str_param="nothing"), "there is no motion 'nothing'"),
     ],
 )
 def test_what_is_wrong_is_told_and_nothing_moves(motion, robot, function, text):
     motion.store.save("wave", WAVE)
     motion.store.save("wide", RecordedMotion(("RShoulderRoll",), (0.0, 2.0), ((-0.5,), (-1.9,))))
-    server = play(motion, function)
+    server = play(motion, f("angleInterpolation", names=["HeadYaw"], angles=[0.5], times=[1.0]), function)
     assert server.end == "aborted" and text in server.text
     assert interpolations(robot) == []
 
@@ -141,3 +143,20 @@ def test_motions_are_listed_renamed_and_deleted(motion):
 def test_a_chain_may_play_what_it_records(motion):
     record = f("recordMotion", str_param="new", names=["Head"], duration=0.5)
     assert play(motion, record, f("playMotion", str_param="new")).end == "succeeded"
+
+
+def test_a_chain_may_rename_and_delete_what_it_records(motion):
+    record = f("recordMotion", str_param="new", names=["Head"], duration=0.5)
+    rename = f("renameMotion", str_param="new", texts=["newer"])
+    server = play(motion, record, rename, f("playMotion", str_param="newer"), f("deleteMotion", str_param="newer"))
+    assert server.end == "succeeded", server.text
+    assert motion.store.names() == []
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_a_joint_that_leant_on_its_stop_is_replayed_to_the_limit(motion, robot, mirror):
+    joint, limit = ("RShoulderRoll", -1.3) if mirror else ("LShoulderRoll", 1.3)
+    motion.store.save("stop", RecordedMotion((joint,), (0.0, 1.0), ((0.0,), (limit * 1.004,))))
+    server = play(motion, f("playMotion", str_param="stop", mirror=mirror))
+    assert server.end == "succeeded", server.text
+    assert interpolations(robot)[1] == (["LShoulderRoll"], [[1.3]], [[1.0]], True)

@@ -55,6 +55,12 @@ def test_between_key_frames_no_sample_is_farther_off_than_allowed(tolerance):
         assert abs(line - angle) <= tolerance + 1e-12
 
 
+@pytest.mark.parametrize("angle, within", [(0.2, 0.2), (0.51, 0.5), (-1.02, -1.0), (0.6, 0.6), (-1.1, -1.1)])
+def test_angles_a_little_beyond_a_limit_are_put_on_it(angle, within):
+    motion = RecordedMotion(("a", "b"), (0.0,), ((angle, 9.0),))
+    assert motion.within({"a": (-1.0, 0.5)}, slack=0.03).angles == ((within, 9.0),)
+
+
 def test_one_sample_is_a_motion():
     motion = RecordedMotion(("a",), (0.0,), ((0.5,),))
     assert motion.key_frames() == motion

@@ -1,7 +1,7 @@
 """Named places of the robot, and the three frames that ALMotion speaks in. Pure functions.
 
-`TORSO` sits in the torso; `ROBOT` is on the ground between the feet, its Z axis vertical and its heading the mean of the
-feet's; `WORLD` is where `ROBOT` was at the start, as far as the robot's own odometry knows.
+`TORSO` sits in the torso; `ROBOT` is on the ground between the feet, its Z axis vertical and its heading the mean of
+the feet's; `WORLD` is where `ROBOT` was at the start, as far as the robot's own odometry knows.
 """
 
 from __future__ import annotations
