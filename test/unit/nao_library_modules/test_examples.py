@@ -7,10 +7,11 @@ import threading
 from pathlib import Path
 from types import SimpleNamespace
 
+import fake_motion
 import pytest
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoLedGoal
+from nao_library_actions.msg import NaoLedGoal, NaoMotionGoal
 from nao_library_msgs.msg import LedFunction
 
 EXAMPLES = Path(__file__).parents[3] / "nao_library_modules" / "examples"
@@ -152,3 +153,95 @@ def test_the_client_goes_on_after_a_goal_without_result_and_says_so(monkeypatch,
     output = capsys.readouterr().out
     assert "one light at half intensity: no result within 20 s" in output
     assert "both eyes green: succeeded\n    Brain0  0.50" in output
+
+
+ARM = ["ShoulderPitch", "ShoulderRoll", "ElbowYaw", "ElbowRoll", "WristYaw", "Hand"]
+
+
+@pytest.fixture
+def motion(robot, edge, make_call, monkeypatch, tmp_path):
+    """The motion module on a stand-in with all joints of the arms."""
+    from nao_library_modules.motion import NaoMotion
+
+    for side in "LR":
+        joints = [f"{side}{joint}" for joint in ARM]
+        monkeypatch.setitem(fake_motion.CHAINS, f"{side}Arm", joints)
+        for joint in joints:
+            monkeypatch.setitem(fake_motion.LIMITS, joint, [-2.0, 2.0, 8.0, 1.0])
+    body = [joint for chain, joints in fake_motion.CHAINS.items() if chain != "Body" for joint in joints]
+    monkeypatch.setitem(fake_motion.CHAINS, "Body", body)
+    robot.motion = fake_motion.FakeMotion(make_call)
+    robot.add("ALMotion", robot.motion)
+    robot.add("ALRobotPosture", fake_motion.FakePostures())
+    return NaoMotion("10.0.0.7", 9559, robot=robot, edge=edge, motion_dir=tmp_path)
+
+
+def test_the_motion_client_moves_every_joint_but_the_roll_of_the_shoulder():
+    pose = load("motion_client").further(["RShoulderPitch", "RShoulderRoll", "RElbowYaw"], [0.25, -0.2, 0.75])
+    assert pose == [0.75, -0.2, 1]
+
+
+def test_nodding_standing_and_waving_are_one_goal(motion, robot):
+    robot.motion.stiffnesses.update(HeadYaw=0.0, HeadPitch=0.0)
+    server = motion.server.play(NaoMotionGoal(load("nod_stand_wave").chain()))
+    assert server.end == "succeeded", server.text
+    paths = [(call[1], call[2]) for call in robot.proxy("ALMotion").calls if call[0] == "angleInterpolation"]
+    nod, _, wave = paths
+    assert nod == (["HeadPitch"], [[0.3, -0.2, 0.3, 0.0]])
+    assert wave == (["RElbowRoll", "RWristYaw"], [[0.4, 1.2, 0.4, 1.2], [-0.3, 0.3, -0.3, 0.0]])
+    assert robot.motion.stiffnesses["HeadPitch"] == 1.0
+    assert motion.robot.proxy("ALRobotPosture").calls.count(("goToPosture", "Stand", 0.6)) == 1
+
+
+def test_what_is_taught_to_one_arm_is_repeated_by_both(motion, robot):
+    robot.motion.angles.update(LShoulderRoll=0.5, LShoulderPitch=1.0)
+    server = motion.server.play(NaoMotionGoal(load("teach_by_hand").chain("hello", ["LArm"], 0.1)))
+    assert server.end == "succeeded", server.text
+    assert motion.store.load("hello").joints == tuple(f"L{joint}" for joint in ARM)
+    assert (robot.motion.angles["RShoulderRoll"], robot.motion.angles["RShoulderPitch"]) == (-0.5, 1.0)
+    assert set(robot.motion.stiffnesses.values()) == {1.0}
+
+
+class FakeMotionClient:
+    """A client of a server that is not there, or that aborts."""
+
+    there = True
+
+    def __init__(self, name, action):
+        assert name == "NaoMotion"
+
+    def wait_for_server(self, timeout):
+        return self.there
+
+    def send_goal(self, goal, feedback_cb=None):
+        self.goal = goal
+
+    def wait_for_result(self, timeout):
+        return True
+
+    def send_goal_and_wait(self, goal, timeout):
+        return GoalStatus.ABORTED
+
+    def get_state(self):
+        return GoalStatus.ABORTED
+
+    def get_goal_status_text(self):
+        return "function 1: the robot is gone"
+
+    def get_result(self):
+        return None
+
+
+@pytest.mark.parametrize("there, told", [(False, "there is no server NaoMotion"), (True, "the robot is gone")])
+@pytest.mark.parametrize("name", ["motion_client", "nod_stand_wave", "teach_by_hand", "get_up"])
+def test_what_goes_wrong_is_told_in_a_line_and_in_the_exit_status(monkeypatch, capsys, name, there, told):
+    example = load(name)
+    monkeypatch.setattr(FakeMotionClient, "there", there)
+    monkeypatch.setattr(example.actionlib, "SimpleActionClient", FakeMotionClient)
+    monkeypatch.setattr(example.rospy, "init_node", lambda *args, **options: None)
+    monkeypatch.setattr(example.rospy, "sleep", lambda duration: None)
+    monkeypatch.setattr(example.rospy, "myargv", lambda: ["teach_by_hand.py", "hello"])
+    service = SimpleNamespace(wait_for_service=lambda limit: None)
+    monkeypatch.setattr(example.rospy, "ServiceProxy", lambda name, kind: service)
+    assert example.main() == 1
+    assert told in capsys.readouterr().out

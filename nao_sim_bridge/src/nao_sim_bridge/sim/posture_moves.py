@@ -139,7 +139,8 @@ def play(robot: SimulatedRobot, name: str, move: Move) -> Task:
     def curves(commands: Sequence[float]) -> dict[int, SmoothCurve]:
         return {i: _curve(move, i, commands[i]) for i in body}
 
-    return robot.motion.follow(name, body, curves)
+    # Found by search with joints that lag behind where the frames ask for more than they can: no news.
+    return robot.motion.follow(name, body, curves, noticed=not move.dynamic)
 
 
 def direct(model: RobotModel, start: str, goal: str, angles: Sequence[float], fraction: float, ground: Ground) -> Move:

@@ -55,6 +55,7 @@ class _Job:
     indices: frozenset[int]
     build: CurveBuilder
     stiffness: bool
+    noticed: bool
     started: float | None = None
     curves: Mapping[int, Curve] = field(default_factory=dict)
 
@@ -88,9 +89,13 @@ class MotionEngine:
 
     # --- what callers ask for -------------------------------------------------------------------------------------
 
-    def follow(self, name: str, indices: Iterable[int], build: CurveBuilder) -> Task:
-        """Start a task that moves `indices` along the curves that `build(commands)` makes when its turn comes."""
-        return self._add(name, indices, build, stiffness=False)
+    def follow(self, name: str, indices: Iterable[int], build: CurveBuilder, noticed: bool = True) -> Task:
+        """Start a task that moves `indices` along the curves that `build(commands)` makes when its turn comes.
+
+        With `noticed` the log tells what joints cannot do of it; without, for curves that are known to ask for more
+        than there is, and go as far as joints go.
+        """
+        return self._add(name, indices, build, stiffness=False, noticed=noticed)
 
     def stiffen(self, name: str, indices: Iterable[int], build: CurveBuilder) -> Task:
         """Start a task that changes stiffnesses (0..1) along the curves of `build(stiffnesses)`."""
@@ -180,9 +185,11 @@ class MotionEngine:
             wanted = self.corrector.correct(wanted, dt)
         self._joints.step(wanted, dt)
 
-    def _add(self, name: str, indices: Iterable[int], build: CurveBuilder, stiffness: bool) -> Task:
+    def _add(
+        self, name: str, indices: Iterable[int], build: CurveBuilder, stiffness: bool, noticed: bool = False
+    ) -> Task:
         task = self._ids.make(name, on_kill=self._drop)
-        self._jobs.append(_Job(task, frozenset(indices), build, stiffness))
+        self._jobs.append(_Job(task, frozenset(indices), build, stiffness, noticed))
         return task
 
     def _drop(self, task: Task) -> None:
@@ -195,7 +202,8 @@ class MotionEngine:
             job.started = now
             job.curves = job.build(self._joints.stiffnesses if job.stiffness else self._joints.commands)
             if not job.stiffness:
-                self.notices.check_curves(job.task.name, job.curves)
+                if job.noticed:
+                    self.notices.check_curves(job.task.name, job.curves)
                 for index in job.indices:
                     self._targets.pop(index, None)
                     self._ramps.pop(index, None)
