@@ -19,9 +19,9 @@ from nao_library_msgs.srv import PushRobot
 
 SERVER_LIMIT = 20.0
 GOAL_LIMIT = rospy.Duration(120)
-# Backwards, N: far more than the robot can balance.
-FORCE = Vector3(-120.0, 0.0, 0.0)
-PUSH_TIME, FALL_TIME = rospy.Duration(0.3), rospy.Duration(3)
+# Backwards, N: more than the robot can balance.
+FORCE = Vector3(-60.0, 0.0, 0.0)
+PUSH_TIME, FALL_TIME = rospy.Duration.from_sec(0.15), rospy.Duration(3)
 
 
 def play(motion: actionlib.SimpleActionClient, *functions: MotionFunction) -> list[str]:

@@ -69,6 +69,20 @@ class MotionRecordings(unittest.TestCase):
         self.assertGreaterEqual(result.results[0].elapsed.to_sec(), 1.0)
         self.assertEqual([float(v) for v in result.results[1].values], [1.0, 1.0])
 
+    def test_joints_that_are_taught_by_hand_are_stiff_again_after_a_cancel(self):
+        self.motion.setStiffnesses("Head", 0.8)
+        run = send(
+            self.client, NaoMotionGoal([f("recordMotion", str_param=NAME, names=["Head"], duration=60.0, limp=True)])
+        )
+        wait_until(lambda: self.motion.getStiffnesses("Head") == [0.0, 0.0], 10.0, "a limp head")
+        self.robot.advance(0.5)
+        run.cancel()
+        run.wait(5.0)
+        self.assertEqual(run.state, GoalStatus.PREEMPTED, run.text)
+        for stiffness in self.motion.getStiffnesses("Head"):
+            self.assertAlmostEqual(stiffness, 0.8, delta=0.01)
+        self.assertIn(NAME, self.play(f("listMotions")).memList)
+
     def test_motions_are_renamed_and_deleted(self):
         self.record_a_turn()
         self.play(f("renameMotion", str_param=NAME, texts=[COPY]))

@@ -15,6 +15,8 @@ THINNING = math.radians(0.2)
 # A joint that leans on its stop measures a little more than its limit, and the limits of the two sides differ by up to
 # half a degree: so far, in rad, a recorded angle may be off the limits of the joint that replays it.
 SLACK = math.radians(1.5)
+# Of the files; a later one may hold more.
+VERSION = 1
 # Joints whose sign changes in the mirror, by the end of their names.
 TURNED = ("Roll", "Yaw")
 
@@ -100,7 +102,7 @@ class RecordedMotion:
     def to_content(self) -> dict[str, Any]:
         """As plain values, for a file."""
         samples = [[round(time, 4), *(round(angle, 5) for angle in row)] for time, row in zip(self.times, self.angles)]
-        return {"joints": list(self.joints), "samples": samples}
+        return {"version": VERSION, "joints": list(self.joints), "samples": samples}
 
 
 def motion_of(content: Any, where: str) -> RecordedMotion:
@@ -115,6 +117,8 @@ def motion_of(content: Any, where: str) -> RecordedMotion:
     """
     if not isinstance(content, Mapping) or not {"joints", "samples"} <= set(content):
         raise _broken(where, "it has no joints or no samples")
+    if content.get("version") != VERSION:
+        raise _broken(where, f"its version is {content.get('version')!r}; known: {VERSION}")
     joints, samples = content["joints"], content["samples"]
     if not isinstance(joints, list) or not joints or not all(isinstance(joint, str) for joint in joints):
         raise _broken(where, "joints is no list of names")

@@ -84,6 +84,14 @@ def test_limp_joints_are_stiff_again_afterwards_where_the_hand_left_them(motion,
     assert ("setAngles", CHAINS["Head"], [0.9, 0.0], 1.0) in robot.proxy("ALMotion").calls
 
 
+def test_limp_joints_are_stiff_again_after_a_cancel(motion, fake, clock):
+    fake.stiffnesses.update(HeadYaw=0.7, HeadPitch=0.4)
+    clock.on_wait = lambda: motion.server.preempt()
+    server = play(motion, f("recordMotion", str_param="turn", names=["Head"], duration=60.0, limp=True))
+    assert server.end == "preempted"
+    assert (fake.stiffnesses["HeadYaw"], fake.stiffnesses["HeadPitch"]) == (0.7, 0.4)
+
+
 def test_what_was_recorded_until_a_cancel_is_kept(motion, clock):
     clock.on_wait = lambda: len(clock.waits) == 3 and motion.server.preempt()
     server = play(motion, f("recordMotion", str_param="turn", names=["Head"], duration=60.0, rate=10.0))

@@ -70,6 +70,13 @@ def test_what_is_written_is_read():
     assert motion_of(MOTION.to_content(), "wave") == MOTION
 
 
+@pytest.mark.parametrize("version", [{}, {"version": 2}, {"version": "x"}])
+def test_a_file_of_another_version_is_told(version):
+    content = {"joints": ["a"], "samples": [[0.0, 1.0]], **version}
+    with pytest.raises(BadGoal, match="motion 'wave': its version is .*; known: 1"):
+        motion_of(content, "wave")
+
+
 @pytest.mark.parametrize(
     "content, problem",
     [
@@ -86,5 +93,7 @@ def test_what_is_written_is_read():
     ],
 )
 def test_a_broken_file_is_told_with_what_is_wrong(content, problem):
+    if content is not None:
+        content = {"version": 1, **content}
     with pytest.raises(BadGoal, match=f"motion 'wave': .*{problem}"):
         motion_of(content, "wave")
