@@ -28,11 +28,11 @@ class Fixture(unittest.TestCase):
     def test_reset_brings_back_robot_lights_and_memory(self):
         start = self.robot.true_pose().position
         self.robot.module("ALMotion").wakeUp()
+        self.assertTrue(self.robot.value("robotIsWakeUp"))
         self.robot.module("ALLeds").off("AllLeds")
         self.robot.press(["Head/Touch/Front"])
         self.robot.push((60.0, 0.0, 0.0), 0.1)
         self.robot.advance(1.0)
-        self.assertTrue(self.robot.value("robotIsWakeUp"))
         self.assertEqual((self.robot.led(BRAIN0), self.robot.value(HEAD)), (0.0, 1.0))
         moved = self.robot.true_pose().position
         self.assertGreater(abs(moved.x - start.x) + abs(moved.z - start.z), 0.05)
