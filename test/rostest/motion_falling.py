@@ -55,6 +55,8 @@ class MotionFalling(unittest.TestCase):
         run = send(self.client, NaoMotionGoal([turn])).wait_for_function(0)
         self.push_over(x, y)
         run.wait()
+        self.assertEqual(run.state, GoalStatus.ABORTED)
+        self.assertIn("the robot fell", run.text)
         self.assertLess(run.ended - run.sent, LONG / 2)
         answers = self.play(f("robotIsWakeUp"), f("getStiffnesses", names=["LLeg"])).memList
         self.assertEqual(answers[0], "False")

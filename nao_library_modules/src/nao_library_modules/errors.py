@@ -5,6 +5,7 @@ NaoError                 (naoqi.errors) root of everything that can go wrong wit
     UnknownFunction      no such function in the table: name, known
     FunctionFailed       function k of a chain failed: position, function, cause
     RobotLost            the robot went away while a goal was waiting
+    RobotFell            the robot fell while a goal moved it
 
 Preempted                no error but a signal: a new goal, a cancel or the end of the node interrupts the
 function
@@ -91,6 +92,14 @@ class RobotLost(NaoError):  # noqa: N818  named like the errors of the proxy lay
         super().__init__(f"the robot at {address} went away: {reason}")
         self.address = address
         self.reason = reason
+
+
+class RobotFell(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """The robot fell while a goal moved it; its motors are off."""
+
+    def __init__(self) -> None:
+        """Compose the text."""
+        super().__init__("the robot fell and its motors are off: goToPosture gets it up again")
 
 
 class Preempted(Exception):  # noqa: N818  a signal that stops a chain, not an error

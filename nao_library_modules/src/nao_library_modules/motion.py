@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from nao_library_actions.msg import NaoMotionAction
+from naoqi.errors import NaoError
 
 from .answers import Outcome
+from .errors import RobotFell
+from .event_relay import EventRelay
 from .function_chain import Step
+from .memory_functions import MEMORY
 from .motion_cartesian import CartesianFunctions
 from .motion_facts import MotionAccess
 from .motion_gaze import GazeFunctions
@@ -24,11 +29,14 @@ from .motion_store import MotionStore
 from .motion_switches import MotionSwitches
 from .nao_basic import NaoBasic
 
+log = logging.getLogger(__name__)
+
 DRIVER = ("nao_library", "nao_driver.launch")
 MOTIONS = Path("~/.ros/nao_motions")
 """Folder for recorded motions and pose libraries where none is configured."""
 # Functions whose joints only the client moves on: what setAngles began goes on after the function.
 ASKING = frozenset({"getAngles"})
+FALLING = "ALMotion/RobotIsFalling"
 
 
 class NaoMotion(
@@ -77,6 +85,7 @@ class NaoMotion(
         self.plan = self._new_plan()
         self.recording_names = set()
         self._dry_run = False
+        self._falls = EventRelay(lambda: self.robot.proxy(MEMORY), self._fell)
         for functions in (
             self.joint_functions(),
             self.stiffness_functions(),
@@ -96,6 +105,10 @@ class NaoMotion(
         """Forget what the last chain did."""
         self.plan = self._new_plan()
         self.recording_names.clear()
+        try:
+            self._falls.subscribe(FALLING)
+        except NaoError as error:
+            log.debug("falls are not watched: %s", error)  # a robot that cannot be asked moves nothing either
         self._dry_run = False
 
     def begin_check(self, position: int) -> None:
@@ -126,6 +139,21 @@ class NaoMotion(
         else:
             result.position = list(self.call_now(self.robot.proxy("ALMotion"), "getAngles", joints, True))
         result.name = joints
+
+    def shut_down(self) -> None:
+        """As NaoBasic does; falls are watched no more."""
+        super().shut_down()
+        self._falls.close()
+
+    def _connection_changed(self, *args: Any) -> None:
+        super()._connection_changed(*args)
+        if self.robot.connection.state == "connected" and self.robot.connection.generation > 1:
+            self._falls.renew()
+
+    def _fell(self, _: str, falling: Any) -> None:
+        """Called from a thread of libqi: a chain that goes on would move a robot that lies."""
+        if falling and not self._idle.is_set():
+            self.interrupt.trigger(RobotFell())
 
     def _new_plan(self) -> MotionPlan:
         return MotionPlan(lambda: self.access.facts, self.access.state)

@@ -14,6 +14,7 @@ from .recorded_motion import RecordedMotion, motion_of
 from .suggestion import did_you_mean
 
 SUFFIX = ".yaml"
+MODE = 0o644
 # No separators and no dot in front: a name stays in the folder.
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. -]*")
 
@@ -59,6 +60,7 @@ class MotionStore:
             try:
                 with os.fdopen(descriptor, "w", encoding="utf-8") as file:
                     file.write(text)
+                os.chmod(draft, MODE)  # drafts are made for their owner alone
                 os.replace(draft, path)
             except BaseException:
                 os.unlink(draft)

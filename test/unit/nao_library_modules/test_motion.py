@@ -283,3 +283,36 @@ def test_facts_are_asked_again_after_a_reconnection(motion, robot):
     play(motion, f("setAngles", names=["Head"], angles=[0.0]))
     asked_now = [call for call in robot.proxy("ALMotion").calls if call[0] == "getLimits"]
     assert (len(asked), len(asked_now)) == (1, 2)
+
+
+# Falls
+
+
+def test_a_fall_aborts_the_chain_and_says_how_to_get_up(motion, fake, robot):
+    fake.slow.add("angleInterpolation")
+    chain = [
+        f("angleInterpolation", names=["HeadYaw"], angles=[1.0], times=[5.0]),
+        f("setAngles", names=["HeadPitch"], angles=[0.1]),
+    ]
+    thread = motion.server.play_in_background(NaoMotionGoal(chain))
+    assert fake.started.wait(LIMIT)
+    robot.memory.signals["ALMotion/RobotIsFalling"](True)
+    thread.join(LIMIT)
+    assert motion.server.end == "aborted"
+    assert motion.server.text == (
+        "function 1 (angleInterpolation): the robot fell and its motors are off: goToPosture gets it up again"
+    )
+    assert not [call for call in moved(robot) if call[0] == "setAngles"]
+
+
+def test_a_fall_between_goals_aborts_nothing(motion, robot):
+    play(motion, f("getAngles", names=["Head"]))
+    robot.memory.signals["ALMotion/RobotIsFalling"](True)
+    assert play(motion, f("getAngles", names=["Head"])).end == "succeeded"
+
+
+def test_falls_are_watched_again_after_a_reconnection(motion, robot):
+    play(motion, f("getAngles", names=["Head"]))
+    robot.memory.signals.clear()
+    robot.connection.become("connected")
+    assert robot.memory.signals["ALMotion/RobotIsFalling"].links

@@ -247,8 +247,10 @@ class MemoryStore:
 
     def _entry(self, key: str) -> _Entry:
         entry = self._entries.get(key)
-        if entry is None or not entry.exists:
+        if entry is None:
             raise UnknownName("key", key, self._entries)
+        if not entry.exists:  # an event that is declared, and was never raised
+            raise UnknownName("value of key", key, ())
         return entry
 
     def _names(self, kind: str | None) -> list[str]:

@@ -4,6 +4,7 @@ SimulationError (RuntimeError)
 ├── ConfigError        a data file that does not hold what it should
 ├── UnknownName        a joint, LED, key... that the robot does not have
 ├── BadValue           an argument outside what is allowed
+├── NotAllowed         something that a switch forbids
 ├── TaskKilled         a task ended before its time
 └── SimulationStopped  the simulation thread ended while somebody waited for it
 """
@@ -63,6 +64,10 @@ class BadValue(SimulationError):
         self.value = value
         self.allowed = allowed
         super().__init__(f"{field} is {value!r}, allowed is {allowed}")
+
+
+class NotAllowed(SimulationError):
+    """Something that a switch forbids; the text says which one allows it."""
 
 
 class TaskKilled(SimulationError):

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from nao_sim_bridge.services.motion.part import MotionPart
+from nao_sim_bridge.sim.errors import NotAllowed
 from nao_sim_bridge.sim.tasks import Task
+
+# The owner's permission to do without the fall manager; off at the start.
+DEACTIVATION = "ENABLE_DEACTIVATION_OF_FALL_MANAGER"
 
 
 class Falls(MotionPart):
@@ -14,6 +18,8 @@ class Falls(MotionPart):
 
     def setFallManagerEnabled(self, enabled: bool) -> Task:
         def switch() -> None:
+            if not (enabled or self._robot.reflexes.switches[DEACTIVATION]):
+                raise NotAllowed(f"the fall manager stays on; setMotionConfig([[{DEACTIVATION!r}, True]]) allows it")
             self._robot.stability.falls.enabled = enabled
 
         return self._runner.execute(switch, "setFallManagerEnabled")

@@ -74,7 +74,14 @@ def test_a_fall_ends_the_calls_that_move_the_robot(standing):
     assert standing.ALMotion.getTaskList() == []
 
 
+def test_the_fall_manager_stays_on_without_permission(standing):
+    with pytest.raises(RuntimeError, match="ENABLE_DEACTIVATION_OF_FALL_MANAGER"):
+        standing.ALMotion.setFallManagerEnabled(False)
+    assert standing.ALMotion.getFallManagerEnabled() is True
+
+
 def test_a_fall_manager_that_is_off_says_nothing_and_does_nothing(standing):
+    standing.ALMotion.setMotionConfig([["ENABLE_DEACTIVATION_OF_FALL_MANAGER", True]])
     standing.ALMotion.setFallManagerEnabled(False)
     assert fall(standing) == [0, 0]
     assert standing.now.torso.position[2] < 0.15
