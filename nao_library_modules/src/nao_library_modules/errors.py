@@ -6,6 +6,7 @@ NaoError                 (naoqi.errors) root of everything that can go wrong wit
     FunctionFailed       function k of a chain failed: position, function, cause
     RobotLost            the robot went away while a goal was waiting
     RobotFell            the robot fell while a goal moved it
+    MotionStopped        joints did not get where a goal sent them: joints
 
 Preempted                no error but a signal: a new goal, a cancel or the end of the node interrupts the
 function
@@ -13,7 +14,7 @@ function
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from naoqi.errors import NaoError
 
@@ -100,6 +101,22 @@ class RobotFell(NaoError):  # noqa: N818  named like the errors of the proxy lay
     def __init__(self) -> None:
         """Compose the text."""
         super().__init__("the robot fell and its motors are off: goToPosture gets it up again")
+
+
+class MotionStopped(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """A motion ended and joints are not where it should have brought them.
+
+    Attributes:
+        joints: Joint -> where it was to go and where it is told to be, rad.
+    """
+
+    def __init__(self, joints: Mapping[str, tuple[float, float]]) -> None:
+        """Compose the text: every joint that is off."""
+        off = ", ".join(f"{joint} got to {now:.3f} instead of {goal:.3f}" for joint, (goal, now) in joints.items())
+        super().__init__(
+            f"the motion was stopped: {off}. Another client, a protection of the robot or a limit did that"
+        )
+        self.joints = dict(joints)
 
 
 class Preempted(Exception):  # noqa: N818  a signal that stops a chain, not an error

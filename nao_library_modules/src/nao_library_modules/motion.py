@@ -152,7 +152,7 @@ class NaoMotion(
 
     def _fell(self, _: str, falling: Any) -> None:
         """Called from a thread of libqi: a chain that goes on would move a robot that lies."""
-        if falling and not self._idle.is_set():
+        if falling and self.plan.moves and not self._idle.is_set():
             self.interrupt.trigger(RobotFell())
 
     def _new_plan(self) -> MotionPlan:

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from naoqi.errors import NaoError
 
+from .errors import MotionStopped
 from .interrupt import Interrupt
 from .motion_facts import MOTION, MotionAccess
 from .motion_plan import MotionPlan
 
 log = logging.getLogger(__name__)
 
+# A command is there when it is this close, rad: the robot's numbers have 32 bits, and its curves end where they end.
+REACHED = 0.01
+# s
+NEWS_TIME = 0.2
 DEFAULT_SPEED = 0.3
 """Fraction of the top speed where a message leaves it to us."""
 
@@ -49,6 +54,26 @@ class MotionBase:
         limp = [joint for joint in joints if not now[joint] > 0.0]
         if limp:
             self.motion("setStiffnesses", limp, [stiffness] * len(limp))
+
+    def require_reached(self, goals: Mapping[str, float]) -> None:
+        """See that joints are told to be where a motion was to bring them.
+
+        A motion that somebody stops ends like one that is over; NAOqi does not tell the two apart.
+
+        Args:
+            goals: Joint -> rad (hands 0..1).
+
+        Raises:
+            MotionStopped: If one is not.
+            NaoError: If something else is known to have stopped it: a fall.
+        """
+        now = self.motion("getAngles", list(goals), False)
+        off = {joint: (goal, at) for (joint, goal), at in zip(goals.items(), now) if abs(at - goal) > REACHED}
+        if off:
+            # The news of a fall may be on its way.
+            if self.interrupt.wait(NEWS_TIME):
+                self.interrupt.check()
+            raise MotionStopped(off)
 
     def halt(self) -> None:
         """Stop what the chain has set going, where the joints are; preemption does not interrupt this."""

@@ -76,7 +76,9 @@ class GazeFunctions(MotionBase):
             self.motion("angleInterpolation", list(HEAD), [[angle] for angle in angles], [[duration]] * 2, True)
         else:
             self.motion("angleInterpolationWithSpeed", list(HEAD), angles, speed or DEFAULT_SPEED)
-        return [*angles, math.hypot(*(a - w for a, w in zip(angles, wanted)))]
+        # The limits of the pitch depend on the yaw; the robot keeps to them.
+        reached = self.motion("getAngles", list(HEAD), False)
+        return [*reached, math.hypot(*(r - w for r, w in zip(reached, wanted)))]
 
     def _in_torso(self, point: Sequence[float], frame: int) -> tuple[float, float, float]:
         x, y, z = point

@@ -224,8 +224,10 @@ class JointMotion(MotionBase):
         """Move joints through key angles at given times, and wait for the end."""
         values = _key_angles(self.plan, names, angles, times)
         self.stiffen(list(values), stiffness)
+        start = self.motion("getAngles", list(values), False) if relative else [0.0] * len(values)
         moments = [list(times)] * len(values)
         self.motion("angleInterpolation", list(values), list(values.values()), moments, not relative)
+        self.require_reached({joint: s + path[-1] for (joint, path), s in zip(values.items(), start)})
 
     @checked_by(check_with_speed)
     def angle_interpolation_with_speed(
@@ -239,12 +241,13 @@ class JointMotion(MotionBase):
         """Move joints along a trajectory: through its positions, with its velocities where it has some."""
         frames = _key_frames(self.plan, names, trajectory, relative)
         self.stiffen(frames.joints, stiffness)
-        if frames.velocities is None:
-            self.motion("angleInterpolation", *frames.interpolation_arguments())
-            return
         if frames.relative:
             frames = frames.absolute(self.motion("getAngles", list(frames.joints), False))
-        self.motion("angleInterpolationBezier", *frames.bezier_arguments())
+        if frames.velocities is None:
+            self.motion("angleInterpolation", *frames.interpolation_arguments())
+        else:
+            self.motion("angleInterpolationBezier", *frames.bezier_arguments())
+        self.require_reached(frames.targets)
 
     @checked_by(check_bezier)
     def angle_interpolation_bezier(self, names: Sequence[str], trajectory: Any, stiffness: float) -> None:
@@ -267,6 +270,7 @@ class JointMotion(MotionBase):
         if time > 0.0:
             self.stiffen(list(pose), stiffness)
             self.motion("angleInterpolation", list(pose), [[a] for a in pose.values()], [[time]] * len(pose), True)
+            self.require_reached(pose)
         else:
             self._go(pose, speed, stiffness)
 
@@ -316,6 +320,7 @@ class JointMotion(MotionBase):
     def _go(self, pose: Mapping[str, float], speed: float, stiffness: float) -> None:
         self.stiffen(list(pose), stiffness)
         self.motion("angleInterpolationWithSpeed", list(pose), list(pose.values()), speed or DEFAULT_SPEED)
+        self.require_reached(pose)
 
     def _hands(self, method: str, names: Sequence[str]) -> None:
         hands: Any = self.robot.proxy("ALMotion")

@@ -25,6 +25,7 @@ class MotionPlan:
     Attributes:
         touched: Joints that the chain moves or asks for, in order, each once.
         aimed: Those that the chain gives targets without waiting for them.
+        moves: Whether the chain moves anything.
         durations: Place of each function in the chain, counted from 1 -> how long it takes as far as known, s.
 
     Args:
@@ -35,6 +36,7 @@ class MotionPlan:
     def __init__(self, facts: Callable[[], MotionFacts], read_state: Callable[[], JointState]) -> None:
         self.touched: dict[str, None] = {}
         self.aimed: dict[str, None] = {}
+        self.moves = False
         self.durations: dict[int, float] = {}
         self._read_facts = facts
         self._read_state = read_state
@@ -76,6 +78,7 @@ class MotionPlan:
 
     def forget(self, joints: Iterable[str]) -> None:
         """Joints go where only the robot knows."""
+        self.moves = True
         self._know()
         assert self._angles is not None
         for joint in joints:
@@ -147,6 +150,7 @@ class MotionPlan:
 
     def move(self, goals: Mapping[str, float | None], duration: float) -> None:
         """Joints go to where they are to go, in a straight line; the speed is not looked at."""
+        self.moves = True
         self._know()
         assert self._angles is not None
         self._angles.update(goals)

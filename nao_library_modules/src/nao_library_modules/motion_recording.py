@@ -119,6 +119,7 @@ class MotionRecording(MotionBase):
         if len(motion.times) > 1:
             paths = [[row[i] for row in motion.angles[1:]] for i in range(len(joints))]
             self.motion("angleInterpolation", joints, paths, [list(motion.times[1:])] * len(joints), True)
+        self.require_reached(dict(zip(joints, motion.angles[-1])))
         return self.clock.now() - began
 
     def list_motions(self) -> list[str]:

@@ -285,6 +285,26 @@ def test_facts_are_asked_again_after_a_reconnection(motion, robot):
     assert (len(asked), len(asked_now)) == (1, 2)
 
 
+# What stops a motion
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        f("angleInterpolation", names=["HeadYaw"], angles=[1.0], times=[5.0]),
+        f("angleInterpolation", names=["HeadYaw"], angles=[1.0], times=[5.0], relative=True),
+        f("angleInterpolationWithSpeed", names=["HeadYaw"], angles=[1.0]),
+        f("setPose", names=["HeadYaw"], angles=[1.0], duration=5.0),
+    ],
+)
+def test_a_motion_that_somebody_stops_is_an_error_with_where_the_joints_are(motion, fake, monkeypatch, function):
+    for method in ("angleInterpolation", "angleInterpolationWithSpeed"):
+        monkeypatch.setattr(fake, method, lambda *_: fake.angles.update(HeadYaw=0.4))
+    server = play(motion, function)
+    assert server.end == "aborted"
+    assert "the motion was stopped: HeadYaw got to 0.400 instead of 1.000" in server.text
+
+
 # Falls
 
 
@@ -302,13 +322,24 @@ def test_a_fall_aborts_the_chain_and_says_how_to_get_up(motion, fake, robot):
     assert motion.server.text == (
         "function 1 (angleInterpolation): the robot fell and its motors are off: goToPosture gets it up again"
     )
-    assert not [call for call in moved(robot) if call[0] == "setAngles"]
+    assert fake.angles["HeadPitch"] == 0.0, "the chain went on"
 
 
 def test_a_fall_between_goals_aborts_nothing(motion, robot):
     play(motion, f("getAngles", names=["Head"]))
     robot.memory.signals["ALMotion/RobotIsFalling"](True)
     assert play(motion, f("getAngles", names=["Head"])).end == "succeeded"
+
+
+def test_a_chain_that_only_asks_goes_on_while_the_robot_falls(motion, edge, robot):
+    goal = NaoMotionGoal([f("getAngles", names=["Head"], time=Duration.from_sec(60.0))])
+    thread = motion.server.play_in_background(goal)
+    assert edge.clock.waiting.wait(LIMIT)
+    robot.memory.signals["ALMotion/RobotIsFalling"](True)
+    assert not motion.interrupt.is_set()
+    motion.server.preempt()
+    thread.join(LIMIT)
+    assert motion.server.end == "preempted"
 
 
 def test_falls_are_watched_again_after_a_reconnection(motion, robot):

@@ -174,7 +174,7 @@ class FallManager:
         """Advance a fall that goes on: let go before the impact, and tell when the robot lies."""
         settings, now = self._settings, snapshot.time
         roll, pitch, _ = snapshot.imu.angles
-        lean = math.acos(max(-1.0, min(1.0, math.cos(roll) * math.cos(pitch))))
+        lean = _lean(roll, pitch)
         elapsed = now - self._noticed
         if not self._let_go and (lean >= settings.let_go_lean or elapsed >= settings.let_go_time):
             self._let_go = True
@@ -190,12 +190,14 @@ class FallManager:
         """How far the capture point is outside the soles that carry or could carry at once, m, and which way."""
         x, y = body.capture_point
         left, right = body.stance.left_ankle, body.stance.right_ankle
+        roll, pitch, _ = snapshot.imu.angles
         if not any(loaded):
+            if snapshot.contacts and _lean(roll, pitch) > self._settings.let_go_lean:
+                return (math.inf, (math.sin(pitch), -math.sin(roll)))  # knocked off its feet, it lies already
             return INSIDE  # lifted up: whoever holds it must not let it fall
         if all(loaded) and right[1] < y < left[1]:
             if max(left[0], right[0]) - BEHIND < x < min(left[0], right[0]) + AHEAD:
                 return INSIDE
-        roll, pitch, _ = snapshot.imu.angles
         soles = [self._reader.sole(side, snapshot.positions, roll, pitch) for side in (0, 1)]
         heights = [min(corner[2] for corner in sole) for sole in soles]
         ground = min(height for height, carries in zip(heights, loaded) if carries)
@@ -229,6 +231,11 @@ class FallManager:
         if side == "L":
             return dict(pose)
         return {_mirrored(name): angle if name.endswith("Pitch") else -angle for name, angle in pose.items()}
+
+
+def _lean(roll: float, pitch: float) -> float:
+    """Angle of the torso from upright, rad."""
+    return math.acos(max(-1.0, min(1.0, math.cos(roll) * math.cos(pitch))))
 
 
 def _mirrored(name: str) -> str:

@@ -246,3 +246,11 @@ def test_a_pose_of_an_unknown_joint_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "config_file", lambda name: path)
     with pytest.raises(ConfigError, match=f"{FILE}: protect.front: no joint 'LElbow'"):
         load_fall_settings(load_model())
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_one_that_is_knocked_off_its_feet_has_fallen_when_it_lies(watched, side):
+    one = watched("StandInit")
+    x, y = SIDES[side]
+    one.push((60.0 * x, 60.0 * y, 0.0), 0.15)
+    assert states(one, 4.0) == [FallState.WATCHING, FallState.FALLING, FallState.FALLEN]

@@ -6,6 +6,8 @@ import pytest
 
 FALLING, FALLEN, STANDS, AWAKE = "ALMotion/RobotIsFalling", "robotHasFallen", "ALMotion/RobotIsStand", "robotIsWakeUp"
 FORWARD = [60.0, 0.0, 0.0]
+# That of the owner to do without the fall manager.
+PERMISSION = [["ENABLE_DEACTIVATION_OF_FALL_MANAGER", True]]
 
 
 def raised(robot):
@@ -34,6 +36,7 @@ def test_both_are_on_after_the_start_and_can_be_switched(robot, what):
         return robot.ALMotion.call(f"get{what}Enabled")
 
     assert state() is True
+    robot.ALMotion.setMotionConfig(PERMISSION)
     robot.ALMotion.call(f"set{what}Enabled", False)
     assert state() is False
     robot.ALMotion.call(f"set{what}Enabled", True)
@@ -42,6 +45,7 @@ def test_both_are_on_after_the_start_and_can_be_switched(robot, what):
 
 @pytest.mark.parametrize("what", ["FallManager", "PushRecovery"])
 def test_a_restart_switches_them_on(robot, what):
+    robot.ALMotion.setMotionConfig(PERMISSION)
     robot.ALMotion.call(f"set{what}Enabled", False)
     robot.NaoSimulation.reset()
     assert robot.ALMotion.call(f"get{what}Enabled") is True
@@ -81,7 +85,7 @@ def test_the_fall_manager_stays_on_without_permission(standing):
 
 
 def test_a_fall_manager_that_is_off_says_nothing_and_does_nothing(standing):
-    standing.ALMotion.setMotionConfig([["ENABLE_DEACTIVATION_OF_FALL_MANAGER", True]])
+    standing.ALMotion.setMotionConfig(PERMISSION)
     standing.ALMotion.setFallManagerEnabled(False)
     assert fall(standing) == [0, 0]
     assert standing.now.torso.position[2] < 0.15
