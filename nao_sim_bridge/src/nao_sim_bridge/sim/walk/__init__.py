@@ -1,0 +1,1 @@
+"""Walking: footsteps, pattern of the centre of mass, kinematics of the legs. Pure functions of numbers, no physics."""

@@ -1,0 +1,39 @@
+"""Poses of feet on the ground, and where the next one goes."""
+
+from __future__ import annotations
+
+from math import atan2, cos, sin
+from typing import NamedTuple
+
+
+class FootPose(NamedTuple):
+    """A foot, or the robot, on the ground.
+
+    Attributes:
+        x: m.
+        y: m.
+        yaw: rad.
+    """
+
+    x: float
+    y: float
+    yaw: float
+
+    def moved(self, x: float, y: float, yaw: float = 0.0) -> FootPose:
+        """This pose after a movement in its own frame."""
+        c, s = cos(self.yaw), sin(self.yaw)
+        return FootPose(self.x + c * x - s * y, self.y + s * x + c * y, self.yaw + yaw)
+
+    def seen_from(self, other: FootPose) -> FootPose:
+        """This pose in the frame of another."""
+        c, s = cos(other.yaw), sin(other.yaw)
+        x, y = self.x - other.x, self.y - other.y
+        turn = self.yaw - other.yaw
+        return FootPose(c * x + s * y, -s * x + c * y, atan2(sin(turn), cos(turn)))
+
+
+def middle(first: FootPose, second: FootPose) -> FootPose:
+    """Half way between two poses, turned half way."""
+    turn = second.yaw - first.yaw
+    turn = atan2(sin(turn), cos(turn))
+    return FootPose((first.x + second.x) / 2.0, (first.y + second.y) / 2.0, first.yaw + turn / 2.0)
