@@ -9,6 +9,7 @@ arm hits the floor the fall manager noticed the fall.
 from __future__ import annotations
 
 import argparse
+import logging
 import math
 import random
 import sys
@@ -139,6 +140,8 @@ def main() -> int:
     parser.add_argument("--runs", type=int, default=10, help="of each push (default 10)")
     parser.add_argument("--falls", action="store_true", help="how early falls are noticed; takes the largest impulse")
     options = parser.parse_args()
+    # Noise on the joints goes over their limits now and then: no news here.
+    logging.getLogger("nao_sim.motion").setLevel(logging.ERROR)
     if options.falls:
         return check_falls(options.postures, max(options.impulses), options.runs) > 0
     return check_pushes(options.postures, sorted(options.impulses), options.runs) > 0
