@@ -10,6 +10,9 @@ from typing import Iterable, Mapping, Sequence
 
 from nao_sim_bridge.sim.tasks import Task, TaskIds
 
+# Times are sums of ticks: this close to a moment it has come, s.
+ROUNDING = 1e-9
+
 
 @dataclass(frozen=True)
 class LedKeyframe:
@@ -34,7 +37,7 @@ class _Fade:
     def value(self, now: float) -> float:
         before = self.points[0]
         for point in self.points[1:]:
-            if now < point[0]:
+            if now < point[0] - ROUNDING:
                 share = (now - before[0]) / (point[0] - before[0])
                 return before[1] + share * (point[1] - before[1])
             before = point
@@ -88,7 +91,7 @@ class LedBank:
         if not self._ends:
             return
         changed = {index: fade.value(now) for index, fade in self._fades.items()}
-        for task in [t for t, end in self._ends.items() if now >= end - 1e-9]:
+        for task in [t for t, end in self._ends.items() if now >= end - ROUNDING]:
             del self._ends[task]
             self._release(task)
             task.finish()

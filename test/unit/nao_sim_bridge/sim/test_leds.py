@@ -119,3 +119,11 @@ def test_an_animation_without_frames_ends_with_the_next_tick(bank):
     task = bank.animate("nothing", [], now=0.0)
     bank.tick(0.01)
     assert task.finished
+
+
+def test_a_fade_ends_exactly_though_its_end_is_a_rounding_away(bank):
+    bank.set({0: 1.0})
+    task = bank.animate("fade", [LedKeyframe(1.0, {0: 0.0})], now=0.0)
+    bank.tick(1.0 - 1e-12)
+    assert task.finished
+    assert bank.values[0] == 0.0
