@@ -5,6 +5,7 @@ SimulationError (RuntimeError)
 ├── UnknownName        a joint, LED, key... that the robot does not have
 ├── BadValue           an argument outside what is allowed
 ├── NotAllowed         something that a switch forbids
+├── MoveRefused        a walk that cannot begin
 ├── TaskKilled         a task ended before its time
 └── SimulationStopped  the simulation thread ended while somebody waited for it
 """
@@ -68,6 +69,10 @@ class BadValue(SimulationError):
 
 class NotAllowed(SimulationError):
     """Something that a switch forbids; the text says which one allows it."""
+
+
+class MoveRefused(SimulationError):
+    """A walk that cannot begin; the text says why."""
 
 
 class TaskKilled(SimulationError):

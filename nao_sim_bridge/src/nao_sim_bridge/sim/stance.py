@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple, Sequence, Tuple
+from typing import Iterable, NamedTuple, Sequence, Tuple
 
 from nao_sim_bridge.sim.model import Joint, RobotModel
 from nao_sim_bridge.sim.rotations import Vector3, cross, from_roll_pitch_yaw, rotate
@@ -53,6 +53,39 @@ class Stance:
         return (self.com[0] - x, self.com[1] - y, self.com[2] - z)
 
 
+class MassCarrier:
+    """Where the mass of the torso and of some limbs is.
+
+    Attributes:
+        mass: Of all of them, kg.
+
+    Args:
+        model: The robot.
+        tips: Last links of the limbs, see `limb_tips`.
+    """
+
+    def __init__(self, model: RobotModel, tips: Iterable[str]) -> None:
+        torso = model.link("Torso")
+        limbs = [_limb(model, tip) for tip in tips]
+        self.mass = torso.mass + sum(model.link(joint.child_link or "").mass for limb in limbs for joint in limb)
+        self._torso_moment = _times(torso.com, torso.mass)
+        self._limbs = [_moment_steps(model, limb) for limb in limbs]
+
+    def moment(self, angles: Sequence[float]) -> Vector3:
+        """Mass times centre of mass in the torso frame, kg m; (26,) angles in rad."""
+        x, y, z = self._torso_moment
+        for steps in self._limbs:
+            dx, dy, dz = _carry(steps, angles, ZERO)
+            x, y, z = x + dx, y + dy, z + dz
+        return (x, y, z)
+
+
+def limb_tips(model: RobotModel) -> list[str]:
+    """The last links of all limbs."""
+    parents = {link.parent_joint and model.joint(link.parent_joint).parent_link for link in model.links}
+    return [link.name for link in model.links if link.name not in parents]
+
+
 class StanceReader:
     """Makes stances of one robot.
 
@@ -61,12 +94,7 @@ class StanceReader:
     """
 
     def __init__(self, model: RobotModel) -> None:
-        parents = {link.parent_joint and model.joint(link.parent_joint).parent_link for link in model.links}
-        tips = [link.name for link in model.links if link.name not in parents]
-        torso = model.link("Torso")
-        self._mass = model.total_mass
-        self._torso_moment = _times(torso.com, torso.mass)
-        self._moments = [_moment_steps(model, _limb(model, tip)) for tip in tips]
+        self._masses = MassCarrier(model, limb_tips(model))
         legs = [_limb(model, foot) for foot in FEET]
         self._places = [[_step(model, joint, after=_floats(joint.origin)) for joint in leg] for leg in legs]
         self._directions = [[_step(model, joint) for joint in leg] for leg in legs]
@@ -80,12 +108,9 @@ class StanceReader:
             roll: Of the torso in world, rad.
             pitch: Of the torso in world, rad.
         """
-        x, y, z = self._torso_moment
-        for steps in self._moments:
-            dx, dy, dz = _carry(steps, angles, ZERO)
-            x, y, z = x + dx, y + dy, z + dz
+        x, y, z = self._masses.moment(angles)
         level = from_roll_pitch_yaw(roll, pitch, 0.0)
-        mass = self._mass
+        mass = self._masses.mass
         com = rotate(level, (x / mass, y / mass, z / mass))
         left, right = (rotate(level, _carry(steps, angles, ZERO)) for steps in self._places)
         return Stance(com, left, right)

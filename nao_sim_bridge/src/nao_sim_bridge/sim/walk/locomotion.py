@@ -1,0 +1,480 @@
+"""Walking as a robot does it for whoever asks: begin, change on the way, end; what protects it; where it is.
+
+A walk is a task of the motion engine that holds both legs from the first to the last tick. What callers wait for (a
+place reached, steps made, a stop) are tasks of their own that this one settles. Simulation thread only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import Callable, Sequence, Tuple
+
+from nao_sim_bridge.sim.capture_point import BodyMotion
+from nao_sim_bridge.sim.errors import MoveRefused
+from nao_sim_bridge.sim.model import RobotModel
+from nao_sim_bridge.sim.motion.engine import MotionEngine
+from nao_sim_bridge.sim.motion.joints import JointCommands
+from nao_sim_bridge.sim.posture_recognition import CROUCHING, STANDING, recognise
+from nao_sim_bridge.sim.reflexes import Reflexes
+from nao_sim_bridge.sim.settings import Settings
+from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.stability import Stability
+from nao_sim_bridge.sim.tasks import Task, TaskIds
+from nao_sim_bridge.sim.walk.arm_swing import ArmSwing
+from nao_sim_bridge.sim.walk.body import WalkingBody
+from nao_sim_bridge.sim.walk.courses import (
+    STANDSTILL,
+    Course,
+    Placement,
+    Rate,
+    StepsCourse,
+    TargetCourse,
+    VelocityCourse,
+    rate_limits,
+)
+from nao_sim_bridge.sim.walk.footsteps import FootPose
+from nao_sim_bridge.sim.walk.gait import FeetGait
+from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.sim.walk.plan import Phase
+from nao_sim_bridge.sim.walk.settings import load_walk_settings
+from nao_sim_bridge.sim.walk.walker import Readings, Walker
+from nao_sim_bridge.sim.walk.whereabouts import foot_on_ground, frame_from, robot_on_ground
+
+SIDES = {"LLeg": LEFT, "RLeg": RIGHT}
+LEGS = {side: leg for leg, side in SIDES.items()}
+STIFFNESS_SWITCH, CONTACT_SWITCH = "ENABLE_STIFFNESS_PROTECTION", "ENABLE_FOOT_CONTACT_PROTECTION"
+# Legs at this stiffness or below do not walk; a robot that feels no ground for this time, s, does not either.
+LEAST_STIFFNESS = 0.6
+LIFTED_TIME = 0.2
+# Both feet together carry less than this of the weight when somebody holds the robot.
+LIFTED_SHARE = 0.1
+# Where in a step the foot that carries tells where the plan's frame lies in the world.
+MIDDLE = 0.5
+# Steps that getFootSteps shows of a walk that has no end.
+SHOWN_STEPS = 4
+Velocity = Tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class PlannedStep:
+    """A step to come.
+
+    Attributes:
+        leg: "LLeg" or "RLeg".
+        time: From now to its landing, s.
+        placement: In the frame of the other foot.
+    """
+
+    leg: str
+    time: float
+    placement: FootPose
+
+
+@dataclass(frozen=True)
+class FootstepPlan:
+    """Feet and the steps to come.
+
+    Attributes:
+        left: Left foot in the world.
+        right: Right foot in the world.
+        fixed: Steps that nothing can change any more.
+        clearable: Steps after them.
+    """
+
+    left: FootPose
+    right: FootPose
+    fixed: Tuple[PlannedStep, ...]
+    clearable: Tuple[PlannedStep, ...]
+
+
+class _LegCurve:
+    """What the engine follows for one joint of a leg: the command of this tick."""
+
+    def __init__(self, walk: Locomotion, index: int) -> None:
+        self._walk = walk
+        self._index = index
+
+    @property
+    def duration(self) -> float:
+        return self._walk.job_duration
+
+    def value(self, _: float) -> float:
+        return self._walk.command(self._index)
+
+
+class Locomotion:
+    """Walks one robot.
+
+    Attributes:
+        arms: Swing of the arms.
+        failures: Called with a cause, and whether the walk had begun, when a move cannot begin or ends before time.
+
+    Args:
+        model: The robot.
+        settings: Gravity.
+        joints: Its commands.
+        motion: What moves its joints.
+        stability: What keeps it on its feet while it does not walk, and watches for falls.
+        reflexes: Which protections are on.
+        task_ids: Source of the tasks' numbers.
+        snapshot: What was sensed at the last tick; None before the first one.
+    """
+
+    def __init__(
+        self,
+        model: RobotModel,
+        settings: Settings,
+        joints: JointCommands,
+        motion: MotionEngine,
+        stability: Stability,
+        reflexes: Reflexes,
+        task_ids: TaskIds,
+        snapshot: Callable[[], Snapshot | None],
+    ) -> None:
+        self._model = model
+        self._gravity = settings.gravity_m_s2
+        self._joints = joints
+        self._motion = motion
+        self._stability = stability
+        self._reflexes = reflexes
+        self._ids = task_ids
+        self._snapshot = snapshot
+        self._settings = load_walk_settings()
+        self._body = WalkingBody(model)
+        self._legs = sorted(i for side in (LEFT, RIGHT) for i in self._body.legs.indices[side])
+        self._weight = model.total_mass * settings.gravity_m_s2
+        self.arms = ArmSwing(model, joints, self._settings, self._stride)
+        self.failures: list[Callable[[str, bool], None]] = []
+        self._job: Task | None = None
+        self._walker: Walker | None = None
+        self._course: Course | None = None
+        self._to_begin = False
+        self._measured_step = False
+        self._goal: Task | None = None
+        self._waiting: list[Task] = []
+        self._commands: dict[int, float] = {}
+        self._lifted = 0.0
+
+    # --- what callers ask for -------------------------------------------------------------------------------------
+
+    @property
+    def active(self) -> bool:
+        """Whether a walk runs, from its begin until the robot stands again."""
+        return self._job is not None
+
+    def init(self) -> Task:
+        """Take the stance that walks begin from."""
+        if self.active:
+            return self.until_finished()
+        self._begin("moveInit", None)
+        return self.until_finished("moveInit")
+
+    def move(self, x: float, y: float, theta: float, gait: FeetGait) -> None:
+        """Walk at a velocity, m/s, m/s, rad/s, until told otherwise; no velocity at all ends the walk.
+
+        Raises:
+            MoveRefused: The robot cannot walk now.
+        """
+        period = (gait.period(LEFT) + gait.period(RIGHT)) / 2.0
+        self._go("move", (x * period, y * period, theta * period), gait)
+
+    def move_toward(self, x: float, y: float, theta: float, gait: FeetGait) -> None:
+        """Walk at shares -1..1 of the gait's largest velocities, until told otherwise.
+
+        Raises:
+            MoveRefused: The robot cannot walk now.
+        """
+        longest, aside, turn = rate_limits(gait, x >= 0.0)
+        self._go("moveToward", (x * longest, y * aside, theta * turn), gait)
+
+    def move_to(self, points: Sequence[FootPose], gait: FeetGait, time: float | None = None) -> Task:
+        """Walk to a pose through others, all as seen from the robot now.
+
+        Args:
+            points: The last one is where the walk ends.
+            gait: How.
+            time: Take so long at least, s.
+
+        Returns:
+            Ends when the robot stands, with whether it is there.
+
+        Raises:
+            MoveRefused: The robot cannot walk now.
+        """
+        here = self.position(use_sensors=True) if not self.active else self._heading_for()
+        period = (gait.period(LEFT) + gait.period(RIGHT)) / 2.0
+        course = TargetCourse(
+            self._settings,
+            gait,
+            [here.moved(*point) for point in points],
+            steps=1 if time is None else max(1, round(time / period)),
+            rate=self._rate(),
+        )
+        course.begin_towards(here)
+        return self._set_goal("moveTo", course)
+
+    def set_steps(self, steps: Sequence[Placement], gait: FeetGait, clear: bool) -> Task:
+        """Make planned steps, after those that are planned already or instead of them.
+
+        Returns:
+            Ends when the last of them is made and the robot stands, with whether all were made.
+
+        Raises:
+            MoveRefused: The robot cannot walk now.
+        """
+        course = self._course
+        if self.active and isinstance(course, StepsCourse) and self._goal is not None and not course.reached:
+            course.add(steps, clear)
+            return self._goal
+        return self._set_goal("setFootSteps", StepsCourse(self._settings, gait, steps))
+
+    def stop(self) -> Task:
+        """End the walk as soon as both feet can stand; the task ends then."""
+        if self.active:
+            self._stop_course()
+        return self.until_finished("stopMove")
+
+    def kill(self) -> None:
+        """End the walk at once, with a foot in the air if it happens to be there."""
+        if self._job is not None:
+            self._job.kill()
+
+    def until_finished(self, name: str = "waitUntilMoveIsFinished") -> Task:
+        """A task that ends when no walk runs any more."""
+        task = self._ids.make(name)
+        if self.active:
+            self._waiting.append(task)
+        else:
+            task.finish()
+        return task
+
+    # --- where it is ----------------------------------------------------------------------------------------------
+
+    def position(self, use_sensors: bool) -> FootPose:
+        """The robot in the world of its odometry, by measured angles or by what the joints are told."""
+        now = self._now()
+        angles = now.positions if use_sensors else self._joints.commands
+        return robot_on_ground(self._body, now.odometry, angles)
+
+    def next_position(self) -> FootPose:
+        """Where the robot will be after the steps that can no longer be changed."""
+        walker = self._walker
+        if walker is None or self._course is None or walker.plan.step is None:
+            return self.position(use_sensors=True)
+        return self._course.frame.moved(*walker.plan.robot)
+
+    def velocity(self) -> Velocity:
+        """Of the robot in its world, m/s, m/s, rad/s, as planned."""
+        walker, course = self._walker, self._course
+        if walker is None or course is None or walker.plan.step is None:
+            return (0.0, 0.0, 0.0)
+        x, y, yaw = course.rate
+        period = walker.plan.step.period
+        heading = FootPose(0.0, 0.0, course.frame.yaw + walker.plan.robot.yaw).moved(x / period, y / period)
+        return (heading.x, heading.y, yaw / period)
+
+    def steps(self) -> FootstepPlan:
+        """Feet in the world, and the steps to come."""
+        now = self._now()
+        left, right = (foot_on_ground(self._body, now.odometry, now.positions, side) for side in (LEFT, RIGHT))
+        walker = self._walker
+        if walker is None or walker.plan.step is None:
+            return FootstepPlan(left, right, (), ())
+        plan = walker.plan
+        made = plan.step
+        time = made.period - plan.time
+        fixed = PlannedStep(LEGS[made.side], time, made.landing.seen_from(plan.feet[plan.support]))
+        count = len(self._course.left) if isinstance(self._course, StepsCourse) else SHOWN_STEPS
+        further, support = [], made.landing
+        for step in plan.further(count):
+            time += step.period
+            further.append(PlannedStep(LEGS[step.side], time, step.landing.seen_from(support)))
+            support = step.landing
+        return FootstepPlan(left, right, (fixed,), tuple(further))
+
+    # --- the tick -------------------------------------------------------------------------------------------------
+
+    @property
+    def job_duration(self) -> float:
+        """For the engine: whether the walk goes on."""
+        walker = self._walker
+        goes_on = walker is None or walker.plan.phase is not Phase.STAND or self._to_begin
+        return inf if goes_on else 0.0
+
+    def command(self, index: int) -> float:
+        """For the engine: where a joint of a leg is to be, rad."""
+        return self._commands[index]
+
+    def tick(self, dt: float) -> None:
+        """Advance the walk, if any, before the joints get their commands."""
+        walker, now = self._walker, self._snapshot()
+        if walker is None or now is None:
+            return
+        loads = (now.left_foot.total, now.right_foot.total)
+        cause = self._unsafe(loads, dt)
+        if cause:
+            self._fail(cause, started=True)
+            self.kill()
+            return
+        readings = Readings(now.positions, now.imu.angles[:2], now.imu.gyroscope[:2], loads)
+        self._place_frame(walker, now)
+        self._commands = walker.tick(readings, self._joints.commands, dt)
+        if walker.plan.phase is Phase.STAND and self._to_begin and self._course is not None:
+            walker.plan.begin(self._course)
+            self._to_begin = False
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _now(self) -> Snapshot:
+        now = self._snapshot()
+        if now is None:
+            raise MoveRefused("nothing was sensed yet")
+        return now
+
+    def _go(self, name: str, rate: Rate, gait: FeetGait) -> None:
+        if not any(rate):
+            if self.active:
+                self._stop_course()
+            return
+        self._start(name, VelocityCourse(self._settings, gait, rate, self._rate()))
+
+    def _set_goal(self, name: str, course: Course) -> Task:
+        goal = self._ids.make(name, on_kill=lambda task: self._drop_goal(task))
+        self._start(name, course)
+        self._goal = goal
+        return goal
+
+    def _drop_goal(self, goal: Task) -> None:
+        """Somebody has cancelled what the walk was for: it ends on two feet."""
+        if goal is self._goal:
+            self._goal = None
+            if self.active:
+                self._stop_course()
+
+    def _start(self, name: str, course: Course) -> None:
+        if not self.active:
+            self._begin(name, course)
+            return
+        self._end_goal(False)
+        self._change_course(course)
+
+    def _stop_course(self) -> None:
+        self._end_goal(False)
+        if self._walker is None or not self._walker.plan.walking:
+            self._to_begin = False  # it has not made a step yet, or makes none any more
+            return
+        gait = FeetGait()
+        ending = VelocityCourse(self._settings, gait, STANDSTILL, self._rate())
+        ending.end()
+        self._change_course(ending)
+
+    def _change_course(self, course: Course) -> None:
+        if self._course is not None:
+            course.frame = self._course.frame
+        self._course = course
+        if self._walker is not None and self._walker.plan.walking:
+            self._walker.plan.take_course(course)
+        else:
+            self._to_begin = True
+
+    def _rate(self) -> Rate:
+        return self._course.rate if self._course is not None else STANDSTILL
+
+    def _heading_for(self) -> FootPose:
+        """Where a walking robot's next moves count from."""
+        return self.position(use_sensors=True)
+
+    def _begin(self, name: str, course: Course | None) -> None:
+        cause = self._hindrance()
+        if cause:
+            self._fail(cause, started=False)
+            raise MoveRefused(cause)
+        self._course = course
+        self._to_begin = course is not None
+        self._lifted = 0.0
+        self._job = self._motion.follow(name, self._legs, self._curves, noticed=False)
+        self._job.add_done_callback(self._ended)
+
+    def _curves(self, commands: Sequence[float]) -> dict[int, _LegCurve]:
+        """Called when the legs are free."""
+        self._walker = Walker(self._body, self._settings, self._gravity, commands)
+        self._commands = {i: commands[i] for i in self._legs}
+        self._stability.corrector = _correct_nothing
+        if self._course is not None:
+            now = self._now()
+            self._course.frame = robot_on_ground(self._body, now.odometry, now.positions)
+        return {i: _LegCurve(self, i) for i in self._legs}
+
+    def _place_frame(self, walker: Walker, now: Snapshot) -> None:
+        """See where the plan's frame lies, once a step, when one foot stands alone and surely flat."""
+        plan = walker.plan
+        share = plan.swing_share
+        if share < MIDDLE:
+            self._measured_step = False
+        elif not self._measured_step and self._course is not None:
+            self._measured_step = True
+            stands = foot_on_ground(self._body, now.odometry, now.positions, plan.support)
+            self._course.frame = frame_from(stands, plan.feet[plan.support])
+
+    def _ended(self, job: Task) -> None:
+        reached = not job.killed and self._course is not None and self._course.reached
+        self._job = self._walker = self._course = None
+        self._stability.corrector = None
+        self._end_goal(reached)
+        waiting, self._waiting = self._waiting, []
+        for task in waiting:
+            task.finish()
+
+    def _end_goal(self, reached: bool) -> None:
+        goal, self._goal = self._goal, None
+        if goal is not None:
+            goal.finish(reached)
+
+    def _hindrance(self) -> str:
+        """Why the robot cannot walk now; empty when it can."""
+        now = self._now()
+        if self._stability.falls.falling:
+            return "the robot is falling"
+        soft = self._soft_joints()
+        if soft:
+            return f"stiffness of {soft} is {LEAST_STIFFNESS} or less: wakeUp first"
+        if self._reflexes.switches[CONTACT_SWITCH] and not self._on_ground((now.left_foot.total, now.right_foot.total)):
+            return "the feet feel no ground"
+        family = recognise(self._model, now).family
+        if family not in (STANDING, CROUCHING):
+            return f"the robot is {family}, it walks only from standing or crouching: goToPosture first"
+        return ""
+
+    def _unsafe(self, loads: tuple[float, float], dt: float) -> str:
+        """Why the walk must end at once; empty when it need not."""
+        self._lifted = 0.0 if self._on_ground(loads) else self._lifted + dt
+        if self._lifted > LIFTED_TIME and self._reflexes.switches[CONTACT_SWITCH]:
+            return "the feet have lost the ground"
+        soft = self._soft_joints()
+        return f"stiffness of {soft} is {LEAST_STIFFNESS} or less" if soft else ""
+
+    def _soft_joints(self) -> str:
+        stiffnesses = self._joints.stiffnesses
+        least = LEAST_STIFFNESS if self._reflexes.switches[STIFFNESS_SWITCH] else 0.0
+        return ", ".join(self._model.joints[i].name for i in self._legs if stiffnesses[i] <= least)
+
+    def _on_ground(self, loads: tuple[float, float]) -> bool:
+        return sum(loads) > LIFTED_SHARE * self._weight
+
+    def _fail(self, cause: str, started: bool) -> None:
+        for call in self.failures:
+            call(cause, started)
+
+    def _stride(self) -> float | None:
+        """How far the left foot is ahead of the right one, m; None when no walk runs."""
+        walker = self._walker
+        if walker is None:
+            return None
+        left, right = walker.plan.foot(LEFT).pose, walker.plan.foot(RIGHT).pose
+        return left.seen_from(right).x
+
+
+def _correct_nothing(_: BodyMotion, __: Snapshot) -> dict[int, float]:
+    """A walk corrects its own commands."""
+    return {}
