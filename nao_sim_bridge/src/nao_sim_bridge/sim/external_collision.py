@@ -65,6 +65,22 @@ class ExternalCollision:
                 shares.update((index, share) for index in self._chains[arm])
         return shares
 
+    def blocks(self, ahead: float, echoes: Sequence[float]) -> bool:
+        """Whether the robot must not go on: at full speed it stops at the orthogonal distance, a slow one gets nearer.
+
+        Args:
+            ahead: How fast it goes forward, as a share of its full speed.
+            echoes: Of the sonars, m.
+        """
+        if ahead <= 0.0 or "Move" not in self.enabled:
+            return False
+        return min(echoes) < self.tangential + min(ahead, 1.0) * max(self.orthogonal - self.tangential, 0.0)
+
+    def obstacle_ahead(self, echoes: Sequence[float]) -> np.ndarray:
+        """(3,) the nearest obstacle, m, in torso, taken to be in the middle of its cone."""
+        echo, (place, ahead) = min(zip(echoes, self._sonars), key=lambda pair: pair[0])
+        return place + echo * ahead
+
     def _hand(self, arm: str, links: Mapping[str, np.ndarray]) -> np.ndarray:
         frame = self._hands[arm]
         return (links[frame.link] @ frame.offset)[:3, 3]

@@ -53,6 +53,8 @@ class FallSettings:
     lying_turn: float
     lying_time: float
     lying_latest: float
+    walking_off: float
+    walking_lean: float
     arm_speed: float
     protect: Mapping[str, Mapping[str, float]]
 
@@ -64,7 +66,9 @@ def load_fall_settings(model: RobotModel) -> FallSettings:
         ConfigError: The file cannot be read, or a key is unknown or missing.
     """
     numbers = ["outside_m", "confirm_s", "near_ground_m", "armed_after_s", "arm_speed_rad_s"]
-    content = check_keys(read_json(config_file(FILE)), FILE, [*numbers, "let_go", "lying", "protect"], ["_meta"])
+    groups = ["walking", "let_go", "lying", "protect"]
+    content = check_keys(read_json(config_file(FILE)), FILE, [*numbers, *groups], ["_meta"])
+    walking = check_keys(content["walking"], f"{FILE}: walking", ["off_m", "lean_rad"])
     let_go = check_keys(content["let_go"], f"{FILE}: let_go", ["lean_rad", "time_s"])
     lying = check_keys(content["lying"], f"{FILE}: lying", ["turn_rad_s", "time_s", "latest_s"])
     protect = check_keys(content["protect"], f"{FILE}: protect", PROTECTED)
@@ -82,6 +86,8 @@ def load_fall_settings(model: RobotModel) -> FallSettings:
         lying_turn=lying["turn_rad_s"],
         lying_time=lying["time_s"],
         lying_latest=lying["latest_s"],
+        walking_off=walking["off_m"],
+        walking_lean=walking["lean_rad"],
         arm_speed=content["arm_speed_rad_s"],
         protect=protect,
     )
@@ -170,6 +176,23 @@ class FallManager:
         elif snapshot.time - self._outside_since >= self._settings.confirm_time:
             self._begin(way, snapshot.time)
 
+    def look_at_walk(self, off: Tuple[float, float], snapshot: Snapshot) -> None:
+        """Look whether a robot that walks begins to fall: its feet go where the body goes, up to a point.
+
+        Args:
+            off: How far ahead and to the left of where it should be the body is heading, m.
+            snapshot: Of this tick.
+        """
+        if self.state is not FallState.WATCHING:
+            return
+        settings = self._settings
+        roll, pitch, _ = snapshot.imu.angles
+        if math.hypot(*off) > settings.walking_off:
+            size = math.hypot(*off)
+            self._begin((off[0] / size, off[1] / size), snapshot.time)
+        elif _lean(roll, pitch) > settings.walking_lean:
+            self._begin(_downhill(roll, pitch), snapshot.time)
+
     def go_on(self, snapshot: Snapshot) -> None:
         """Advance a fall that goes on: let go before the impact, and tell when the robot lies."""
         settings, now = self._settings, snapshot.time
@@ -193,7 +216,7 @@ class FallManager:
         roll, pitch, _ = snapshot.imu.angles
         if not any(loaded):
             if snapshot.contacts and _lean(roll, pitch) > self._settings.let_go_lean:
-                return (math.inf, (math.sin(pitch), -math.sin(roll)))  # knocked off its feet, it lies already
+                return (math.inf, _downhill(roll, pitch))  # knocked off its feet, it lies already
             return INSIDE  # lifted up: whoever holds it must not let it fall
         if all(loaded) and right[1] < y < left[1]:
             if max(left[0], right[0]) - BEHIND < x < min(left[0], right[0]) + AHEAD:
@@ -236,6 +259,11 @@ class FallManager:
 def _lean(roll: float, pitch: float) -> float:
     """Angle of the torso from upright, rad."""
     return math.acos(max(-1.0, min(1.0, math.cos(roll) * math.cos(pitch))))
+
+
+def _downhill(roll: float, pitch: float) -> Point:
+    """Where the top of the torso leans to, in the level frame."""
+    return (math.sin(pitch), -math.sin(roll))
 
 
 def _mirrored(name: str) -> str:

@@ -6,7 +6,7 @@ A robot that stands quietly costs next to nothing here: the body is followed onl
 from __future__ import annotations
 
 import math
-from typing import Callable, Mapping, Sequence
+from typing import Callable, Mapping, Sequence, Tuple
 
 from nao_sim_bridge.sim.balance import NO_CORRECTION, Balance, load_balance
 from nao_sim_bridge.sim.capture_point import BodyMotion, BodyTracker
@@ -27,8 +27,8 @@ LOOK_EVERY = 12
 # A robot counts as standing, or not any more, when it has been so for this time, s: a step is no fall.
 STEADY_TIME = 0.1
 
-# (body motion, snapshot) -> what to add to joint commands, by joint index in rad.
-Corrector = Callable[[BodyMotion, Snapshot], Mapping[int, float]]
+# How far ahead and to the left of where it should be the divergent component of a walking body's motion is, m.
+WalkError = Callable[[], Tuple[float, float]]
 
 
 class Stability:
@@ -38,8 +38,8 @@ class Stability:
         balance: Corrects the stance.
         falls: Watches for falls.
         tracker: Follows the body's motion; only while something moves.
-        corrector: Takes the place of balance while it is set: whoever moves the legs knows better where the body
-            belongs, a walk for example. The fall manager goes on watching.
+        walk: Set by who walks, and takes the place of balance: a walk keeps its feet under the body by itself. The
+            fall manager goes on watching, and asks it how far the body is off.
         on_feet: Whether the weight is on the feet.
 
     Args:
@@ -54,7 +54,7 @@ class Stability:
         self.tracker = BodyTracker(model, settings.gravity_m_s2, self._settings.velocity_smoothing)
         self.balance = Balance(self._settings, self.tracker.reader)
         self.falls = FallManager(model, load_fall_settings(model), self.tracker.reader, motion)
-        self.corrector: Corrector | None = None
+        self.walk: WalkError | None = None
         self.on_feet = False
         self._joints = joints
         self._motion = motion
@@ -86,6 +86,9 @@ class Stability:
             self.falls.end()
         if not able:
             self.falls.rest()
+        elif self.walk is not None:
+            self._watch_walk(self.walk(), snapshot, dt)
+            return
         moving = self._legs_move()
         at_rest = self._at_rest(snapshot) and not (moving or self.balance.acting or self.falls.falling)
         if at_rest or not able:
@@ -103,7 +106,7 @@ class Stability:
             and joints.velocities is self._velocities
             and joints.stiffnesses is self._stiffnesses
             and self._count % LOOK_EVERY > 0
-            and self.corrector is None
+            and self.walk is None
             and not self._motion.tasks()
             and self._at_rest(snapshot)
         )
@@ -115,6 +118,16 @@ class Stability:
             self.falls.go_on(snapshot)
         if self._count % LOOK_EVERY == 0:
             self._note_feet(snapshot, able)
+        self.tracker.forget()
+        self.balance.release()
+        self._engaged = False
+        self._joints.correct(NO_CORRECTION, dt)
+
+    def _watch_walk(self, off: Tuple[float, float], snapshot: Snapshot, dt: float) -> None:
+        """Look whether a walking body falls; all else is the walk's."""
+        if self._count % LOOK_EVERY == 0 or not self.on_feet:
+            self._note_feet(snapshot, able=True)
+        self.falls.look_at_walk(off, snapshot)
         self.tracker.forget()
         self.balance.release()
         self._engaged = False
@@ -139,8 +152,6 @@ class Stability:
         if self._engaged and self.balance.enabled:
             return self.balance.corrections(body, self._joints.commands)
         self.balance.release()
-        if self.corrector is not None and not self.falls.falling:
-            return self.corrector(body, snapshot)
         return NO_CORRECTION
 
     def _legs_stiff(self) -> bool:
@@ -155,7 +166,7 @@ class Stability:
         if velocities is not self._velocities:  # replaced as a whole and never changed
             self._velocities = velocities
             self._move = any(velocities[i] for i in self._legs)
-        return self._move or self.corrector is not None or self._motion.busy(self._legs)
+        return self._move or self._motion.busy(self._legs)
 
     def _at_rest(self, snapshot: Snapshot) -> bool:
         """Whether the body has been at rest for a while."""

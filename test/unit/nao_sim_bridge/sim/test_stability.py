@@ -15,35 +15,27 @@ def standing(bench):
     return one
 
 
-def test_a_corrector_takes_the_place_of_balance(standing):
-    stability, ankles = standing.robot.stability, [standing.model.joint_index[f"{s}AnklePitch"] for s in "LR"]
-    seen = []
-
-    def correct(body, snapshot):
-        seen.append((body, snapshot))
-        return dict.fromkeys(ankles, 0.02)
-
-    stability.corrector = correct
-    standing.push((25.0, 0.0, 0.0), 0.1)
-    before = standing.now
-    standing.run(0.25)
-    assert seen[0][1] is before
-    assert len(seen) == round(0.25 / standing.simulation.settings.tick_s)
-    assert max(body.velocity[0] for body, _ in seen) > 0.02
-    assert standing.robot.joints.corrections == dict.fromkeys(ankles, 0.02)
-    stability.corrector = None
-    standing.run(1.0)
-    assert standing.robot.joints.corrections == {}
-
-
-def test_a_falling_robot_is_not_corrected(standing):
+def test_a_walk_takes_the_place_of_balance(standing):
     stability = standing.robot.stability
-    stability.corrector = lambda body, snapshot: {standing.model.joint_index["LAnklePitch"]: 0.01}
-    standing.push((80.0, 0.0, 0.0), 0.1)
-    while not stability.falls.falling:
-        standing.simulation.tick()
-    standing.simulation.tick()
+    standing.push((25.0, 0.0, 0.0), 0.1)
+    standing.run(0.1)
+    assert stability.balance.acting
+    stability.walk = lambda: (0.0, 0.0)
+    standing.run(0.3)
+    assert not stability.balance.acting
     assert standing.robot.joints.corrections == {}
+    assert not stability.falls.falling
+
+
+def test_a_body_that_a_walk_has_lost_falls_where_it_heads(standing):
+    stability = standing.robot.stability
+    stability.walk = lambda: (-0.05, 0.0)
+    standing.run(0.1)
+    assert not stability.falls.falling
+    stability.walk = lambda: (-0.3, 0.0)
+    standing.simulation.tick()
+    assert stability.falls.falling
+    assert stability.falls.direction == (-1.0, 0.0)
 
 
 def test_a_robot_on_its_feet_stands_stiff_or_limp(bench):

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from math import inf
 from typing import Callable, Sequence, Tuple
 
-from nao_sim_bridge.sim.capture_point import BodyMotion
 from nao_sim_bridge.sim.errors import MoveRefused
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.motion.engine import MotionEngine
 from nao_sim_bridge.sim.motion.joints import JointCommands
 from nao_sim_bridge.sim.posture_recognition import CROUCHING, STANDING, recognise
 from nao_sim_bridge.sim.reflexes import Reflexes
+from nao_sim_bridge.sim.rotations import Vector3, rotate
 from nao_sim_bridge.sim.settings import Settings
 from nao_sim_bridge.sim.snapshot import Snapshot
 from nao_sim_bridge.sim.stability import Stability
@@ -34,7 +34,7 @@ from nao_sim_bridge.sim.walk.courses import (
     rate_limits,
 )
 from nao_sim_bridge.sim.walk.footsteps import FootPose
-from nao_sim_bridge.sim.walk.gait import FeetGait
+from nao_sim_bridge.sim.walk.gait import FeetGait, parameters
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.sim.walk.plan import Phase
 from nao_sim_bridge.sim.walk.settings import load_walk_settings
@@ -108,7 +108,8 @@ class Locomotion:
 
     Attributes:
         arms: Swing of the arms.
-        failures: Called with a cause, and whether the walk had begun, when a move cannot begin or ends before time.
+        failures: Called when a move cannot begin or ends before time, with the cause, whether the walk had begun, and
+            the place of the obstacle in the world of the robot's odometry, m, if one was the cause.
 
     Args:
         model: The robot.
@@ -145,7 +146,7 @@ class Locomotion:
         self._legs = sorted(i for side in (LEFT, RIGHT) for i in self._body.legs.indices[side])
         self._weight = model.total_mass * settings.gravity_m_s2
         self.arms = ArmSwing(model, joints, self._settings, self._stride)
-        self.failures: list[Callable[[str, bool], None]] = []
+        self.failures: list[Callable[[str, bool, Vector3 | None], None]] = []
         self._job: Task | None = None
         self._walker: Walker | None = None
         self._course: Course | None = None
@@ -155,6 +156,8 @@ class Locomotion:
         self._waiting: list[Task] = []
         self._commands: dict[int, float] = {}
         self._lifted = 0.0
+        self._echoes: Sequence[float] = ()
+        self._obstructed = False
 
     # --- what callers ask for -------------------------------------------------------------------------------------
 
@@ -261,7 +264,7 @@ class Locomotion:
         """Where the robot will be after the steps that can no longer be changed."""
         walker = self._walker
         if walker is None or self._course is None or walker.plan.step is None:
-            return self.position(use_sensors=True)
+            return self.position(use_sensors=False)
         return self._course.frame.moved(*walker.plan.robot)
 
     def velocity(self) -> Velocity:
@@ -317,6 +320,7 @@ class Locomotion:
             self._fail(cause, started=True)
             self.kill()
             return
+        self._look_ahead(now)
         readings = Readings(now.positions, now.imu.angles[:2], now.imu.gyroscope[:2], loads)
         self._place_frame(walker, now)
         self._commands = walker.tick(readings, self._joints.commands, dt)
@@ -373,6 +377,7 @@ class Locomotion:
         if self._course is not None:
             course.frame = self._course.frame
         self._course = course
+        self._obstructed = False
         if self._walker is not None and self._walker.plan.walking:
             self._walker.plan.take_course(course)
         else:
@@ -392,15 +397,15 @@ class Locomotion:
             raise MoveRefused(cause)
         self._course = course
         self._to_begin = course is not None
-        self._lifted = 0.0
+        self._lifted, self._obstructed = 0.0, False
         self._job = self._motion.follow(name, self._legs, self._curves, noticed=False)
         self._job.add_done_callback(self._ended)
 
     def _curves(self, commands: Sequence[float]) -> dict[int, _LegCurve]:
         """Called when the legs are free."""
-        self._walker = Walker(self._body, self._settings, self._gravity, commands)
+        self._walker = walker = Walker(self._body, self._settings, self._gravity, commands)
         self._commands = {i: commands[i] for i in self._legs}
-        self._stability.corrector = _correct_nothing
+        self._stability.walk = lambda: walker.feedback.error
         if self._course is not None:
             now = self._now()
             self._course.frame = robot_on_ground(self._body, now.odometry, now.positions)
@@ -418,9 +423,11 @@ class Locomotion:
             self._course.frame = frame_from(stands, plan.feet[plan.support])
 
     def _ended(self, job: Task) -> None:
+        if job.killed and self._stability.falls.falling:
+            self._fail("the robot falls", started=True)
         reached = not job.killed and self._course is not None and self._course.reached
         self._job = self._walker = self._course = None
-        self._stability.corrector = None
+        self._stability.walk = None
         self._end_goal(reached)
         waiting, self._waiting = self._waiting, []
         for task in waiting:
@@ -446,6 +453,20 @@ class Locomotion:
             return f"the robot is {family}, it walks only from standing or crouching: goToPosture first"
         return ""
 
+    def _look_ahead(self, now: Snapshot) -> None:
+        """End a walk that leads into an obstacle which the sonars see."""
+        guard, course = self._reflexes.external_collision, self._course
+        if self._obstructed or course is None or now.sonars is self._echoes:
+            return
+        self._echoes = now.sonars
+        ahead = course.rate[0] / parameters()["MaxStepX"].default
+        if guard.blocks(ahead, now.sonars):
+            seen = rotate(now.odometry.orientation, guard.obstacle_ahead(now.sonars).tolist())
+            x, y, z = (a + b for a, b in zip(now.odometry.position, seen))
+            self._fail(f"an obstacle {min(now.sonars):.2f} m ahead", started=True, obstacle=(x, y, z))
+            self._stop_course()
+            self._obstructed = True
+
     def _unsafe(self, loads: tuple[float, float], dt: float) -> str:
         """Why the walk must end at once; empty when it need not."""
         self._lifted = 0.0 if self._on_ground(loads) else self._lifted + dt
@@ -462,9 +483,9 @@ class Locomotion:
     def _on_ground(self, loads: tuple[float, float]) -> bool:
         return sum(loads) > LIFTED_SHARE * self._weight
 
-    def _fail(self, cause: str, started: bool) -> None:
+    def _fail(self, cause: str, started: bool, obstacle: Vector3 | None = None) -> None:
         for call in self.failures:
-            call(cause, started)
+            call(cause, started, obstacle)
 
     def _stride(self) -> float | None:
         """How far the left foot is ahead of the right one, m; None when no walk runs."""
@@ -473,8 +494,3 @@ class Locomotion:
             return None
         left, right = walker.plan.foot(LEFT).pose, walker.plan.foot(RIGHT).pose
         return left.seen_from(right).x
-
-
-def _correct_nothing(_: BodyMotion, __: Snapshot) -> dict[int, float]:
-    """A walk corrects its own commands."""
-    return {}
