@@ -1,7 +1,8 @@
 """Where the robot believes that it is: dead reckoning of the foot that carries it, headings from the inertial unit.
 
 Its world is where the robot stood at the start: the origin on the ground between the feet, X where they pointed. The
-ground is taken for level and the foot that carries for flat on it; slips go unnoticed, as on a real robot.
+ground is taken for level, and the point of the sole below the ankle of the foot that carries for a fixed point on it,
+also while the foot rolls over an edge; slips go unnoticed, as on a real robot.
 """
 
 from __future__ import annotations
@@ -36,16 +37,15 @@ class Odometry:
         self, model: RobotModel, ankles: Sequence[int], positions: Sequence[float], tilt: Sequence[float]
     ) -> None:
         self._reader = StanceReader(model)
-        self._sole_height = model.sole_height
         self._side_of = {ankle: side for side, ankle in enumerate(ankles)}
         level = from_roll_pitch_yaw(tilt[0], tilt[1], 0.0)
         ahead = [rotate(level, self._reader.toe_direction(side, positions)) for side in (LEFT, RIGHT)]
         heading = math.atan2(ahead[LEFT][1] + ahead[RIGHT][1], ahead[LEFT][0] + ahead[RIGHT][0])
         self._start_yaw = tilt[2] + heading
         turn = self._turn(tilt)
-        left, right = (rotate(turn, self._reader.ankle(side, positions)) for side in (LEFT, RIGHT))
+        left, right = (rotate(turn, self._reader.sole_center(side, positions)) for side in (LEFT, RIGHT))
         self._foot = LEFT if left[2] <= right[2] else RIGHT
-        height = self._sole_height - min(left[2], right[2])
+        height = -min(left[2], right[2])
         self.torso = Pose((-(left[0] + right[0]) / 2, -(left[1] + right[1]) / 2, height), turn)
         self._anchor = _plus(self.torso.position, (left, right)[self._foot])
 
@@ -66,17 +66,17 @@ class Odometry:
             side = self._side_of.get(link)
             if side is not None:
                 loads[side] += force
-        ankle = rotate(turn, self._reader.ankle(self._foot, positions))
+        sole = rotate(turn, self._reader.sole_center(self._foot, positions))
         if loads == [0.0, 0.0]:
             # In the air or lying: nothing tells where it goes.
-            self._anchor = _plus(self.torso.position, ankle)
+            self._anchor = _plus(self.torso.position, sole)
         x, y, z = self._anchor
-        self.torso = Pose((x - ankle[0], y - ankle[1], z - ankle[2]), turn)
+        self.torso = Pose((x - sole[0], y - sole[1], z - sole[2]), turn)
         other = RIGHT if self._foot == LEFT else LEFT
         if loads[other] > TAKE_OVER * loads[self._foot]:
             self._foot = other
-            x, y, _ = _plus(self.torso.position, rotate(turn, self._reader.ankle(other, positions)))
-            self._anchor = (x, y, self._sole_height)
+            x, y, _ = _plus(self.torso.position, rotate(turn, self._reader.sole_center(other, positions)))
+            self._anchor = (x, y, 0.0)
         return self.torso
 
     def _turn(self, tilt: Sequence[float]) -> Quaternion:

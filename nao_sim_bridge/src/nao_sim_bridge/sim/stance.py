@@ -95,6 +95,7 @@ class StanceReader:
 
     def __init__(self, model: RobotModel) -> None:
         self._masses = MassCarrier(model, limb_tips(model))
+        self._sole_height = model.sole_height
         legs = [_limb(model, foot) for foot in FEET]
         self._places = [[_step(model, joint, after=_floats(joint.origin)) for joint in leg] for leg in legs]
         self._directions = [[_step(model, joint) for joint in leg] for leg in legs]
@@ -124,6 +125,10 @@ class StanceReader:
     def ankle(self, side: int, angles: Sequence[float]) -> Vector3:
         """Where pitch and roll axis of an ankle cross in the torso frame, m; side 0 left, 1 right, angles in rad."""
         return _carry(self._places[side], angles, ZERO)
+
+    def sole_center(self, side: int, angles: Sequence[float]) -> Vector3:
+        """The point of the sole below the ankle in the torso frame, m; side 0 left, 1 right, angles in rad."""
+        return _carry(self._places[side], angles, (0.0, 0.0, -self._sole_height))
 
     def toe_direction(self, side: int, angles: Sequence[float]) -> Vector3:
         """Where a foot points, a unit vector in the torso frame; side 0 left, 1 right, angles in rad."""

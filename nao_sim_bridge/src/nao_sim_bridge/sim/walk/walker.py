@@ -13,6 +13,8 @@ from nao_sim_bridge.sim.walk.matrices import Matrix, Vector, about_x, about_y, a
 from nao_sim_bridge.sim.walk.plan import Phase, WalkPlan
 from nao_sim_bridge.sim.walk.settings import WalkSettings
 
+# From this share of its way on a foot may land.
+LANDING = 0.6
 # Of a leg's five angles below the hip's yaw.
 ANKLE_PITCH, ANKLE_ROLL = 3, 4
 
@@ -75,6 +77,7 @@ class Walker:
         self.feedback = WalkFeedback(settings, body, self.plan.omega)
         com, _ = body.center_of_mass(self._upper, body.leg_pose(commands))
         self._com_in_torso = com
+        self._landed = False
 
     def tick(self, readings: Readings, commands: Sequence[float], dt: float) -> Dict[int, float]:
         """Advance by one tick.
@@ -91,7 +94,8 @@ class Walker:
         if commands is not self._upper_of:
             self._upper_of = commands
             self._upper = body.upper_moment(commands)
-        plan.advance(dt, self._landed(readings.loads))
+        self._feel_landing(readings.loads)
+        plan.advance(dt, self._landed)
         measured = body.leg_pose(readings.positions)
         begun = self._begun()
         self.feedback.update(plan, measured, self._upper, readings.tilt, readings.gyro, dt, begun)
@@ -107,8 +111,13 @@ class Walker:
         self._com_in_torso, _ = body.center_of_mass(self._upper, (self._hip, left, right))
         return self._angles(list(left), list(right))
 
-    def _landed(self, loads: Vector2) -> bool:
-        return loads[0 if self.plan.support == RIGHT else 1] > self._settings.loaded
+    def _feel_landing(self, loads: Vector2) -> None:
+        """Note that the foot in the air has touched the ground: at first it bounces, and carries little."""
+        plan = self.plan
+        if plan.swing_share < LANDING:
+            self._landed = False
+        elif loads[0 if plan.support == RIGHT else 1] > self._settings.loaded:
+            self._landed = True
 
     def _begun(self) -> float:
         """How far the walk's stance is taken, 0..1."""
