@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import AbstractSet, Callable, Mapping, Sequence
 
 from nao_sim_bridge.sim.model import RobotModel
+from nao_sim_bridge.sim.motion.engine import IdleMotion
 from nao_sim_bridge.sim.motion.joints import JointCommands
 from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.walk.gait import parameters
@@ -35,6 +36,7 @@ class ArmSwing:
         self._joints = joints
         self._settings = settings
         self._stride = stride
+        self._beneath: IdleMotion | None = None
         self._longest = parameters()["MaxStepX"].default
         home = posture(model, POSTURE)
         self._homes: Mapping[str, Mapping[int, float]] = {
@@ -49,13 +51,20 @@ class ArmSwing:
         # Arm to where it joined the swing, and how far it has joined in, 0..1.
         self._from: dict[str, tuple[Sequence[float], float]] = {}
 
+    def over(self, others: IdleMotion | None) -> ArmSwing:
+        """This swing, and beneath it what else moves idle joints."""
+        self._beneath = others
+        return self
+
     def wishes(self, busy: AbstractSet[int], dt: float) -> dict[int, float]:
         """Where arms go at a tick of `dt` s, rad by index; none of `busy`, which somebody else moves."""
+        wanted: dict[int, float] = {}
+        if self._beneath is not None:
+            wanted.update(self._beneath.wishes(busy, dt))
         stride = self._stride()
         if stride is None:
             self._from.clear()
-            return {}
-        wanted: dict[int, float] = {}
+            return wanted
         for arm, home in self._homes.items():
             if not self.enabled[arm] or not busy.isdisjoint(home) or not self._stiff(home):
                 self._from.pop(arm, None)

@@ -23,21 +23,15 @@ from nao_sim_bridge.sim.stability import Stability
 from nao_sim_bridge.sim.tasks import Task, TaskIds
 from nao_sim_bridge.sim.walk.arm_swing import ArmSwing
 from nao_sim_bridge.sim.walk.body import WalkingBody
-from nao_sim_bridge.sim.walk.courses import (
-    STANDSTILL,
-    Course,
-    Placement,
-    Rate,
-    StepsCourse,
-    TargetCourse,
-    VelocityCourse,
-    rate_limits,
-)
+from nao_sim_bridge.sim.walk.courses import STANDSTILL, Course, Rate, rate_limits
 from nao_sim_bridge.sim.walk.footsteps import FootPose
 from nao_sim_bridge.sim.walk.gait import FeetGait, parameters
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.sim.walk.plan import Phase
 from nao_sim_bridge.sim.walk.settings import load_walk_settings
+from nao_sim_bridge.sim.walk.steps_course import Placement, StepsCourse
+from nao_sim_bridge.sim.walk.target_course import TargetCourse
+from nao_sim_bridge.sim.walk.velocity_course import VelocityCourse
 from nao_sim_bridge.sim.walk.walker import Readings, Walker
 from nao_sim_bridge.sim.walk.whereabouts import foot_on_ground, frame_from, robot_on_ground
 
@@ -324,6 +318,8 @@ class Locomotion:
         readings = Readings(now.positions, now.imu.angles[:2], now.imu.gyroscope[:2], loads)
         self._place_frame(walker, now)
         self._commands = walker.tick(readings, self._joints.commands, dt)
+        if self._course is not None:
+            self._course.haste = walker.haste
         if walker.plan.phase is Phase.STAND and self._to_begin and self._course is not None:
             walker.plan.begin(self._course)
             self._to_begin = False
@@ -375,7 +371,7 @@ class Locomotion:
 
     def _change_course(self, course: Course) -> None:
         if self._course is not None:
-            course.frame = self._course.frame
+            course.follow(self._course)
         self._course = course
         self._obstructed = False
         if self._walker is not None and self._walker.plan.walking:
@@ -408,7 +404,9 @@ class Locomotion:
         self._stability.walk = lambda: walker.feedback.error
         if self._course is not None:
             now = self._now()
-            self._course.frame = robot_on_ground(self._body, now.odometry, now.positions)
+            here = robot_on_ground(self._body, now.odometry, now.positions)
+            self._course.frame = here
+            self._course.begin_at(here)
         return {i: _LegCurve(self, i) for i in self._legs}
 
     def _place_frame(self, walker: Walker, now: Snapshot) -> None:

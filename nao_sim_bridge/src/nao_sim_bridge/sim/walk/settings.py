@@ -38,6 +38,8 @@ class WalkSettings:
         loaded: A foot that carries this has landed, N.
         latest: A foot that has not landed is waited for so long, s.
         sink: It goes down by this meanwhile, m.
+        calm_from: A body whose divergent component is off by more, m, walks slower ...
+        calm_range: ... and on the spot when it is off by so much more, m.
         turn_hold: Share of the error of heading that one step makes up for.
         turn_hold_limit: And at most this, rad.
         aside_hold: The same for the error to the side.
@@ -69,6 +71,8 @@ class WalkSettings:
     loaded: float
     latest: float
     sink: float
+    calm_from: float
+    calm_range: float
     turn_hold: float
     turn_hold_limit: float
     aside_hold: float
@@ -103,6 +107,7 @@ def load_walk_settings() -> WalkSettings:
         "observer": ["place", "speed"],
         "com_shift": ["gain", "smoothing", "limit_m"],
         "landing": ["loaded_n", "latest_s", "sink_m"],
+        "calm": ["from_m", "range_m"],
         "hold": ["turn", "turn_limit_rad", "aside", "aside_limit_m"],
         "arms": ["swing_rad", "ease_s"],
     }
@@ -136,6 +141,8 @@ def load_walk_settings() -> WalkSettings:
         loaded=values["landing"][0],
         latest=values["landing"][1],
         sink=values["landing"][2],
+        calm_from=values["calm"][0],
+        calm_range=values["calm"][1],
         turn_hold=values["hold"][0],
         turn_hold_limit=values["hold"][1],
         aside_hold=values["hold"][2],

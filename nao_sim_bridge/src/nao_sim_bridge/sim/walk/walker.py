@@ -15,6 +15,8 @@ from nao_sim_bridge.sim.walk.settings import WalkSettings
 
 # From this share of its way on a foot may land.
 LANDING = 0.6
+# It has landed when it has felt the ground within this time, s.
+BOUNCE = 0.06
 # Of a leg's five angles below the hip's yaw.
 ANKLE_PITCH, ANKLE_ROLL = 3, 4
 
@@ -77,7 +79,7 @@ class Walker:
         self.feedback = WalkFeedback(settings, body, self.plan.omega)
         com, _ = body.center_of_mass(self._upper, body.leg_pose(commands))
         self._com_in_torso = com
-        self._landed = False
+        self._in_air = 0.0
 
     def tick(self, readings: Readings, commands: Sequence[float], dt: float) -> Dict[int, float]:
         """Advance by one tick.
@@ -94,8 +96,7 @@ class Walker:
         if commands is not self._upper_of:
             self._upper_of = commands
             self._upper = body.upper_moment(commands)
-        self._feel_landing(readings.loads)
-        plan.advance(dt, self._landed)
+        plan.advance(dt, self._landed(readings.loads, dt))
         measured = body.leg_pose(readings.positions)
         begun = self._begun()
         self.feedback.update(plan, measured, self._upper, readings.tilt, readings.gyro, dt, begun)
@@ -111,13 +112,19 @@ class Walker:
         self._com_in_torso, _ = body.center_of_mass(self._upper, (self._hip, left, right))
         return self._angles(list(left), list(right))
 
-    def _feel_landing(self, loads: Vector2) -> None:
-        """Note that the foot in the air has touched the ground: at first it bounces, and carries little."""
+    @property
+    def haste(self) -> float:
+        """Share of its speed that the walk may use while the body is off the plan, 0..1."""
+        settings = self._settings
+        beyond = hypot(*self.feedback.error) - settings.calm_from
+        return min(max(1.0 - beyond / settings.calm_range, 0.0), 1.0)
+
+    def _landed(self, loads: Vector2, dt: float) -> bool:
+        """Whether the foot in the air feels the ground: one that lands bounces, and carries little at first."""
         plan = self.plan
-        if plan.swing_share < LANDING:
-            self._landed = False
-        elif loads[0 if plan.support == RIGHT else 1] > self._settings.loaded:
-            self._landed = True
+        felt = loads[0 if plan.support == RIGHT else 1] > self._settings.loaded
+        self._in_air = 0.0 if felt and plan.swing_share > LANDING else self._in_air + dt
+        return self._in_air < BOUNCE
 
     def _begun(self) -> float:
         """How far the walk's stance is taken, 0..1."""

@@ -1,0 +1,75 @@
+"""A walk of steps that somebody else has planned."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Sequence
+
+from nao_sim_bridge.sim.walk.clipping import clip_step, step_limits
+from nao_sim_bridge.sim.walk.courses import STANDSTILL, Course, Rate, Step
+from nao_sim_bridge.sim.walk.footsteps import FootPose
+from nao_sim_bridge.sim.walk.gait import FeetGait
+from nao_sim_bridge.sim.walk.settings import WalkSettings
+
+
+class Placement(NamedTuple):
+    """A step that somebody else has planned.
+
+    Attributes:
+        side: Of the foot that moves, 1 left, -1 right.
+        beside: Where it lands, in the frame of the other foot.
+        period: Time of the step, s.
+    """
+
+    side: int
+    beside: FootPose
+    period: float
+
+
+class StepsCourse(Course):
+    """Makes steps that somebody else has planned; more can be added.
+
+    Args:
+        settings: Of the walk.
+        gait: Their height.
+        placements: Where they go; clipped to what the legs can step.
+    """
+
+    def __init__(self, settings: WalkSettings, gait: FeetGait, placements: Sequence[Placement]) -> None:
+        self._gait = gait
+        self._queue = list(placements)
+        super().__init__(settings)
+
+    @property
+    def rate(self) -> Rate:  # noqa: D102
+        return STANDSTILL
+
+    @property
+    def left(self) -> Sequence[Placement]:
+        """Steps that are not begun."""
+        return tuple(self._queue[self._state :])
+
+    def add(self, placements: Sequence[Placement], clear: bool) -> None:
+        """More steps, after those that are not begun or instead of them."""
+        del self._queue[self._state if clear else len(self._queue) :]
+        self._queue.extend(placements)
+
+    def first_side(self) -> int:  # noqa: D102
+        return self._queue[0].side if self._queue else 1
+
+    def take(self, support: FootPose, side: int) -> None:  # noqa: D102
+        super().take(support, side)
+        self.reached = self._state >= len(self._queue)
+
+    def _first_state(self, rate: Rate) -> int:
+        return 0
+
+    def _next(self, state: int, support: FootPose, side: int) -> tuple[Step, int] | None:
+        if state >= len(self._queue):
+            return None
+        placement = self._queue[state]
+        if placement.side != side:  # the other foot is due: it stays where it is, beside this one
+            landing = self._landing(support, side, STANDSTILL, self._gait)
+            return Step(side, landing, self._gait.period(side), self._gait.of(side)), state
+        beside = clip_step(placement.beside, side, step_limits())
+        period = max(placement.period, self._gait.period(side))
+        return Step(side, support.moved(*beside), period, self._gait.of(side)), state + 1
