@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the pictures of README.md anew: the simulated robot standing, sitting, lying and waving."""
+"""Draws the pictures of README.md anew: the simulated robot standing, sitting, lying, waving, and in the lab."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from nao_sim_bridge.sim.simulation import Scene
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
 VIEW, SIZE = "three_quarter", 320
+ROOM_SIZE = (640, 400)
 POSTURES = {"standing": "Stand", "sitting": "Sit", "lying": "LyingBelly"}
 SPEED = 0.8
 # Until nothing swings any more, s.
@@ -23,30 +24,57 @@ LIMIT = 60.0
 WAVE = {"RShoulderPitch": -0.2, "RShoulderRoll": -0.7, "RElbowYaw": 1.3, "RElbowRoll": 1.3, "RHand": 1.0}
 
 
-def draw(folder: Path) -> None:
-    """Bring the robot into each pose, under physics, and draw it."""
-    server = SimulatorServer(ServerOptions(Scene(), port=0, speed=math.inf))
-    server.start()
-    session = qi.Session()
-    try:
-        session.connect(f"tcp://127.0.0.1:{server.broker.port}")
-        postures, motion = session.service("ALRobotPosture"), session.service("ALMotion")
+class Sitter:
+    """A simulated robot that poses for pictures, under physics.
 
-        def save(name: str) -> None:
-            server.runner.advance(SETTLE).result(LIMIT)
-            (folder / f"{name}.png").write_bytes(server.picture(VIEW, SIZE, SIZE))
-            print(f"{name}.png", flush=True)
+    Args:
+        scene: Where.
+        folder: Where its pictures go.
+    """
 
-        for name, posture in POSTURES.items():
-            if not postures.goToPosture(posture, SPEED):
-                raise SystemExit(f"the robot did not reach {posture}")
-            save(name)
-        postures.goToPosture("Stand", SPEED)
+    def __init__(self, scene: Scene, folder: Path) -> None:
+        self._folder = folder
+        self._server = SimulatorServer(ServerOptions(scene, port=0, speed=math.inf))
+        self._session = qi.Session()
+
+    def __enter__(self) -> Sitter:
+        self._server.start()
+        self._session.connect(f"tcp://127.0.0.1:{self._server.broker.port}")
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._session.close()
+        self._server.stop()
+
+    def go_to(self, posture: str) -> None:
+        """Go to a posture."""
+        if not self._session.service("ALRobotPosture").goToPosture(posture, SPEED):
+            raise SystemExit(f"the robot did not reach {posture}")
+
+    def wave(self) -> None:
+        """Lift a hand."""
+        motion = self._session.service("ALMotion")
         motion.angleInterpolation(list(WAVE), [[angle] for angle in WAVE.values()], [[1.0]] * len(WAVE), True)
-        save("waving")
-    finally:
-        session.close()
-        server.stop()
+
+    def save(self, name: str, view: str = VIEW, width: int = SIZE, height: int = SIZE) -> None:
+        """Draw the robot as it is when nothing swings any more."""
+        self._server.runner.advance(SETTLE).result(LIMIT)
+        (self._folder / f"{name}.png").write_bytes(self._server.picture(view, width, height))
+        print(f"{name}.png", flush=True)
+
+
+def draw(folder: Path) -> None:
+    """Bring the robot into each pose and draw it."""
+    with Sitter(Scene(), folder) as robot:
+        for name, posture in POSTURES.items():
+            robot.go_to(posture)
+            robot.save(name)
+        robot.go_to("Stand")
+        robot.wave()
+        robot.save("waving")
+    with Sitter(Scene(world="lab"), folder) as robot:
+        robot.go_to("Stand")
+        robot.save("lab", "room", *ROOM_SIZE)
 
 
 def main() -> int:

@@ -18,6 +18,7 @@ from nao_sim_bridge.sim.posture_moves import Move, play
 from nao_sim_bridge.sim.posture_recognition import recognise
 from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.robot import SimulatedRobot
+from nao_sim_bridge.sim.scene import Scene
 from nao_sim_bridge.sim.settings import Settings, load_settings
 from nao_sim_bridge.sim.snapshot import Snapshot
 from nao_sim_bridge.sim.start_lean import start_pitch
@@ -146,7 +147,7 @@ class Attempts:
         left, right = (self._model.joint_index[joint] for joint in JointCommands.COUPLED)
         angles[right] = angles[left]
         self._physics.place(angles, pitch=pitch, roll=roll)
-        self._robot = SimulatedRobot(self._model, self._leds, self._settings, self._physics, angles, 0, TaskIds())
+        self._robot = SimulatedRobot(self._model, self._leds, self._settings, self._physics, angles, Scene(), TaskIds())
         self._robot.getting_up = pitch is not None
         self._robot.motion.set_stiffness_now(dict.fromkeys(range(len(angles)), 1.0))
         self._settle()

@@ -32,6 +32,14 @@ def parser(prog: str) -> argparse.ArgumentParser:
     options.add_argument(
         "--posture", choices=sorted(load_postures().by_name), default="Crouch", help="posture at the start"
     )
+    options.add_argument(
+        "--friction", type=_friction, default="world", help="coefficient between soles and floor; world: as it says"
+    )
+    options.add_argument("--payload", type=_amount, default=0.0, help="mass that the torso carries besides its own, kg")
+    options.add_argument(
+        "--sensor-noise", type=_amount, default=0.0, help="errors of the sensors: 0 none, 1 as those of a real robot"
+    )
+    options.add_argument("--sensor-delay", type=_amount, default=0.0, help="how late readings of sensors arrive, s")
     options.add_argument("--paused", action="store_true", help="start without time passing")
     options.add_argument("--verbose", action="store_true", help="log more")
     return options
@@ -39,7 +47,16 @@ def parser(prog: str) -> argparse.ArgumentParser:
 
 def server_options(arguments: argparse.Namespace) -> ServerOptions:
     """Options of the server from parsed arguments."""
-    scene = Scene(arguments.world, arguments.robot, arguments.posture, arguments.seed)
+    scene = Scene(
+        world=arguments.world,
+        version=arguments.robot,
+        posture=arguments.posture,
+        seed=arguments.seed,
+        friction=arguments.friction,
+        payload=arguments.payload,
+        sensor_noise=arguments.sensor_noise,
+        sensor_delay=arguments.sensor_delay,
+    )
     return ServerOptions(scene, arguments.listen, arguments.port, arguments.speed, arguments.paused, arguments.gui)
 
 
@@ -60,6 +77,20 @@ def _speed(text: str) -> float:
     if not speed > 0.0:
         raise argparse.ArgumentTypeError(f"{text!r} is not a speed: a number above 0, or max")
     return speed
+
+
+def _friction(text: str) -> float | None:
+    return None if text == "world" else _amount(text)
+
+
+def _amount(text: str) -> float:
+    try:
+        amount = float(text)
+    except ValueError:
+        amount = math.nan
+    if not 0.0 <= amount < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is not an amount: a number of 0 or more")
+    return amount
 
 
 def _port(text: str) -> int:

@@ -13,7 +13,21 @@ from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.errors import SimulationError
 
 # Parameters of the node that stand for options of the command line; the command line wins.
-VALUES = ("port", "listen", "speed", "world", "seed", "robot", "posture", "record_dir", "publish_clock")
+VALUES = (
+    "port",
+    "listen",
+    "speed",
+    "world",
+    "seed",
+    "robot",
+    "posture",
+    "friction",
+    "payload",
+    "sensor_noise",
+    "sensor_delay",
+    "record_dir",
+    "publish_clock",
+)
 SWITCHES = ("gui", "paused", "verbose")
 
 

@@ -97,7 +97,7 @@ class RosSide:
         message.header.frame_id, message.child_frame_id = WORLD_FRAME, TORSO_FRAME
         message.pose.pose.position = Point(*snapshot.torso.position)
         message.pose.pose.orientation = Quaternion(*snapshot.torso.orientation)
-        message.twist.twist = Twist(Vector3(*snapshot.velocity_in_torso), Vector3(*snapshot.imu.gyroscope))
+        message.twist.twist = Twist(Vector3(*snapshot.velocity_in_torso), Vector3(*snapshot.turn_in_torso))
         return message
 
     def _stamp(self, snapshot: Snapshot) -> rospy.Time:

@@ -21,8 +21,14 @@ def test_the_defaults_are_a_robot_on_the_loopback_in_real_time():
 
 def test_every_option_reaches_the_server():
     network, scene = "--port 0 --listen 0.0.0.0", "--world my.yaml --seed 7 --robot V5 --posture Stand"
-    chosen = options(*f"{network} {scene} --speed 2.5 --gui --paused".split())
-    assert chosen == ServerOptions(Scene("my.yaml", "V5", "Stand", 7), "0.0.0.0", 0, 2.5, True, True)
+    trouble = "--friction 0.4 --payload 0.5 --sensor-noise 1 --sensor-delay 0.03"
+    chosen = options(*f"{network} {scene} {trouble} --speed 2.5 --gui --paused".split())
+    expected = Scene("my.yaml", "V5", "Stand", 7, friction=0.4, payload=0.5, sensor_noise=1.0, sensor_delay=0.03)
+    assert chosen == ServerOptions(expected, "0.0.0.0", 0, 2.5, True, True)
+
+
+def test_the_friction_of_the_world_can_be_asked_for():
+    assert options("--friction", "world").scene == options().scene
 
 
 @pytest.mark.parametrize("text", ["max", "0", "0.0", "inf"])
@@ -41,6 +47,10 @@ def test_as_fast_as_possible_has_several_spellings(text):
         (["--port", "naoqi"], "'naoqi' is not a port"),
         (["--robot", "V3"], "invalid choice: 'V3' (choose from"),
         (["--posture", "Standing"], "invalid choice: 'Standing' (choose from"),
+        (["--friction", "ice"], "'ice' is not an amount: a number of 0 or more"),
+        (["--payload", "-1"], "'-1' is not an amount"),
+        (["--sensor-noise", "inf"], "'inf' is not an amount"),
+        (["--sensor-delay", "nan"], "'nan' is not an amount"),
         (["--seed", "x"], "invalid int value: 'x'"),
         (["--wrold", "empty"], "unrecognized arguments: --wrold"),
     ],
@@ -57,6 +67,7 @@ def test_help_names_every_option_and_its_default(capsys):
         parse("nao_sim", ["--help"])
     assert ended.value.code == 0
     text = capsys.readouterr().out
-    for option in "port listen speed gui world seed robot posture paused verbose".split():
+    names = "port listen speed gui world seed robot posture friction payload sensor-noise sensor-delay paused verbose"
+    for option in names.split():
         assert f"--{option}" in text
     assert "(default: 9559)" in text and "empty" in text

@@ -75,7 +75,7 @@ class NaoSimulation:
 
     @qi.bind("r", [qi.String, qi.Int32, qi.Int32])
     def picture(self, view: str, width: int, height: int) -> Any:
-        """A PNG picture of the robot from a view ("front", "three_quarter", "side", "back", "face")."""
+        """A PNG picture of the robot from a view ("front", "three_quarter", "side", "back", "far", "room", "face")."""
         return _answer("picture", lambda: self._host.picture(view, width, height))
 
     @qi.bind(qi.List(qi.Float), [])

@@ -19,7 +19,8 @@ from nao_sim_bridge.sim.readings import BodyReadings, Contact, JointReadings, Po
 from nao_sim_bridge.sim.rotations import Vector3
 from nao_sim_bridge.sim.settings import Settings
 from nao_sim_bridge.sim.urdf import physics_urdf
-from nao_sim_bridge.sim.world import FLOOR, World, build_world
+from nao_sim_bridge.sim.world import FLOOR, World
+from nao_sim_bridge.sim.world_builder import build_world
 
 # Columns of PyBullet's joint info and contact point tuples.
 JOINT_NAME, LINK_NAME, PARENT_FRAME_POSITION = 1, 12, 14
@@ -38,6 +39,7 @@ class Physics:
         settings: Time step, gains, friction.
         angles: (26,) joint angles to start with, rad (hands 0..1).
         pitch: Of the torso at the start, rad, for a robot that is not on its feet; see `place`.
+        payload: Mass that the torso carries besides its own, at its centre of mass, kg.
     """
 
     def __init__(
@@ -47,9 +49,11 @@ class Physics:
         settings: Settings,
         angles: Sequence[float],
         pitch: float | None = None,
+        payload: float = 0.0,
     ) -> None:
         self._model = model
         self._settings = settings
+        self._floor = world.floor
         self.client = pybullet.connect(pybullet.DIRECT)
         pybullet.setGravity(0, 0, -settings.gravity_m_s2, physicsClientId=self.client)
         pybullet.setPhysicsEngineParameter(
@@ -69,6 +73,7 @@ class Physics:
         self._torques = np.array([j.max_torque for j in model.joints])
         self._keep_apart()
         self._set_friction()
+        self._load_torso(payload)
         self._limit_speeds()
         self._couple_hips(joints)
         local_position, local_orientation = pybullet.getDynamicsInfo(self.robot, -1, physicsClientId=self.client)[3:5]
@@ -90,22 +95,22 @@ class Physics:
         pitch: float | None = None,
         roll: float = 0.0,
     ) -> None:
-        """Put the robot at rest on the floor.
+        """Put the robot at rest on the floor; on a slope it is tilted as the floor is.
 
         Args:
             angles: (26,) joint angles, rad (hands 0..1).
             yaw: Heading, rad.
             xy: Of the torso's origin in world, m.
-            pitch: Of the torso in world, rad, positive with the face down; the lowest point of the body touches the
-                floor. Without it the left sole is flat on the floor.
-            roll: Of the torso in world, rad, positive with the left side up; of no meaning without a pitch.
+            pitch: Of the torso over the floor, rad, positive with the face down; the lowest point of the body touches
+                the floor. Without it the left sole is flat on the floor.
+            roll: Of the torso over the floor, rad, positive with the left side up; of no meaning without a pitch.
         """
         for index, angle in zip(self._indices, self._to_engine(angles)):
             pybullet.resetJointState(self.robot, index, angle, 0.0, physicsClientId=self.client)
         if pitch is not None:
             orientation = pybullet.getQuaternionFromEuler((roll, pitch, yaw))
-            self._reset_base((0.0, 0.0, REACH), orientation)
-            self._reset_base((xy[0], xy[1], REACH - self._clearance()), orientation)
+            self._put_over_floor((0.0, 0.0), REACH, orientation)
+            self._put_over_floor(xy, REACH - self._clearance(), orientation)
             return
         self._reset_base((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
         foot_orientation = self.link_pose("l_ankle").orientation
@@ -115,7 +120,7 @@ class Physics:
         orientation = pybullet.multiplyTransforms((0, 0, 0), turn, (0, 0, 0), upright)[1]
         self._reset_base((0.0, 0.0, 0.0), orientation)
         soles = [self.link_pose(f).position[2] - self._model.sole_height for f in ("l_ankle", "r_ankle")]
-        self._reset_base((xy[0], xy[1], -min(soles)), orientation)
+        self._put_over_floor(xy, -min(soles), orientation)
 
     def drive(self, joints: JointCommands) -> None:
         """Tell the motors commands and stiffnesses; a limp joint has only the friction of its gears."""
@@ -256,6 +261,15 @@ class Physics:
                 physicsClientId=self.client,
             )
 
+    def _load_torso(self, payload: float) -> None:
+        if payload == 0.0:
+            return
+        mass, _, inertia = pybullet.getDynamicsInfo(self.robot, -1, physicsClientId=self.client)[:3]
+        # With a mass alone the engine would take a new inertia from the collision shapes.
+        pybullet.changeDynamics(
+            self.robot, -1, mass=mass + payload, localInertiaDiagonal=inertia, physicsClientId=self.client
+        )
+
     def _limit_speeds(self) -> None:
         """Keep the motors to their top speeds: without, one that lags catches up at any speed its torque allows.
 
@@ -299,6 +313,12 @@ class Physics:
         floor = self.objects[FLOOR]
         points = pybullet.getClosestPoints(self.robot, floor, 2.0, physicsClientId=self.client)
         return min(point[DISTANCE] for point in points)
+
+    def _put_over_floor(self, xy: tuple[float, float], height: float, orientation: Sequence[float]) -> None:
+        """Put the torso over (x, y) in world, `height` over the floor along its normal; orientation over the floor."""
+        floor = self._floor
+        turned = pybullet.multiplyTransforms((0, 0, 0), floor.orientation, (0, 0, 0), orientation)[1]
+        self._reset_base((xy[0], xy[1], floor.height_at(xy[0], xy[1], height)), turned)
 
     def _reset_base(self, position: Vector3, orientation: Sequence[float]) -> None:
         com, turn = pybullet.multiplyTransforms(position, orientation, *self._torso_to_com)

@@ -19,14 +19,21 @@ from nao_sim_bridge.sim.physics import Physics
 from nao_sim_bridge.sim.readings import Contact, Pose
 from nao_sim_bridge.sim.reflexes import Reflexes
 from nao_sim_bridge.sim.rotations import Vector3
+from nao_sim_bridge.sim.scene import Scene
 from nao_sim_bridge.sim.sensors.body import BodySensors
+from nao_sim_bridge.sim.sensors.imperfection import Delay, Felt, Imperfection, Noise
 from nao_sim_bridge.sim.sensors.inertial import InertialUnit
+from nao_sim_bridge.sim.sensors.noise_settings import load_noise
 from nao_sim_bridge.sim.sensors.power import PowerSystem
 from nao_sim_bridge.sim.sensors.sonar import Sonars
 from nao_sim_bridge.sim.settings import Settings
 from nao_sim_bridge.sim.snapshot import Imu, Snapshot
 from nao_sim_bridge.sim.stability import Stability
 from nao_sim_bridge.sim.tasks import TaskIds
+from nao_sim_bridge.sim.walk.locomotion import Locomotion
+
+# The links under which the soles are.
+ANKLES = ("l_ankle", "r_ankle")
 
 
 @dataclass(frozen=True)
@@ -45,6 +52,7 @@ class SimulatedRobot:
         motion: Tasks and targets of the joints.
         stability: Balance and fall manager.
         whole_body: Control of all joints at once.
+        locomotion: Walks.
         reflexes: What protects the robot from itself, from obstacles and from heat, and moves idle chains.
         leds: The LEDs.
         random: The only source of chance, so that a seed decides everything.
@@ -58,7 +66,7 @@ class SimulatedRobot:
         settings: Physics settings.
         physics: The world with the robot in it.
         angles: (26,) joint angles it was placed with, rad (hands 0..1).
-        seed: Of the random numbers.
+        scene: Seed of the random numbers, noise and delay of the sensors.
         task_ids: Source of the tasks' numbers.
     """
 
@@ -69,23 +77,28 @@ class SimulatedRobot:
         settings: Settings,
         physics: Physics,
         angles: Sequence[float],
-        seed: int,
+        scene: Scene,
         task_ids: TaskIds,
     ) -> None:
         self.model = model
         self.led_layout = leds
-        self.random = random.Random(seed)
+        self.random = random.Random(scene.seed)
+        self._dt = settings.tick_s
         self.joints = JointCommands(model, angles)
         self.motion = MotionEngine(self.joints, task_ids)
         self.stability = Stability(model, settings, self.joints, self.motion)
         self.whole_body = WholeBody(model, self.joints, self.motion)
         self.reflexes = Reflexes(model, self.joints, self.motion, lambda: self._sensed)
+        self.locomotion = Locomotion(
+            model, settings, self.joints, self.motion, self.stability, self.reflexes, task_ids, lambda: self._sensed
+        )
         self.leds = LedBank(len(leds.devices), task_ids)
         self.task_ids = task_ids
         self.leds.set(power_on(leds))
         self._sensors = BodySensors(model, settings, physics.links)
         self._physics = physics
         self._imu = InertialUnit(model.imu["Accelerometer"].position, settings.gravity_m_s2)
+        self._imperfection = self._imperfect(scene)
         self._odometry: Odometry | None = None
         self._sonars = Sonars(model)
         self._power = PowerSystem(len(model.joints), settings)
@@ -95,7 +108,6 @@ class SimulatedRobot:
         self.getting_up = False
         self._measured = tuple(angles)
         self._sensed: Snapshot | None = None
-        self._dt = settings.tick_s
         self._ticks = 0
 
     @property
@@ -145,8 +157,11 @@ class SimulatedRobot:
         self._ticks += 1
         now = self.time
         self.leds.tick(now)
-        self.whole_body.suspended = self.getting_up
+        self.whole_body.suspended = self.getting_up or self.locomotion.active
         self.reflexes.prepare(self._sensed, self.getting_up or self.stability.falls.falling, self.stability.on_feet)
+        if self.locomotion.active:
+            self.locomotion.tick(self._dt)
+            self.motion.idle = self.locomotion.arms.over(self.motion.idle)
         self.motion.tick(now, self._dt)
         if self._sensed is not None:
             self.stability.act(self._sensed, self.getting_up, self._dt)
@@ -169,7 +184,10 @@ class SimulatedRobot:
         body = self._physics.read_body()
         contacts = self._physics.read_contacts()
         imu = self._imu.read(body, self._dt)
+        link_poses = {link: self._pose_of(link, body.pose) for link in {contact.link for contact in contacts}}
         self._power.advance(lambda: self._sensors.currents(joints.torques), self._dt)
+        if self._imperfection is not None:
+            joints, imu, contacts, link_poses = self._imperfection.of(Felt(joints, imu, contacts, link_poses))
         self._sensed = Snapshot(
             tick=tick,
             time=now,
@@ -189,15 +207,26 @@ class SimulatedRobot:
             battery_current=self._power.current,
             objects=self._physics.read_objects(),
             contacts=contacts,
-            link_poses={link: self._pose_of(link, body.pose) for link in {contact.link for contact in contacts}},
+            link_poses=link_poses,
             fingers=self._fingers,
             sensors=self._sensors,
         )
         return self._sensed
 
+    def _imperfect(self, scene: Scene) -> Imperfection | None:
+        """What spoils and delays the readings; None when nothing does."""
+        ticks = round(scene.sensor_delay / self._dt)
+        if not scene.sensor_noise and not ticks:
+            return None
+        noise = None
+        if scene.sensor_noise:
+            feet = [self._physics.links[name] for name in ANKLES]
+            noise = Noise(load_noise(), scene.sensor_noise, self.random, feet, self._dt)
+        return Imperfection(noise, Delay(ticks))
+
     def _reckon(self, positions: Sequence[float], imu: Imu, contacts: Sequence[Contact]) -> Pose:
         if self._odometry is None:
-            ankles = [self._physics.links[name] for name in ("l_ankle", "r_ankle")]
+            ankles = [self._physics.links[name] for name in ANKLES]
             self._odometry = Odometry(self.model, ankles, positions, imu.angles)
         return self._odometry.update(positions, imu.angles, contacts)
 

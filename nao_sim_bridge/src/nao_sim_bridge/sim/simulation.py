@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Callable
 
 from nao_sim_bridge.sim.leds_layout import load_leds
@@ -10,28 +9,11 @@ from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.physics import Physics
 from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.robot import SimulatedRobot
+from nao_sim_bridge.sim.scene import Scene
 from nao_sim_bridge.sim.settings import Settings, load_settings
 from nao_sim_bridge.sim.snapshot import Snapshot
 from nao_sim_bridge.sim.start_lean import start_pitch
 from nao_sim_bridge.sim.tasks import TaskIds
-from nao_sim_bridge.sim.world import load_world
-
-
-@dataclass(frozen=True)
-class Scene:
-    """What a simulation starts with.
-
-    Attributes:
-        world: Name of a world file, or its path.
-        version: Robot version, "V6" or "V5".
-        posture: Posture the robot starts in; all joints limp, as after boot.
-        seed: Of all random numbers.
-    """
-
-    world: str = "empty"
-    version: str = "V6"
-    posture: str = "Crouch"
-    seed: int = 0
 
 
 class Simulation:
@@ -47,12 +29,12 @@ class Simulation:
         after_tick: Called with the snapshot at the end of every tick; they stay at a reset.
     """
 
-    def __init__(self, scene: Scene = Scene(), settings: Settings | None = None) -> None:
-        self.scene = scene
+    def __init__(self, scene: Scene | None = None, settings: Settings | None = None) -> None:
+        self.scene = scene or Scene()
         self.settings = settings or load_settings()
-        self.model = load_model(scene.version)
-        self.led_layout = load_leds(scene.version)
-        self._world = load_world(scene.world)
+        self.model = load_model(self.scene.version)
+        self.led_layout = load_leds(self.scene.version)
+        self._world = self.scene.load_world(self.settings.contact.sole_friction)
         self._physics: Physics | None = None
         self._tick = 0
         self.task_ids = TaskIds()
@@ -79,9 +61,9 @@ class Simulation:
             self._physics.close()
         angles = posture(self.model, self.scene.posture)
         pitch = start_pitch(self.scene.posture)
-        self._physics = Physics(self.model, self._world, self.settings, angles, pitch)
+        self._physics = Physics(self.model, self._world, self.settings, angles, pitch, self.scene.payload)
         self.robot = SimulatedRobot(
-            self.model, self.led_layout, self.settings, self._physics, angles, self.scene.seed, self.task_ids
+            self.model, self.led_layout, self.settings, self._physics, angles, self.scene, self.task_ids
         )
         self.snapshot = self.robot.sense(self._tick, self.time)
 

@@ -109,3 +109,8 @@ class Snapshot:
     def velocity_in_torso(self) -> Vector3:
         """True velocity of the torso in its own frame, m/s."""
         return rotate_back(self.torso.orientation, self.linear_velocity)
+
+    @property
+    def turn_in_torso(self) -> Vector3:
+        """True angular velocity of the torso in its own frame, rad/s."""
+        return rotate_back(self.torso.orientation, self.angular_velocity)

@@ -152,7 +152,7 @@ def test_every_view_shows_the_robot_also_when_it_lies(renderer, view):
     model = load_model()
     belly = (0.0, math.sin(math.pi / 4), 0.0, math.cos(math.pi / 4))
     state = RenderState((0.3, 0.2, 0.08), belly, posture(model, "LyingBelly"), lit("FaceLeds", "green"))
-    assert count_orange(take(renderer, state, view)) > 20
+    assert count_orange(take(renderer, state, view, width=320, height=240)) > 20
 
 
 def count_orange(picture):

@@ -11,7 +11,7 @@ from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
 
 BALL = "{name: ball, sphere: 0.04, position: [0.3, 0.02, 0.3], mass: 0.2}"
-DERIVED = ("left_foot", "right_foot", "touched", "currents", "velocity_in_torso")
+DERIVED = ("left_foot", "right_foot", "touched", "currents", "velocity_in_torso", "turn_in_torso")
 
 
 def leaves(value):
@@ -61,3 +61,12 @@ def test_the_velocity_turns_with_the_torso(snapshot):
         linear_velocity=(0.0, 0.5, 0.1),
     )
     assert turned.velocity_in_torso == pytest.approx((0.5, 0.0, 0.1))
+
+
+def test_the_turn_is_in_the_torso_and_true(bench):
+    one = bench()
+    one.push((0.0, 20.0, 0.0), 0.1)
+    pushed = one.run(0.1)
+    assert pushed.turn_in_torso == pytest.approx(pushed.imu.gyroscope)
+    spoilt = dataclasses.replace(pushed, imu=dataclasses.replace(pushed.imu, gyroscope=(9.0, 9.0, 9.0)))
+    assert spoilt.turn_in_torso == pushed.turn_in_torso

@@ -85,6 +85,13 @@ def test_then_passes_an_error_on(task):
         after.result(timeout=0)
 
 
+def test_then_tells_of_a_kill(task):
+    after = task.then(bool)
+    task.kill()
+    assert after.killed
+    assert after.result(timeout=0) is False
+
+
 def test_numbers_start_at_one_for_each_source():
     first, second = TaskIds(), TaskIds()
     assert [first.make("a").task_id, first.make("b").task_id, second.make("c").task_id] == [1, 2, 1]

@@ -11,12 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from nao_sim_bridge.sim.render.scene import Camera
-from nao_sim_bridge.sim.world import World
+from nao_sim_bridge.sim.world import Rug, World
 
 SHADE = 0.42
 """Share of the light that a shadow takes away."""
-HAZE_DISTANCE = 5.0
-"""Distance in m at which most of the floor's colour has gone over into that of the horizon."""
 
 
 def pixel_rays(camera: Camera) -> np.ndarray:
@@ -34,20 +32,30 @@ def pixel_rays(camera: Camera) -> np.ndarray:
     return rays.astype(np.float32)
 
 
+def covers(rug: Rug, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Whether a rug lies at points (x, y) of the floor, m."""
+    c, s = np.float32(np.cos(rug.yaw)), np.float32(np.sin(rug.yaw))
+    dx, dy = x - np.float32(rug.center[0]), y - np.float32(rug.center[1])
+    return (np.abs(c * dx + s * dy) <= rug.size[0] / 2.0) & (np.abs(c * dy - s * dx) <= rug.size[1] / 2.0)
+
+
 class Backdrop:
     """A world without robot and objects; drawn once for a camera that stays where it is.
 
     Args:
         world: Floor and background colours.
+        still: Shadow of what never moves, on the floor; None for a floor without.
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, still: Shadow | None = None) -> None:
         self._world = world
+        self._still = still
         self._camera: Camera | None = None
+        self._still_dark: np.ndarray
         self._bright: np.ndarray
         self._shaded: np.ndarray
         self._floor: tuple[np.ndarray, np.ndarray]
-        self._points: tuple[np.ndarray, np.ndarray]
+        self._points: tuple[np.ndarray, np.ndarray, np.ndarray]
 
     def draw(self, camera: Camera, shadow: Shadow | None) -> np.ndarray:
         """(h, w, 3) float32 picture in 0..1; the caller may write into it."""
@@ -57,29 +65,32 @@ class Backdrop:
         picture = self._bright.copy()
         if shadow is None:
             return picture
-        (rows, columns), (x, y) = self._floor, self._points
+        (rows, columns), (x, y, z) = self._floor, self._points
         near = shadow.reaches(x, y)
         if len(near):
-            dark = shadow.at(x[near], y[near])[:, None]
+            dark = shadow.at(x[near], y[near], z[near])
+            if self._still is not None:
+                # Where both fall it gets no darker than the darker one.
+                dark = np.maximum(dark - self._still_dark[near], 0.0)
             rows, columns = rows[near], columns[near]
-            picture[rows, columns] -= dark * self._shaded[near]
+            picture[rows, columns] -= dark[:, None] * self._shaded[near]
         return picture
 
     def _look_from(self, camera: Camera) -> None:
         """Prepare sky, lit floor, and what a full shadow takes from each floor pixel."""
         world = self._world
         rays = pixel_rays(camera)
-        slope = rays[..., 2]
+        normal = np.array(world.floor.normal, dtype=np.float32)
+        slope = rays @ normal
         horizon = np.array(world.background.horizon, dtype=np.float32)
         top = np.array(world.background.top, dtype=np.float32)
         share = np.clip(slope * np.float32(1.6), 0.0, 1.0)[..., None]
         self._bright = horizon * (1.0 - share) + top * share
-        height = np.float32(camera.eye[2])
+        eye = np.array(camera.eye, dtype=np.float32)
+        height = eye @ normal
         rows, columns = np.nonzero(slope < (-1e-4 if height > 0.0 else -np.inf))
-        ray = rays[rows, columns]
-        scale = -height / ray[:, 2]
-        x = np.float32(camera.eye[0]) + scale * ray[:, 0]
-        y = np.float32(camera.eye[1]) + scale * ray[:, 1]
+        scale = -height / slope[rows, columns]
+        x, y, z = (eye[:, None] + scale * rays[rows, columns].T).astype(np.float32)
         # The width of a pixel on the floor in tiles: tiles smaller than pixels fade into one colour.
         tile = np.float32(world.floor.tile_size)
         pixel = np.float32(2.0 * np.tan(camera.fov / 2.0) / camera.height)
@@ -89,10 +100,15 @@ class Backdrop:
         color = np.array(world.floor.color, dtype=np.float32)
         tile_color = np.array(world.floor.tile_color, dtype=np.float32)
         ground = color + (tile_color - color) * mix
-        haze = (1.0 - np.exp(-np.square(scale / np.float32(HAZE_DISTANCE))))[:, None]
+        for rug in world.floor.rugs:
+            ground[covers(rug, x, y)] = rug.color
+        haze = (1.0 - np.exp(-np.square(scale / np.float32(world.background.haze))))[:, None]
         self._bright[rows, columns] = ground + (horizon - ground) * haze
         self._shaded = ground * (np.float32(SHADE) * (1.0 - haze))
-        self._floor, self._points = (rows, columns), (x, y)
+        self._floor, self._points = (rows, columns), (x, y, z)
+        if self._still is not None:
+            self._still_dark = self._still.at(x, y, z)
+            self._bright[rows, columns] -= self._still_dark[:, None] * self._shaded
 
 
 class Shadow:
@@ -125,12 +141,12 @@ class Shadow:
         far = 3.0 * self._reach
         return np.flatnonzero((np.abs(x - self._center[0]) < far) & (np.abs(y - self._center[1]) < far))
 
-    def at(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    def at(self, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Darkness in 0..1 of floor points (m, in world)."""
         m, size = self._matrix, self._map.shape[0]
-        depth = m[3, 0] * x + m[3, 1] * y + m[3, 3]
-        column = ((m[0, 0] * x + m[0, 1] * y + m[0, 3]) / depth * 0.5 + 0.5) * size - 0.5
-        row = (0.5 - (m[1, 0] * x + m[1, 1] * y + m[1, 3]) / depth * 0.5) * size - 0.5
+        right, up, _, depth = (a * x + b * y + c * z + d for a, b, c, d in m)
+        column = (right / depth * 0.5 + 0.5) * size - 0.5
+        row = (0.5 - up / depth * 0.5) * size - 0.5
         inside = (column >= 0.0) & (column < size - 1) & (row >= 0.0) & (row < size - 1)
         darkness = np.zeros_like(x)
         c, r = column[inside], row[inside]

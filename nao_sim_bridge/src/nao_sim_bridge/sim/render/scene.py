@@ -70,7 +70,7 @@ class Camera:
 
 @dataclass(frozen=True)
 class _View:
-    """A preset: eye and target in the frame of what it follows, m."""
+    """A preset: eye and target in the frame of what it follows ("body", "head"; "world" follows nothing), m."""
 
     follows: str
     eye: Vector3
@@ -84,9 +84,11 @@ PRESETS: Mapping[str, _View] = {
     "side": _View("body", (0.02, 1.05, 0.06), (0.02, 0.0, -0.045), 38.0),
     "back": _View("body", (-1.0, -0.3, 0.2), (0.0, 0.0, -0.05), 38.0),
     "far": _View("body", (2.4, 1.5, 0.9), (0.0, 0.0, -0.1), 38.0),
+    "room": _View("world", (-2.1, -3.0, 2.8), (0.95, 0.03, 0.0), 42.0),
     "face": _View("head", (0.36, 0.09, 0.07), (0.0, 0.0, 0.056), 26.0),
 }
-"""Views by name. Those of the body turn with its heading only; the view of the face with the head."""
+"""Views by name. Those of the body turn with its heading only, the view of the face with the head; that of the room
+stays where it is."""
 
 
 def preset_camera(
@@ -117,6 +119,8 @@ def preset_camera(
     frame = base @ link_transforms(model, state.joint_positions)["HeadPitch"] if view.follows == "head" else base
     if view.follows == "body":
         frame = _upright(base)
+    if view.follows == "world":
+        frame = np.eye(4)
     eye, target = (frame @ np.append(point, 1.0) for point in (view.eye, view.target))
     up = frame[:3, 2] if view.follows == "head" else np.array((0.0, 0.0, 1.0))
     return Camera(

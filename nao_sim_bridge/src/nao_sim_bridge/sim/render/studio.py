@@ -14,14 +14,22 @@ from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.render.backdrop import Backdrop, Shadow, blur
 from nao_sim_bridge.sim.render.figure import Figure
 from nao_sim_bridge.sim.render.scene import Camera, RenderState
-from nao_sim_bridge.sim.world import FLOOR, World, build_world
+from nao_sim_bridge.sim.rotations import Quaternion, Vector3
+from nao_sim_bridge.sim.world import FLOOR, World
+from nao_sim_bridge.sim.world_builder import build_world
 
 NEAR, FAR = 0.02, 30.0
+LIGHT_DISTANCE = 6.0
+"""Of the lamp for the shadows of things on each other, m; nearer, it leaves edges in rooms."""
 LAMP_DISTANCE = 15.0
 """Of the lamp that throws the shadow, m; far enough for straight rays."""
 SHADOW_REACH = 0.75
 """Half the width of what the lamp sees around the robot, m."""
 SHADOW_PIXELS = 192
+MOST_SHADOW_PIXELS = 384
+STILL_REACH, STILL_PIXELS = 5.0, 1024
+"""As both above, for the shadow of what never moves, around the origin of the world."""
+FAR_AWAY = (0.0, 0.0, -1000.0)
 DIFFUSE, SPECULAR = 0.62, 0.12
 CORE_WHITE = 0.12
 """Share of white in the light of a lamp: a saturated colour alone looks like paint, not like light."""
@@ -43,8 +51,9 @@ class Studio:
         self._objects = build_world(world, self._client, visual=True)
         # The floor is drawn as part of the backdrop.
         pybullet.removeBody(self._objects.pop(FLOOR), physicsClientId=self._client)
+        self._movable = [thing.name for thing in world.objects if thing.mass > 0.0]
+        self._backdrop = Backdrop(world, self._cast_still_shadow())
         self._figure = Figure(self._client, self._model, load_appearance(version), paint_lamps=False)
-        self._backdrop = Backdrop(world)
         self._shadow: Shadow | None = None
         self._shadow_of: tuple = ()
 
@@ -58,9 +67,7 @@ class Studio:
         for name, pose in state.objects.items():
             if name not in self._objects:
                 raise UnknownName("object", name, self._objects)
-            pybullet.resetBasePositionAndOrientation(
-                self._objects[name], pose.position, pose.orientation, physicsClientId=self._client
-            )
+            self._put(name, pose.position, pose.orientation)
         factor = camera.supersampling
         fine = replace(camera, width=camera.width * factor, height=camera.height * factor)
         picture = self._draw(state, fine)
@@ -83,6 +90,7 @@ class Studio:
             projection,
             shadow=int(camera.shadows),
             lightDirection=light.direction,
+            lightDistance=LIGHT_DISTANCE,
             lightColor=light.color,
             lightAmbientCoeff=light.ambient,
             lightDiffuseCoeff=DIFFUSE,
@@ -154,26 +162,45 @@ class Studio:
             self._shadow, self._shadow_of = self._cast_shadow(state), key
         return self._shadow
 
+    def _cast_still_shadow(self) -> Shadow | None:
+        """The shadow of what never moves; before anything else is there than the objects of the world."""
+        if len(self._movable) == len(self._objects):
+            return None
+        places = {name: self._place_of(name) for name in self._movable}
+        for name in self._movable:
+            self._put(name, FAR_AWAY, (0.0, 0.0, 0.0, 1.0))
+        shadow = self._cast(np.zeros(3), STILL_REACH, STILL_PIXELS)
+        for name, place in places.items():
+            self._put(name, *place)
+        return shadow
+
     def _cast_shadow(self, state: RenderState) -> Shadow:
-        direction = np.array(self._world.light.direction)
-        direction /= np.linalg.norm(direction)
+        """The shadow of the robot and of what can be moved near it."""
         x, y, z = state.base_position
         center = np.array((x, y, max(z, 0.0) / 2.0))
         reach = SHADOW_REACH
-        for pose in self._object_positions():
-            distance = float(np.linalg.norm(pose - center))
+        for name in self._movable:
+            distance = float(np.linalg.norm(np.array(self._place_of(name)[0]) - center))
             if distance < 3.0:
                 reach = max(reach, distance + 0.3)
+        return self._cast(center, reach, min(round(SHADOW_PIXELS * reach / SHADOW_REACH), MOST_SHADOW_PIXELS))
+
+    def _cast(self, center: np.ndarray, reach: float, pixels: int) -> Shadow:
+        """What the lamp does not see of the floor within `reach` of a point, m."""
+        direction = np.array(self._world.light.direction)
+        direction /= np.linalg.norm(direction)
         view = pybullet.computeViewMatrix(center + direction * LAMP_DISTANCE, center, (0.0, 1.0, 0.001))
         angle = 2.0 * math.degrees(math.atan(reach / LAMP_DISTANCE))
         projection = pybullet.computeProjectionMatrixFOV(angle, 1.0, LAMP_DISTANCE - 5.0, LAMP_DISTANCE + 5.0)
-        _, bodies = self._capture(SHADOW_PIXELS, SHADOW_PIXELS, view, projection, shadow=0)
+        _, bodies = self._capture(pixels, pixels, view, projection, shadow=0)
         matrices = (np.array(m).reshape(4, 4).T for m in (projection, view))
         to_clip, to_lamp = matrices
         return Shadow(bodies >= 0, to_clip @ to_lamp, center[:2], reach)
 
-    def _object_positions(self) -> list[np.ndarray]:
-        return [
-            np.array(pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client)[0])
-            for body in self._objects.values()
-        ]
+    def _place_of(self, name: str) -> tuple:
+        return pybullet.getBasePositionAndOrientation(self._objects[name], physicsClientId=self._client)
+
+    def _put(self, name: str, position: Vector3, orientation: Quaternion) -> None:
+        pybullet.resetBasePositionAndOrientation(
+            self._objects[name], position, orientation, physicsClientId=self._client
+        )

@@ -12,7 +12,8 @@ from nao_sim_bridge.sim.errors import SimulationError
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.render.figure import Figure
 from nao_sim_bridge.sim.render.scene import RenderState
-from nao_sim_bridge.sim.world import World, build_world
+from nao_sim_bridge.sim.world import World
+from nao_sim_bridge.sim.world_builder import build_world
 
 PERIOD = 1.0 / 30.0
 

@@ -1,0 +1,150 @@
+"""Puts a world into PyBullet: to be touched by the physics, or to be seen in pictures."""
+
+from __future__ import annotations
+
+from typing import Sequence
+
+import pybullet
+
+from nao_sim_bridge.sim.meshes import merged, tessellate
+from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
+from nao_sim_bridge.sim.shapes import Shape
+from nao_sim_bridge.sim.visuals import visual_shape
+from nao_sim_bridge.sim.world import BUMPS, FLOOR, Color, Floor, Part, Rug, World, WorldObject
+
+FLOOR_EXTENT = 10.0
+"""Half the edge length of the visible floor, m; the floor of the physics has no end."""
+RUG_THICKNESS = 0.001
+NOWHERE = (0.0, 0.0, 0.0)
+UNTURNED = (0.0, 0.0, 0.0, 1.0)
+
+
+def build_world(world: World, client: int, visual: bool) -> dict[str, int]:
+    """Put the floor and all objects into a PyBullet world.
+
+    Args:
+        world: What to build.
+        client: PyBullet's physics client.
+        visual: Make something to look at and nothing to touch (pictures), or the other way round (physics).
+
+    Returns:
+        PyBullet's body ids by name; `floor` is among them, and `bumps` if it has any.
+    """
+    build_floor, build = (_see_floor, _see_object) if visual else (_touch_floor, _touch_object)
+    bodies = {FLOOR: build_floor(world.floor, client)}
+    for thing in (*_bumps(world.floor), *world.objects):
+        place = pybullet.multiplyTransforms(
+            NOWHERE, world.floor.orientation, thing.position, from_roll_pitch_yaw(*thing.rpy)
+        )
+        bodies[thing.name] = build(thing, *place, client)
+    return bodies
+
+
+def _bumps(floor: Floor) -> list[WorldObject]:
+    """All bumps as one thing: many bodies would cost the engine more."""
+    if not floor.bumps:
+        return []
+    parts = tuple(Part(shape, floor.bump_color) for shape in floor.bumps)
+    return [WorldObject(BUMPS, NOWHERE, NOWHERE, parts, 0.0, floor.friction, 0.0, 0.0)]
+
+
+# --- touched ----------------------------------------------------------------------------------------------------------
+
+
+def _touch_floor(floor: Floor, client: int) -> int:
+    touched = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
+    body = pybullet.createMultiBody(0.0, touched, baseOrientation=floor.orientation, physicsClientId=client)
+    pybullet.changeDynamics(body, -1, lateralFriction=floor.friction, physicsClientId=client)
+    return body
+
+
+def _touch_object(thing: WorldObject, position: Sequence[float], orientation: Sequence[float], client: int) -> int:
+    body = pybullet.createMultiBody(
+        thing.mass,
+        _collision_shape([part.shape for part in thing.parts], client),
+        basePosition=position,
+        baseOrientation=orientation,
+        physicsClientId=client,
+    )
+    pybullet.changeDynamics(
+        body,
+        -1,
+        lateralFriction=thing.friction,
+        rollingFriction=thing.rolling_friction,
+        spinningFriction=thing.rolling_friction,
+        restitution=thing.restitution,
+        # What lies still costs nothing then, until something touches it.
+        activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
+        physicsClientId=client,
+    )
+    return body
+
+
+def _collision_shape(shapes: Sequence[Shape], client: int) -> int:
+    """One shape of several, in the frame of their body."""
+    return pybullet.createCollisionShapeArray(
+        shapeTypes=[getattr(pybullet, f"GEOM_{shape.kind.upper()}") for shape in shapes],
+        # Each list has an entry for each shape, of a meaning or not.
+        halfExtents=[[edge / 2.0 for edge in shape.size] if shape.kind == "box" else NOWHERE for shape in shapes],
+        radii=[shape.size[0] for shape in shapes],
+        lengths=[shape.size[1] if shape.kind in ("cylinder", "capsule") else 0.0 for shape in shapes],
+        collisionFramePositions=[shape.xyz for shape in shapes],
+        collisionFrameOrientations=[from_roll_pitch_yaw(*shape.rpy) for shape in shapes],
+        physicsClientId=client,
+    )
+
+
+# --- seen -------------------------------------------------------------------------------------------------------------
+
+
+def _see_floor(floor: Floor, client: int) -> int:
+    extents = (FLOOR_EXTENT, FLOOR_EXTENT, 0.005)
+    seen = pybullet.createVisualShape(
+        pybullet.GEOM_BOX,
+        halfExtents=extents,
+        rgbaColor=(*floor.color, 1.0),
+        specularColor=NOWHERE,
+        # The top face is the floor: half the thickness below it.
+        visualFramePosition=(0.0, 0.0, -extents[2]),
+        physicsClientId=client,
+    )
+    return _body([seen, *(_see_rug(rug, client) for rug in floor.rugs)], NOWHERE, floor.orientation, client)
+
+
+def _see_rug(rug: Rug, client: int) -> int:
+    shape = Shape("box", (*rug.size, RUG_THICKNESS), (*rug.center, RUG_THICKNESS / 2.0), (0.0, 0.0, rug.yaw))
+    return visual_shape(tessellate(shape).placed(shape), rug.color, client)
+
+
+def _see_object(thing: WorldObject, position: Sequence[float], orientation: Sequence[float], client: int) -> int:
+    by_color: dict[Color, list[Shape]] = {}
+    for part in thing.parts:
+        by_color.setdefault(part.color, []).append(part.shape)
+    seen = [
+        visual_shape(merged([tessellate(shape).placed(shape) for shape in shapes]), color, client)
+        for color, shapes in by_color.items()
+    ]
+    return _body(seen, position, orientation, client)
+
+
+def _body(seen: Sequence[int], position: Sequence[float], orientation: Sequence[float], client: int) -> int:
+    """One body of several visual shapes: each has one colour, so all but the first are links that never move."""
+    count = len(seen) - 1
+    return pybullet.createMultiBody(
+        0.0,
+        -1,
+        seen[0],
+        basePosition=position,
+        baseOrientation=orientation,
+        linkMasses=[0.0] * count,
+        linkCollisionShapeIndices=[-1] * count,
+        linkVisualShapeIndices=list(seen[1:]),
+        linkPositions=[NOWHERE] * count,
+        linkOrientations=[UNTURNED] * count,
+        linkInertialFramePositions=[NOWHERE] * count,
+        linkInertialFrameOrientations=[UNTURNED] * count,
+        linkParentIndices=[0] * count,
+        linkJointTypes=[pybullet.JOINT_FIXED] * count,
+        linkJointAxis=[(0.0, 0.0, 1.0)] * count,
+        physicsClientId=client,
+    )
