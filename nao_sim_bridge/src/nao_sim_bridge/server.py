@@ -15,6 +15,7 @@ from nao_sim_bridge.services.arguments import number, numbers
 from nao_sim_bridge.services.binding import make_service
 from nao_sim_bridge.services.diagnosis_events import DiagnosisEvents
 from nao_sim_bridge.services.fall_events import FallEvents
+from nao_sim_bridge.services.foot_events import FootEvents
 from nao_sim_bridge.services.leds import ALLeds
 from nao_sim_bridge.services.live_keys import constants, live_keys
 from nao_sim_bridge.services.memory import ALMemory
@@ -93,6 +94,7 @@ class SimulatorServer:
             self.memory.insert(key, value)
         self.simulation.after_tick.append(PostureEvents(self.simulation.model, self.memory))
         self.simulation.after_tick.append(FallEvents(self.simulation, self.memory))
+        self.simulation.after_tick.append(FootEvents(self.memory))
         self.simulation.after_tick.append(DiagnosisEvents(self.simulation, self.memory))
         self.runner.start()
         for name, parts in self.modules().items():

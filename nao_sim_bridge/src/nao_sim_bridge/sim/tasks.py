@@ -98,6 +98,7 @@ class Task:
         after = Task(self.name, self.task_id, ask=lambda _: self.request_kill())
 
         def settle(done: Task) -> None:
+            after.killed = done.killed
             if done.error is not None:
                 after.finish(error=done.error)
             else:

@@ -25,6 +25,7 @@ class Motion:
 
     def moveTo(self, *arguments):
         self.calls.append(("moveTo", arguments))
+        return True
 
     def setAngles(self, names, angles, fraction):
         self.calls.append(("setAngles", (names, angles, fraction)))

@@ -103,15 +103,22 @@ CALLS = {
         "getDiagnosisEffectEnabled": (),
         "getExternalCollisionProtectionEnabled": ("All",),
         "getFallManagerEnabled": (),
+        "getFootGaitConfig": ("Default",),
+        "getFootSteps": (),
         "getIdlePostureEnabled": ("Body",),
         "getJointNames": ("Body",),
         "getLimits": ("Body",),
         "getMass": ("Body",),
         "getMotionCycleTime": (),
+        "getMoveArmsEnabled": ("Arms",),
+        "getMoveConfig": ("Max",),
+        "getNextRobotPosition": (),
         "getOrthogonalSecurityDistance": (),
         "getPosition": ("LArm", 0, True),
         "getPushRecoveryEnabled": (),
         "getRobotConfig": (),
+        "getRobotPosition": (True,),
+        "getRobotVelocity": (),
         "getSensorNames": (),
         "getSmartStiffnessEnabled": (),
         "getStiffnesses": ("Body",),
@@ -120,10 +127,18 @@ CALLS = {
         "getTangentialSecurityDistance": (),
         "getTaskList": (),
         "getTransform": ("LArm", 0, True),
+        "getWalkArmsEnabled": (),
         "isCollision": ("Arms",),
         "killAll": (),
+        "killMove": (),
         "killTask": (1,),
         "killTasksUsingResources": (HEAD,),
+        "killWalk": (),
+        "move": (0.05, 0.0, 0.0),
+        "moveInit": (),
+        "moveIsActive": (),
+        "moveTo": (0.02, 0.0, 0.0),
+        "moveToward": (0.5, 0.0, 0.0),
         "openHand": ("LHand",),
         "positionInterpolation": ("LArm", 0, HAND, 7, [0.5], True),
         "positionInterpolations": (["LArm"], 0, [HAND], [7], [0.5], True),
@@ -137,8 +152,11 @@ CALLS = {
         "setEnableNotifications": (True,),
         "setExternalCollisionProtectionEnabled": ("All", True),
         "setFallManagerEnabled": (True,),
+        "setFootSteps": (["LLeg"], [[0.0, 0.1, 0.0]], [0.6], False),
+        "setFootStepsWithSpeed": (["LLeg"], [[0.0, 0.1, 0.0]], [1.0], False),
         "setIdlePostureEnabled": ("Body", False),
         "setMotionConfig": ([["ENABLE_STIFFNESS_PROTECTION", True]],),
+        "setMoveArmsEnabled": (True, True),
         "setOrthogonalSecurityDistance": (0.4,),
         "setPosition": ("LArm", 0, HAND, 0.5, 7),
         "setPositions": ("LArm", 0, HAND, 0.5, 7),
@@ -148,10 +166,19 @@ CALLS = {
         "setTangentialSecurityDistance": (0.1,),
         "setTransform": ("LArm", 0, HAND_MATRIX, 0.5, 7),
         "setTransforms": ("LArm", 0, HAND_MATRIX, 0.5, 7),
+        "setWalkArmsEnabled": (True, True),
+        "setWalkTargetVelocity": (0.5, 0.0, 0.0, 1.0),
         "stiffnessInterpolation": (HEAD, 1.0, 0.1),
+        "stopMove": (),
+        "stopWalk": (),
         "transformInterpolation": ("LArm", 0, HAND_MATRIX, 7, [0.5], True),
         "transformInterpolations": (["LArm"], 0, [HAND_MATRIX], [7], [0.5], True),
+        "waitUntilMoveIsFinished": (),
+        "waitUntilWalkIsFinished": (),
         "wakeUp": (),
+        "walkInit": (),
+        "walkIsActive": (),
+        "walkTo": (0.02, 0.0, 0.0),
         "wbEnable": (True,),
         "wbEnableBalanceConstraint": (True, "Legs"),
         "wbEnableEffectorControl": ("LArm", True),
@@ -200,7 +227,19 @@ MISSING_IN_SYSTEM = {
     "setRobotIcon",
     "upgrade",
 }
-LONGEST = 3.0
+# Answered by a robot on stiff legs only; it may still walk then.
+WALKS = {
+    "move",
+    "moveInit",
+    "moveTo",
+    "moveToward",
+    "setFootSteps",
+    "setFootStepsWithSpeed",
+    "setWalkTargetVelocity",
+    "walkInit",
+    "walkTo",
+}
+LONGEST = 8.0
 """No call takes longer than this, in s of simulated time."""
 
 
@@ -215,8 +254,8 @@ def answers(shared_robot):
     return of
 
 
-@pytest.mark.parametrize("module, count", [("ALMemory", 32), ("ALLeds", 17)])
-def test_memory_and_leds_answer_all_their_methods(answers, module, count):
+@pytest.mark.parametrize("module, count", [("ALMemory", 32), ("ALLeds", 17), ("ALMotion", 104), ("ALRobotPosture", 8)])
+def test_these_modules_answer_all_their_methods(answers, module, count):
     answered, missing = answers(module)
     assert missing == set()
     assert len(answered) == count
@@ -251,6 +290,10 @@ def prepared(shared_robot, shared_listener):
 
 @pytest.mark.parametrize("module, method", [(module, method) for module, calls in CALLS.items() for method in calls])
 def test_a_method_answers(prepared, module, method):
+    if method in WALKS:
+        prepared.NaoSimulation.reset()
+        prepared.ALMotion.setStiffnesses("Body", 1.0)
+        prepared.advance(0.1)
     begun = prepared.now.time
     future = prepared.post(module, method, *CALLS[module][method])
     prepared.handed_over(module)

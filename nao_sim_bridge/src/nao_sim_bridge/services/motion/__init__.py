@@ -11,19 +11,24 @@ from nao_sim_bridge.services.motion.body import Body
 from nao_sim_bridge.services.motion.cartesian import Cartesian
 from nao_sim_bridge.services.motion.collisions import Collisions
 from nao_sim_bridge.services.motion.falls import Falls
+from nao_sim_bridge.services.motion.footsteps import Footsteps
 from nao_sim_bridge.services.motion.idling import Idling
 from nao_sim_bridge.services.motion.mass import Mass
 from nao_sim_bridge.services.motion.stiffness import Stiffness
 from nao_sim_bridge.services.motion.switches import Switches
 from nao_sim_bridge.services.motion.task_list import TaskList
 from nao_sim_bridge.services.motion.wake import Wake
+from nao_sim_bridge.services.motion.walk_position import WalkPosition
+from nao_sim_bridge.services.motion.walking import Walking
 from nao_sim_bridge.services.motion.whole_body import WholeBody
+from nao_sim_bridge.services.walk_events import MoveFailures
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
 
 
 def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> list[Any]:
     """Objects that together have the methods of ALMotion."""
+    failures = MoveFailures(memory)
     return [
         Body(simulation, runner),
         Angles(simulation, runner),
@@ -34,6 +39,9 @@ def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore)
         Cartesian(simulation, runner),
         Mass(simulation, runner),
         WholeBody(simulation, runner),
+        Walking(simulation, runner, failures),
+        Footsteps(simulation, runner, failures),
+        WalkPosition(simulation, runner),
         Falls(simulation, runner),
         Collisions(simulation, runner),
         Idling(simulation, runner),

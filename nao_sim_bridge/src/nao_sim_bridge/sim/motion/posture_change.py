@@ -9,7 +9,7 @@ import logging
 from typing import Callable, Iterator, Sequence
 
 from nao_sim_bridge.sim.motion.curves import SmoothCurve
-from nao_sim_bridge.sim.motion.sequences import STIFFEN_TIME, Step, run_steps, stiffness_task
+from nao_sim_bridge.sim.motion.sequences import STIFFEN_TIME, Step, run_steps, stiffness_task, stop_walk
 from nao_sim_bridge.sim.posture_graph import leaves_feet, path_to
 from nao_sim_bridge.sim.posture_moves import Ground, Move, direct, play
 from nao_sim_bridge.sim.posture_recognition import UNKNOWN, Recognition, nearest_posture, recognise
@@ -72,14 +72,12 @@ class PostureChange:
     def start(self, name: str = "goToPosture") -> Task:
         """Go by the posture graph; the task ends with whether it got there.
 
-        Whatever moves the joints or changes their stiffness ends; all joints get stiff.
+        Whatever moves the joints or changes their stiffness ends, a walk on two feet; all joints get stiff.
         """
-        self._clear()
         return run_steps(self._robot, name, self._steps(name), self._end)
 
     def start_straight(self, name: str = "applyPosture") -> Task:
         """Take every joint straight to the posture, wherever the robot is; the task ends with whether they did."""
-        self._clear()
 
         def move() -> Task:
             return play(self._robot, name, self._direct())
@@ -88,11 +86,15 @@ class PostureChange:
             family = load_postures().by_name[self._goal].family
             self.reached = nearest_posture(self._robot.model, self._snapshot().positions, family) == self._goal
 
-        return run_steps(self._robot, name, [move, lambda: self._hold(name), look], self._end)
+        return run_steps(
+            self._robot, name, [self._stop_walk, self._clear, move, lambda: self._hold(name), look], self._end
+        )
 
     # --- the way --------------------------------------------------------------------------------------------------
 
     def _steps(self, name: str) -> Iterator[Step]:
+        yield self._stop_walk
+        self._clear()
         if min(self._robot.joints.stiffnesses) < 1.0:
             yield lambda: self._stiffen(name)
         yield from self._until_still(name)
@@ -151,6 +153,9 @@ class PostureChange:
     def _exact(self) -> bool:
         aims = posture(self._robot.model, self._goal)
         return all(abs(aim - told) <= EXACT for aim, told in zip(aims, self._robot.joints.commands))
+
+    def _stop_walk(self) -> Task | None:
+        return stop_walk(self._robot)
 
     def _clear(self) -> None:
         """End every motion and every change of stiffness; the joints stay as they are."""

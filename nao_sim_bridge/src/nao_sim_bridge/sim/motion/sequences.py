@@ -59,6 +59,11 @@ def run_steps(
     return whole
 
 
+def stop_walk(robot: SimulatedRobot) -> Task | None:
+    """Bring a walk to its end on two feet, before legs do something else; None when there is none."""
+    return robot.locomotion.stop() if robot.locomotion.active else None
+
+
 def is_on_feet(robot: SimulatedRobot, snapshot: Snapshot) -> bool:
     """Whether the robot stands or crouches: from anywhere else, standing up is more than one motion."""
     return recognise(robot.model, snapshot).family in (STANDING, CROUCHING)
@@ -77,7 +82,7 @@ def wake_up(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Cal
     def stand() -> Task | None:
         return posture_task(robot, "wakeUp", AWAKE_POSTURE) if is_on_feet(robot, snapshot()) else None
 
-    return run_steps(robot, "wakeUp", [stiffen, stand, on_end])
+    return run_steps(robot, "wakeUp", [lambda: stop_walk(robot), stiffen, stand, on_end])
 
 
 def rest(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
@@ -91,7 +96,7 @@ def rest(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callab
     def release() -> Task:
         return stiffness_task(robot, "rest", body, 0.0, STIFFEN_TIME)
 
-    return run_steps(robot, "rest", [crouch, release, on_end])
+    return run_steps(robot, "rest", [lambda: stop_walk(robot), crouch, release, on_end])
 
 
 def _body_is_stiff(robot: SimulatedRobot) -> bool:
