@@ -14,6 +14,8 @@ from .action_server import PromptActionServer
 from .answers import json_of
 from .diagnostics import DiagnosticsPublisher
 from .health import Report
+from .places import Place
+from .robot_frames import RobotFrames
 from .ros_clock import RosClock
 
 EVENT_TOPIC = "memory_events"
@@ -26,12 +28,14 @@ class RosEdge:
         clock: ROS time.
 
     ROS API:
-        Publishes `memory_events` (nao_library_msgs/MemoryEvent) and `/diagnostics`.
+        Publishes `memory_events` (nao_library_msgs/MemoryEvent) and `/diagnostics`. Listens to /tf when asked for a
+        frame.
     """
 
     def __init__(self) -> None:
         """Make nothing yet: what a module does not use is not made."""
         self.clock = RosClock()
+        self._frames: RobotFrames | None = None
 
     @property
     def namespace(self) -> str:
@@ -69,6 +73,16 @@ class RosEdge:
     ) -> DiagnosticsPublisher:
         """Begin to publish reports."""
         return DiagnosticsPublisher(hardware_id, reports)
+
+    def locate(self, frame: str) -> Place:
+        """Where a frame of /tf is now, seen from above by the robot.
+
+        Raises:
+            NaoError: If it is not connected with the robot.
+        """
+        if self._frames is None:  # /tf is a busy topic: who never asks never listens
+            self._frames = RobotFrames()
+        return self._frames.locate(frame)
 
     def on_shutdown(self, action: Callable[[], None]) -> None:
         """Call `action` when the node ends, while it can still publish."""

@@ -20,6 +20,10 @@ NEWER_GOAL = "a newer goal needs {}"
 CANCELED = "canceled"
 
 
+class Replaced(Preempted):  # noqa: N818  a signal, like Preempted
+    """A newer goal takes over what this one has: an executor that walks need not stop for it."""
+
+
 @dataclass
 class Outcome:
     """How a goal ended, as its executor tells it.
@@ -54,15 +58,22 @@ class GoalCrowd:
     here guards the list of goals.
     """
 
-    def __init__(self, claims: Callable[[Any], frozenset[str]], execute: Callable[[Any, Interrupt], Outcome]) -> None:
+    def __init__(
+        self,
+        claims: Callable[[Any], frozenset[str]],
+        execute: Callable[..., Outcome],
+        with_feedback: bool = False,
+    ) -> None:
         """Take no goals yet; an action server hands them over.
 
         Args:
             claims: What a goal needs for itself, the names of joints. Raises NaoError for a goal that will not do.
-            execute: Carries out a goal until its interrupt comes. Raises NaoError if it fails.
+            execute: Carries out a goal until its interrupt comes: it gets both. Raises NaoError if it fails.
+            with_feedback: Whether `execute` gets, as a third argument, what publishes a feedback message.
         """
         self._claims = claims
         self._execute = execute
+        self._with_feedback = with_feedback
         self._lock = threading.Lock()
         self._members: list[_Member] = []
         self._closed = False
@@ -128,7 +139,8 @@ class GoalCrowd:
             goal = member.handle.get_goal()
             self._make_room(member, self._claims(goal))
             member.interrupt.check()
-            outcome = self._execute(goal, member.interrupt)
+            more = (member.handle.publish_feedback,) if self._with_feedback else ()
+            outcome = self._execute(goal, member.interrupt, *more)
         except Preempted:
             return "preempted", None, member.reason
         except NaoError as error:
@@ -150,7 +162,7 @@ class GoalCrowd:
             in_the_way = [m for m in older if m.claims & claims]
         for other in in_the_way:
             other.reason = NEWER_GOAL.format(", ".join(sorted(other.claims & claims)))
-            other.interrupt.trigger()
+            other.interrupt.trigger(Replaced())
         if overtaken:  # its thread was slower than that of the goal after it
             member.reason = NEWER_GOAL.format(", ".join(sorted(overtaken[0].claims & claims)))
             raise Preempted()

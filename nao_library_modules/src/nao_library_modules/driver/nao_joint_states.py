@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import rospy
@@ -23,7 +24,10 @@ from ..ros_clock import RosClock
 from . import state_messages as messages
 from .feet import LEG_JOINTS, footprint
 from .joint_sensors import JointSensors, Reading
+from .odometry_offset import OdometryOffset
+from .odometry_services import offer_odometry_services
 from .pacer import Pacer
+from .planar_frames import tf_prefix
 from .slope import SlopeEstimator
 
 log = logging.getLogger(__name__)
@@ -46,6 +50,10 @@ class NaoJointStates:
         Publishes `joint_states` (sensor_msgs/JointState; efforts are torques in N m as the motor currents tell them),
         `imu` (sensor_msgs/Imu, in the frame of the torso), `odom` (nav_msgs/Odometry), and on /tf the frames odom ->
         base_link and base_link -> base_footprint (REP 105, REP 120).
+        Services, with `~use_odometry`: `pause_odometry` (std_srvs/Empty: place and heading stand still, whatever the
+        robot does), `resume_odometry` (std_srvs/Empty: they go on from there), `set_odometry_pose`
+        (nao_library_msgs/SetTransform: pose of the torso in odometry), `odometry_offset`
+        (nao_library_msgs/SetTransform: moves it, in its own frame). Of transforms x, y and yaw count.
         Parameters `~sensor_rate` (50 Hz; `~torso_odom_rate` is its older name), `~base_frame_id` (base_link),
         `~footprint_frame_id` (base_footprint), `~odom_frame_id` (odom), `~use_joint_sensors` (true; false publishes
         commanded angles), `~use_odometry` (true; false leaves `odom` and its frame to others), `tf_prefix` (searched
@@ -67,7 +75,7 @@ class NaoJointStates:
         if isinstance(rate, bool) or not isinstance(rate, (int, float)) or not 0.0 < rate <= 1.0 / FASTEST:
             raise NaoError(f"~sensor_rate is {rate!r}: above 0 to {1.0 / FASTEST:g} Hz")
         self._period = 1.0 / rate
-        prefix = _tf_prefix()
+        prefix = tf_prefix()
         self._base = prefix + rospy.get_param("~base_frame_id", "base_link").lstrip("/")
         self._footprint = prefix + rospy.get_param("~footprint_frame_id", "base_footprint").lstrip("/")
         self._odom = prefix + rospy.get_param("~odom_frame_id", "odom").lstrip("/")
@@ -76,6 +84,9 @@ class NaoJointStates:
         self._joint_states = rospy.Publisher("joint_states", JointState, queue_size=10)
         self._imu = rospy.Publisher("imu", Imu, queue_size=10)
         self._odometry = rospy.Publisher("odom", Odometry, queue_size=10) if self._use_odometry else None
+        self._offset = OdometryOffset()
+        if self._use_odometry:
+            offer_odometry_services(self._offset)
         self._frames = TransformBroadcaster()
         self._interrupt = Interrupt()
         self._problem = "nothing was read yet"
@@ -124,13 +135,18 @@ class NaoJointStates:
         clock = RosClock()
         pacer = Pacer(clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
         velocities, speeds = SlopeEstimator(), SlopeEstimator()
-        last = None
+        last, jumps = None, 0
         while pacer.wait():
             before = clock.now()
             if before == last:
                 continue  # a step of simulated time may be longer than the wait: frames come once for a moment
             last = before
             reading = sensors.read()
+            if reading.torso is not None:
+                torso, jumps_now = self._offset.correct(reading.torso)
+                reading = replace(reading, torso=torso)
+                if jumps != jumps_now:
+                    jumps, speeds = jumps_now, SlopeEstimator()
             # The robot answered somewhere between question and answer.
             now = (before + clock.now()) / 2
             stamp = Time.from_sec(now)
@@ -154,9 +170,3 @@ class NaoJointStates:
         # Level as far as the frame above knows: there, the two lines of the feet are level exactly.
         roll, pitch = (reading.roll, reading.pitch) if reading.torso is None else reading.torso[3:5]
         return [messages.transform(stamp, self._base, self._footprint, *footprint(angles, roll, pitch))]
-
-
-def _tf_prefix() -> str:
-    found = rospy.search_param("tf_prefix")
-    prefix = str(rospy.get_param(found)).strip("/") if found else ""
-    return f"{prefix}/" if prefix else ""

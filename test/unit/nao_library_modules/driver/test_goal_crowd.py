@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from nao_library_modules.driver.goal_crowd import GoalCrowd, Outcome
+from nao_library_modules.driver.goal_crowd import GoalCrowd, Outcome, Replaced
 from nao_library_modules.errors import BadGoal, Preempted, RobotLost
 
 LIMIT = 5.0
@@ -152,3 +152,43 @@ def test_ends_are_counted(crowd, work):
     work.running[("HeadYaw",)].set()
     head.wait()
     assert crowd.counter.report().values["succeeded"] == "1"
+
+
+@pytest.mark.parametrize("newer, signal", [(True, Replaced), (False, Preempted)], ids=["newer goal", "cancel"])
+def test_an_executor_knows_whether_a_newer_goal_takes_over(newer, signal):
+    started, reasons = threading.Event(), []
+
+    def execute(joints, interrupt):
+        if started.is_set():
+            return Outcome("second")
+        started.set()
+        assert interrupt.wait(LIMIT)
+        try:
+            interrupt.check()
+        except Preempted as reason:
+            reasons.append(reason)
+            raise
+
+    crowd = GoalCrowd(frozenset, execute)
+    old = send(crowd, "HeadYaw")
+    assert started.wait(LIMIT)
+    if newer:
+        assert send(crowd, "HeadYaw").wait()[0] == "succeeded"
+    else:
+        crowd.on_cancel(old)
+    assert old.wait()[0] == "canceled"
+    assert [type(reason) for reason in reasons] == [signal]
+
+
+def test_feedback_goes_to_the_goal_it_is_for():
+    def execute(joints, interrupt, publish):
+        publish(f"half of {joints[0]}")
+        return Outcome("done")
+
+    crowd = GoalCrowd(frozenset, execute, with_feedback=True)
+    handle = Handle("HeadYaw")
+    handle.feedback = []
+    handle.publish_feedback = handle.feedback.append
+    crowd.on_goal(handle)
+    assert handle.wait()[0] == "succeeded"
+    assert handle.feedback == ["half of HeadYaw"]

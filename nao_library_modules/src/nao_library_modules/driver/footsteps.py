@@ -1,0 +1,168 @@
+"""The node nao_footsteps: single footsteps and sequences of them, with the names of nao_robot."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+from actionlib import ActionServer
+
+from nao_library_actions.msg import (
+    ExecFootstepsAction,
+    ExecFootstepsFeedback,
+    ExecFootstepsGoal,
+    ExecFootstepsResult,
+)
+from nao_library_msgs.msg import StepTarget
+from nao_library_msgs.srv import ClipFootstep, ClipFootstepResponse, StepTargetService, StepTargetServiceResponse
+from naoqi.errors import NaoError
+
+from ..errors import BadGoal, RobotLost
+from ..health import Report
+from ..interrupt import Interrupt
+from ..ros_clock import RosClock
+from .footsteps_clipping import LEFT, RIGHT
+from .footsteps_walk import FootstepWalk, Step
+from .goal_crowd import GoalCrowd, Outcome
+from .joint_controller import JointController
+from .planar import Place
+
+START_STIFFNESS = "init_stiffness"
+COMPLAINT_PERIOD = 5.0
+SHUTDOWN_LIMIT = 4.0
+LEGS = {StepTarget.left: LEFT, StepTarget.right: RIGHT}
+CODES = {leg: code for code, leg in LEGS.items()}
+
+
+class NaoFootsteps:
+    """Makes footsteps. What is too far is shortened as `clip_footstep_srv` tells; half a second a step.
+
+    ROS API (relative names):
+        Subscribes `footstep` (nao_library_msgs/StepTarget): one more step.
+        Services `footstep_srv` (nao_library_msgs/StepTargetService: answers when the step is made),
+        `clip_footstep_srv` (nao_library_msgs/ClipFootstep).
+        Action `footsteps_execution` (nao_library_actions/ExecFootsteps): steps of left and right foot in turn; the
+        executed steps, in feedback and result, are as the robot makes them. A new goal ends the one before.
+        Parameter `~init_stiffness` (0): stiffness that the body gets when the robot is reached, if above 0.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+
+        Raises:
+            NaoError: If a parameter is wrong.
+        """
+        self._robot = robot
+        self._init_stiffness = float(rospy.get_param(f"~{START_STIFFNESS}", 0.0))
+        if not 0.0 <= self._init_stiffness <= 1.0:
+            raise NaoError(f"~{START_STIFFNESS} is {self._init_stiffness:g}: 0 to 1")
+        self._walk = FootstepWalk(robot, RosClock())
+        self._crowd = GoalCrowd(self._claims, self._execute, with_feedback=True)
+        name = "footsteps_execution"
+        ActionServer(name, ExecFootstepsAction, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
+        robot.connection.add_listener(self._connection_changed)
+        self._connection_changed()
+        rospy.Service("footstep_srv", StepTargetService, self._on_step_service)
+        rospy.Service("clip_footstep_srv", ClipFootstep, self._on_clip)
+        rospy.Subscriber("footstep", StepTarget, self._on_step, queue_size=50)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {"goals footsteps_execution": self._crowd.counter.report}
+
+    def close(self) -> None:
+        """End the goal that runs; the robot stands then."""
+        self._robot.connection.remove_listener(self._connection_changed)
+        self._crowd.close(SHUTDOWN_LIMIT)
+
+    # --- the action -----------------------------------------------------------------------------------------------
+
+    def _claims(self, goal: ExecFootstepsGoal) -> frozenset[str]:
+        """Check the goal before it ends another one."""
+        if not (math.isfinite(goal.feedback_frequency) and goal.feedback_frequency > 0.0):
+            raise BadGoal("feedback_frequency", goal.feedback_frequency, "above 0, in Hz")
+        self._walk.prepared(read_steps(goal.footsteps))
+        return frozenset({"the legs"})
+
+    def _execute(self, goal: ExecFootstepsGoal, interrupt: Interrupt, publish: Callable[[Any], None]) -> Outcome:
+        steps = self._walk.prepared(read_steps(goal.footsteps))
+
+        def report(made: tuple[Step, ...]) -> None:
+            publish(ExecFootstepsFeedback([step_target(step) for step in made]))
+
+        walked = self._walk.walk(steps, 1.0 / goal.feedback_frequency, interrupt, report)
+        return Outcome(ExecFootstepsResult([step_target(step) for step in walked.steps]), walked.preempted)
+
+    # --- topic and services ---------------------------------------------------------------------------------------
+
+    def _on_step(self, target: StepTarget) -> None:
+        try:
+            self._walk.add(read_step(target))
+        except NaoError as error:
+            rospy.logerr_throttle(COMPLAINT_PERIOD, f"footstep: {error}")
+
+    def _on_step_service(self, request: Any) -> StepTargetServiceResponse:
+        try:
+            self._walk.make(read_step(request.step))
+        except NaoError as error:
+            rospy.logerr("footstep_srv: %s", error)
+            raise rospy.ServiceException(str(error)) from error
+        return StepTargetServiceResponse()
+
+    def _on_clip(self, request: Any) -> ClipFootstepResponse:
+        try:
+            return ClipFootstepResponse(step_target(self._walk.clipped(read_step(request.step))))
+        except NaoError as error:
+            raise rospy.ServiceException(str(error)) from error
+
+    def _connection_changed(self, *_: Any) -> None:
+        """Called from the thread that the connection has for its listeners; they may call the robot."""
+        connection = self._robot.connection
+        if connection.state == "lost":
+            self._crowd.interrupt_all(RobotLost(self._robot.address, connection.last_error or "no answer"))
+        elif connection.state == "connected" and self._init_stiffness > 0.0:
+            stiffness, self._init_stiffness = self._init_stiffness, 0.0  # once: a robot that restarts stays limp
+            try:
+                JointController(self._robot).set_body_stiffness(stiffness)
+            except NaoError as error:
+                rospy.logerr("~%s: %s", START_STIFFNESS, error)
+
+
+def read_step(target: StepTarget, field: str = "") -> Step:
+    """A step from its message.
+
+    Args:
+        target: The message.
+        field: Where it stands in a goal, for texts.
+
+    Raises:
+        BadGoal: If it has no such leg, or a number is none.
+    """
+    if target.leg not in LEGS:
+        raise BadGoal(f"{field}leg", target.leg, "0 (right) or 1 (left)")
+    place = Place(target.pose.x, target.pose.y, target.pose.theta)
+    for name, value in zip(("x", "y", "theta"), place):
+        if not math.isfinite(value):
+            raise BadGoal(f"{field}pose.{name}", value, "a finite number")
+    return Step(LEGS[target.leg], place)
+
+
+def read_steps(targets: list[StepTarget]) -> list[Step]:
+    """Steps from their messages.
+
+    Raises:
+        BadGoal: With the first one that will not do.
+    """
+    return [read_step(target, f"footsteps[{index}].") for index, target in enumerate(targets)]
+
+
+def step_target(step: Step) -> StepTarget:
+    """A step as a message."""
+    target = StepTarget(leg=CODES[step.leg])
+    target.pose.x, target.pose.y, target.pose.theta = step.place
+    return target

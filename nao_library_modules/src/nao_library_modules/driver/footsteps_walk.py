@@ -1,0 +1,179 @@
+"""Footsteps, one after the other, and how many of them are made. No ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from naoqi.errors import NaoError
+
+from ..errors import BadGoal, Preempted
+from ..interrupt import Interrupt
+from ..joint_names import MOTION
+from .footsteps_clipping import check_legs, clip
+from .joint_controller import QUICK_LIMIT
+from .planar import Place
+
+STEP_TIME = 0.5
+"""s from step to step."""
+STOP_LIMIT = 10.0
+"""s that a walking robot may take to stand."""
+TOO_EARLY = 0.6
+"""Share of the time of all steps: a walk that ends before was stopped."""
+
+
+class Step(NamedTuple):
+    """A step.
+
+    Attributes:
+        leg: LLeg or RLeg: the foot that moves.
+        place: Where it goes, in the frame of the other foot.
+    """
+
+    leg: str
+    place: Place
+
+
+@dataclass(frozen=True)
+class Walked:
+    """What came of footsteps.
+
+    Attributes:
+        steps: Those that were made, in order, as the robot can make them.
+        preempted: Whether they were ended before time.
+    """
+
+    steps: tuple[Step, ...]
+    preempted: bool = False
+
+
+class FootstepWalk:
+    """Has one robot make footsteps. Any thread may ask; that only one walks at a time is the callers' business."""
+
+    def __init__(self, robot: Any, clock: Any) -> None:
+        """Keep robot and clock.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            clock: ROS time.
+        """
+        self._robot = robot
+        self._clock = clock
+
+    @staticmethod
+    def clipped(step: Step) -> Step:
+        """The step as the robot can make it.
+
+        Raises:
+            NaoError: If it is no step.
+        """
+        return Step(step.leg, clip(step.place, step.leg))
+
+    def prepared(self, steps: Sequence[Step]) -> tuple[Step, ...]:
+        """Steps as the robot can make them, one after the other.
+
+        Raises:
+            NaoError: If there are none, or they are not made by one leg after the other.
+        """
+        if not steps:
+            raise BadGoal("footsteps", [], "one step at least")
+        check_legs([step.leg for step in steps])
+        return tuple(self.clipped(step) for step in steps)
+
+    def add(self, step: Step) -> None:
+        """Have a step made after those that were added before; returns at once.
+
+        Raises:
+            NaoError: If it is no step, or the robot refuses it.
+        """
+        self._send((self.clipped(step),), clear=False)
+
+    def make(self, step: Step) -> None:
+        """Make a step, and return when the robot stands.
+
+        Raises:
+            NaoError: If it is no step, or the robot does not make it.
+        """
+        self.add(step)
+        self._motion("waitUntilMoveIsFinished").result(timeout=STOP_LIMIT)
+
+    def walk(
+        self,
+        steps: Sequence[Step],
+        period: float,
+        interrupt: Interrupt,
+        report: Callable[[tuple[Step, ...]], None],
+    ) -> Walked:
+        """Make steps, to the end or to the interrupt; the robot stands then.
+
+        Args:
+            steps: What `prepared` gave.
+            period: s from report to report.
+            interrupt: Ends it.
+            report: Told which steps were made.
+
+        Raises:
+            NaoError: If the robot refuses them, is lost or stops by itself.
+        """
+        steps = tuple(steps)
+        began = self._clock.now()
+        self._send(steps, clear=True)
+        ended = self._motion("waitUntilMoveIsFinished")
+        wake = Interrupt()
+        ended.add_done_callback(lambda _: wake.trigger())
+        made = None  # until the robot has planned them
+        with interrupt.waking(wake.trigger):
+            while not wake.is_set():
+                self._clock.wait(period, wake)
+                if not ended.done():
+                    made = self._made(len(steps), made)
+                    report(steps[: made or 0])
+        if not ended.done():
+            return self._stopped(steps, made, interrupt)
+        ended.result(timeout=0)
+        if self._clock.now() - began < TOO_EARLY * STEP_TIME * len(steps):
+            count = f"{made or 0} of {len(steps)} steps"
+            raise NaoError(f"the walk ended after {count}: another client or a protection of the robot did that")
+        report(steps)
+        return Walked(steps)
+
+    def _stopped(self, steps: tuple[Step, ...], made: int | None, interrupt: Interrupt) -> Walked:
+        """Stop the robot; steps that it cannot take back any more are made."""
+        try:
+            made = self._made(len(steps), made, taken_back=True)
+            self._motion("stopMove").result(timeout=STOP_LIMIT)
+            self._motion("waitUntilMoveIsFinished").result(timeout=STOP_LIMIT)
+        except NaoError:
+            interrupt.check()  # why it was to stop says more than that it cannot be reached
+        try:
+            interrupt.check()
+        except Preempted:
+            return Walked(steps[: made or 0], preempted=True)
+        return Walked(steps[: made or 0])
+
+    def _send(self, steps: tuple[Step, ...], clear: bool) -> None:
+        legs = [step.leg for step in steps]
+        places = [list(step.place) for step in steps]
+        times = [STEP_TIME * (index + 1) for index in range(len(steps))]
+        self._motion("setFootSteps", legs, places, times, clear).result(timeout=QUICK_LIMIT)
+
+    def _made(self, count: int, before: int | None, taken_back: bool = False) -> int | None:
+        """How many steps are behind the robot, by those that are before it.
+
+        Args:
+            count: Of all steps.
+            before: How many were when it was asked the last time; None: it had not planned them yet.
+            taken_back: Whether those that can still be taken back are all that will not be made.
+
+        Returns:
+            None if it has not planned them yet: it takes the pose for walking first, with no step before it.
+        """
+        _, fixed, changeable = self._motion("getFootSteps").result(timeout=QUICK_LIMIT)
+        if before is None and not fixed and not changeable:
+            return None
+        ahead = len(changeable) + (0 if taken_back else len(fixed))
+        return max(before or 0, min(count, count - ahead))
+
+    def _motion(self, method: str, *arguments: Any) -> Any:
+        return self._robot.proxy(MOTION).call_async(method, *arguments)

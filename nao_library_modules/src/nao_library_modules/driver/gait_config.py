@@ -1,0 +1,55 @@
+"""Gait parameters, as ROS parameters give them and as ALMotion takes them. No ROS."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, List, Union
+
+from naoqi.errors import NaoError
+
+GaitConfig = List[List[Union[str, float]]]
+"""What ALMotion takes: [["MaxStepX", 0.04], ...]."""
+FORM = "a list like [[MaxStepX, 0.03], [StepHeight, 0.02]], or a dictionary"
+
+
+def read_gait_config(name: str, value: Any) -> GaitConfig:
+    """Gait parameters from a ROS parameter. Names and ranges are the robot's to judge.
+
+    Args:
+        name: Name of the parameter, for texts.
+        value: Pairs of name and value, or a dictionary.
+
+    Raises:
+        NaoError: If it is something else.
+    """
+    pairs = list(value.items()) if isinstance(value, Mapping) else value
+    if not isinstance(pairs, (list, tuple)):
+        raise NaoError(f"{name} is {value!r}: {FORM}")
+    config: GaitConfig = []
+    for pair in pairs:
+        if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not isinstance(pair[0], str):
+            raise NaoError(f"{name} has the entry {pair!r}: {FORM}")
+        config.append([pair[0], _number(name, *pair)])
+    return config
+
+
+def read_frequency(name: str, value: Any) -> float:
+    """A step frequency, 0 (slowest) to 1.
+
+    Args:
+        name: Name of the parameter, for texts.
+        value: Its value.
+
+    Raises:
+        NaoError: If it is something else.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value <= 1.0:
+        raise NaoError(f"{name} is {value!r}: 0 to 1")
+    return float(value)
+
+
+def _number(name: str, key: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise NaoError(f"{name}: {key} is {value!r}: a number")
+    return float(value)

@@ -1,0 +1,143 @@
+"""What a gamepad asks for: its axes and buttons become a velocity, angles of the head, and requests. No ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from .walk_commands import Velocity
+
+UNUSED = -1
+"""Index of an axis or button that the gamepad does not have."""
+STANDSTILL = Velocity(0.0, 0.0, 0.0)
+
+
+class Request(Enum):
+    """What a button asks for, once each time it is pressed."""
+
+    ENABLE = "gamepad control enabled"
+    DISABLE = "gamepad control disabled"
+    INIT_POSE = "init"
+    CROUCH = "crouch"
+
+
+@dataclass(frozen=True)
+class JoySettings:
+    """Which axis and which button does what (indices, -1: none), and how far an axis goes.
+
+    Attributes:
+        axis_x: Walks forward.
+        axis_y: Walks to the left.
+        axis_turn: Turns to the left.
+        axis_head_yaw: Turns the head, while `btn_head_mod` is held.
+        axis_head_pitch: Nods, while `btn_head_mod` is held.
+        btn_crouch: Crouches, and then the motors go off.
+        btn_init_pose: Stands up.
+        btn_enable_control: Takes control, and gives it back.
+        btn_head_mod: While it is held the axes move the head, and the robot stands.
+        max_vx: Fraction of the top speed forward when the axis is at its end, 0 to 1.
+        max_vy: The same sideways.
+        max_vw: The same turning.
+        max_head_yaw: Angle of the head when the axis is at its end, rad.
+        max_head_pitch: The same nodding.
+    """
+
+    axis_x: int = 3
+    axis_y: int = 2
+    axis_turn: int = 0
+    axis_head_yaw: int = 4
+    axis_head_pitch: int = 5
+    btn_crouch: int = 9
+    btn_init_pose: int = 0
+    btn_enable_control: int = 8
+    btn_head_mod: int = 5
+    max_vx: float = 1.0
+    max_vy: float = 1.0
+    max_vw: float = 0.5
+    max_head_yaw: float = 2.0943
+    max_head_pitch: float = 0.7853
+
+
+class JoyControl:
+    """The state of one gamepad. For one thread.
+
+    Attributes:
+        enabled: Whether it has control.
+        velocity: What the robot has to walk.
+        head: Yaw and pitch of the head in rad; None while its button is not held.
+    """
+
+    def __init__(self, settings: JoySettings) -> None:
+        """Begin without control.
+
+        Args:
+            settings: Which axis and button does what.
+        """
+        self._settings = settings
+        self._buttons: list[int] | None = None
+        self._axes_now: Sequence[float] = ()
+        self.enabled = False
+        self.velocity = STANDSTILL
+        self.head: tuple[float, float] | None = None
+
+    def update(self, axes: Sequence[float], buttons: Sequence[int]) -> list[Request]:
+        """Take what the gamepad is like now.
+
+        Args:
+            axes: Positions, -1 to 1.
+            buttons: 1 for those that are pressed.
+
+        Returns:
+            What buttons ask for that were not pressed before. Those held at the very first ask for nothing.
+        """
+        settings = self._settings
+        before = list(buttons) if self._buttons is None else self._buttons
+        self._buttons, self._axes_now = list(buttons), axes
+        requests = []
+        if self._pressed(settings.btn_enable_control, before):
+            self.enabled = not self.enabled
+            requests.append(Request.ENABLE if self.enabled else Request.DISABLE)
+        if self.enabled:
+            if self._pressed(settings.btn_init_pose, before):
+                requests.append(Request.INIT_POSE)
+            if self._pressed(settings.btn_crouch, before):
+                requests.append(Request.CROUCH)
+        head = self.enabled and _at(buttons, settings.btn_head_mod) == 1
+        self.head = None
+        self.velocity = STANDSTILL
+        if head:
+            self.head = (
+                self._axis(settings.axis_head_yaw, settings.max_head_yaw),
+                self._axis(settings.axis_head_pitch, settings.max_head_pitch),
+            )
+        elif self.enabled:
+            self.velocity = Velocity(
+                self._axis(settings.axis_x, settings.max_vx),
+                self._axis(settings.axis_y, settings.max_vy),
+                self._axis(settings.axis_turn, settings.max_vw),
+            )
+        return requests
+
+    def missing(self) -> list[str]:
+        """Settings whose axis or button the gamepad does not have, as its last message shows."""
+        have = {"axis": len(self._axes_now), "btn": len(self._buttons or ())}
+        return [
+            f"{name} {index}"
+            for name, index in vars(self._settings).items()
+            if name.split("_")[0] in have and index >= have[name.split("_")[0]]
+        ]
+
+    def release(self) -> None:
+        """Nobody touches the gamepad any more: it went away."""
+        self.velocity, self.head = STANDSTILL, None
+
+    def _pressed(self, index: int, before: Sequence[int]) -> bool:
+        return _at(self._buttons or (), index) == 1 and _at(before, index) != 1
+
+    def _axis(self, index: int, scale: float) -> float:
+        return scale * max(-1.0, min(1.0, _at(self._axes_now, index)))
+
+
+def _at(values: Sequence[float], index: int) -> float:
+    return values[index] if 0 <= index < len(values) else 0

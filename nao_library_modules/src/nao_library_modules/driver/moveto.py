@@ -1,0 +1,63 @@
+"""The node naoqi_moveto: walks to goals of RViz and of navigation tools."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+from geometry_msgs.msg import PoseStamped
+from std_msgs.msg import Empty
+
+from naoqi.errors import NaoError
+
+from ..health import Report
+from .moveto_walk import Goal, MoveToWalk
+from .planar import Place
+from .planar_frames import PlanarFrames, read_place, tf_prefix
+
+
+class NaoqiMoveTo:
+    """Walks to poses, in any frame of /tf, with the robot's own planning of steps. A new goal takes over.
+
+    There is no answer: the log and /diagnostics tell how it ends. For one, use the action `walk_target`.
+
+    ROS API (relative names):
+        Subscribes `move_base_simple/goal` (geometry_msgs/PoseStamped), `move_base_simple/cancel` (std_msgs/Empty).
+        Parameters `~base_frame_id` (base_footprint), `~odom_frame_id` (odom), `tf_prefix` (searched upwards).
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Listen; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+        """
+        prefix = tf_prefix()
+        self._base = prefix + rospy.get_param("~base_frame_id", "base_footprint").lstrip("/")
+        self._odom = prefix + rospy.get_param("~odom_frame_id", "odom").lstrip("/")
+        self._frames = PlanarFrames()
+        self._walk = MoveToWalk(robot)
+        rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_goal, queue_size=1)
+        rospy.Subscriber("move_base_simple/cancel", Empty, lambda _: self._walk.cancel(), queue_size=1)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {"walk": self._walk.report}
+
+    def close(self) -> None:
+        """Stop a walk that goes on."""
+        self._walk.close()
+
+    def _on_goal(self, goal: PoseStamped) -> None:
+        try:
+            place, frame = read_place("goal", goal)
+        except NaoError as error:
+            rospy.logerr("move_base_simple/goal: %s", error)
+            return
+        name = f"({place.x:.2f} m, {place.y:.2f} m, {place.yaw:.2f} rad) in {frame}"
+        self._walk.go(Goal(name, lambda: self._way(goal)))
+
+    def _way(self, goal: PoseStamped) -> Place:
+        """The way from where the robot is now; a goal in its own frame was told where it was then."""
+        return self._frames.place_in(self._odom, goal).seen_from(self._frames.locate(self._base, self._odom))

@@ -1,0 +1,134 @@
+"""Walks to one place after the other with ALMotion.moveTo: a new place takes over. No ROS."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from ..health import Level, Report
+from ..joint_names import MOTION
+from .planar import Place
+
+log = logging.getLogger(__name__)
+
+STOP_LIMIT = 10.0
+"""s that a walking robot may take to stand."""
+END_LIMIT = 1.0
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A place to walk to.
+
+    Attributes:
+        name: For the log.
+        way: Tells, when the robot sets out, where the place is in its frame. May take a moment, and raise NaoError.
+    """
+
+    name: str
+    way: Callable[[], Place]
+
+
+class MoveToWalk:
+    """The goals of one robot. Any thread may give one; a thread of its own finds the way and starts the walk.
+
+    A robot that walks to an older goal goes on from there, without a stop: NAOqi replaces one moveTo by the next. The
+    lock guards what is asked for; the robot is called without it.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Wait for goals.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+        """
+        self._robot = robot
+        self._lock = threading.Condition()
+        self._asked: Goal | None = None
+        self._stop_asked = False
+        self._closed = False
+        self._state = Report(Level.OK, "no goal yet")
+        self._newest: Any = None
+        self._thread = threading.Thread(target=self._run, name="move to", daemon=True)
+        self._thread.start()
+
+    def go(self, goal: Goal) -> None:
+        """Walk to a place; returns at once. Of goals that come faster than the robot takes them the last one counts."""
+        with self._lock:
+            self._asked, self._stop_asked = goal, False
+            self._lock.notify()
+
+    def cancel(self) -> None:
+        """Stop, on both feet; returns at once."""
+        with self._lock:
+            self._asked, self._stop_asked = None, True
+            self._lock.notify()
+
+    def report(self) -> Report:
+        """What it does, for /diagnostics."""
+        return self._state
+
+    def close(self) -> None:
+        """Stop a walk that goes on, and end."""
+        with self._lock:
+            self._closed = True
+            self._lock.notify()
+        self._thread.join(STOP_LIMIT + END_LIMIT)
+
+    # --- the thread -----------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        while True:
+            with self._lock:
+                self._lock.wait_for(lambda: self._asked or self._stop_asked or self._closed)
+                goal, closed = self._asked, self._closed
+                self._asked, self._stop_asked = None, False
+            try:
+                if goal is not None and not closed:
+                    self._set_out(goal)
+                else:
+                    self._stop()
+            except NaoError as error:
+                self._tell(Level.ERROR, f"{goal.name if goal else 'stop'}: {error}")
+            except Exception as error:  # a mistake in here must not leave a node that takes goals and does nothing
+                log.exception("a goal failed")
+                self._state = Report(Level.ERROR, f"unexpected error: {error!r}")
+            if closed:
+                return
+
+    def _set_out(self, goal: Goal) -> None:
+        way = goal.way()
+        call = self._robot.proxy(MOTION).call_async("moveTo", *way)
+        self._newest = call
+        self._tell(Level.OK, f"walks to {goal.name}: {way.x:.2f} m ahead, {way.y:.2f} m left, {way.yaw:.2f} rad")
+        call.add_done_callback(lambda done: self._ended(goal, done))
+
+    def _stop(self) -> None:
+        call, self._newest = self._newest, None
+        if call is None or call.done():
+            return
+        self._robot.proxy(MOTION).call_async("stopMove").result(timeout=STOP_LIMIT)
+        self._tell(Level.OK, "the robot was stopped")
+
+    def _ended(self, goal: Goal, call: Any) -> None:
+        """A walk ended; a thread of libqi tells. One that was replaced or stopped is no longer the newest."""
+        if call is not self._newest:
+            return
+        try:
+            reached = call.result(timeout=0)
+        except NaoError as error:
+            self._tell(Level.ERROR, f"{goal.name}: {error}")
+            return
+        if reached is False:
+            self._tell(Level.WARN, f"{goal.name} was not reached: something stopped the robot on the way")
+        else:
+            self._tell(Level.OK, f"{goal.name} is reached")
+
+    def _tell(self, level: Level, text: str) -> None:
+        self._state = Report(level, text)
+        log.log({Level.OK: logging.INFO, Level.WARN: logging.WARNING, Level.ERROR: logging.ERROR}[level], "%s", text)

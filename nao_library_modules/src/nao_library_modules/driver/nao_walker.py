@@ -1,0 +1,270 @@
+"""The node nao_walker: walking, with the names of nao_robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+from geometry_msgs.msg import Pose2D, Twist
+from std_msgs.msg import String
+from std_srvs.srv import Empty, EmptyResponse
+
+from nao_library_msgs.msg import StepTarget
+from nao_library_msgs.srv import (
+    CmdPoseService,
+    CmdPoseServiceResponse,
+    CmdVelService,
+    CmdVelServiceResponse,
+    SetArmsEnabled,
+    SetArmsEnabledResponse,
+    StepTargetService,
+    StepTargetServiceResponse,
+)
+from naoqi.errors import NaoError
+
+from ..health import Report
+from ..joint_names import MOTION
+from ..ros_clock import RosClock
+from .gait_config import read_frequency, read_gait_config
+from .joint_controller import QUICK_LIMIT, JointController
+from .speaker import Speaker
+from .walk_commands import Velocity, read_step, read_target, read_velocity
+from .walk_inhibition import WalkInhibition
+from .walk_orders import Command, Order, Stop, WalkEnded
+from .walk_report import WalkJournal
+from .walker import Walker
+
+STEPS_IN_LINE = 50
+CLOSE_LIMIT = 5.0
+"""s that the end of the node waits until the robot stands."""
+CONTACT_PROTECTION = "ENABLE_FOOT_CONTACT_PROTECTION"
+
+
+class NaoWalker:
+    """Walking of one robot: the newest command wins, a stop always gets through.
+
+    Velocities on `cmd_vel` have to be renewed: when they cease for `~cmd_vel_timeout`, the robot is told to stop.
+    Those of `cmd_vel_srv` last until the next command. While a node inhibits walking, commands of all other nodes are
+    refused; its own are not, and `stop_walk_srv` never is.
+
+    ROS API (relative names):
+        Subscribes `cmd_vel` (geometry_msgs/Twist: linear.x, linear.y, angular.z as fractions -1..1 of the top speed;
+        all below 0.001: stand), `cmd_pose` (geometry_msgs/Pose2D: m, rad, in the robot's frame), `cmd_step`
+        (nao_library_msgs/StepTarget; steps queue up), `speech` (std_msgs/String; only with `~speak`).
+        Publishes `speech` (std_msgs/String, latched): "Walker online" when the robot is reached.
+        Services that answer when the walk has ended, with an error when it did not get there: `cmd_pose_srv`
+        (nao_library_msgs/CmdPoseService), `cmd_step_srv` (nao_library_msgs/StepTargetService), `stop_walk_srv`,
+        `inhibit_walk` (std_srvs/Empty). Others: `cmd_vel_srv` (nao_library_msgs/CmdVelService), `uninhibit_walk`,
+        `needs_start_walk_pose_srv`, `read_foot_gait_config_srv` (std_srvs/Empty), `enable_arms_walking_srv`
+        (nao_library_msgs/SetArmsEnabled).
+        Parameters `~cmd_vel_timeout` (0.5 s; 0: none), `~step_frequency` (0.5; 0..1, of velocities), `~use_walk_pose`
+        (false; true: the first walk begins with the pose for walking), `~use_foot_gait_config` (false),
+        `~foot_gait_config` (pairs of name and value for ALMotion), `~init_stiffness` (0),
+        `~enable_foot_contact_protection` (unset: left as it is), `~speak` (true; false where another node says what
+        comes on `speech`).
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+
+        Raises:
+            NaoError: If a parameter is wrong.
+        """
+        self._robot = robot
+        timeout = rospy.get_param("~cmd_vel_timeout", 0.5)
+        if isinstance(timeout, bool) or not isinstance(timeout, (int, float)) or not 0.0 <= timeout < float("inf"):
+            raise NaoError(f"~cmd_vel_timeout is {timeout!r}: s, 0 or more")
+        self._init_stiffness = read_frequency("~init_stiffness", rospy.get_param("~init_stiffness", 0.0))
+        frequency = read_frequency("~step_frequency", rospy.get_param("~step_frequency", 0.5))
+        gait = self._gait()
+        self._inhibition = WalkInhibition()
+        self._journal = WalkJournal()
+        self._walker = Walker(robot, RosClock(), timeout)
+        self._walker.frequency = frequency
+        self._walker.gait = gait
+        self._walker.needs_walk_pose = bool(rospy.get_param("~use_walk_pose", False))
+        self._speech = rospy.Publisher("speech", String, queue_size=10, latch=True)
+        self._online = False
+        robot.connection.add_listener(self._connection_changed)
+        self._connection_changed()
+        self._offer_services()
+        rospy.Subscriber("cmd_vel", Twist, self._on_velocity, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("cmd_pose", Pose2D, self._on_pose, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("cmd_step", StepTarget, self._on_step, queue_size=STEPS_IN_LINE)
+        if rospy.get_param("~speak", True):
+            speaker = Speaker(robot)
+            rospy.Subscriber("speech", String, lambda message: speaker.say(message.data), queue_size=10)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {"walk": self._report}
+
+    def close(self) -> None:
+        """Stop the walk and wait until the robot stands."""
+        self._robot.connection.remove_listener(self._connection_changed)
+        self._walker.close(CLOSE_LIMIT)
+
+    # --- topics ---------------------------------------------------------------------------------------------------
+
+    def _on_velocity(self, message: Twist) -> None:
+        self._take("cmd_vel", message, lambda: self._velocity("cmd_vel", message), watched=True)
+
+    def _on_pose(self, message: Pose2D) -> None:
+        self._take("cmd_pose", message, lambda: read_target(message))
+
+    def _on_step(self, message: StepTarget) -> None:
+        self._take("cmd_step", message, lambda: read_step(message))
+
+    def _take(self, topic: str, message: Any, read: Callable[[], Command], watched: bool = False) -> None:
+        """Take a command from a topic; what goes wrong goes to the log."""
+        caller = _caller(message)
+        try:
+            command = read()
+            if isinstance(command, Velocity) and command.is_zero and self._inhibition.against(caller):
+                return  # a stick at rest is no news to those who inhibit walking
+            order = self._order(topic, caller, command, watched=watched)
+        except NaoError as error:
+            self._journal.failed(topic, error)
+            return
+        order.answer.add_done_callback(lambda answer: self._note_end(topic, answer))
+
+    def _note_end(self, topic: str, answer: Any) -> None:
+        error = answer.exception()
+        if isinstance(error, WalkEnded):
+            rospy.logdebug("%s: %s", topic, error)
+        elif error is not None:
+            self._journal.failed(topic, error)
+        else:
+            self._journal.succeeded()
+
+    def _velocity(self, name: str, twist: Twist) -> Velocity:
+        velocity, clamped = read_velocity(twist)
+        if clamped:
+            self._journal.warn(f"{name} out of range", f"{name}: {clamped}: -1 to 1")
+        return velocity
+
+    def _order(self, name: str, caller: str, command: Command, **options: bool) -> Order:
+        """Pass a command on.
+
+        Raises:
+            NaoError: If walking is inhibited.
+        """
+        owners = self._inhibition.against(caller)
+        if owners:
+            raise NaoError(f"refused from {caller}: walking is inhibited by {', '.join(owners)}")
+        source = f"{name} from {caller}"
+        self._journal.commanded(source, rospy.get_time())
+        return self._walker.order(command, source, **options)
+
+    # --- services -------------------------------------------------------------------------------------------------
+
+    def _offer_services(self) -> None:
+        def serve(name: str, kind: type, response: type, action: Callable[[str, Any], Any]) -> None:
+            def answer(request: Any) -> Any:
+                try:
+                    action(_caller(request), request)
+                except NaoError as error:
+                    rospy.logerr("%s: %s", name, error)
+                    raise rospy.ServiceException(str(error)) from error
+                return response()
+
+            rospy.Service(name, kind, answer)
+
+        serve("cmd_vel_srv", CmdVelService, CmdVelServiceResponse, self._serve_velocity)
+        serve("cmd_pose_srv", CmdPoseService, CmdPoseServiceResponse, self._serve_pose)
+        serve("cmd_step_srv", StepTargetService, StepTargetServiceResponse, self._serve_step)
+        serve("stop_walk_srv", Empty, EmptyResponse, self._serve_stop)
+        serve("inhibit_walk", Empty, EmptyResponse, self._serve_inhibit)
+        serve("uninhibit_walk", Empty, EmptyResponse, self._serve_uninhibit)
+        serve("needs_start_walk_pose_srv", Empty, EmptyResponse, self._serve_walk_pose)
+        serve("read_foot_gait_config_srv", Empty, EmptyResponse, self._serve_gait)
+        serve("enable_arms_walking_srv", SetArmsEnabled, SetArmsEnabledResponse, self._serve_arms)
+
+    def _serve_velocity(self, caller: str, request: Any) -> None:
+        _wait(self._order("cmd_vel_srv", caller, self._velocity("cmd_vel_srv", request.twist)))
+
+    def _serve_pose(self, caller: str, request: Any) -> None:
+        _wait(self._order("cmd_pose_srv", caller, read_target(request.pose)))
+
+    def _serve_step(self, caller: str, request: Any) -> None:
+        _wait(self._order("cmd_step_srv", caller, read_step(request.step), to_the_end=True))
+
+    def _serve_stop(self, caller: str, _: Any) -> None:
+        _wait(self._walker.order(Stop(), f"stop_walk_srv from {caller}"))
+
+    def _serve_inhibit(self, caller: str, _: Any) -> None:
+        count = self._inhibition.inhibit(caller)
+        rospy.loginfo("walking is inhibited by %s (%d in all)", caller, count)
+        if count == 1:
+            _wait(self._walker.order(Stop(), f"inhibit_walk from {caller}"))
+
+    def _serve_uninhibit(self, caller: str, _: Any) -> None:
+        count = self._inhibition.let_go(caller)
+        rospy.loginfo("%s lets walking go: %s", caller, f"still inhibited ({count})" if count else "not inhibited")
+
+    def _serve_walk_pose(self, *_: Any) -> None:
+        self._walker.needs_walk_pose = bool(rospy.get_param("~use_walk_pose", False))
+
+    def _serve_gait(self, *_: Any) -> None:
+        self._walker.gait = self._gait()
+        rospy.loginfo("gait: %s", self._walker.gait or "the robot's own")
+
+    def _serve_arms(self, _: str, request: Any) -> None:
+        arms = request.left_arm, request.right_arm
+        self._robot.proxy(MOTION).call_async("setMoveArmsEnabled", *arms).result(timeout=QUICK_LIMIT)
+
+    @staticmethod
+    def _gait() -> list[list[Any]]:
+        if not rospy.get_param("~use_foot_gait_config", False):
+            return []
+        return read_gait_config("~foot_gait_config", rospy.get_param("~foot_gait_config", []))
+
+    # --- state ----------------------------------------------------------------------------------------------------
+
+    def _connection_changed(self, *_: Any) -> None:
+        """Called from the thread that the connection has for its listeners; they may call the robot."""
+        if self._robot.connection.state != "connected":
+            return
+        try:
+            protect = rospy.get_param("~enable_foot_contact_protection", None)
+            if protect is not None:
+                config = [[CONTACT_PROTECTION, bool(protect)]]
+                self._robot.proxy(MOTION).call_async("setMotionConfig", config).result(timeout=QUICK_LIMIT)
+            if self._init_stiffness > 0.0:
+                stiffness, self._init_stiffness = self._init_stiffness, 0.0  # once: a robot that restarts stays limp
+                JointController(self._robot).set_body_stiffness(stiffness)
+        except NaoError as error:
+            rospy.logerr("the robot does not take the parameters of the walk: %s", error)
+        if not self._online:
+            self._online = True
+            rospy.loginfo("Walker online")
+            self._speech.publish("Walker online")
+
+    def _report(self) -> Report:
+        active = None
+        if self._robot.connection.state == "connected":
+            try:
+                active = self._robot.proxy(MOTION).call_async("moveIsActive").result(timeout=QUICK_LIMIT)
+            except NaoError as error:
+                self._journal.failed("moveIsActive", error)
+        return self._journal.report(
+            rospy.get_time(), self._walker.doing, active, self._inhibition.owners, self._walker.watchdog_stops
+        )
+
+
+def _wait(order: Order) -> None:
+    """Wait for the end of an order; for ever if need be, for the proxy layer ends calls to a lost robot.
+
+    Raises:
+        NaoError: If it was not carried out.
+    """
+    order.answer.result()
+
+
+def _caller(message: Any) -> str:
+    """Name of the node that a message or request came from."""
+    return getattr(message, "_connection_header", {}).get("callerid", "an unknown node")

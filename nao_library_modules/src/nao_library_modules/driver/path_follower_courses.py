@@ -1,0 +1,118 @@
+"""Where a robot that follows a target or a path aims next. Pure logic: no ROS, no clock."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..errors import BadGoal
+from .path_follower_path import WalkPath
+from .path_follower_settings import Settings
+from .planar import Place, wrapped
+
+WINDOW = 0.5
+"""m of a path beyond the robot's last place in which it is looked for: it does not jump where a path crosses itself."""
+TURN_RADIUS = 0.05
+"""m that a turn of 1 rad counts as where distances and turns are added up: little, for turns come and go."""
+
+
+@dataclass(frozen=True)
+class Aim:
+    """Where to go next.
+
+    Attributes:
+        place: In the frame of the course.
+        final: Whether the course ends there.
+        rest: What is left of the course, m; a turn counts by a radius. Progress makes it less.
+        index: Of the waypoint ahead.
+    """
+
+    place: Place
+    final: bool
+    rest: float
+    index: int = 0
+
+
+class TargetCourse:
+    """Straight to a target, which may drift as the robot learns better where it is."""
+
+    def __init__(self, target: Callable[[], Place]) -> None:
+        """Keep the target.
+
+        Args:
+            target: Tells where it is now, in the frame of the course.
+        """
+        self._target = target
+
+    def aim(self, robot: Place) -> Aim:
+        """Where a robot at this place goes next."""
+        target = self._target()
+        return Aim(target, final=True, rest=_effort(target.seen_from(robot)))
+
+
+class PathCourse:
+    """Along a path, aiming at a place of it that moves ahead of the robot."""
+
+    def __init__(self, path: WalkPath, settings: Settings) -> None:
+        """Begin at the start of the path."""
+        self._path = path
+        self._settings = settings
+        self._along: float | None = None
+        self._final = False  # who has once aimed at the end does so from then on
+
+    def aim(self, robot: Place) -> Aim:
+        """Where a robot at this place goes next. Progress along the path is kept.
+
+        Raises:
+            BadGoal: If the robot is too far from where the path begins, at the first call.
+        """
+        along, off = self._find(robot)
+        path, settings = self._path, self._settings
+        away = wrapped(path.direction_at(along) - robot.yaw)
+        near_end = path.length - along <= settings.path_next_target_distance
+        if abs(away) > settings.waypoint_angle_threshold and not (near_end or self._final):
+            here = path.place_at(along)
+            place = Place(here.x, here.y, path.direction_at(along))
+        else:
+            ahead = along + self._look_ahead(along, off, away)
+            self._final = self._final or ahead >= path.length
+            place = path.place_at(path.length if self._final else ahead)
+        rest = path.length - along + off + TURN_RADIUS * abs(wrapped(path.waypoints[-1].yaw - robot.yaw))
+        at_end = path.length - along <= settings.target_distance_threshold
+        return Aim(place, self._final, rest, path.index_at(path.length if at_end else along))
+
+    def _find(self, robot: Place) -> tuple[float, float]:
+        """How far along the path the robot is, and how far off it."""
+        if self._along is None:
+            begin = self._path.waypoints[0].distance_to(robot)
+            if begin > self._settings.path_max_start_distance:
+                limit = f"at most {self._settings.path_max_start_distance:g} m (~path_max_start_distance)"
+                raise BadGoal("path", "", limit, f"the robot is too far from start of path, {begin:.2f} m")
+            self._along = 0.0
+        found = self._path.nearest(robot, self._along, self._along + WINDOW)
+        self._along = found.along
+        return found.along, found.off
+
+    def _look_ahead(self, along: float, off: float, away: float) -> float:
+        settings = self._settings
+        on_it = off <= min(settings.straight_max_robot_dev, settings.waypoint_distance_threshold)
+        turned = abs(away) <= settings.straight_max_robot_yaw
+        stretch = along + max(settings.straight_threshold, settings.straight_offset)
+        if on_it and turned and self._path.straight(along, stretch, settings.straight_max_path_dev):
+            return max(settings.straight_offset, settings.path_next_target_distance)
+        return settings.path_next_target_distance
+
+
+def _effort(way: Place) -> float:
+    return way.distance + TURN_RADIUS * abs(way.yaw)
+
+
+def reached(way: Place, settings: Settings) -> bool:
+    """Whether the way to a target is so short that it counts as reached."""
+    return way.distance <= settings.target_distance_threshold and abs(way.yaw) <= settings.target_angle_threshold
+
+
+def facing(way: Place) -> float:
+    """How far to turn to look at where a way leads, rad."""
+    return math.atan2(way.y, way.x)

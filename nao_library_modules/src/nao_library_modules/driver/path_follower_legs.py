@@ -1,0 +1,127 @@
+"""The robot's legs as nao_path_follower moves them: by way of nao_walker's topics and services."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import rospy
+from geometry_msgs.msg import Pose2D, Twist
+from std_srvs.srv import Empty
+
+from naoqi.errors import NaoError
+
+from ..interrupt import Interrupt
+from ..joint_names import MOTION
+from .joint_controller import QUICK_LIMIT
+from .planar import Place
+from .robot_task import run_task
+
+LISTENER_LIMIT = 5.0
+"""s to wait for somebody who listens to the commands."""
+STOP_LIMIT = 10.0
+"""s that a walking robot may take to stand."""
+STOP, INHIBIT, LET_GO = "stop_walk_srv", "inhibit_walk", "uninhibit_walk"
+
+
+class _Heard(rospy.SubscribeListener):
+    """Knows when a topic has somebody who listens."""
+
+    def __init__(self) -> None:
+        self.event = threading.Event()
+
+    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
+        """Somebody begins to listen."""
+        self.event.set()
+
+
+class WalkTopics:
+    """Publishes walk commands; asks the robot itself whether it can walk and does. For one thread at a time.
+
+    ROS API (relative names):
+        Publishes `cmd_pose` (geometry_msgs/Pose2D), `cmd_vel` (geometry_msgs/Twist).
+        Calls `stop_walk_srv`, `inhibit_walk`, `uninhibit_walk` (std_srvs/Empty), where they are offered.
+    """
+
+    def __init__(self, robot: Any, use_velocities: bool) -> None:
+        """Advertise the topics.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            use_velocities: Whether commands go to `cmd_vel`.
+        """
+        self._robot = robot
+        self._heard = _Heard()
+        self._topic = "cmd_vel" if use_velocities else "cmd_pose"
+        kind = Twist if use_velocities else Pose2D
+        self._commands = rospy.Publisher(
+            self._topic, kind, subscriber_listener=self._heard, tcp_nodelay=True, queue_size=1
+        )
+        self._stop = rospy.ServiceProxy(STOP, Empty)
+        self._inhibit = rospy.ServiceProxy(INHIBIT, Empty)
+        self._let_go = rospy.ServiceProxy(LET_GO, Empty)
+
+    def prepare(self, interrupt: Interrupt) -> None:
+        """Get ready to walk: the robot takes the pose for it, if it does not walk already.
+
+        Raises:
+            NaoError: If it cannot, or nobody passes commands on to it.
+            Preempted: Or whatever reason the interrupt has.
+        """
+        self._heard.event.wait(LISTENER_LIMIT)
+        if not self._commands.get_num_connections():
+            raise NaoError(f"nobody listens to {rospy.resolve_name(self._topic)}: does nao_walker run?")
+        if not self.walking():
+            run_task(self._robot.proxy(MOTION).call_async("moveInit"), interrupt, self._stop_robot)
+
+    def go_to(self, way: Place) -> None:
+        """Walk to where a way leads, in the robot's frame."""
+        self._commands.publish(Pose2D(way.x, way.y, way.yaw))
+
+    def go_at(self, x: float, y: float, yaw: float) -> None:
+        """Walk with shares -1..1 of the top speeds."""
+        command = Twist()
+        command.linear.x, command.linear.y, command.angular.z = x, y, yaw
+        self._commands.publish(command)
+
+    def walking(self) -> bool:
+        """Whether the robot walks.
+
+        Raises:
+            NaoError: If it cannot be asked.
+        """
+        return bool(self._quick("moveIsActive"))
+
+    def stop(self) -> None:
+        """Stand, on both feet.
+
+        Raises:
+            NaoError: If the robot cannot be stopped, or goes on for too long.
+        """
+        try:
+            self._stop()
+        except (rospy.ServiceException, rospy.ROSException):  # nobody offers it, or it failed: ask the robot itself
+            self._stop_robot()
+        standing = self._robot.proxy(MOTION).call_async("waitUntilMoveIsFinished")
+        standing.result(timeout=STOP_LIMIT)
+
+    def reserve(self) -> None:
+        """Keep others, a joystick for example, from walking."""
+        self._call_if_there(self._inhibit)
+
+    def release(self) -> None:
+        """Let others walk again."""
+        self._call_if_there(self._let_go)
+
+    def _stop_robot(self) -> None:
+        self._robot.proxy(MOTION).call_async("stopMove").result(timeout=STOP_LIMIT)
+
+    def _quick(self, method: str) -> Any:
+        return self._robot.proxy(MOTION).call_async(method).result(timeout=QUICK_LIMIT)
+
+    @staticmethod
+    def _call_if_there(service: rospy.ServiceProxy) -> None:
+        try:
+            service()
+        except (rospy.ServiceException, rospy.ROSException) as error:
+            rospy.logdebug("%s: %s", service.resolved_name, error)

@@ -1,0 +1,103 @@
+"""Parameters of nao_path_follower, checked. No ROS."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any
+
+from naoqi.errors import NaoError
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a robot follows targets and paths; the names are those of the parameters.
+
+    Attributes:
+        controller_frequency: Rounds a second, Hz.
+        target_distance_threshold: The target is reached this near, m.
+        target_angle_threshold: And this well turned, rad.
+        waypoint_distance_threshold: Off a path by more, the robot does not count as being on a straight piece, m.
+        waypoint_angle_threshold: Turned away from a path by more, it turns on the spot first, rad.
+        max_vel_x: Velocity mode: share of the robot's top speed ahead, above 0 to 1.
+        max_vel_y: Likewise sideways.
+        max_vel_yaw: Likewise turning.
+        step_freq: Velocity mode: share of the highest step frequency. Kept for its name: `cmd_vel` cannot carry it.
+        use_vel_ctrl: Whether the robot is led by velocities (`cmd_vel`) and not by poses (`cmd_pose`).
+        use_foot_contact_protection: Whether a robot that is lifted gives its goal up.
+        path_next_target_distance: How far ahead on a path the robot aims, m.
+        path_max_start_distance: How far from the beginning of a path it may stand, m.
+        threshold_damp_xy: Velocity mode: this near to the target it gets slower, m.
+        threshold_damp_yaw: Likewise for turning, rad.
+        straight_threshold: A piece of a path that is straight for this long is walked along at full speed, m.
+        straight_offset: There the robot aims this far ahead, m.
+        straight_max_path_dev: And straight means this near to a line, m.
+        straight_max_robot_dev: With the robot this near to it, m.
+        straight_max_robot_yaw: And turned away from it by no more than this, rad.
+        stuck_time: Without any progress for so long the robot gives up, s; 0: never.
+    """
+
+    controller_frequency: float = 10.0
+    target_distance_threshold: float = 0.05
+    target_angle_threshold: float = math.radians(5.0)
+    waypoint_distance_threshold: float = 0.1
+    waypoint_angle_threshold: float = math.radians(45.0)
+    max_vel_x: float = 0.7
+    max_vel_y: float = 0.7
+    max_vel_yaw: float = 0.7
+    step_freq: float = 0.5
+    use_vel_ctrl: bool = False
+    use_foot_contact_protection: bool = True
+    path_next_target_distance: float = 0.1
+    path_max_start_distance: float = 0.3
+    threshold_damp_xy: float = 0.2
+    threshold_damp_yaw: float = math.radians(60.0)
+    straight_threshold: float = 0.2
+    straight_offset: float = 0.3
+    straight_max_path_dev: float = 0.03
+    straight_max_robot_dev: float = 0.05
+    straight_max_robot_yaw: float = math.radians(20.0)
+    stuck_time: float = 10.0
+
+    def __post_init__(self) -> None:
+        """Check every value.
+
+        Raises:
+            NaoError: With the first one that will not do.
+        """
+        for name in (field.name for field in fields(self)):
+            _check(name, getattr(self, name))
+
+    @classmethod
+    def read(cls, get_param: Callable[[str, Any], Any]) -> Settings:
+        """Settings from private parameters.
+
+        Args:
+            get_param: Gives a parameter by name, or the default given with it.
+
+        Raises:
+            NaoError: If one will not do.
+        """
+        return cls(**{field.name: get_param(f"~{field.name}", field.default) for field in fields(cls)})
+
+
+_SHARES = ("max_vel_x", "max_vel_y", "max_vel_yaw")
+_SWITCHES = ("use_vel_ctrl", "use_foot_contact_protection")
+
+
+def _check(name: str, value: Any) -> None:
+    if name in _SWITCHES:
+        if not isinstance(value, bool):
+            raise NaoError(f"~{name} is {value!r}: true or false")
+        return
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise NaoError(f"~{name} is {value!r}: a number")
+    if name in _SHARES and not 0.0 < value <= 1.0:
+        raise NaoError(f"~{name} is {value:g}: above 0 to 1")
+    if name == "step_freq" and not 0.0 <= value <= 1.0:
+        raise NaoError(f"~{name} is {value:g}: 0 to 1")
+    if name == "stuck_time" and value < 0.0:
+        raise NaoError(f"~{name} is {value:g}: 0 (never) or more")
+    if name not in (*_SHARES, "step_freq", "stuck_time") and value <= 0.0:
+        raise NaoError(f"~{name} is {value:g}: above 0")

@@ -1,0 +1,69 @@
+"""Velocities that lead a robot along a way, and the notice that they do not. Arithmetic only."""
+
+from __future__ import annotations
+
+import math
+
+from naoqi.errors import NaoError
+
+from .path_follower_courses import facing
+from .path_follower_settings import Settings
+from .planar import Place, wrapped
+
+FACE_DISTANCE = 0.4
+"""m: to what is further away the robot turns its face; it walks ahead faster than sideways."""
+PROGRESS = 0.02
+"""m that count as progress."""
+
+
+def velocity(way: Place, settings: Settings) -> tuple[float, float, float]:
+    """Shares -1..1 of the top speeds ahead, to the left and turning left, for a way that lies before the robot.
+
+    Args:
+        way: To where it goes, in its own frame.
+        settings: Of the follower.
+    """
+    far = way.distance > FACE_DISTANCE
+    turn = facing(way) if far else way.yaw
+    yaw = settings.max_vel_yaw * max(-1.0, min(1.0, wrapped(turn) / settings.threshold_damp_yaw))
+    if way.distance < 1e-6:
+        return 0.0, 0.0, yaw
+    share = min(1.0, way.distance / settings.threshold_damp_xy)
+    if far:
+        share *= max(0.0, math.cos(turn))  # first turn, then go
+    # Along an ellipse, so that it keeps its direction where it is slower sideways than ahead.
+    ahead, aside = way.x / way.distance, way.y / way.distance
+    share /= math.hypot(ahead / settings.max_vel_x, aside / settings.max_vel_y)
+    return share * ahead, share * aside, yaw
+
+
+class StuckWatch:
+    """Notices that a robot gets no nearer: it pushes against a wall, or walks on the spot."""
+
+    def __init__(self, limit: float) -> None:
+        """Watch from the first call on.
+
+        Args:
+            limit: s without progress; 0 never minds.
+        """
+        self._limit = limit
+        self._best = math.inf
+        self._since = 0.0
+
+    def check(self, now: float, rest: float) -> None:
+        """Take note of what is left of the way.
+
+        Args:
+            now: s.
+            rest: m.
+
+        Raises:
+            NaoError: If it has not become less for too long.
+        """
+        if rest < self._best - PROGRESS or math.isinf(self._best):
+            self._best, self._since = rest, now
+        elif self._limit > 0.0 and now - self._since > self._limit:
+            raise NaoError(
+                f"no progress for {self._limit:g} s, with {rest:.2f} m still to go: something is in the way, "
+                "or the robot does not walk"
+            )

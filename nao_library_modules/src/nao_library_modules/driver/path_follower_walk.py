@@ -1,0 +1,169 @@
+"""Leads a robot along a course, round by round, until it is there. No ROS: legs, eyes and clock are given."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from ..clock import WallClock
+from ..interrupt import Interrupt
+from .pacer import Pacer
+from .path_follower_courses import Aim, reached
+from .path_follower_settings import Settings
+from .path_follower_steering import StuckWatch, velocity
+from .planar import ORIGIN, Place
+
+RESEND_DISTANCE, RESEND_TURN = 0.02, math.radians(4.0)
+"""m and rad that the aim moves before the robot is told: it plans its steps anew each time."""
+GRACE, WALL_GRACE = 1.0, 0.25
+"""s from a command until the robot must be seen to walk; simulated time may be fast, so of real time as well."""
+SETTLE = 3.0
+"""s that a robot which is near enough may go on, to get nearer, before it is stopped."""
+FASTEST_ROUND = 0.008
+"""s of real time from one round to the next at least, however fast simulated time runs."""
+
+
+class Legs(Protocol):
+    """What carries the robot."""
+
+    def prepare(self, interrupt: Interrupt) -> None:
+        """Get ready to walk.
+
+        Raises:
+            NaoError: If the robot cannot; the text says why.
+            Preempted: Or whatever reason the interrupt has.
+        """
+
+    def go_to(self, way: Place) -> None:
+        """Walk to where a way leads, in the robot's frame; replaces what was told before."""
+
+    def go_at(self, x: float, y: float, yaw: float) -> None:
+        """Walk with shares -1..1 of the top speeds."""
+
+    def walking(self) -> bool:
+        """Whether it walks."""
+
+    def stop(self) -> None:
+        """Stand, on both feet; returns then."""
+
+
+class _Poses:
+    """Leads by poses: the robot plans its steps to each aim, and is told again when the aim has moved."""
+
+    def __init__(self, legs: Legs, settings: Settings, now: Callable[[], float], interrupt: Interrupt) -> None:
+        self._legs = legs
+        self._interrupt = interrupt
+        self._settings = settings
+        self._now = now
+        self._wall = WallClock()
+        self._told: Place | None = None
+        self._told_at = (-math.inf, -math.inf)
+        self._near_since: float | None = None
+
+    def round(self, robot: Place, aim: Aim) -> bool:
+        """Do what is to be done now; whether the robot has arrived and stands."""
+        way = aim.place.seen_from(robot)
+        near = aim.final and reached(way, self._settings)
+        walking = self._legs.walking()
+        now = self._now()
+        if near:
+            self._near_since = now if self._near_since is None else self._near_since
+            if walking and now - self._near_since > SETTLE:
+                self._legs.stop()
+                return True
+            if not walking and not self._just_told(now):
+                return True
+        else:
+            self._near_since = None
+        if self._moved(aim.place):
+            self._tell(way, aim.place, now)
+        elif not (near or walking or self._just_told(now)):
+            self._legs.prepare(self._interrupt)  # says why it does not walk, if it knows
+            self._tell(way, aim.place, now)
+        return False
+
+    def _tell(self, way: Place, place: Place, now: float) -> None:
+        self._legs.go_to(way)
+        self._told, self._told_at = place, (now, self._wall.now())
+
+    def _moved(self, place: Place) -> bool:
+        if self._told is None:
+            return True
+        change = place.seen_from(self._told)
+        return change.distance > RESEND_DISTANCE or abs(change.yaw) > RESEND_TURN
+
+    def _just_told(self, now: float) -> bool:
+        return now - self._told_at[0] < GRACE or self._wall.now() - self._told_at[1] < WALL_GRACE
+
+
+class _Velocities:
+    """Leads by velocities, each round anew."""
+
+    def __init__(self, legs: Legs, settings: Settings, now: Callable[[], float], interrupt: Interrupt) -> None:
+        self._legs = legs
+        self._interrupt = interrupt
+        self._settings = settings
+        self._now = now
+        self._wall = WallClock()
+        self._seen_at = (now(), self._wall.now())
+
+    def round(self, robot: Place, aim: Aim) -> bool:
+        """Do what is to be done now; whether the robot has arrived and stands."""
+        way = aim.place.seen_from(robot)
+        if aim.final and reached(way, self._settings):
+            self._legs.go_at(*ORIGIN)
+            self._legs.stop()
+            return True
+        now, wall = self._now(), self._wall.now()
+        if self._legs.walking():
+            self._seen_at = (now, wall)
+        elif now - self._seen_at[0] > GRACE and wall - self._seen_at[1] > WALL_GRACE:
+            self._legs.prepare(self._interrupt)
+            self._seen_at = (now, wall)
+        self._legs.go_at(*velocity(way, self._settings))
+        return False
+
+
+def lead(
+    course: Any,
+    legs: Legs,
+    locate: Callable[[], Place],
+    clock: Any,
+    settings: Settings,
+    interrupt: Interrupt,
+    report: Callable[[Place, Aim], None] = lambda robot, aim: None,
+) -> None:
+    """Walk until the course ends. The legs are not stopped when it does not come to that.
+
+    Args:
+        course: Tells where to aim: see `path_follower_courses`.
+        legs: Of the robot.
+        locate: Tells where the robot is, in the frame of the course.
+        clock: ROS time.
+        settings: How to do it.
+        interrupt: Ends it.
+        report: Told in every round where the robot is, and where it aims.
+
+    Raises:
+        NaoError: If the robot cannot walk, cannot be located or is stuck.
+        Preempted: Or whatever reason the interrupt has.
+    """
+    pacer = Pacer(clock, 1.0 / settings.controller_frequency, FASTEST_ROUND, interrupt)
+    stuck = StuckWatch(settings.stuck_time)
+    mode = (_Velocities if settings.use_vel_ctrl else _Poses)(legs, settings, clock.now, interrupt)
+    prepared = False
+    while pacer.wait():
+        robot = locate()
+        aim = course.aim(robot)
+        report(robot, aim)
+        if not prepared:
+            if aim.final and reached(aim.place.seen_from(robot), settings) and not legs.walking():
+                return
+            legs.prepare(interrupt)
+            prepared = True
+            continue  # that took a while: look again
+        if mode.round(robot, aim):
+            return
+        stuck.check(clock.now(), aim.rest)
+    interrupt.check()

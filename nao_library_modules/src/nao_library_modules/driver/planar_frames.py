@@ -1,0 +1,189 @@
+"""Frames of /tf seen from above: where the robot is, and where goals are that are told in any frame."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import rospy
+import tf2_ros
+import yaml
+from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped
+from nav_msgs.msg import Path
+
+from naoqi.errors import NaoError
+
+from ..clock import WallClock
+from ..errors import BadGoal
+from .planar import Place, yaw_of_quaternion
+from .rotation import from_roll_pitch_yaw, product, rotate
+
+PATIENCE = 2.0
+"""s that a frame may take to appear."""
+OLDEST = 2.0
+"""s that the robot may have been where odometry has it last. Simulated time may be fast: of real time as well."""
+
+
+class PlanarFrames:
+    """Looks frames up. Any thread may ask."""
+
+    def __init__(self, buffer: Any = None) -> None:
+        """Begin to listen to /tf.
+
+        Args:
+            buffer: Frames that are known already, instead.
+        """
+        self._buffer = tf2_ros.Buffer() if buffer is None else buffer
+        self._listener = tf2_ros.TransformListener(self._buffer) if buffer is None else None
+        self._wall = WallClock()
+        self._seen: dict[tuple[str, str], tuple[rospy.Time, float]] = {}
+
+    def locate(self, child: str, frame: str, patience: float = PATIENCE) -> Place:
+        """Where a frame is in another one, by the latest transform.
+
+        Args:
+            child: The frame that is looked for.
+            frame: The frame to tell it in.
+            patience: s to wait for it.
+
+        Raises:
+            NaoError: If they are not connected, or what is known is old.
+        """
+        transform = self._look_up(frame, child, rospy.Time(), patience)
+        stamp = transform.header.stamp
+        age = (rospy.Time.now() - stamp).to_sec()
+        if stamp and age > OLDEST and self._unchanged(child, frame, stamp) > OLDEST:
+            raise NaoError(f"where {child} is in {frame} was told {age:.1f} s ago: does nao_joint_states run?")
+        move, turn = transform.transform.translation, transform.transform.rotation
+        yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
+        return Place(move.x, move.y, 0.0 if yaw is None else yaw)
+
+    def place_in(self, frame: str, pose: PoseStamped, patience: float = PATIENCE) -> Place:
+        """A pose told in any frame, seen from above in another one.
+
+        Args:
+            frame: The frame to tell it in.
+            pose: Checked, see `read_place`. Its time counts as far back as /tf is known; without one it is the latest.
+            patience: s to wait for its frame.
+
+        Raises:
+            NaoError: If the frames are not connected.
+        """
+        origin = pose.header.frame_id.lstrip("/")
+        try:
+            transform = self._look_up(frame, origin, pose.header.stamp, patience)
+        except NaoError:
+            transform = self._look_up(frame, origin, rospy.Time(), patience)
+        move, turn = transform.transform.translation, transform.transform.rotation
+        frame_turn = (turn.x, turn.y, turn.z, turn.w)
+        point, own = pose.pose.position, pose.pose.orientation
+        x, y, _ = rotate(frame_turn, (point.x, point.y, point.z))
+        yaw = yaw_of_quaternion(*product(frame_turn, (own.x, own.y, own.z, own.w)))
+        return Place(x + move.x, y + move.y, 0.0 if yaw is None else yaw)
+
+    def inside(self, frame: str, outer: str) -> bool:
+        """Whether a frame hangs below another one, or is that frame itself."""
+        parents = yaml.safe_load(self._buffer.all_frames_as_yaml()) or {}
+        seen = set()
+        while frame != outer and isinstance(parents, dict) and frame in parents and frame not in seen:
+            seen.add(frame)
+            frame = str(parents[frame]["parent"])
+        return frame == outer
+
+    def _unchanged(self, child: str, frame: str, stamp: rospy.Time) -> float:
+        """For how long, in s of real time, old transforms with this stamp have been found."""
+        now = self._wall.now()
+        last, since = self._seen.get((child, frame), (None, now))
+        self._seen[child, frame] = (stamp, since if last == stamp else now)
+        return now - self._seen[child, frame][1]
+
+    def _look_up(self, frame: str, child: str, time: rospy.Time, patience: float) -> TransformStamped:
+        try:
+            return self._buffer.lookup_transform(frame, child, time, rospy.Duration.from_sec(patience))
+        except (tf2_ros.TransformException, tf2_ros.InvalidArgumentException) as error:
+            raise NaoError(f"{child} cannot be found in {frame}: {error}") from error
+
+
+def read_place(field: str, pose: PoseStamped) -> tuple[Place, str]:
+    """Place and frame of a pose, seen from above.
+
+    Args:
+        field: Name of the field, for texts.
+        pose: The message.
+
+    Raises:
+        BadGoal: If a number is none, the frame has no name or the orientation is no rotation.
+    """
+    frame = pose.header.frame_id.lstrip("/")
+    if not frame:
+        raise BadGoal(f"{field}.header.frame_id", frame, "the name of a frame, such as odom or base_footprint")
+    place = read_point(field, pose)
+    turn = pose.pose.orientation
+    yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
+    if yaw is None:
+        raise BadGoal(
+            f"{field}.pose.orientation", _text(turn), "a rotation; w: 1 and the others 0 heads along X of its frame"
+        )
+    return place._replace(yaw=yaw), frame
+
+
+def read_point(field: str, pose: PoseStamped) -> Place:
+    """The point of a pose, with heading 0.
+
+    Raises:
+        BadGoal: If a number is none.
+    """
+    point = pose.pose.position
+    place = Place(point.x, point.y, 0.0)
+    for name in ("x", "y"):
+        value = getattr(point, name)
+        if not abs(value) < float("inf"):
+            raise BadGoal(f"{field}.pose.position.{name}", value, "a finite number, in m")
+    return place
+
+
+def read_path(path: Path) -> tuple[list[Place], str]:
+    """Places and frame of a path. Only the last heading counts; without one it is that of the path.
+
+    Raises:
+        BadGoal: If a number is none, the frame has no name, or poses are in different frames.
+    """
+    frames = {pose.header.frame_id.lstrip("/") for pose in path.poses} - {""}
+    frame = path.header.frame_id.lstrip("/") or (min(frames) if frames else "")
+    if not frame:
+        raise BadGoal("path.header.frame_id", frame, "the name of a frame, such as odom or base_footprint")
+    if frames - {frame}:
+        raise BadGoal("path.poses", sorted(frames), f"all in the frame of the path, {frame}")
+    places = [read_point(f"path.poses[{index}]", pose) for index, pose in enumerate(path.poses)]
+    if places:
+        turn = path.poses[-1].pose.orientation
+        yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
+        before = next((place for place in reversed(places) if place.distance_to(places[-1]) > 0.0), places[-1])
+        along = math.atan2(places[-1].y - before.y, places[-1].x - before.x)
+        places[-1] = places[-1]._replace(yaw=along if yaw is None else yaw)
+    return places, frame
+
+
+def _text(turn: Quaternion) -> str:
+    return f"({turn.x:g}, {turn.y:g}, {turn.z:g}, {turn.w:g})"
+
+
+def pose_stamped(place: Place, frame: str, stamp: rospy.Time) -> PoseStamped:
+    """A place as a message."""
+    message = PoseStamped()
+    message.header.frame_id, message.header.stamp = frame, stamp
+    message.pose.position.x, message.pose.position.y = place.x, place.y
+    message.pose.orientation = level_quaternion(place.yaw)
+    return message
+
+
+def level_quaternion(yaw: float) -> Quaternion:
+    """A turn about Z."""
+    return Quaternion(*from_roll_pitch_yaw(0.0, 0.0, yaw))
+
+
+def tf_prefix() -> str:
+    """Prefix of the robot's frames, with its slash; empty without the parameter tf_prefix (searched upwards)."""
+    found = rospy.search_param("tf_prefix")
+    prefix = str(rospy.get_param(found)).strip("/") if found else ""
+    return f"{prefix}/" if prefix else ""

@@ -1,0 +1,147 @@
+"""The node teleop_nao_joy: a gamepad walks the robot, turns its head, and has it stand up and crouch."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import fields
+
+import rospy
+from sensor_msgs.msg import Joy
+
+from naoqi.errors import NaoError
+
+from ..clock import WallClock
+from ..health import Level, Report
+from ..interrupt import Interrupt
+from .joy_control import JoyControl, JoySettings, Request
+from .pacer import Pacer
+from .teleop_clients import TeleopClients
+
+DEFAULT_RATE = 10.0
+LOSE_LIMIT = 2.0
+
+
+class TeleopNaoJoy:
+    """Gamepad control. One button takes control and gives it back; without control nothing is sent.
+
+    A velocity is sent again and again while a stick is away from its rest, so that nao_walker does not take the
+    gamepad for lost, and once when it comes to rest. When the gamepad goes away, the robot stops.
+
+    ROS API (relative names):
+        Subscribes `joy` (sensor_msgs/Joy). The driver of gamepads, the node `joy_node` of the package `joy`, is not
+        packaged for Debian; it is for ROS Noetic, and builds from its sources.
+        Publishes and calls what `TeleopClients` has. Walking is inhibited at nao_walker, for every sender.
+        Parameters: the fields of `JoySettings`; `~motion_publish_rate` (10 Hz); `~joy_timeout` (0: none; s without a
+        message after which the robot stops. Only for gamepads whose node repeats itself: `~autorepeat_rate` of joy).
+    """
+
+    def __init__(self) -> None:
+        """Read the parameters and begin.
+
+        Raises:
+            NaoError: If a parameter is wrong.
+        """
+        self._control = JoyControl(read_settings())
+        rate = _number("~motion_publish_rate", rospy.get_param("~motion_publish_rate", DEFAULT_RATE), 0.1, 50.0)
+        self._timeout = _number("~joy_timeout", rospy.get_param("~joy_timeout", 0.0), 0.0, 3600.0)
+        self._wall = WallClock()
+        self._lock = threading.Lock()  # guards the three below
+        self._heard: float | None = None
+        self._moving = False
+        self._told_missing = False
+        self._clients = TeleopClients(lambda text: rospy.loginfo("%s", text))
+        self._interrupt = Interrupt()
+        self._joy = rospy.Subscriber("joy", Joy, self._on_joy, queue_size=10)
+        self._thread = threading.Thread(target=self._run, args=(1.0 / rate,), name="gamepad", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Send nothing any more; a robot that walks is stopped."""
+        self._interrupt.stop()
+        self._thread.join(LOSE_LIMIT)
+        with self._lock:
+            self._control.release()
+            try:
+                self._send()
+            except rospy.ROSException:
+                pass  # the topics are closed already; nao_walker stops by itself
+        self._clients.close()
+
+    def report(self) -> Report:
+        """Whether there is a gamepad, and whether it has control."""
+        values = {"control": "enabled" if self._control.enabled else "disabled"}
+        if not self._joy.get_num_connections():
+            return Report(Level.WARN, f"nobody publishes {self._joy.resolved_name}", values)
+        return Report(Level.OK, f"control is {values['control']}", values)
+
+    def _on_joy(self, message: Joy) -> None:
+        with self._lock:
+            self._heard = self._wall.now()
+            for request in self._control.update(message.axes, message.buttons):
+                self._carry_out(request)
+            if not self._told_missing:
+                self._told_missing = True
+                missing = self._control.missing()
+                if missing:
+                    rospy.logwarn("the gamepad does not have %s", ", ".join(missing))
+            if self._moving and self._control.velocity.is_zero:
+                self._send()  # a stop does not wait for its turn
+
+    def _carry_out(self, request: Request) -> None:
+        if request is Request.ENABLE:
+            self._clients.call("body_stiffness/enable", request.value)
+            self._clients.say("Gamepad control enabled")
+        elif request is Request.DISABLE:
+            self._clients.call("stop_walk_srv", request.value)
+            self._clients.say("Gamepad control disabled")
+        elif request is Request.CROUCH:
+            self._clients.take_pose(request.value, then="body_stiffness/disable")
+        else:
+            self._clients.take_pose(request.value)
+
+    def _run(self, period: float) -> None:
+        pacer = Pacer(self._wall, period, period / 2, self._interrupt)
+        while pacer.wait():
+            with self._lock:
+                if self._heard is not None and self._is_lost():
+                    rospy.logwarn("the gamepad went away")
+                    self._heard = None
+                    self._control.release()
+                self._send()
+
+    def _is_lost(self) -> bool:
+        silent = self._timeout > 0.0 and self._wall.now() - (self._heard or 0.0) > self._timeout
+        return silent or not self._joy.get_num_connections()
+
+    def _send(self) -> None:
+        """Send what has to be sent now; with the lock."""
+        velocity, head = self._control.velocity, self._control.head
+        if self._moving or not velocity.is_zero:
+            self._moving = not velocity.is_zero
+            self._clients.walk(velocity)
+        if head is not None:
+            self._clients.turn_head(head)
+
+
+def read_settings() -> JoySettings:
+    """The settings from the parameters of the node.
+
+    Raises:
+        NaoError: If one is wrong.
+    """
+    values = {}
+    for field in fields(JoySettings):
+        name, value = f"~{field.name}", rospy.get_param(f"~{field.name}", field.default)
+        if isinstance(field.default, int):
+            if isinstance(value, bool) or not isinstance(value, int) or value < -1:
+                raise NaoError(f"{name} is {value!r}: the number of an axis or button from 0, -1 for none")
+        else:
+            value = _number(name, value, 0.0, 1.0 if field.name.startswith("max_v") else 3.1416)
+        values[field.name] = value
+    return JoySettings(**values)
+
+
+def _number(name: str, value: object, lowest: float, highest: float) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not lowest <= value <= highest:
+        raise NaoError(f"{name} is {value!r}: {lowest:g} to {highest:g}")
+    return float(value)

@@ -1,0 +1,87 @@
+"""The node teleop_nao_keyboard: keys of a terminal walk the robot."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Sequence
+from typing import TextIO
+
+import rospy
+
+from .keyboard_control import KeyboardControl, Kind, Request
+from .teleop_clients import TeleopClients
+from .terminal_keys import TerminalKeys
+
+PERIOD = 0.1
+"""s of real time between two velocities while a key is held."""
+DEFAULT_POSES = ("init", "zero", "crouch")
+
+
+class TeleopNaoKeyboard:
+    """Keyboard control. Everything runs in the thread that calls `run`; only lines of text come from others.
+
+    While a key is held its velocity is sent ten times a second, and a standstill when it is released. Should this
+    program end in any other way, nao_walker stops the robot because the commands cease.
+
+    ROS API (relative names):
+        Publishes and calls what `TeleopClients` has.
+        Parameters `~poses` (init, zero, crouch; names for the keys 1, 2, ...), `~speed` (0.5: fraction of the top
+        speed to begin with).
+    """
+
+    def __init__(self, poses: Sequence[str], speed: float, out: TextIO = sys.stdout) -> None:
+        """Make the clients.
+
+        Args:
+            poses: Names of poses, for the keys 1, 2, ...
+            speed: Fraction of the top speed to begin with.
+            out: Where texts go.
+        """
+        self._control = KeyboardControl(poses, speed)
+        self._out = out
+        self._clients = TeleopClients(self._tell)
+        self._walking = False
+        self._actions: dict[Kind, Callable[[Request], None]] = {
+            Kind.STOP: self._stop,
+            Kind.POSE: lambda request: self._clients.take_pose(request.detail),
+            Kind.WAKE_UP: lambda request: self._clients.call("wakeup", "the robot is awake"),
+            Kind.REST: lambda request: self._clients.call("rest", "the robot rests"),
+            Kind.SPEED: lambda request: self._tell(request.detail),
+            Kind.HELP: lambda request: self._tell(self._control.help),
+            Kind.UNKNOWN: lambda request: self._tell(f"{request.detail!r} does nothing; h for help"),
+        }
+
+    def run(self, keys: TerminalKeys) -> None:
+        """Obey keys until one of them ends it, or the node ends."""
+        self._tell(self._control.help)
+        try:
+            while not rospy.is_shutdown():
+                for key in keys.read(PERIOD):
+                    request = self._control.press(key, time.monotonic())
+                    if request is None:
+                        continue
+                    if request.kind is Kind.QUIT:
+                        return
+                    self._actions[request.kind](request)
+                self._walk()
+        finally:
+            if self._walking and not rospy.is_shutdown():
+                self._clients.walk(self._control.velocity(float("inf")))
+            self._clients.close()
+
+    def _walk(self) -> None:
+        velocity = self._control.velocity(time.monotonic())
+        if self._walking or not velocity.is_zero:
+            self._walking = not velocity.is_zero
+            self._clients.walk(velocity)
+
+    def _stop(self, _: Request) -> None:
+        self._tell("stop")
+        self._walking = False
+        self._clients.walk(self._control.velocity(float("inf")))
+        self._clients.call("stop_walk_srv", "the robot stands")
+
+    def _tell(self, text: str) -> None:
+        self._out.write(text + "\n")
+        self._out.flush()

@@ -1,0 +1,119 @@
+"""What a walking robot can be told: a velocity, a target, a step. Messages become checked values. No ROS."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import BadGoal
+
+STANDSTILL = 1e-3
+"""A velocity below this (fraction of the top speed) in all directions is none."""
+LEGS = {0: "RLeg", 1: "LLeg"}
+"""Legs of nao_library_msgs/StepTarget, as ALMotion names them."""
+
+
+@dataclass(frozen=True)
+class Velocity:
+    """A walking velocity, as fractions (-1..1) of the top speed in the robot's frame.
+
+    Attributes:
+        x: Forward.
+        y: To the left.
+        theta: Turning, to the left.
+    """
+
+    x: float
+    y: float
+    theta: float
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether it means to stand."""
+        return max(abs(self.x), abs(self.y), abs(self.theta)) < STANDSTILL
+
+    def __str__(self) -> str:
+        return f"walking at ({self.x:.2f}, {self.y:.2f}, {self.theta:.2f}) of the top speed"
+
+
+@dataclass(frozen=True)
+class Target:
+    """A place to walk to, in the robot's frame: x and y in m, theta in rad."""
+
+    x: float
+    y: float
+    theta: float
+
+    def __str__(self) -> str:
+        return f"walking to ({self.x:.2f} m, {self.y:.2f} m, {self.theta:.2f} rad)"
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: a leg, and where its foot goes in the frame of the other foot, x and y in m, theta in rad."""
+
+    leg: str
+    x: float
+    y: float
+    theta: float
+
+    def __str__(self) -> str:
+        return f"the step of {self.leg} by ({self.x:.3f} m, {self.y:.3f} m, {self.theta:.2f} rad)"
+
+
+def read_velocity(twist: Any) -> tuple[Velocity, str]:
+    """The velocity of a geometry_msgs/Twist, each part clamped to -1..1.
+
+    Args:
+        twist: The message; its linear.x, linear.y and angular.z are fractions of the top speed.
+
+    Returns:
+        The velocity, and which parts were clamped, in words (empty: none).
+
+    Raises:
+        BadGoal: If a part is not a finite number.
+    """
+    clamped = []
+    values = []
+    for name, value in (
+        ("linear.x", twist.linear.x),
+        ("linear.y", twist.linear.y),
+        ("angular.z", twist.angular.z),
+    ):
+        _check_finite(name, value, "-1 to 1")
+        if abs(value) > 1.0:
+            clamped.append(f"{name} is {value:g}, taken as {math.copysign(1.0, value):g}")
+        values.append(max(-1.0, min(1.0, value)))
+    return Velocity(*values), ", ".join(clamped)
+
+
+def read_target(pose: Any) -> Target:
+    """The target of a geometry_msgs/Pose2D.
+
+    Raises:
+        BadGoal: If a part is not a finite number.
+    """
+    return Target(*_pose(pose))
+
+
+def read_step(step: Any) -> Step:
+    """The step of a nao_library_msgs/StepTarget.
+
+    Raises:
+        BadGoal: If it names no leg, or a part is not a finite number.
+    """
+    if step.leg not in LEGS:
+        raise BadGoal("leg", step.leg, "0 (right) or 1 (left)")
+    return Step(LEGS[step.leg], *_pose(step.pose))
+
+
+def _pose(pose: Any) -> tuple[float, float, float]:
+    for name, unit in (("x", "m"), ("y", "m"), ("theta", "rad")):
+        _check_finite(f"pose.{name}", getattr(pose, name), f"a finite number, in {unit}")
+    return float(pose.x), float(pose.y), float(pose.theta)
+
+
+def _check_finite(name: str, value: float, allowed: str) -> None:
+    if not math.isfinite(value):
+        raise BadGoal(name, value, allowed)

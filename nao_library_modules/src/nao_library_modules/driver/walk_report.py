@@ -1,0 +1,104 @@
+"""What nao_walker has to tell: complaints for the log, and its line of diagnostics."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Sequence
+
+from ..health import Level, Report
+
+log = logging.getLogger(__name__)
+
+COMPLAINT_PERIOD = 5.0
+"""s of real time from one complaint to the next about the same thing."""
+
+
+class WalkJournal:
+    """Remembers commands and failures. Every method may be called from any thread."""
+
+    def __init__(self) -> None:
+        """Begin with nothing."""
+        self._lock = threading.Lock()
+        self._complained: dict[str, float] = {}
+        self._command = ""
+        self._commanded_at = 0.0
+        self._failures = 0
+        self._last_failure = ""
+        self._failing = False
+
+    def commanded(self, source: str, now: float) -> None:
+        """A command was taken.
+
+        Args:
+            source: Where it came from.
+            now: Time in s.
+        """
+        with self._lock:
+            self._command, self._commanded_at = source, now
+
+    def succeeded(self) -> None:
+        """The robot carried a command out."""
+        with self._lock:
+            self._failing = False
+
+    def failed(self, name: str, error: BaseException) -> None:
+        """A command failed or was refused; the log tells it, but not all the time.
+
+        Args:
+            name: Topic or service.
+            error: Why.
+        """
+        with self._lock:
+            self._failures += 1
+            self._failing = True
+            self._last_failure = f"{name}: {error}"
+        if self._is_due(f"{name} failed"):
+            log.error("%s: %s", name, error)
+
+    def warn(self, key: str, text: str) -> None:
+        """Put a warning into the log, but not all the time.
+
+        Args:
+            key: What it is about.
+            text: The warning.
+        """
+        if self._is_due(key):
+            log.warning("%s", text)
+
+    def report(self, now: float, doing: str, active: bool | None, owners: Sequence[str], watchdog_stops: int) -> Report:
+        """The line of diagnostics.
+
+        Args:
+            now: Time in s.
+            doing: What the node has the robot do.
+            active: Whether the robot says that it walks; None if it was not asked.
+            owners: Who inhibits walking.
+            watchdog_stops: How often the watchdog stopped it.
+        """
+        with self._lock:
+            age = f"{now - self._commanded_at:.1f}" if self._command else ""
+            values = {
+                "commanded": doing,
+                "robot": {None: "unknown", True: "walks", False: "stands"}[active],
+                "inhibited by": ", ".join(owners),
+                "last command": self._command,
+                "last command (s ago)": age,
+                "stopped because commands ceased": str(watchdog_stops),
+                "commands that failed": str(self._failures),
+                "last failure": self._last_failure,
+            }
+            failing = self._failing
+        message = values["robot"] + (f", inhibited by {values['inhibited by']}" if owners else "")
+        if failing:
+            return Report(Level.WARN, f"{message}; {values['last failure']}", values)
+        return Report(Level.OK, message, values)
+
+    def _is_due(self, key: str) -> bool:
+        now = time.monotonic()
+        with self._lock:
+            due = now - self._complained.get(key, now - 2 * COMPLAINT_PERIOD) >= COMPLAINT_PERIOD
+            if due:
+                self._complained[key] = now
+            return due

@@ -1,0 +1,319 @@
+"""Passes orders to walk on to ALMotion: the newest wins, and no caller waits for the robot. No ROS."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import logging
+import threading
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from naoqi.errors import NaoError, RobotUnreachable
+
+from ..clock import WallClock
+from ..errors import Preempted
+from ..interrupt import Interrupt
+from ..joint_names import MOTION
+from .gait_config import GaitConfig
+from .joint_controller import QUICK_LIMIT
+from .robot_task import run_task
+from .walk_commands import Step, Target, Velocity
+from .walk_orders import Command, Order, OrderBox, Stop, WalkEnded
+from .walk_pace import WalkPace
+from .walk_watchdog import WalkWatchdog
+
+log = logging.getLogger(__name__)
+
+STEP_TIME = 0.5
+"""s that a step takes."""
+NOT_THERE = "the robot did not get there; another client or a protection of the robot stopped it"
+STANDS, CLOSED = "nothing", "the node ends"
+
+
+class Walker:
+    """The one thread through which walking commands reach the robot.
+
+    Orders come from any thread, as fast as they like. This thread takes the newest, keeps the pace, and starts what
+    takes its time without waiting for the end: so a newer order always gets through. Ends are noted in threads of the
+    proxy layer. The lock guards `_running`, `_doing` and `_owes_stop`; what else changes belongs to the one thread.
+
+    Attributes:
+        frequency: Step frequency of velocities, 0 to 1.
+        gait: Further gait parameters.
+        needs_walk_pose: Whether the next walk begins with the pose for walking (ALMotion.moveInit).
+        watchdog_stops: How often commands ceased and the robot was told to stop.
+    """
+
+    def __init__(self, robot: Any, clock: Any, cmd_vel_timeout: float) -> None:
+        """Start; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            clock: Tells when commands have ceased.
+            cmd_vel_timeout: s after which a watched velocity that is not renewed ends; 0: never.
+        """
+        self.frequency = 1.0
+        self.gait: GaitConfig = []
+        self.needs_walk_pose = False
+        self.watchdog_stops = 0
+        self._robot = robot
+        self._clock = clock
+        self._wall = WallClock()
+        self._watchdog = WalkWatchdog(cmd_vel_timeout)
+        self._box = OrderBox()
+        self._news, self._halt = Interrupt(), Interrupt()
+        self._closed = threading.Event()
+        self._lock = threading.Lock()
+        self._running: list[Order] = []
+        self._doing = STANDS
+        self._owes_stop = False
+        self._pace = WalkPace()
+        robot.connection.add_listener(self._connection_changed)
+        self._thread = threading.Thread(target=self._run, name="walker", daemon=True)
+        self._thread.start()
+
+    @property
+    def doing(self) -> str:
+        """What it does at the moment, as far as its orders tell."""
+        with self._lock:
+            return self._doing
+
+    def order(self, command: Command, source: str, watched: bool = False, to_the_end: bool = False) -> Order:
+        """Have something done, instead of what is done now. Returns at once; `answer` of the order tells how it ends.
+
+        Args:
+            command: What to do.
+            source: Where the command came from, for texts.
+            watched: Whether a velocity ends when it is not renewed in time.
+            to_the_end: Whether a step counts as carried out when it is made, and not when the robot has taken it.
+        """
+        order = Order(command, source, watched, to_the_end, self._clock.now())
+        if self._closed.is_set():
+            order.overtaken(CLOSED)
+        else:
+            self._put(order)
+        return order
+
+    def close(self, limit: float) -> None:
+        """Stop the walk, wait until the robot stands, and take no orders any more.
+
+        Args:
+            limit: s of real time to wait for it.
+        """
+        self._robot.connection.remove_listener(self._connection_changed)
+        self._closed.set()
+        last = Order(Stop(), CLOSED)
+        self._put(last)
+        try:
+            last.answer.result(limit)
+        except NaoError as error:
+            log.warning("the walk cannot be stopped: %s", error)
+        except concurrent.futures.TimeoutError:
+            log.warning("the robot does not stand after %g s", limit)
+        self._news.stop()
+        self._thread.join(QUICK_LIMIT)
+
+    def _put(self, order: Order) -> None:
+        self._box.put(order)
+        if order.halts:
+            self._halt.trigger()
+        self._news.trigger()
+
+    # --- the thread -----------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        while True:
+            self._news.clear()
+            if self._closed.is_set() and self._box.first is None:
+                return
+            try:
+                self._turn()
+            except Exception:  # a mistake in here must not leave a robot that nobody can stop
+                log.exception("an order to walk failed")
+
+    def _turn(self) -> None:
+        """One thing: carry out the order whose turn it is, or wait for news."""
+        order = self._box.first
+        if order is not None:
+            hasty = order.halts or isinstance(order.command, Step)
+            pause = 0.0 if hasty else self._pace.pause(self._wall.now())
+            if pause > 0.0:
+                self._news.wait(pause)
+            else:
+                self._carry_out(self._box.take())
+            return
+        left = self._watchdog.left(self._clock.now())
+        if left is None:
+            self._news.wait(threading.TIMEOUT_MAX)
+        elif left > 0.0:
+            self._clock.wait(left, self._news)
+        else:
+            self._stop_by_watchdog()
+
+    def _stop_by_watchdog(self) -> None:
+        self.watchdog_stops += 1
+        log.warning("no command on cmd_vel for %g s: the robot is told to stop", self._watchdog.limit)
+        stop = Order(Stop(), "the end of the commands on cmd_vel")
+        stop.answer.add_done_callback(_log_failure)
+        self._carry_out(stop)
+
+    def _carry_out(self, order: Order) -> None:
+        start: dict[type, Callable[[Order, Any], None]] = {
+            Velocity: self._steer,
+            Target: self._go_to,
+            Step: self._step,
+            Stop: self._stop,
+        }
+        try:
+            start[type(order.command)](order, order.command)
+        except Preempted:
+            order.stopped_by = "an order to stand"
+            self._ended(order)
+        except NaoError as error:
+            self._ended(order, error)
+        except Exception as error:
+            self._ended(order, NaoError(f"unexpected error: {error!r}"))
+            raise
+
+    def _steer(self, order: Order, velocity: Velocity) -> None:
+        # Only of a stream of velocities the same ones may be left out: who commands once wants an answer of the robot.
+        if not self._pace.is_news(velocity, self._wall.now()) and order.watched:
+            if not order.halts:
+                self._watchdog.feed(order.arrived)
+            order.succeed()
+            return
+        # Noted before it is sent: what the robot refuses is not sent again with each message.
+        self._begin(order, velocity)
+        if order.halts:
+            self._quick("moveToward", 0.0, 0.0, 0.0)
+        else:
+            self._take_walk_pose()
+            if order.watched:
+                self._watchdog.feed(order.arrived)  # also if the call fails: the robot may have got it
+            config = [["Frequency", self.frequency], *self.gait]
+            self._quick("moveToward", velocity.x, velocity.y, velocity.theta, config)
+        order.succeed()
+
+    def _go_to(self, order: Order, target: Target) -> None:
+        self._begin(order)
+        self._take_walk_pose()
+        config = [self.gait] if self.gait else []
+        call = self._start("moveTo", target.x, target.y, target.theta, *config)
+        call.add_done_callback(partial(self._walked, order))
+
+    def _step(self, order: Order, step: Step) -> None:
+        self._begin(order)
+        self._take_walk_pose()
+        self._quick("setFootSteps", [step.leg], [[step.x, step.y, step.theta]], [STEP_TIME], False)
+        if order.to_the_end:
+            self._start("waitUntilMoveIsFinished").add_done_callback(partial(self._walked, order))
+        else:
+            order.succeed()
+
+    def _stop(self, order: Order, _: Stop) -> None:
+        old = self._begin(order)
+        stopping = self._start("stopMove")
+        # Robots differ in whether stopMove waits for both feet to be down.
+        standing = self._start("waitUntilMoveIsFinished")
+        stopping.add_done_callback(lambda call: self._stopped(order, old, call, standing))
+        standing.add_done_callback(lambda call: self._stopped(order, old, call, stopping))
+
+    def _begin(self, order: Order, velocity: Velocity | None = None) -> list[Order]:
+        """Note what is done from now on. What was done before ends: at once, or if it is stopped when the robot stands.
+
+        Args:
+            order: What is done. Steps add up, everything else replaces what was before.
+            velocity: The velocity that the robot gets.
+
+        Returns:
+            What is being stopped.
+        """
+        self._watchdog.rest()
+        self._pace.sent(velocity, self._wall.now())
+        with self._lock:
+            before = [old for old in self._running if not old.answer.done()]
+            steps = [old for old in before if isinstance(order.command, Step) and isinstance(old.command, Step)]
+            self._running = [*steps, order]
+            self._doing = STANDS if order.halts else str(order.command)
+        ending = [old for old in before if old not in steps]
+        if isinstance(order.command, Stop):
+            for old in ending:
+                old.stopped_by = order.source
+            return ending
+        for old in ending:
+            old.overtaken(f"{order.source} came after it")
+        return []
+
+    def _take_walk_pose(self) -> None:
+        """Take the pose for walking if it has to be taken; an order to halt interrupts it."""
+        if not self.needs_walk_pose:
+            return
+        self._halt.clear()
+        if self._box.halts:
+            self._halt.trigger()
+        run_task(self._start("moveInit"), self._halt, lambda: self._quick("stopMove"))
+        self.needs_walk_pose = False
+
+    def _start(self, method: str, *arguments: Any) -> Any:
+        call = self._robot.proxy(MOTION).call_async(method, *arguments)
+        with self._lock:
+            self._owes_stop = False  # the newest order gets through
+        return call
+
+    def _quick(self, method: str, *arguments: Any) -> Any:
+        return self._start(method, *arguments).result(timeout=QUICK_LIMIT)
+
+    # --- ends, in threads of the proxy layer, which must not wait -----------------------------------------------
+
+    def _walked(self, order: Order, call: Any) -> None:
+        """A walk ended."""
+        try:
+            arrived = call.result(timeout=0)
+        except NaoError as error:
+            self._ended(order, error)
+            return
+        if arrived is None or arrived is True:  # robots differ in whether they tell
+            self._ended(order, arrived=arrived is True)
+        else:
+            self._ended(order, WalkEnded(order.command, NOT_THERE))
+
+    def _stopped(self, order: Order, old: list[Order], call: Any, other: Any) -> None:
+        """One of the two calls of a stop ended."""
+        try:
+            call.result(timeout=0)
+        except NaoError as error:
+            self._ended(order, error)
+            return
+        if other.done():
+            for stopped in old:
+                self._ended(stopped)
+            self._ended(order)
+
+    def _ended(self, order: Order, error: NaoError | None = None, arrived: bool = False) -> None:
+        with self._lock:
+            if isinstance(error, RobotUnreachable) and order.halts:
+                self._owes_stop = True
+            if order in self._running:
+                self._running.remove(order)
+                self._doing = self._doing if self._running else STANDS
+        if order.stopped_by and not arrived and not isinstance(order.command, Stop):
+            order.overtaken(f"{order.stopped_by} stopped it")
+        elif error is not None:
+            order.fail(error)
+        else:
+            order.succeed()
+
+    def _connection_changed(self, *_: Any) -> None:
+        """Called from the thread that the connection has for its listeners."""
+        with self._lock:
+            owed = self._owes_stop
+        if owed and self._robot.connection.state == "connected":
+            stop = self.order(Stop(), "the return of the robot, which was to stop,")
+            stop.answer.add_done_callback(_log_failure)
+
+
+def _log_failure(answer: Any) -> None:
+    error = answer.exception()
+    if error is not None and not isinstance(error, WalkEnded):
+        log.error("the robot cannot be stopped: %s", error)

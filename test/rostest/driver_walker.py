@@ -1,0 +1,345 @@
+#!/usr/bin/env python3
+"""Walking under the names of nao_robot: velocities and their watchdog, targets, steps, stop, inhibition, the end."""
+
+import math
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+import unittest
+
+import rospkg
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Pose2D, Twist
+from rospy import Duration
+from std_srvs.srv import Empty
+
+from nao_library_msgs.msg import StepTarget
+from nao_library_msgs.srv import (
+    CmdPoseService,
+    CmdVelService,
+    SetArmsEnabled,
+    StepTargetService,
+)
+from nao_sim_bridge.testing import SimulatedRobot, wait_until
+
+LIMIT = 60.0
+"""Wall time to wait for something, s."""
+TIMEOUT = 0.5
+"""The driver's ~cmd_vel_timeout, s."""
+HALT = 4.0
+"""s that a walking robot takes to stand at most."""
+
+
+def velocity(x=0.0, y=0.0, turn=0.0):
+    twist = Twist()
+    twist.linear.x, twist.linear.y, twist.angular.z = x, y, turn
+    return twist
+
+
+class DriverWalker(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.motion = cls.robot.module("ALMotion")
+        cls.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
+        cls.cmd_pose = rospy.Publisher("cmd_pose", Pose2D, queue_size=1, tcp_nodelay=True)
+        cls.cmd_step = rospy.Publisher("cmd_step", StepTarget, queue_size=10, tcp_nodelay=True)
+        for publisher in (cls.cmd_vel, cls.cmd_pose, cls.cmd_step):
+            wait_until(lambda p=publisher: p.get_num_connections() > 0, LIMIT, f"subscriber of {publisher.name}")
+        cls.stop = cls.service("stop_walk_srv", Empty)
+        cls.walk_to = cls.service("cmd_pose_srv", CmdPoseService)
+        wait_until(lambda: cls.answers(cls.stop), LIMIT, "nao_walker and the robot")
+
+    @staticmethod
+    def service(name, kind):
+        rospy.wait_for_service(name, 30.0)
+        return rospy.ServiceProxy(name, kind)
+
+    @staticmethod
+    def answers(service):
+        try:
+            service()
+        except rospy.ServiceException:
+            return False
+        return True
+
+    def setUp(self):
+        self.stop()
+        self.robot.reset()
+        self.motion.wakeUp()
+
+    def where(self):
+        """x, y (m) and heading (rad) of the torso, in world, as they really are."""
+        pose = self.robot.true_pose()
+        turn = pose.orientation
+        heading = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y**2 + turn.z**2))
+        return pose.position.x, pose.position.y, heading
+
+    def forward(self):
+        return self.where()[0]
+
+    def upright(self):
+        return self.robot.true_pose().position.z > 0.28
+
+    def publishing(self, twist, period=0.1):
+        """Send a velocity again and again, in simulated time, until the returned timer is shut down."""
+        timer = rospy.Timer(Duration.from_sec(period), lambda _: self.cmd_vel.publish(twist))
+        self.addCleanup(timer.shutdown)
+        return timer
+
+    def in_thread(self, call, *arguments):
+        """Call a service in a thread; the list gets the text of its error, or an empty one."""
+        ends = []
+
+        def run():
+            try:
+                call(*arguments)
+                ends.append("")
+            except rospy.ServiceException as error:
+                ends.append(str(error))
+
+        thread = threading.Thread(target=run, daemon=True)
+        thread.start()
+        return thread, ends
+
+    def wait_for_walk(self, active=True):
+        wait_until(lambda: self.motion.moveIsActive() is active, LIMIT, "a walk" if active else "the end of the walk")
+
+    # --- velocities -----------------------------------------------------------------------------------------------
+
+    def test_a_velocity_walks_and_the_watchdog_stops_it(self):
+        timer = self.publishing(velocity(x=0.8))
+        wait_until(lambda: self.forward() > 0.15, LIMIT, "15 cm of walk")
+        with self.robot.at_speed(1.0):
+            timer.shutdown()
+            ceased = rospy.get_time()
+            self.wait_for_walk(active=False)
+            took = rospy.get_time() - ceased
+        print(f"stands {took:.2f} s after the last command")
+        self.assertGreater(took, TIMEOUT - 0.2)
+        self.assertLess(took, TIMEOUT + HALT)
+        x, y, _ = self.where()
+        self.robot.advance(2.0)
+        self.assertAlmostEqual(self.where()[0], x, delta=0.01)
+        self.assertAlmostEqual(y, 0.0, delta=0.08)
+        self.assertTrue(self.upright())
+
+    def test_every_direction_is_that_of_the_message(self):
+        for twist, part, sign in (
+            (velocity(x=-0.8), 0, -1.0),
+            (velocity(y=0.8), 1, 1.0),
+            (velocity(turn=-0.8), 2, -1.0),
+        ):
+            start = self.where()[part]
+            timer = self.publishing(twist)
+            wait_until(lambda s=start, p=part, g=sign: g * (self.where()[p] - s) > 0.08, LIMIT, str(twist))
+            timer.shutdown()
+            self.wait_for_walk(active=False)
+
+    def test_velocities_at_fifty_hertz_do_not_pile_up(self):
+        dice = random.Random(1)
+
+        def send_another(_):
+            self.cmd_vel.publish(velocity(dice.uniform(-0.3, 0.6), dice.uniform(-0.4, 0.4), dice.uniform(-0.3, 0.3)))
+
+        timer = rospy.Timer(Duration.from_sec(0.02), send_another)
+        self.addCleanup(timer.shutdown)
+        self.robot.advance(4.0)
+        self.wait_for_walk()
+        timer.shutdown()
+        timer.join()
+        with self.robot.at_speed(1.0):
+            self.cmd_vel.publish(velocity())
+            halted = rospy.get_time()
+            self.wait_for_walk(active=False)
+            self.assertLess(rospy.get_time() - halted, HALT)
+        self.assertTrue(self.upright())
+
+    def test_a_velocity_of_the_service_lasts_until_the_next_command(self):
+        self.service("cmd_vel_srv", CmdVelService)(velocity(x=0.5))
+        self.wait_for_walk()
+        self.robot.advance(4 * TIMEOUT)
+        self.assertTrue(self.motion.moveIsActive())
+        self.cmd_vel.publish(velocity())
+        self.wait_for_walk(active=False)
+
+    def test_bad_velocities(self):
+        self.cmd_vel.publish(velocity(x=float("nan")))
+        with self.assertRaisesRegex(rospy.ServiceException, "linear.y: inf is not allowed: -1 to 1"):
+            self.service("cmd_vel_srv", CmdVelService)(velocity(y=float("inf")))
+        self.robot.advance(1.0)
+        self.assertFalse(self.motion.moveIsActive())
+        self.cmd_vel.publish(velocity(x=7.0))  # taken as 1
+        self.wait_for_walk()
+
+    def test_gait_parameters_and_the_pose_for_walking(self):
+        read, needs_pose = self.service("read_foot_gait_config_srv", Empty), "needs_start_walk_pose_srv"
+        for name, value in (
+            ("use_foot_gait_config", True),
+            ("foot_gait_config", {"MaxStepX": 0.03}),
+            ("use_walk_pose", True),
+        ):
+            rospy.set_param(f"nao_walker/{name}", value)
+            self.addCleanup(rospy.delete_param, f"nao_walker/{name}")
+        read()
+        self.service(needs_pose, Empty)()
+        self.walk_to(Pose2D(0.1, 0.0, 0.0))
+        self.assertAlmostEqual(self.forward(), 0.1, delta=0.03)
+        rospy.set_param("nao_walker/foot_gait_config", {"MaxStepsX": 0.03})
+        self.addCleanup(read)
+        self.addCleanup(rospy.set_param, "nao_walker/foot_gait_config", {})
+        read()
+        with self.assertRaisesRegex(rospy.ServiceException, "MaxStepsX.*MaxStepX"):
+            self.walk_to(Pose2D(0.1, 0.0, 0.0))
+        rospy.set_param("nao_walker/foot_gait_config", "fast")
+        with self.assertRaisesRegex(rospy.ServiceException, "foot_gait_config is 'fast'"):
+            read()
+
+    # --- targets and steps ----------------------------------------------------------------------------------------
+
+    def test_a_target_is_reached(self):
+        self.walk_to(Pose2D(0.3, 0.1, 0.5))
+        x, y, heading = self.where()
+        print(f"target (0.3, 0.1, 0.5): {x:.3f} m, {y:.3f} m, {heading:.3f} rad")
+        self.assertFalse(self.motion.moveIsActive())
+        self.assertAlmostEqual(x, 0.3, delta=0.05)
+        self.assertAlmostEqual(y, 0.1, delta=0.05)
+        self.assertAlmostEqual(heading, 0.5, delta=0.15)
+
+    def test_a_stop_overtakes_a_target(self):
+        thread, ends = self.in_thread(self.walk_to, Pose2D(3.0, 0.0, 0.0))
+        wait_until(lambda: self.forward() > 0.05, LIMIT, "5 cm of walk")
+        with self.robot.at_speed(1.0):
+            asked = rospy.get_time()
+            self.stop()
+            self.assertLess(rospy.get_time() - asked, HALT)
+        self.assertFalse(self.motion.moveIsActive())
+        thread.join(10.0)
+        self.assertIn(f"stop_walk_srv from {rospy.get_name()} stopped it", ends[0])
+        self.assertTrue(self.upright())
+
+    def test_targets_of_the_topic_are_replaced_by_newer_ones(self):
+        thread, ends = self.in_thread(self.walk_to, Pose2D(3.0, 0.0, 0.0))
+        wait_until(lambda: self.forward() > 0.05, LIMIT, "5 cm of walk")
+        self.cmd_pose.publish(Pose2D(0.0, 0.0, 0.6))
+        thread.join(10.0)
+        self.assertIn("cmd_pose", ends[0])
+        wait_until(lambda: self.where()[2] > 0.3, LIMIT, "a turn")
+        self.wait_for_walk(active=False)
+        self.assertLess(self.forward(), 0.4)
+
+    def test_bad_targets_move_nothing(self):
+        with self.assertRaisesRegex(rospy.ServiceException, "pose.x: nan is not allowed: a finite number, in m"):
+            self.walk_to(Pose2D(float("nan"), 0.0, 0.0))
+        with self.assertRaisesRegex(rospy.ServiceException, "leg"):
+            self.service("cmd_step_srv", StepTargetService)(StepTarget(Pose2D(0.0, 0.1, 0.0), 2))
+        self.assertFalse(self.motion.moveIsActive())
+
+    def test_limp_legs_are_told(self):
+        self.motion.rest()
+        with self.assertRaisesRegex(rospy.ServiceException, "ALMotion.moveTo failed"):
+            self.walk_to(Pose2D(0.3, 0.0, 0.0))
+
+    def test_steps(self):
+        step = self.service("cmd_step_srv", StepTargetService)
+        start = self.motion.getRobotPosition(True)[0]
+        step(StepTarget(Pose2D(0.04, 0.1, 0.0), StepTarget.left))
+        self.assertFalse(self.motion.moveIsActive())
+        self.assertAlmostEqual(self.motion.getRobotPosition(True)[0] - start, 0.02, delta=0.01)
+        before = self.motion.getRobotPosition(True)[0]
+        for n in range(4):
+            leg = n % 2  # 0 is the right one
+            self.cmd_step.publish(StepTarget(Pose2D(0.04, 0.1 if leg else -0.1, 0.0), leg))
+        wait_until(lambda: self.motion.getRobotPosition(True)[0] - before > 0.1, LIMIT, "four steps")
+        self.wait_for_walk(active=False)
+        self.assertTrue(self.upright())
+
+    def test_arms_swing_as_asked(self):
+        self.service("enable_arms_walking_srv", SetArmsEnabled)(False, True)
+        self.addCleanup(self.motion.setMoveArmsEnabled, True, True)
+        self.assertEqual([self.motion.getMoveArmsEnabled(arm) for arm in ("LArm", "RArm")], [False, True])
+
+    # --- inhibition -----------------------------------------------------------------------------------------------
+
+    def call_as_another(self, name):
+        subprocess.run(["rosservice", "call", rospy.resolve_name(name)], check=True, timeout=30.0)
+
+    def test_inhibition_stops_the_walk_and_refuses_commands(self):
+        self.publishing(velocity(x=0.8))
+        self.wait_for_walk()
+        self.call_as_another("inhibit_walk")
+        self.assertFalse(self.motion.moveIsActive())
+        self.robot.advance(1.0)  # with velocities coming all the time
+        self.assertFalse(self.motion.moveIsActive())
+        with self.assertRaisesRegex(rospy.ServiceException, "walking is inhibited by /rosservice"):
+            self.walk_to(Pose2D(0.3, 0.0, 0.0))
+        self.service("uninhibit_walk", Empty)()
+        self.wait_for_walk()
+
+    def test_whoever_inhibits_walks(self):
+        inhibit, uninhibit = self.service("inhibit_walk", Empty), self.service("uninhibit_walk", Empty)
+        inhibit()
+        self.walk_to(Pose2D(0.1, 0.0, 0.0))
+        self.assertGreater(self.forward(), 0.05)
+        uninhibit()
+        with self.assertRaisesRegex(rospy.ServiceException, "not inhibited"):
+            uninhibit()
+
+    def test_the_example_walks_a_square_and_comes_back(self):
+        path = rospkg.RosPack().get_path("nao_library_modules") + "/examples/walk_square.py"
+        command = [sys.executable, path, "--side", "0.3"]
+        ended = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=3 * LIMIT)
+        self.assertEqual(ended.returncode, 0, ended.stdout)
+        print(ended.stdout)
+        self.assertEqual(ended.stdout.count("corner"), 4)
+        x, y, heading = self.where()
+        self.assertAlmostEqual(x, 0.0, delta=0.08)
+        self.assertAlmostEqual(y, 0.0, delta=0.08)
+        self.assertAlmostEqual(heading, 0.0, delta=0.2)
+
+    # --- the node -------------------------------------------------------------------------------------------------
+
+    def test_diagnostics_tell_what_it_does(self):
+        self.publishing(velocity(x=0.5))
+        self.wait_for_walk()
+
+        def status():
+            message = rospy.wait_for_message("/diagnostics", DiagnosticArray, 10.0)
+            found = [one for one in message.status if one.name == "nao_walker: walk"]
+            return {pair.key: pair.value for pair in found[0].values} if found else {}
+
+        wait_until(lambda: status().get("robot") == "walks", LIMIT, "diagnostics of a walk")
+        wait_until(lambda: status().get("commanded", "").startswith("walking at (0.50"), LIMIT, "its velocity")
+
+    def test_the_end_of_the_node_stops_the_walk(self):
+        program = rospkg.RosPack().get_path("nao_library_modules") + "/nodes/nao_walker"
+        command = [sys.executable, program, "--pport", str(self.robot.port), "__ns:=second", "_cmd_vel_timeout:=0"]
+        node = subprocess.Popen(command, env=dict(os.environ))
+        self.addCleanup(node.kill)
+        rospy.wait_for_service("second/cmd_vel_srv", 30.0)
+        walk = rospy.ServiceProxy("second/cmd_vel_srv", CmdVelService)
+        wait_until(lambda: self.in_reach(walk), LIMIT, "the second node and the robot")
+        self.wait_for_walk()
+        wait_until(lambda: self.forward() > 0.05, LIMIT, "5 cm of walk")
+        node.send_signal(signal.SIGINT)
+        node.wait(LIMIT)
+        self.assertFalse(self.motion.moveIsActive())
+        self.assertTrue(self.upright())
+
+    @staticmethod
+    def in_reach(walk):
+        try:
+            walk(velocity(x=0.6))
+        except rospy.ServiceException:
+            return False
+        return True
+
+
+if __name__ == "__main__":
+    rospy.init_node("driver_walker_test")
+    rostest.rosrun("nao_library_tests", "driver_walker", DriverWalker)
