@@ -2,8 +2,8 @@
 """Plays a demonstration on a simulated NAO and checks every step against what the robot reports.
 
 Starts simulator and action servers on a ROS master of its own, wakes the robot up, sends the lights through their paces
-as goals, and leaves pictures, a table and the log of the stack in the output folder. The exit status tells whether all
-of it went as asked.
+as goals, has it walk to a table meanwhile, and leaves pictures, a table and the log of the stack in the output folder.
+The exit status tells whether all of it went as asked.
 """
 
 from __future__ import annotations
@@ -24,6 +24,11 @@ EYE_ANGLES = tuple(range(0, 360, 45))
 EYES = ("LeftFaceLeds", "RightFaceLeds")
 START_LIMIT = 60.0
 STEP_LIMIT = 30.0
+WORLD = "lab"
+# m. The near edge of the table is 0.6 m ahead of where the robot starts.
+TO_THE_TABLE = 0.45
+# m: nearer to what the sonars see than a walk comes by itself, 0.4 m.
+NEAR, USUAL = 0.15, 0.4
 # Pixels of the green eyes in a front view of 640 x 480; without them there are none.
 MIN_GREEN_PIXELS = 150
 
@@ -38,6 +43,7 @@ class Step:
         during: Device name -> intensity while the last function waits; nothing to check when empty.
         after: Device name -> intensity when the goal has ended.
         picture: View to take while the last function waits, or after the goal; no picture when empty.
+        walking: Whether the robot walks to the table meanwhile.
     """
 
     title: str
@@ -45,6 +51,7 @@ class Step:
     during: Mapping[str, float] = field(default_factory=dict)
     after: Mapping[str, float] = field(default_factory=dict)
     picture: str = ""
+    walking: bool = False
 
 
 def eye_devices(red: float, green: float, blue: float) -> dict[str, float]:
@@ -81,7 +88,7 @@ def steps() -> list[Step]:
             picture="front",
         ),
         Step(
-            "show: rasta, random and turning eyes, ears, fades",
+            "show while it walks: rasta, random and turning eyes, ears, fades",
             [
                 {"function": "rasta", "duration": 1.2},
                 {"function": "randomEyes", "duration": 1.0},
@@ -99,6 +106,7 @@ def steps() -> list[Step]:
             ],
             after={**eye_devices(0, 1, 1), **chest, "Head/Led/Middle/Left/0": 0.2, "LFoot/Led/Blue": 1.0},
             picture="three_quarter",
+            walking=True,
         ),
         Step(
             "everything off, then back to the default",
@@ -121,7 +129,7 @@ class Stack:
         os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{self.ros_port}"
         self.log = output / "stack.log"
         command = ["roslaunch", "--port", str(self.ros_port), "nao_library", "nao_sim.launch"]
-        command += [f"nao_port:={self.nao_port}", f"record_dir:={output}"]
+        command += [f"nao_port:={self.nao_port}", f"record_dir:={output}", f"world:={WORLD}"]
         with self.log.open("wb") as log:
             self._process = subprocess.Popen(
                 command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True
@@ -154,7 +162,7 @@ class Demonstration:
         import actionlib
         import rospy
 
-        from nao_library_actions.msg import NaoLedAction
+        from nao_library_actions.msg import NaoLedAction, NaoMotionAction
         from nao_library_msgs.srv import TakePicture
         from naoqi import ALProxy
 
@@ -165,6 +173,9 @@ class Demonstration:
         self._lights = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
         if not self._lights.wait_for_server(rospy.Duration(START_LIMIT)):
             raise RuntimeError(f"the server NaoLights did not come up; see {stack.log}")
+        self._walker = actionlib.SimpleActionClient("NaoMotion", NaoMotionAction)
+        if not self._walker.wait_for_server(rospy.Duration(START_LIMIT)):
+            raise RuntimeError(f"the server NaoMotion did not come up; see {stack.log}")
         rospy.wait_for_service("nao_sim/picture", START_LIMIT)
         self._take_picture = rospy.ServiceProxy("nao_sim/picture", TakePicture)
         self._memory = ALProxy("ALMemory", "127.0.0.1", stack.nao_port)
@@ -176,6 +187,38 @@ class Demonstration:
         weights = self._memory.getListData(["leftFootTotalWeight", "rightFootTotalWeight"])
         stands = self._motion.robotIsWakeUp() and 5.0 < sum(weights) < 5.7
         self._report("wake up and stand", f"{weights[0]:.2f} + {weights[1]:.2f} kg on its feet", stands)
+
+    def begin_walk(self) -> None:
+        """Send the goal that walks to the table and waves; lights can go on meanwhile."""
+        from nao_library_actions.msg import NaoMotionGoal
+        from nao_library_msgs.msg import MotionFunction
+
+        go_near = MotionFunction(function="setOrthogonalSecurityDistance", values=[NEAR])
+        walk = MotionFunction(function="moveTo", values=[TO_THE_TABLE, 0.0, 0.0], gait=["MaxStepX"], gait_values=[0.06])
+        raise_arm = MotionFunction(
+            function="setPose", names=["RArm"], angles=[-1.0, -0.3, 1.2, 0.8, 0.0, 1.0], duration=1.0
+        )
+        wave = MotionFunction(
+            function="angleInterpolation", names=["RElbowRoll"], angles=[0.4, 1.2, 0.8], times=[0.5, 1.0, 1.4]
+        )
+        keep_away = MotionFunction(function="setOrthogonalSecurityDistance", values=[USUAL])
+        self._walker.send_goal(NaoMotionGoal([go_near, walk, keep_away, raise_arm, wave]))
+
+    def end_walk(self) -> None:
+        """Wait until the robot is at the table, and look at where it says it is."""
+        import rospy
+        from actionlib_msgs.msg import GoalStatus
+
+        if not self._walker.wait_for_result(rospy.Duration(STEP_LIMIT)):
+            self._report("walk to the table and wave", f"no result within {STEP_LIMIT:g} s", False)
+            return
+        state = self._walker.get_state()
+        x, y, theta = self._motion.getRobotPosition(True)
+        report = f"at x {x:.3f} m, y {y:.3f} m, theta {theta:.3f} rad of the world"
+        if state != GoalStatus.SUCCEEDED:
+            report += f"; {GoalStatus.to_string(state)} {self._walker.get_goal_status_text()}"
+        there = abs(x - TO_THE_TABLE) < 0.03 and abs(y) < 0.03
+        self._report("walk to the table and wave", report, there and state == GoalStatus.SUCCEEDED)
 
     def play(self, step: Step) -> None:
         """Send one goal, and compare what the robot reports with what was asked."""
@@ -279,10 +322,15 @@ def play_all(stack: Stack, output: Path) -> list[tuple[str, str, bool]]:
     demonstration.wake_up()
     demonstration.picture("before", "front", green_eyes=False)
     for number, step in enumerate(steps(), 1):
+        if step.walking:
+            demonstration.begin_walk()
         demonstration.play(step)
         if step.picture:
             name = "green_eyes" if step.title == "both eyes green" else f"step_{number}"
             demonstration.picture(name, step.picture, green_eyes=True if name == "green_eyes" else None)
+        if step.walking:
+            demonstration.end_walk()
+            demonstration.picture("at_the_table", "room")
     demonstration.picture("after", "front", green_eyes=False)
     return demonstration.rows
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The examples for NaoMotion, started as users start them."""
 
+import signal
 import subprocess
 import sys
 import unittest
@@ -10,7 +11,7 @@ import rospkg
 import rospy
 import rostest
 
-from nao_sim_bridge.testing import SimulatedRobot
+from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 EXAMPLES = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples"
 SENSOR = "Device/SubDeviceList/{}/Position/Sensor/Value"
@@ -47,6 +48,30 @@ class MotionExamples(unittest.TestCase):
         self.assertIn("4 of 5: angleInterpolation", text)
         self.assertIn("succeeded", text)
         self.assertGreater(self.robot.true_pose().position.z, 0.28)
+
+    def test_stand_walk_wave(self):
+        start = self.robot.true_pose().position
+        text = self.run_example("stand_walk_wave.py")
+        self.assertIn("walked 0.30 m ahead, ", text)
+        end = self.robot.true_pose().position
+        self.assertAlmostEqual(end.x - start.x, 0.3, delta=0.04)
+        self.assertGreater(end.z, 0.28)
+
+    def test_walks_end_on_both_feet_when_their_example_is_interrupted(self):
+        command = [sys.executable, str(EXAMPLES / "stand_walk_wave.py")]
+        example = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            motion = self.robot.module("ALMotion")
+            wait_until(lambda: motion.getRobotVelocity()[0] > 0.01, 40.0, "the robot on its way")
+            example.send_signal(signal.SIGINT)
+            example.wait(20.0)
+            wait_until(lambda: not motion.moveIsActive(), 20.0, "the robot on both feet")
+            self.robot.advance(1.0)
+            self.assertLess(self.robot.true_pose().position.x, 0.28)
+            self.assertGreater(self.robot.true_pose().position.z, 0.28)
+        finally:
+            example.kill()
+            example.wait()
 
     def test_teach_by_hand(self):
         text = self.run_example("teach_by_hand.py", "rostest_sinking", "--seconds", "2")

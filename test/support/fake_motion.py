@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 
+from fake_locomotion import FakeLocomotion
+
 CHAINS = {
     "Head": ["HeadYaw", "HeadPitch"],
     "LArm": ["LShoulderPitch", "LShoulderRoll", "LHand"],
@@ -17,7 +19,7 @@ LIMITS = {joint: [-2.0, 2.0, 8.0, 1.0] for joint in CHAINS["Body"]}
 LIMITS.update(LHand=[0.0, 1.0, 8.0, 1.0], RHand=[0.0, 1.0, 8.0, 1.0], LShoulderRoll=[-0.3, 1.3, 7.0, 1.0])
 
 
-class FakeMotion:
+class FakeMotion(FakeLocomotion):
     """Joints that are where they are told to be.
 
     Attributes:
@@ -27,6 +29,7 @@ class FakeMotion:
     """
 
     def __init__(self, make_call):
+        super().__init__()
         self._make_call = make_call
         self.angles = dict.fromkeys(CHAINS["Body"], 0.0)
         self.stiffnesses = dict.fromkeys(CHAINS["Body"], 1.0)

@@ -7,6 +7,8 @@ NaoError                 (naoqi.errors) root of everything that can go wrong wit
     RobotLost            the robot went away while a goal was waiting
     RobotFell            the robot fell while a goal moved it
     MotionStopped        joints did not get where a goal sent them: joints
+        WalkStopped      the robot did not get where a goal sent it: goal, reached
+    CannotWalk           the robot is not ready to walk: problem
 
 Preempted                no error but a signal: a new goal, a cancel or the end of the node interrupts the
 function
@@ -18,6 +20,7 @@ from collections.abc import Iterable, Mapping
 
 from naoqi.errors import NaoError
 
+from .places import Place
 from .suggestion import did_you_mean
 
 
@@ -117,6 +120,48 @@ class MotionStopped(NaoError):  # noqa: N818  named like the errors of the proxy
             f"the motion was stopped: {off}. Another client, a protection of the robot or a limit did that"
         )
         self.joints = dict(joints)
+
+
+class WalkStopped(MotionStopped):
+    """A walk ended, and the robot is not where it should have brought it.
+
+    Attributes:
+        goal: The way that it was to go, seen from where it began; None if it was not to go to a place.
+        reached: The way that it went.
+        cause: What stopped it, in the words of the robot; empty if it did not say.
+    """
+
+    def __init__(self, goal: Place | None, reached: Place, cause: str = "") -> None:
+        """Compose the text: what stopped it, and how far it got."""
+        instead = f" instead of {_way(goal)}" if goal is not None else ""
+        stopped = cause or "another client, a protection of the robot or a limit did that"
+        NaoError.__init__(self, f"the walk was stopped ({stopped}): the robot got to {_way(reached)}{instead}")
+        self.joints = {}
+        self.goal = goal
+        self.reached = reached
+        self.cause = cause
+
+
+class CannotWalk(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """The robot is not ready to walk.
+
+    Attributes:
+        problem: Why.
+    """
+
+    def __init__(self, problem: str, remedy: str) -> None:
+        """Compose the text.
+
+        Args:
+            problem: Why it cannot walk.
+            remedy: What to do about it.
+        """
+        super().__init__(f"{problem}: {remedy}")
+        self.problem = problem
+
+
+def _way(way: Place) -> str:
+    return f"x {way.x:.3f} m, y {way.y:.3f} m, theta {way.yaw:.3f} rad"
 
 
 class Preempted(Exception):  # noqa: N818  a signal that stops a chain, not an error

@@ -1,4 +1,4 @@
-"""The module for motion: angles, trajectories, poses, postures, stiffness, effectors, recorded motions."""
+"""The module for motion: angles, trajectories, poses, postures, stiffness, effectors, recorded motions, walks."""
 
 from __future__ import annotations
 
@@ -17,17 +17,22 @@ from .function_chain import Step
 from .memory_functions import MEMORY
 from .motion_cartesian import CartesianFunctions
 from .motion_facts import MotionAccess
+from .motion_gait import GaitAccess
 from .motion_gaze import GazeFunctions
 from .motion_joints import JointMotion
 from .motion_plan import MotionPlan
 from .motion_poses import NamedPoses
-from .motion_postures import PostureFunctions
+from .motion_postures import POSTURES, PostureFunctions
 from .motion_recording import MotionRecording
 from .motion_state import MotionState
 from .motion_stiffness import StiffnessFunctions
 from .motion_store import MotionStore
 from .motion_switches import MotionSwitches
+from .motion_walk import WalkFunctions
+from .motion_walk_end import WalkFailure
+from .motion_walk_state import WalkState
 from .nao_basic import NaoBasic
+from .places import Place
 
 log = logging.getLogger(__name__)
 
@@ -36,7 +41,7 @@ MOTIONS = Path("~/.ros/nao_motions")
 """Folder for recorded motions and pose libraries where none is configured."""
 # Functions whose joints only the client moves on: what setAngles began goes on after the function.
 ASKING = frozenset({"getAngles"})
-FALLING = "ALMotion/RobotIsFalling"
+FALLING, MOVE_FAILED = "ALMotion/RobotIsFalling", "ALMotion/MoveFailed"
 
 
 class NaoMotion(
@@ -49,13 +54,17 @@ class NaoMotion(
     MotionState,
     MotionSwitches,
     MotionRecording,
+    WalkFunctions,
+    WalkState,
 ):
-    """Motion goals: ALMotion and ALRobotPosture, poses, trajectories, gaze, recorded motions.
+    """Motion goals: ALMotion and ALRobotPosture, poses, trajectories, gaze, recorded motions, walks.
 
     A chain is checked as a whole before anything moves. With `dry_run` nothing moves at all.
 
     Attributes:
         access: Facts and state of the joints.
+        gait: Parameters of the walk.
+        walk_failure: Why the last walk ended before time.
         plan: What the chain that is checked, or runs, does.
         poses: Poses by name.
         store: Recorded motions by name.
@@ -80,12 +89,14 @@ class NaoMotion(
         super().__init__(ip, port, **options)
         folder = Path(motion_dir).expanduser()
         self.access = MotionAccess(self.robot, self.call)
+        self.gait = GaitAccess(self.robot, self.call)
+        self.walk_failure = WalkFailure()
         self.poses = NamedPoses(folder)
         self.store = MotionStore(folder)
         self.plan = self._new_plan()
         self.recording_names = set()
         self._dry_run = False
-        self._falls = EventRelay(lambda: self.robot.proxy(MEMORY), self._fell)
+        self._mishaps = EventRelay(lambda: self.robot.proxy(MEMORY), self._told)
         for functions in (
             self.joint_functions(),
             self.stiffness_functions(),
@@ -95,21 +106,32 @@ class NaoMotion(
             self.recording_functions(),
             self.state_functions(),
             self.switch_functions(),
+            self.walk_functions(),
+            self.walk_state_functions(),
         ):
             self.function_table.update(functions)
         self.serve("NaoMotion", NaoMotionAction)
 
     # The life of a goal
 
+    def locate(self, frame: str) -> Place:
+        """Where a frame of /tf is, seen from the robot."""
+        return self._edge.locate(frame)
+
     def begin_chain(self) -> None:
         """Forget what the last chain did."""
         self.plan = self._new_plan()
         self.recording_names.clear()
-        try:
-            self._falls.subscribe(FALLING)
-        except NaoError as error:
-            log.debug("falls are not watched: %s", error)  # a robot that cannot be asked moves nothing either
+        for event in (FALLING, MOVE_FAILED):
+            try:
+                self._mishaps.subscribe(event)
+            except NaoError as error:
+                log.debug("%s is not watched: %s", event, error)  # a robot that cannot be asked moves nothing either
         self._dry_run = False
+
+    def end_chain(self, end: str) -> None:
+        """See that only a chain that succeeded leaves the robot walking."""
+        self.walk_ends(end)
 
     def begin_check(self, position: int) -> None:
         """Tell the plan which function comes."""
@@ -141,19 +163,29 @@ class NaoMotion(
         result.name = joints
 
     def shut_down(self) -> None:
-        """As NaoBasic does; falls are watched no more."""
+        """As NaoBasic does; nothing is watched any more, and a walk that a goal left going is stopped."""
         super().shut_down()
-        self._falls.close()
+        if self._left_walking and self.robot.connection.state == "connected":
+            self.stop_walk()
+        self._mishaps.close()
 
     def _connection_changed(self, *args: Any) -> None:
         super()._connection_changed(*args)
         if self.robot.connection.state == "connected" and self.robot.connection.generation > 1:
-            self._falls.renew()
+            self._mishaps.renew()
 
-    def _fell(self, _: str, falling: Any) -> None:
-        """Called from a thread of libqi: a chain that goes on would move a robot that lies."""
-        if falling and self.plan.moves and not self._idle.is_set():
+    def _told(self, event: str, value: Any) -> None:
+        """Called from a thread of libqi."""
+        if event == MOVE_FAILED:
+            self.walk_failure.tell(value)
+        elif value and self.plan.moves and not self._idle.is_set():
+            # A chain that goes on would move a robot that lies.
             self.interrupt.trigger(RobotFell())
 
     def _new_plan(self) -> MotionPlan:
-        return MotionPlan(lambda: self.access.facts, self.access.state)
+        return MotionPlan(
+            lambda: self.access.facts,
+            self.access.state,
+            lambda: bool(self.motion("moveIsActive")),
+            lambda: str(self.call(self.robot.proxy(POSTURES), "getPostureFamily")),
+        )

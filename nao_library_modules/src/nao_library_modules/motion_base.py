@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from naoqi.errors import NaoError
@@ -12,6 +12,7 @@ from .errors import MotionStopped
 from .interrupt import Interrupt
 from .motion_facts import MOTION, MotionAccess
 from .motion_plan import MotionPlan
+from .motion_walk_plan import ARMS
 
 log = logging.getLogger(__name__)
 
@@ -69,11 +70,17 @@ class MotionBase:
         """
         now = self.motion("getAngles", list(goals), False)
         off = {joint: (goal, at) for (joint, goal), at in zip(goals.items(), now) if abs(at - goal) > REACHED}
-        if off:
+        if off and not self._swing(off):
             # The news of a fall may be on its way.
             if self.interrupt.wait(NEWS_TIME):
                 self.interrupt.check()
             raise MotionStopped(off)
+
+    def _swing(self, joints: Iterable[str]) -> bool:
+        """Whether the joints are of arms that swing: when a motion is over they go back to that at once."""
+        chains = self.access.facts.chains
+        arms = {joint for arm in ARMS for joint in chains.get(arm, ())}
+        return arms.issuperset(joints) and bool(self.motion("moveIsActive"))
 
     def halt(self) -> None:
         """Stop what the chain has set going, where the joints are; preemption does not interrupt this."""

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from .errors import BadGoal
 from .motion_facts import JointState, MotionFacts
+from .motion_walk_plan import WalkPlan
 
 # The robot's numbers have 32 bits: a limit that it tells must be allowed as a target. rad.
 TOLERANCE = 1e-4
@@ -27,13 +28,22 @@ class MotionPlan:
         aimed: Those that the chain gives targets without waiting for them.
         moves: Whether the chain moves anything.
         durations: Place of each function in the chain, counted from 1 -> how long it takes as far as known, s.
+        walk: What the chain does with the walk.
 
     Args:
         facts: The joints.
         read_state: Asks the robot where they are; called when a function first needs to know.
+        read_walking: Asks the robot whether it walks.
+        read_posture: Asks the robot for the family of its posture.
     """
 
-    def __init__(self, facts: Callable[[], MotionFacts], read_state: Callable[[], JointState]) -> None:
+    def __init__(
+        self,
+        facts: Callable[[], MotionFacts],
+        read_state: Callable[[], JointState],
+        read_walking: Callable[[], bool] = lambda: False,
+        read_posture: Callable[[], str] = lambda: "Standing",
+    ) -> None:
         self.touched: dict[str, None] = {}
         self.aimed: dict[str, None] = {}
         self.moves = False
@@ -43,6 +53,10 @@ class MotionPlan:
         self._angles: dict[str, float | None] | None = None
         self._stiffnesses: dict[str, float] | None = None
         self._position = 0
+        self._moved: set[str] = set()
+        self.walk = WalkPlan(
+            lambda: self.facts.chains, self._stiffness, self._moved.__contains__, read_walking, read_posture
+        )
 
     @property
     def facts(self) -> MotionFacts:
@@ -83,6 +97,7 @@ class MotionPlan:
         assert self._angles is not None
         for joint in joints:
             self._angles[joint] = None
+            self._moved.add(joint)
 
     def set_stiffness(self, values: Mapping[str, float]) -> None:
         """Joints get stiff or limp."""
@@ -97,13 +112,14 @@ class MotionPlan:
         return [joint for joint in joints if not self._stiffnesses[joint] > 0.0]
 
     def require_stiff(self, joints: Sequence[str], stiffness: float) -> None:
-        """See that joints can move: stiff already, or stiffened by the function.
+        """See that joints can move: stiff already, or stiffened by the function; and that no walk moves them.
 
         Raises:
-            BadGoal: If they are limp, or the stiffness is none.
+            BadGoal: If they are limp, the stiffness is none, or the robot walks with them.
         """
         if not (math.isfinite(stiffness) and 0.0 <= stiffness <= 1.0):
             raise BadGoal("stiffness", stiffness, "0 (leave as it is) to 1")
+        self.walk.require_free(joints)
         limp = self.limp(joints)
         if limp and stiffness == 0.0:
             raise BadGoal(
@@ -154,6 +170,7 @@ class MotionPlan:
         self._know()
         assert self._angles is not None
         self._angles.update(goals)
+        self._moved.update(goals)
         self.touch(goals)
         self.takes(duration)
 
@@ -206,6 +223,11 @@ class MotionPlan:
                 f"at least {least:.3f} s for this step",
                 problem=f"{joint} cannot go from {before:.3f} to {goal:.3f} in {given:.3f} s",
             )
+
+    def _stiffness(self, joint: str) -> float:
+        self._know()
+        assert self._stiffnesses is not None
+        return self._stiffnesses[joint]
 
     def _know(self) -> None:
         if self._angles is None:

@@ -54,6 +54,7 @@ def check_posture(self: PostureFunctions, str_param: str, speed: float) -> None:
     self.plan.forget(body)
     self.plan.touch(body)
     self.plan.takes(POSTURE_TIME / fraction)
+    self.plan.walk.stands(name)
 
 
 def check_applied_posture(self: PostureFunctions, str_param: str, speed: float, stiffness: float) -> None:

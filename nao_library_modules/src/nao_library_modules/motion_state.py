@@ -17,6 +17,11 @@ def check_task(_self: object, values: Sequence[float]) -> None:
         raise BadGoal("values", list(values), "the number of one task")
 
 
+def check_kill_all(self: MotionBase) -> None:
+    """Nothing can be wrong; a walk ends with it."""
+    self.plan.walk.stands()
+
+
 def check_some_joints(self: MotionBase, names: Sequence[str]) -> None:
     """Known joints, or nothing for the whole body."""
     self.plan.facts.joints(names or [BODY])
@@ -92,6 +97,7 @@ class MotionState(MotionBase):
         """End all tasks that hold the joints."""
         self.motion("killTasksUsingResources", self.joints(names or [BODY]))
 
+    @checked_by(check_kill_all)
     def kill_all(self) -> None:
         """End all motion tasks."""
         self.motion("killAll")

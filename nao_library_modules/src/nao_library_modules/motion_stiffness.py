@@ -51,6 +51,7 @@ def check_wake_up(self: MotionBase) -> None:
     self.plan.forget(body)
     self.plan.touch(body)
     self.plan.takes(POSTURE_TIME)
+    self.plan.walk.stands()
 
 
 def check_rest(self: MotionBase) -> None:

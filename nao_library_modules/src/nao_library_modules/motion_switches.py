@@ -62,6 +62,7 @@ def check_balance(self: MotionBase, str_param: str, duration: float) -> None:
     if not (math.isfinite(duration) and duration > 0.0):
         raise BadGoal("duration", duration, "more than 0 s")
     body = self.plan.facts.chains[BODY]
+    self.plan.walk.require_free(body)
     self.plan.forget(body)
     self.plan.takes(duration)
 

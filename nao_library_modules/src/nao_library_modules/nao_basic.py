@@ -161,6 +161,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             self.begin_chain()
             outcomes: list[Outcome] = []
             end, text = self._run_chain(goal, outcomes)
+            self.end_chain(end)
             result = self.server.get_default_result()
             try:
                 self.fill_result(result, outcomes)
@@ -177,6 +178,13 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
 
     def begin_chain(self) -> None:
         """Called before a chain is checked. For modules that keep account of what a chain does."""
+
+    def end_chain(self, end: str) -> None:
+        """Called when a chain is over, before its result is filled. For what must not outlive a chain that failed.
+
+        Args:
+            end: "succeeded", "aborted" or "preempted".
+        """
 
     def begin_check(self, position: int) -> None:
         """Called before the function at a place of the chain, counted from 1, is checked."""

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from nao_library_modules.clock import WallClock
-from naoqi.errors import CallCanceled, RobotError
+from naoqi.errors import CallCanceled, NaoError, RobotError
 
 PREFIX = "Device/SubDeviceList/"
 
@@ -354,6 +354,12 @@ class FakeEdge:
         self.events = []
         self.shutdown_actions = []
         self.reports = {}
+        self.frames = {}
+
+    def locate(self, frame):
+        if frame not in self.frames:
+            raise NaoError(f"the frame {frame} cannot be found")
+        return self.frames[frame]
 
     def action_server(self, name, action, execute, on_preempt):
         return FakeServer(action, execute, on_preempt)

@@ -193,6 +193,14 @@ def test_nodding_standing_and_waving_are_one_goal(motion, robot):
     assert motion.robot.proxy("ALRobotPosture").calls.count(("goToPosture", "Stand", 0.6)) == 1
 
 
+def test_standing_walking_and_waving_are_one_goal(motion, robot):
+    robot.motion.stiffnesses.update(LHipRoll=0.0)
+    server = motion.server.play(NaoMotionGoal(load("stand_walk_wave").chain()))
+    assert server.end == "succeeded", server.text
+    assert ("moveTo", 0.3, 0.0, 0.0, [["MaxStepX", 0.05]]) in robot.proxy("ALMotion").calls
+    assert [float(value) for value in server.result.memList] == pytest.approx([0.3, 0.0, 0.0] * 2)
+
+
 def test_what_is_taught_to_one_arm_is_repeated_by_both(motion, robot):
     robot.motion.angles.update(LShoulderRoll=0.5, LShoulderPitch=1.0)
     server = motion.server.play(NaoMotionGoal(load("teach_by_hand").chain("hello", ["LArm"], 0.1)))
@@ -219,6 +227,9 @@ class FakeMotionClient:
     def wait_for_result(self, timeout):
         return True
 
+    def cancel_goal(self):
+        pass
+
     def send_goal_and_wait(self, goal, timeout):
         return GoalStatus.ABORTED
 
@@ -233,7 +244,7 @@ class FakeMotionClient:
 
 
 @pytest.mark.parametrize("there, told", [(False, "there is no server NaoMotion"), (True, "the robot is gone")])
-@pytest.mark.parametrize("name", ["motion_client", "nod_stand_wave", "teach_by_hand", "get_up"])
+@pytest.mark.parametrize("name", ["motion_client", "nod_stand_wave", "stand_walk_wave", "teach_by_hand", "get_up"])
 def test_what_goes_wrong_is_told_in_a_line_and_in_the_exit_status(monkeypatch, capsys, name, there, told):
     example = load(name)
     monkeypatch.setattr(FakeMotionClient, "there", there)

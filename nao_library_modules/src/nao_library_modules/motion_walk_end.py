@@ -1,0 +1,50 @@
+"""How a walk ends before time: what the robot says about it, and waiting until it stands."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from .interrupt import Interrupt
+
+
+class WalkFailure:
+    """Why a walk ended before time, as the robot tells in an event that may come a little after the end.
+
+    Told from a thread of libqi, asked from the one that executes goals.
+    """
+
+    def __init__(self) -> None:
+        """Nothing has failed yet."""
+        self._cause = ""
+
+    def tell(self, value: Any) -> None:
+        """Take a value of ALMotion/MoveFailed: cause, 0 not started or 1 stopped on the way, place of an obstacle."""
+        self._cause = str(value[0]) if isinstance(value, (list, tuple)) and value else str(value or "")
+
+    def forget(self) -> None:
+        """A new walk begins."""
+        self._cause = ""
+
+    @property
+    def cause(self) -> str:
+        """What the robot said last; empty if nothing since `forget`."""
+        return self._cause
+
+
+def wait_for_call(call: Any, interrupt: Interrupt, limit: float | None = None) -> bool:
+    """Wait until a call is over or an interrupt comes; the call goes on in any case.
+
+    Args:
+        call: What `proxy.call_async` returned.
+        interrupt: Ends the wait.
+        limit: s; None waits as long as it takes: the proxy layer fails calls to a lost robot.
+
+    Returns:
+        Whether the call is over.
+    """
+    news = threading.Event()
+    call.add_done_callback(lambda _: news.set())
+    with interrupt.waking(news.set):
+        news.wait(limit)
+    return call.done()

@@ -1,0 +1,52 @@
+"""Where frames of /tf are, seen from the robot."""
+
+from __future__ import annotations
+
+import math
+
+import rospy
+import tf2_ros
+
+from naoqi.errors import NaoError
+
+from .places import Place
+
+ROBOT = "base_footprint"
+"""The frame of the robot: on the floor between its feet, as nao_joint_states publishes it."""
+PATIENCE = 2.0
+"""s that a frame may take to appear: a listener that has just begun knows nothing yet."""
+
+
+class RobotFrames:
+    """Looks frames up. Used from the thread that executes goals only."""
+
+    def __init__(self) -> None:
+        """Begin to listen to /tf."""
+        self._buffer = tf2_ros.Buffer()
+        self._listener = tf2_ros.TransformListener(self._buffer)
+
+    def locate(self, frame: str) -> Place:
+        """Where a frame is now, seen from above by the robot.
+
+        Args:
+            frame: Its name.
+
+        Raises:
+            NaoError: If it is not connected with the robot.
+        """
+        robot = _tf_prefix() + ROBOT
+        patience = rospy.Duration.from_sec(PATIENCE)
+        try:
+            found = self._buffer.lookup_transform(robot, frame.lstrip("/"), rospy.Time(), patience).transform
+        except (tf2_ros.TransformException, tf2_ros.InvalidArgumentException) as error:
+            raise NaoError(f"the frame {frame} cannot be found from {robot}: {error}") from error
+        turn = found.rotation
+        yaw = math.atan2(2.0 * (turn.w * turn.z + turn.x * turn.y), 1.0 - 2.0 * (turn.y**2 + turn.z**2))
+        return Place(found.translation.x, found.translation.y, yaw)
+
+
+def _tf_prefix() -> str:
+    """Prefix of the robot's frames, with its slash; empty without the parameter tf_prefix (searched upwards)."""
+    found = rospy.search_param("tf_prefix")
+    prefix = str(rospy.get_param(found)).strip("/") if found else ""
+    return f"{prefix}/" if prefix else ""

@@ -1,0 +1,48 @@
+"""The examples for programs without ROS, run as users run them, against a simulated robot."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from nao_sim_bridge.server import ServerOptions, SimulatorServer
+from nao_sim_bridge.sim.runner import FASTEST
+
+PACKAGE = Path(__file__).parents[3] / "nao_library_modules"
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE / "src")}
+PATIENCE = 120.0
+
+
+def run(name, *options):
+    command = [sys.executable, str(PACKAGE / "examples" / f"{name}.py"), *options]
+    return subprocess.run(command, env=ENVIRONMENT, timeout=PATIENCE, capture_output=True, text=True)
+
+
+@pytest.fixture
+def server():
+    made = SimulatorServer(ServerOptions(port=0, speed=FASTEST))
+    made.start()
+    yield made
+    made.stop()
+
+
+def test_a_robot_walks_its_bow_and_rests(server):
+    done = run("naoqi_walk", "--port", str(server.broker.port), "--length", "0.1")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert float(re.search(r"walked (\S+) m", done.stdout).group(1)) == pytest.approx(0.112, abs=0.03)
+    x, y, z = server.runner.snapshot.torso.position
+    assert (x, y) == pytest.approx((0.1, 0.05), abs=0.06)
+    assert z == pytest.approx(0.228, abs=0.02)
+    assert max(server.runner.snapshot.stiffnesses) == 0.0
+
+
+def test_without_a_robot_it_says_so():
+    done = run("naoqi_walk", "--port", "1")
+    assert done.returncode == 1
+    assert "NAOqi at 127.0.0.1:1" in done.stdout
+    assert "Traceback" not in done.stderr
