@@ -64,9 +64,12 @@ class SelfCollision:
         self._ends = np.array([_ends(shape) for shape in shapes])
         radii = np.array([shape.radius for shape in shapes])
         self._radii = radii[self._first] + radii[self._second]
-        self._reach = [REACH.get(_kind(joint.name), 0.0) for joint in model.joints]
-        # How far shapes may still come, in m, before anything can touch; known for these commands.
-        self._slack = 0.0
+        self._movers = [_movers(model, chain) for chain in ("LArm", "RArm", "LLeg", "RLeg", "Head")]
+        between = np.array([len(arms) > 1 for _, _, arms in pairs])
+        self._groups = [self._of_arm[arm] & ~between for arm in ARMS] + [between]
+        # How far shapes may still come, in m, before anything can touch, for each group of pairs: left arm and body,
+        # right arm and body, both arms. Known for these commands.
+        self._slack = [0.0] * len(self._groups)
         self._seen: Sequence[float] = ()
         # Distances where an arm was kept last: it is likely to be kept there for a while.
         self._held_at: Sequence[float] = ()
@@ -77,14 +80,12 @@ class SelfCollision:
         if self.suspended or not self.enabled:
             self._seen = ()
             return NOBODY
-        come = sum([abs(new - old) * reach for new, old, reach in zip(commands, before, self._reach)])
         known = before == self._seen
         self._seen = tuple(commands)
-        if known and come < self._slack:
-            self._slack -= come
+        if known and self._far_apart(before, commands):
             return NOBODY
         after = self.distances(commands)
-        self._slack = max(float(after.min()) - CONTACT, 0.0)
+        self._slack = [max(float(after[group].min()) - CONTACT, 0.0) for group in self._groups]
         closing = after < CONTACT
         if not closing.any():
             return NOBODY
@@ -94,6 +95,18 @@ class SelfCollision:
         return frozenset().union(
             *(self._chains[arm] for arm in ARMS if arm in self.enabled and closing[self._of_arm[arm]].any())
         )
+
+    def _far_apart(self, before: Sequence[float], commands: Sequence[float]) -> bool:
+        """Whether nothing can touch after this step, by how far shapes have come at most since distances were known."""
+        left, right, left_leg, right_leg, head = [
+            sum([abs(commands[i] - before[i]) * reach for i, reach in movers]) for movers in self._movers
+        ]
+        body = head + (left_leg if left_leg > right_leg else right_leg)
+        slack = self._slack
+        slack[0] -= left + body
+        slack[1] -= right + body
+        slack[2] -= left + right
+        return min(slack) > 0.0
 
     def distances(self, angles: Sequence[float]) -> np.ndarray:
         """(n,) distances in m of all pairs of shapes for joint angles (26, rad); negative where they overlap."""
@@ -109,6 +122,12 @@ class SelfCollision:
         if least < CONTACT:
             return COLLISION
         return CLOSE if least < NEAR else NONE
+
+
+def _movers(model: RobotModel, chain: str) -> list[tuple[int, float]]:
+    """Joints of a chain that move shapes, by index, and how far for each rad, m."""
+    joints = ((model.joint_index[name], REACH.get(_kind(name), 0.0)) for name in model.chains[chain])
+    return [(index, reach) for index, reach in joints if reach]
 
 
 def _kind(joint: str) -> str:

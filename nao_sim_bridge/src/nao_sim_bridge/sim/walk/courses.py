@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, NamedTuple, Tuple
 
-from nao_sim_bridge.sim.walk.clipping import sidestep, spread, step_limits
+from nao_sim_bridge.sim.walk.clipping import clip_step, sidestep, spread, step_limits
 from nao_sim_bridge.sim.walk.footsteps import FootPose
 from nao_sim_bridge.sim.walk.gait import FeetGait, Gait, parameters
 from nao_sim_bridge.sim.walk.settings import WalkSettings
@@ -116,7 +116,8 @@ class Course(ABC):
         x *= 2.0 * mine.max_step_x / (mine.max_step_x + other.max_step_x)
         aside = sidestep(y, y * side > 0.0, settings.foot_separation - settings.min_foot_separation)
         turn = spread(yaw, yaw * side > 0.0, settings.outer_turn)
-        return support.moved(0.0, side * self._half).moved(x, aside, turn).moved(0.0, side * self._half)
+        landing = support.moved(0.0, side * self._half).moved(x, aside, turn).moved(0.0, side * self._half)
+        return support.moved(*clip_step(landing.seen_from(support), side, step_limits()))
 
     def _change(self, before: Rate, wanted: Rate) -> Rate:
         """The rate next to `before` on the way to `wanted`."""

@@ -145,6 +145,7 @@ class Locomotion:
         self._walker: Walker | None = None
         self._course: Course | None = None
         self._to_begin = False
+        self._hindered = False
         self._measured_step = False
         self._goal: Task | None = None
         self._waiting: list[Task] = []
@@ -296,8 +297,9 @@ class Locomotion:
     def job_duration(self) -> float:
         """For the engine: whether the walk goes on."""
         walker = self._walker
-        goes_on = walker is None or walker.plan.phase is not Phase.STAND or self._to_begin
-        return inf if goes_on else 0.0
+        if walker is None:
+            return 0.0 if self._hindered else inf
+        return inf if walker.plan.phase is not Phase.STAND or self._to_begin else 0.0
 
     def command(self, index: int) -> float:
         """For the engine: where a joint of a leg is to be, rad."""
@@ -392,15 +394,20 @@ class Locomotion:
             self._fail(cause, started=False)
             raise MoveRefused(cause)
         self._course = course
-        self._to_begin = course is not None
+        self._to_begin, self._hindered = course is not None, False
         self._lifted, self._obstructed = 0.0, False
         self._job = self._motion.follow(name, self._legs, self._curves, noticed=False)
         self._job.add_done_callback(self._ended)
 
     def _curves(self, commands: Sequence[float]) -> dict[int, _LegCurve]:
-        """Called when the legs are free."""
-        self._walker = walker = Walker(self._body, self._settings, self._gravity, commands)
+        """Called when the legs are free; who had them may have taken the robot off its feet."""
         self._commands = {i: commands[i] for i in self._legs}
+        cause = self._hindrance()
+        if cause:
+            self._fail(cause, started=False)
+            self._hindered = True
+            return {i: _LegCurve(self, i) for i in self._legs}
+        self._walker = walker = Walker(self._body, self._settings, self._gravity, commands)
         self._stability.walk = lambda: walker.feedback.error
         if self._course is not None:
             now = self._now()

@@ -37,6 +37,7 @@ class StepsCourse(Course):
     def __init__(self, settings: WalkSettings, gait: FeetGait, placements: Sequence[Placement]) -> None:
         self._gait = gait
         self._queue = list(placements)
+        self._robot: FootPose | None = None
         super().__init__(settings)
 
     @property
@@ -56,8 +57,13 @@ class StepsCourse(Course):
     def first_side(self) -> int:  # noqa: D102
         return self._queue[0].side if self._queue else 1
 
+    def begin_at(self, robot: FootPose) -> None:
+        """The first step counts from where the robot is, not from how its other foot happens to stand there."""
+        self._robot = robot
+
     def take(self, support: FootPose, side: int) -> None:  # noqa: D102
         super().take(support, side)
+        self._robot = None
         self.reached = self._state >= len(self._queue)
 
     def _first_state(self, rate: Rate) -> int:
@@ -67,6 +73,8 @@ class StepsCourse(Course):
         if state >= len(self._queue):
             return None
         placement = self._queue[state]
+        if state == 0 and self._robot is not None:
+            support = self._robot.seen_from(self.frame).moved(0.0, -side * self._half)
         if placement.side != side:  # the other foot is due: it stays where it is, beside this one
             landing = self._landing(support, side, STANDSTILL, self._gait)
             return Step(side, landing, self._gait.period(side), self._gait.of(side)), state
