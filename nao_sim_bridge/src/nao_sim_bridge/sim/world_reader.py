@@ -1,7 +1,9 @@
 """Reads worlds strictly from the content of YAML files. Units: m, rad (slopes: deg), kg; colours: 0..1.
 
-`floor` has `friction` and may have `color`, `tile_color`, `tile_size`, `slope_deg: [along x, along y]` (rising), `rugs`
-(a list of `center`, `size`, `color` and maybe `yaw`) and `bumps` (see `world_bumps.py`).
+`floor` has `friction` (the engine multiplies the coefficients of the two that touch) and may have `color`,
+`tile_color`, `tile_size`, `slope_deg: [along x, along y]` (rising), `rugs` (a list of `center`, `size`, `color` and
+maybe `yaw`) and `bumps` (see `world_bumps.py`). `light` may have `direction`, `color` and `ambient`; `background` may
+have `top`, `horizon` and `haze`.
 
 An object has `name` and `position`, and is a shape (`box: [x, y, z]`, `sphere: radius`, `cylinder: [radius, length]`
 or `capsule: [radius, length]`) or has `parts`: a list of such shapes with `xyz` and maybe `rpy` and `color`, placed in

@@ -12,8 +12,8 @@ from nao_sim_bridge.sim.walk.footsteps import FootPose
 from nao_sim_bridge.sim.walk.gait import FILE, walk_file
 
 Box = Sequence[Tuple[float, float]]
-# A turn is taken back in so many parts until the feet do not overlap.
-TURN_PARTS = 20
+# A turn of feet that would overlap is found by halving so often.
+TURN_HALVINGS = 6
 
 
 @dataclass(frozen=True)
@@ -68,11 +68,14 @@ def clip_step(placement: FootPose, side: int, limits: StepLimits) -> FootPose:
     if size > 1.0:
         x, aside = x / size, limits.min_y + (aside - limits.min_y) / size
     clipped = FootPose(x, side * aside, turn)
-    for part in range(TURN_PARTS, -1, -1):
-        clipped = clipped._replace(yaw=turn * part / TURN_PARTS)
-        if not feet_overlap(clipped, side, limits):
-            break
-    return clipped
+    if not feet_overlap(clipped, side, limits):
+        return clipped
+    apart, share = 0.0, 0.5
+    for halving in range(2, TURN_HALVINGS + 2):
+        over = feet_overlap(clipped._replace(yaw=share * turn), side, limits)
+        apart = apart if over else share
+        share += -(0.5**halving) if over else 0.5**halving
+    return clipped._replace(yaw=apart * turn)
 
 
 def feet_overlap(placement: FootPose, side: int, limits: StepLimits) -> bool:

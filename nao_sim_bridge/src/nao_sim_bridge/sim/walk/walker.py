@@ -16,7 +16,7 @@ from nao_sim_bridge.sim.walk.settings import WalkSettings
 # From this share of its way on a foot may land.
 LANDING = 0.6
 # It has landed when it has felt the ground within this time, s.
-BOUNCE = 0.06
+BOUNCE = 0.12
 # Of a leg's five angles below the hip's yaw.
 ANKLE_PITCH, ANKLE_ROLL = 3, 4
 
