@@ -2,7 +2,8 @@
 
 It stands on what the robot itself can know: joint encoders and inertial unit. The corrections go on top of the joint
 commands (`JointCommands.correct`), grow with how far the body's capture point has left its place, and end when the body
-is back: a robot that nobody disturbs gets none.
+is back: a robot that nobody disturbs gets none. Where it has come to rest is where it belongs: on a slope that is not
+over the middle of its feet.
 """
 
 from __future__ import annotations
@@ -21,6 +22,9 @@ from nao_sim_bridge.sim.stance import StanceReader
 FILE = "balance.json"
 PITCH, ROLL = 0, 1
 NO_CORRECTION: Mapping[int, float] = {}
+# The body may rest this far from where it would on a level floor, m; while it does not rest, the place is
+# learned with this time constant, s.
+FURTHEST_REST, LEARNING_TIME = 0.03, 1.0
 # A correction that has shrunk to this, rad, is over: the gears have more play.
 NEGLIGIBLE = 1e-4
 
@@ -124,6 +128,8 @@ class Balance:
         self._values = [0.0] * len(settings.gains)
         self._commands: Sequence[float] = ()
         self._home: Vector3 = (0.0, 0.0, 0.0)
+        self._rest = [0.0, 0.0]
+        self._rested = True
 
     @property
     def acting(self) -> bool:
@@ -135,16 +141,27 @@ class Balance:
         if self.acting:
             self._values = [0.0] * len(self._values)
 
-    def corrections(self, motion: BodyMotion, commands: Sequence[float]) -> Mapping[int, float]:
+    def settle(self) -> None:
+        """The body is at rest: where it is next, it belongs."""
+        self._rested = True
+
+    def corrections(self, motion: BodyMotion, commands: Sequence[float], dt: float) -> Mapping[int, float]:
         """What to add to joint commands at this tick, by joint index in rad.
 
         Args:
             motion: How the body moves over its feet.
             commands: (26,) commanded angles, rad: where it belongs.
+            dt: Of the tick, s.
         """
         home = self._home_of(commands)
         place = motion.stance.com_from_feet
-        swing = [(place[axis] - home[axis], motion.velocity[axis] / motion.frequency) for axis in (0, 1)]
+        away = [place[axis] - home[axis] for axis in (0, 1)]
+        learned = 1.0 if self._rested else dt / LEARNING_TIME
+        self._rested = False
+        for axis in (0, 1):
+            rest = self._rest[axis] + learned * (away[axis] - self._rest[axis])
+            self._rest[axis] = min(max(rest, -FURTHEST_REST), FURTHEST_REST)
+        swing = [(away[axis] - self._rest[axis], motion.velocity[axis] / motion.frequency) for axis in (0, 1)]
         shares = [self._share(*both) for both in swing]
         wanted = {}
         for number, gain in enumerate(self._settings.gains):

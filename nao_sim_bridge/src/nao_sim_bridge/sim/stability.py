@@ -120,6 +120,8 @@ class Stability:
             self._note_feet(snapshot, able)
         self.tracker.forget()
         self.balance.release()
+        if able:
+            self.balance.settle()
         self._engaged = False
         self._joints.correct(NO_CORRECTION, dt)
 
@@ -130,6 +132,7 @@ class Stability:
         self.falls.look_at_walk(off, snapshot)
         self.tracker.forget()
         self.balance.release()
+        self.balance.settle()
         self._engaged = False
         self._joints.correct(NO_CORRECTION, dt)
 
@@ -146,11 +149,11 @@ class Stability:
         # Once at it, balance goes on while a push has a foot in the air.
         standing = self.on_feet and (all(loaded) or self._engaged)
         self._engaged = standing and not moving and not self.falls.falling
-        self._joints.correct(self._corrections(body, snapshot), dt)
+        self._joints.correct(self._corrections(body, dt), dt)
 
-    def _corrections(self, body: BodyMotion, snapshot: Snapshot) -> Mapping[int, float]:
+    def _corrections(self, body: BodyMotion, dt: float) -> Mapping[int, float]:
         if self._engaged and self.balance.enabled:
-            return self.balance.corrections(body, self._joints.commands)
+            return self.balance.corrections(body, self._joints.commands, dt)
         self.balance.release()
         return NO_CORRECTION
 

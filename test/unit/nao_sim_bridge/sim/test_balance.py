@@ -23,6 +23,7 @@ STAND = posture(MODEL, "Stand")
 SIDES = {"front": (1, 0), "back": (-1, 0), "left": (0, 1), "right": (0, -1)}
 # 2 N s within 0.1 s.
 FORCE, PUSH_TIME = 20.0, 0.1
+DT = 1 / 120
 
 
 def index(name):
@@ -35,9 +36,16 @@ def body(lean=0.0, roll=0.0, velocity=(0.0, 0.0)):
     return BodyMotion(READER.read(STAND, flat_roll + roll, flat_pitch + lean), velocity, 6.0)
 
 
+def law_at_rest():
+    """Balance of a robot that stands on a level floor."""
+    law = Balance(load_balance(MODEL), READER)
+    law.corrections(body(), STAND, DT)
+    return law
+
+
 @pytest.fixture
 def law():
-    return Balance(load_balance(MODEL), READER)
+    return law_at_rest()
 
 
 @pytest.fixture
@@ -60,22 +68,22 @@ def load_changed(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("motion", [body(), body(lean=0.015), body(velocity=(0.03, -0.03))])
 def test_a_body_at_home_or_nearly_so_gets_no_correction(law, motion):
-    assert law.corrections(motion, STAND) == {}
+    assert law.corrections(motion, STAND, DT) == {}
     assert not law.acting
 
 
 @pytest.mark.parametrize("lean, velocity, sign", [(0.1, 0.0, 1), (-0.1, 0.0, -1), (0.0, 0.3, 1), (0.0, -0.3, -1)])
 def test_a_swing_ahead_presses_the_toes_down_and_one_back_the_heels(law, lean, velocity, sign):
-    found = law.corrections(body(lean, velocity=(velocity, 0.0)), STAND)
+    found = law.corrections(body(lean, velocity=(velocity, 0.0)), STAND, DT)
     assert found[index("LAnklePitch")] == found[index("RAnklePitch")]
     assert sign * found[index("LAnklePitch")] > 0.05
     assert law.acting
 
 
 def test_swings_to_left_and_right_are_answered_alike(law):
-    mirrored = Balance(load_balance(MODEL), READER)
-    left = law.corrections(body(velocity=(0.0, 0.4)), STAND)
-    right = mirrored.corrections(body(velocity=(0.0, -0.4)), STAND)
+    mirrored = law_at_rest()
+    left = law.corrections(body(velocity=(0.0, 0.4)), STAND, DT)
+    right = mirrored.corrections(body(velocity=(0.0, -0.4)), STAND, DT)
     assert set(left) == set(right) == {index("LAnkleRoll"), index("RAnkleRoll")}
     assert left == pytest.approx({joint: -value for joint, value in right.items()}, rel=0.05)
 
@@ -83,29 +91,44 @@ def test_swings_to_left_and_right_are_answered_alike(law):
 def test_a_posture_that_leans_by_itself_is_no_swing(law):
     leaning = posture(MODEL, "StandInit")
     stance = READER.read(leaning, *READER.lean(leaning))
-    assert law.corrections(BodyMotion(stance, (0.0, 0.0), 6.0), leaning) == {}
+    assert law.corrections(BodyMotion(stance, (0.0, 0.0), 6.0), leaning, DT) == {}
+
+
+def test_where_the_body_has_come_to_rest_it_belongs(law):
+    law.settle()
+    assert law.corrections(body(0.05), STAND, DT) == {}
+    assert law.corrections(body(0.05), STAND, DT) == {}
+    assert law.corrections(body(0.15), STAND, DT)[index("LAnklePitch")] > 0.0
+
+
+def test_a_place_where_the_body_stays_is_learned(law):
+    law.corrections(body(0.05), STAND, DT)
+    assert law.acting
+    for _ in range(600):
+        found = law.corrections(body(0.05), STAND, DT)
+    assert found == {}
 
 
 def test_corrections_stay_within_their_limit(law):
     for _ in range(20):
-        found = law.corrections(body(0.8, velocity=(2.0, 0.0)), STAND)
+        found = law.corrections(body(0.8, velocity=(2.0, 0.0)), STAND, DT)
     assert max(map(abs, found.values())) == pytest.approx(load_balance(MODEL).limit, abs=1e-3)
 
 
 def test_corrections_fade_when_the_body_is_back(law):
-    law.corrections(body(0.1), STAND)
+    law.corrections(body(0.1), STAND, DT)
     assert law.acting
     for _ in range(30):
-        found = law.corrections(body(), STAND)
+        found = law.corrections(body(), STAND, DT)
     assert found == {}
     assert not law.acting
 
 
 def test_released_corrections_are_gone(law):
-    law.corrections(body(0.1), STAND)
+    law.corrections(body(0.1), STAND, DT)
     law.release()
     assert not law.acting
-    assert law.corrections(body(), STAND) == {}
+    assert law.corrections(body(), STAND, DT) == {}
 
 
 # --- the file ---------------------------------------------------------------------------------------------------------

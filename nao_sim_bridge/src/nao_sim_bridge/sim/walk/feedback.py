@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, sin
+from math import atan2, cos, hypot, sin
 from typing import Tuple
 
 from nao_sim_bridge.sim.walk.body import LegPose, WalkingBody
@@ -36,6 +36,7 @@ class WalkFeedback:
         self._x, self._y = PendulumObserver(*gains), PendulumObserver(*gains)
         self._support: int | None = None
         self._own: Vector2 = (0.0, 0.0)
+        self._usual: Vector2 = (0.0, 0.0)
         self.error: Vector2 = (0.0, 0.0)
         self.shift: Vector2 = (0.0, 0.0)
         self.ankle: Vector2 = (0.0, 0.0)
@@ -66,6 +67,7 @@ class WalkFeedback:
             self._x.update(x, plan.pressure[0], dt)
             self._y.update(y, plan.pressure[1], dt)
         off_x, off_y = self._x.divergent - plan.divergent[0], self._y.divergent - plan.divergent[1]
+        off_x, off_y = self._beside_habit(off_x, off_y, dt)
         yaw = plan.feet[plan.support].yaw
         c, s = cos(yaw), sin(yaw)
         self.error = (c * off_x + s * off_y, c * off_y - s * off_x)
@@ -78,6 +80,18 @@ class WalkFeedback:
         self.shift = (s * aside - c * ahead, -(s * ahead + c * aside))
         damping = share * settings.ankle_damping
         self.ankle = (damping * gyro[0], damping * gyro[1])
+
+    def _beside_habit(self, x: float, y: float, dt: float) -> Vector2:
+        """What is unusual of an error, m; the usual one is learned: it comes from a slope, a load, a tilted sensor."""
+        settings = self._settings
+        usual_x, usual_y = self._usual
+        if hypot(x - usual_x, y - usual_y) < settings.habit_within:
+            share = dt / settings.habit_time
+            usual_x, usual_y = usual_x + share * (x - usual_x), usual_y + share * (y - usual_y)
+            size = hypot(usual_x, usual_y)
+            most = settings.habit_limit / size if size > settings.habit_limit else 1.0
+            self._usual = (most * usual_x, most * usual_y)
+        return (x - usual_x, y - usual_y)
 
     def _measured(self, plan: WalkPlan, pose: LegPose, upper: Vector, tilt: Vector2) -> Vector2:
         """Place of the centre of mass in the plan's frame, seen from the foot that carries."""

@@ -38,6 +38,9 @@ class WalkSettings:
         loaded: A foot that carries this has landed, N.
         latest: A foot that has not landed is waited for so long, s.
         sink: It goes down by this meanwhile, m.
+        habit_time: An error that is always there, from a slope for example, is learned with this time constant, s ...
+        habit_within: ... as long as it differs by less than this from what is known of it, m ...
+        habit_limit: ... up to this, m.
         calm_from: A body whose divergent component is off by more, m, walks slower ...
         calm_range: ... and on the spot when it is off by so much more, m.
         turn_hold: Share of the error of heading that one step makes up for.
@@ -71,6 +74,9 @@ class WalkSettings:
     loaded: float
     latest: float
     sink: float
+    habit_time: float
+    habit_within: float
+    habit_limit: float
     calm_from: float
     calm_range: float
     turn_hold: float
@@ -107,6 +113,7 @@ def load_walk_settings() -> WalkSettings:
         "observer": ["place", "speed"],
         "com_shift": ["gain", "smoothing", "limit_m"],
         "landing": ["loaded_n", "latest_s", "sink_m"],
+        "habit": ["time_s", "within_m", "limit_m"],
         "calm": ["from_m", "range_m"],
         "hold": ["turn", "turn_limit_rad", "aside", "aside_limit_m"],
         "arms": ["swing_rad", "ease_s"],
@@ -141,6 +148,9 @@ def load_walk_settings() -> WalkSettings:
         loaded=values["landing"][0],
         latest=values["landing"][1],
         sink=values["landing"][2],
+        habit_time=values["habit"][0],
+        habit_within=values["habit"][1],
+        habit_limit=values["habit"][2],
         calm_from=values["calm"][0],
         calm_range=values["calm"][1],
         turn_hold=values["hold"][0],
