@@ -7,7 +7,7 @@ that it has shown. Poses are in the plan's frame; a course to somewhere in the w
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any, NamedTuple, Tuple
+from typing import Any, Mapping, NamedTuple, Tuple
 
 from nao_sim_bridge.sim.walk.clipping import clip_step, sidestep, spread, step_limits
 from nao_sim_bridge.sim.walk.footsteps import FootPose
@@ -72,8 +72,8 @@ class Course(ABC):
         """The next step of the foot on the `side` while the other one, at `support`, carries; None: it is over."""
 
     @abstractmethod
-    def first_side(self) -> int:
-        """Which foot should move first."""
+    def first_side(self, feet: Mapping[int, FootPose]) -> int:
+        """Which foot should move first, from where both (1 left, -1 right) stand."""
 
     def begin_at(self, robot: FootPose) -> None:
         """Begin from where the robot is in the world; most courses look only at the feet."""

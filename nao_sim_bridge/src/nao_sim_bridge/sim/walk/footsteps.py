@@ -5,6 +5,9 @@ from __future__ import annotations
 from math import atan2, cos, sin
 from typing import NamedTuple
 
+# Feet stand side by side up to this, m, and parallel up to this, rad.
+ASIDE, PARALLEL = 0.01, 0.03
+
 
 class FootPose(NamedTuple):
     """A foot, or the robot, on the ground.
@@ -30,6 +33,12 @@ class FootPose(NamedTuple):
         x, y = self.x - other.x, self.y - other.y
         turn = self.yaw - other.yaw
         return FootPose(c * x + s * y, -s * x + c * y, atan2(sin(turn), cos(turn)))
+
+
+def side_by_side(left: FootPose, right: FootPose, separation: float) -> bool:
+    """Whether two feet stand about as a walk puts them down: beside each other, `separation` m apart, parallel."""
+    x, y, yaw = left.seen_from(right)
+    return abs(x) < ASIDE and abs(y - separation) < ASIDE and abs(yaw) < PARALLEL
 
 
 def middle(first: FootPose, second: FootPose) -> FootPose:

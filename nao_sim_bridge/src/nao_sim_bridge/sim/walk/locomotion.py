@@ -24,7 +24,7 @@ from nao_sim_bridge.sim.tasks import Task, TaskIds
 from nao_sim_bridge.sim.walk.arm_swing import ArmSwing
 from nao_sim_bridge.sim.walk.body import WalkingBody
 from nao_sim_bridge.sim.walk.courses import STANDSTILL, Course, Rate, rate_limits
-from nao_sim_bridge.sim.walk.footsteps import FootPose
+from nao_sim_bridge.sim.walk.footsteps import FootPose, side_by_side
 from nao_sim_bridge.sim.walk.gait import FeetGait, parameters
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.sim.walk.plan import Phase
@@ -165,7 +165,13 @@ class Locomotion:
         """Take the stance that walks begin from."""
         if self.active:
             return self.until_finished()
-        self._begin("moveInit", None)
+        now = self._now()
+        feet = [foot_on_ground(self._body, now.odometry, self._joints.commands, side) for side in (LEFT, RIGHT)]
+        course = None
+        if not side_by_side(feet[0], feet[1], self._settings.foot_separation):
+            course = VelocityCourse(self._settings, FeetGait(), STANDSTILL)
+            course.end()
+        self._begin("moveInit", course)
         return self.until_finished("moveInit")
 
     def move(self, x: float, y: float, theta: float, gait: FeetGait) -> None:

@@ -129,7 +129,7 @@ class WalkPlan:
     def begin(self, course: Course) -> None:
         """Start to walk, from standing."""
         self._course = course
-        side = course.first_side()
+        side = course.first_side(self.feet)
         self.support = -side
         self.phase = Phase.START
         settings = self._settings

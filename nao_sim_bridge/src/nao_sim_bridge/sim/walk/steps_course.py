@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Sequence
+from typing import Mapping, NamedTuple, Sequence
 
 from nao_sim_bridge.sim.walk.clipping import clip_step, step_limits
 from nao_sim_bridge.sim.walk.courses import STANDSTILL, Course, Rate, Step
-from nao_sim_bridge.sim.walk.footsteps import FootPose
+from nao_sim_bridge.sim.walk.footsteps import FootPose, middle, side_by_side
 from nao_sim_bridge.sim.walk.gait import FeetGait
 from nao_sim_bridge.sim.walk.settings import WalkSettings
 
@@ -54,12 +54,13 @@ class StepsCourse(Course):
         del self._queue[self._state if clear else len(self._queue) :]
         self._queue.extend(placements)
 
-    def first_side(self) -> int:  # noqa: D102
-        return self._queue[0].side if self._queue else 1
-
-    def begin_at(self, robot: FootPose) -> None:
-        """The first step counts from where the robot is, not from how its other foot happens to stand there."""
-        self._robot = robot
+    def first_side(self, feet: Mapping[int, FootPose]) -> int:
+        """The foot of the first step; the other one before it, if that stands in no way from which steps count."""
+        side = self._queue[0].side if self._queue else 1
+        if side_by_side(feet[1], feet[-1], self._settings.foot_separation):
+            return side
+        self._robot = middle(feet[1], feet[-1])
+        return -side
 
     def take(self, support: FootPose, side: int) -> None:  # noqa: D102
         super().take(support, side)
@@ -73,10 +74,10 @@ class StepsCourse(Course):
         if state >= len(self._queue):
             return None
         placement = self._queue[state]
-        if state == 0 and self._robot is not None:
-            support = self._robot.seen_from(self.frame).moved(0.0, -side * self._half)
         if placement.side != side:  # the other foot is due: it stays where it is, beside this one
             landing = self._landing(support, side, STANDSTILL, self._gait)
+            if self._robot is not None:
+                landing = self._robot.moved(0.0, side * self._half)
             return Step(side, landing, self._gait.period(side), self._gait.of(side)), state
         beside = clip_step(placement.beside, side, step_limits())
         period = max(placement.period, self._gait.period(side))

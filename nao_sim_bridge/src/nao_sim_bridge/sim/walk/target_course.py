@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import copysign, sqrt
-from typing import NamedTuple, Sequence
+from typing import Mapping, NamedTuple, Sequence
 
 from nao_sim_bridge.sim.walk.courses import ROUNDING, STANDSTILL, Course, Rate, Step, rate_limits
 from nao_sim_bridge.sim.walk.footsteps import FootPose
@@ -54,7 +54,7 @@ class TargetCourse(Course):
         way = self._goals[0].seen_from(robot)
         self._first = -1 if (way.y or way.yaw) < 0.0 else 1
 
-    def first_side(self) -> int:  # noqa: D102
+    def first_side(self, _: Mapping[int, FootPose]) -> int:  # noqa: D102
         return self._first
 
     def take(self, support: FootPose, side: int) -> None:  # noqa: D102

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import sqrt
-from typing import NamedTuple
+from typing import Mapping, NamedTuple
 
 from nao_sim_bridge.sim.walk.courses import ROUNDING, STANDSTILL, Course, Rate, Step, rate_limits
 from nao_sim_bridge.sim.walk.footsteps import FootPose
@@ -72,7 +72,7 @@ class VelocityCourse(Course):
         self._ending = True
         self._wanted = STANDSTILL
 
-    def first_side(self) -> int:
+    def first_side(self, _: Mapping[int, FootPose]) -> int:
         """The foot on the side where the robot goes or turns to; else the left one."""
         _, y, yaw = self._wanted
         return -1 if (y or yaw) < 0.0 else 1
