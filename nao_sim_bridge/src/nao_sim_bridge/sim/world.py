@@ -17,8 +17,10 @@ from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.rotations import Quaternion, Vector3, from_roll_pitch_yaw
 from nao_sim_bridge.sim.shapes import Shape
 
-FLOOR, BUMPS = "floor", "bumps"
-"""Names that no object may have."""
+FLOOR = "floor"
+"""A name that no object may have."""
+MOST_PARTS = 16
+"""PyBullet silently leaves out what goes beyond in one body."""
 
 Color = tuple  # (r, g, b) in 0..1
 

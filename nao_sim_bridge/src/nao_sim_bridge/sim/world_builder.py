@@ -10,7 +10,7 @@ from nao_sim_bridge.sim.meshes import merged, tessellate
 from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
 from nao_sim_bridge.sim.shapes import Shape
 from nao_sim_bridge.sim.visuals import visual_shape
-from nao_sim_bridge.sim.world import BUMPS, FLOOR, Color, Floor, Part, Rug, World, WorldObject
+from nao_sim_bridge.sim.world import FLOOR, MOST_PARTS, Color, Floor, Part, Rug, World, WorldObject
 
 FLOOR_EXTENT = 10.0
 """Half the edge length of the visible floor, m; the floor of the physics has no end."""
@@ -28,24 +28,29 @@ def build_world(world: World, client: int, visual: bool) -> dict[str, int]:
         visual: Make something to look at and nothing to touch (pictures), or the other way round (physics).
 
     Returns:
-        PyBullet's body ids by name; `floor` is among them, and `bumps` if it has any.
+        PyBullet's body ids by name; `floor` is among them, its bumps are not.
     """
-    build_floor, build = (_see_floor, _see_object) if visual else (_touch_floor, _touch_object)
+    build_floor, build_object = (_see_floor, _see_object) if visual else (_touch_floor, _touch_object)
+
+    def build(thing: WorldObject) -> int:
+        turn = from_roll_pitch_yaw(*thing.rpy)
+        place = pybullet.multiplyTransforms(NOWHERE, world.floor.orientation, thing.position, turn)
+        return build_object(thing, *place, client)
+
     bodies = {FLOOR: build_floor(world.floor, client)}
-    for thing in (*_bumps(world.floor), *world.objects):
-        place = pybullet.multiplyTransforms(
-            NOWHERE, world.floor.orientation, thing.position, from_roll_pitch_yaw(*thing.rpy)
-        )
-        bodies[thing.name] = build(thing, *place, client)
+    for heap in _bumps(world.floor):
+        build(heap)
+    bodies.update({thing.name: build(thing) for thing in world.objects})
     return bodies
 
 
 def _bumps(floor: Floor) -> list[WorldObject]:
-    """All bumps as one thing: many bodies would cost the engine more."""
-    if not floor.bumps:
-        return []
-    parts = tuple(Part(shape, floor.bump_color) for shape in floor.bumps)
-    return [WorldObject(BUMPS, NOWHERE, NOWHERE, parts, 0.0, floor.friction, 0.0, 0.0)]
+    """All bumps, as many in one thing as can be: many bodies would cost the engine more."""
+    parts = [Part(shape, floor.bump_color) for shape in floor.bumps]
+    return [
+        WorldObject("", NOWHERE, NOWHERE, tuple(parts[start : start + MOST_PARTS]), 0.0, floor.friction, 0.0, 0.0)
+        for start in range(0, len(parts), MOST_PARTS)
+    ]
 
 
 # --- touched ----------------------------------------------------------------------------------------------------------

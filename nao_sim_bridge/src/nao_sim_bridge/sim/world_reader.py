@@ -25,8 +25,8 @@ from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.kinematics import rpy_matrix
 from nao_sim_bridge.sim.shapes import KINDS, Shape, read_shape
 from nao_sim_bridge.sim.world import (
-    BUMPS,
     FLOOR,
+    MOST_PARTS,
     Background,
     Color,
     Floor,
@@ -65,9 +65,9 @@ def read_world(content: Any, name: str, where: str) -> World:
         raise
     except ConfigError as error:
         raise WorldError(error.where, error.problem) from error
-    names = [FLOOR, BUMPS, *(thing.name for thing in objects)]
+    names = [FLOOR, *(thing.name for thing in objects)]
     for index, thing in enumerate(objects):
-        if thing.name in names[: index + 2]:
+        if thing.name in names[: index + 1]:
             raise WorldError(f"{where}: objects[{index}].name", f"{thing.name!r} is taken")
     return World(
         name=name,
@@ -169,8 +169,8 @@ def _read_parts(entry: Mapping, where: str) -> list[Part]:
         Part(read_shape(part, place, extra=("color",)), _color(part, "color", place, color))
         for place, part in _entries(entry, "parts", where)
     ]
-    if not parts:
-        raise WorldError(f"{where}.parts", "is empty")
+    if not 1 <= len(parts) <= MOST_PARTS:
+        raise WorldError(f"{where}.parts", f"has {len(parts)} entries, allowed is 1..{MOST_PARTS}")
     return parts
 
 

@@ -164,7 +164,7 @@ class Studio:
 
     def _cast_still_shadow(self) -> Shadow | None:
         """The shadow of what never moves; before anything else is there than the objects of the world."""
-        if len(self._movable) == len(self._objects):
+        if len(self._movable) == len(self._objects) and not self._world.floor.bumps:
             return None
         places = {name: self._place_of(name) for name in self._movable}
         for name in self._movable:

@@ -10,8 +10,10 @@ from nao_sim_bridge.sim.walk.footsteps import FootPose
 from nao_sim_bridge.sim.walk.gait import FeetGait
 from nao_sim_bridge.sim.walk.settings import WalkSettings
 
-# Steps that bring the feet together at the end of a walk.
-CLOSING_STEPS = 2
+# Steps that bring the feet together at the end of a walk, and those of a walk that does nothing else.
+CLOSING_STEPS, ALIGNING_STEPS = 1, 2
+# A robot whose way in a step is not longer than so many changes from one step to the next may stop in the next one.
+SLOW = 3.0
 # A robot that walks at a velocity makes up for what it was pushed to the side, m, or turned, rad, up to this.
 FURTHEST_ASIDE, FURTHEST_TURN = 0.05, 0.5
 
@@ -85,7 +87,7 @@ class VelocityCourse(Course):
         if closing == 0:
             return None
         if self._ending and closing is None and _slow(state.rate, self._settings.change):
-            closing = CLOSING_STEPS
+            closing = ALIGNING_STEPS if state.first else CLOSING_STEPS
         if closing is not None:
             rate, closing = STANDSTILL, closing - 1
         else:
@@ -97,7 +99,10 @@ class VelocityCourse(Course):
         here = self.frame.moved(*centre)
         intended = here if state.intended is None else state.intended
         off = intended.seen_from(here)
-        aside, turn = (off.y, off.yaw) if state.first else self._hold(off)
+        if closing == 0:
+            aside, turn = 0.0, 0.0  # this foot comes beside the other one
+        else:
+            aside, turn = (off.y, off.yaw) if state.first else self._hold(off)
         landing = centre.moved(way.x, way.y + aside, way.yaw + turn).moved(0.0, side * self._half)
         after = self._kept_near(intended, here).moved(*way)
         return self._step(side, landing), _Going(rate, closing, after, False)
@@ -131,4 +136,4 @@ def within(rate: Rate, gait: FeetGait) -> Rate:
 
 
 def _slow(rate: Rate, change: Rate) -> bool:
-    return all(abs(part) <= most + ROUNDING for part, most in zip(rate, change))
+    return all(abs(part) <= SLOW * most + ROUNDING for part, most in zip(rate, change))

@@ -15,8 +15,9 @@ from nao_sim_bridge.sim.walk.settings import WalkSettings
 
 # From this share of its way on a foot may land.
 LANDING = 0.6
-# It has landed when it has felt the ground within this time, s.
-BOUNCE = 0.12
+# It has landed when it has felt the ground within this time, s: one that bounces a little, or, when the body is far off
+# the plan, one that a toe has touched with.
+BOUNCE, TOUCH = 0.12, 0.02
 # Of a leg's five angles below the hip's yaw.
 ANKLE_PITCH, ANKLE_ROLL = 3, 4
 
@@ -124,7 +125,7 @@ class Walker:
         plan = self.plan
         felt = loads[0 if plan.support == RIGHT else 1] > self._settings.loaded
         self._in_air = 0.0 if felt and plan.swing_share > LANDING else self._in_air + dt
-        return self._in_air < BOUNCE
+        return self._in_air < (BOUNCE if self.haste > 0.0 else TOUCH)
 
     def _begun(self) -> float:
         """How far the walk's stance is taken, 0..1."""
