@@ -88,11 +88,14 @@ class MotionWalking(unittest.TestCase):
         self.play(f("rest"))
         arm = f("setPose", names=["RArm"], angles=[-1.0, -0.3, 1.2, 0.8, 0.0, 1.0], duration=1.5)
         wave = f("angleInterpolation", names=["RElbowRoll"], angles=[0.4, 1.2, 0.8], times=[0.5, 1.0, 1.5])
-        result = self.play(f("goToPosture", str_param="Stand"), walk(0.3), arm, wave)
+        run = self.send(f("goToPosture", str_param="Stand"), walk(0.3), arm, wave).wait_for_function(1)
+        self.start_pose = self.robot.true_pose()
+        run.wait(LIMIT)
+        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
         self.assert_walked(0.3)
         self.assert_stands()
         self.assertAlmostEqual(self.robot.value(SENSOR.format("RElbowRoll")), 0.8, delta=0.1)
-        x, y, theta = map(float, result.results[1].values)
+        x, y, theta = map(float, run.result.results[1].values)
         self.assertAlmostEqual(x, 0.3, delta=0.01)
         self.assertLess(abs(y) + abs(theta), 0.03)
 
@@ -119,6 +122,8 @@ class MotionWalking(unittest.TestCase):
         self.assertIn("kitchen", lost.text)
 
     def test_footsteps_go_where_they_are_put(self):
+        self.play(walk(0.05))  # feet side by side: a robot that has stood up has them turned outwards
+        self.start_pose = self.robot.true_pose()
         legs = ["LLeg", "RLeg"] * 2
         steps = [0.04, 0.1, 0.0, 0.04, -0.1, 0.0, 0.04, 0.1, 0.0, 0.0, -0.1, 0.0]
         self.play(f("setFootStepsWithSpeed", names=legs, values=steps))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from naoqi.errors import RobotError
+
 LIMP = "the legs are limp"
 
 
@@ -41,11 +43,13 @@ class FakeWalk:
             call.end()
 
     def _start(self, method):
-        from naoqi.errors import RobotError
-
         if self.limp:
             raise RobotError("ALMotion", method, LIMP)
+        walks = list(self.walks)
+        self.walks.clear()
         self.walking = True
+        for call in walks:
+            call.end(False)
 
     def _held(self, method):
         if method not in self.holds:

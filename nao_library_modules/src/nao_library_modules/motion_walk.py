@@ -252,8 +252,6 @@ class WalkFunctions(WalkBase):
         self.walk_failure.forget()
         try:
             yield
-        except WalkStopped:
-            raise
         except BaseException:
             self.stop_walk()
             raise

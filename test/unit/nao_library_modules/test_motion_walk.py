@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+import threading
 
 import pytest
 from fake_motion import CHAINS, FakeMotion, FakePostures
 from genpy import Duration
 
 from nao_library_actions.msg import NaoMotionGoal
+from nao_library_modules.errors import Preempted
 from nao_library_msgs.msg import MotionFunction
 from naoqi.errors import RobotError
 
@@ -276,6 +278,14 @@ def test_nobody_walks_from_the_floor(motion, robot):
     assert server.end == "aborted" and "(posture Sit)" in server.text
 
 
+def test_a_robot_that_walks_or_has_moved_its_legs_is_not_asked_for_its_posture(motion, fake, robot):
+    robot.proxy("ALRobotPosture")._service.posture = "Sit"
+    assert play(motion, LEG, f("moveTo", values=[0.1, 0, 0])).end == "succeeded"
+    fake.walking = True
+    assert play(motion, f("move", values=[0.1, 0, 0])).end == "succeeded"
+    assert robot.proxy("ALRobotPosture").calls == []
+
+
 LEG = f("angleInterpolation", names=["LHipRoll"], angles=[0.1], times=[1.0])
 
 
@@ -288,6 +298,7 @@ LEG = f("angleInterpolation", names=["LHipRoll"], angles=[0.1], times=[1.0])
         ([f("waitUntilMoveIsFinished")], True),
         ([f("goToPosture", str_param="Stand")], True),
         ([f("killAll")], True),
+        ([f("wakeUp")], True),
     ],
 )
 def test_joints_of_a_walking_leg_are_not_moved(motion, robot, between, good):
@@ -429,7 +440,41 @@ def test_a_fall_on_the_way_is_told_as_such(motion, fake, robot):
     assert fake.angles["HeadYaw"] == 0.0
 
 
-def test_news_of_a_fall_that_come_after_the_end_of_the_walk_count(motion, fake, robot):
+def test_a_walk_outside_of_a_goal_ends_on_two_feet_as_well(motion, fake):
+    fake.slow.add("moveTo")
+    ended = []
+
+    def walk():
+        try:
+            motion.run("moveTo", ([0.4, 0.0, 0.0], 0.0, (), ()), 0.0)
+        except Preempted:
+            ended.append("preempted")
+
+    thread = threading.Thread(target=walk, daemon=True)
+    thread.start()
+    assert fake.started.wait(LIMIT)
+    motion.interrupt.trigger()
+    thread.join(LIMIT)
+    assert (ended, fake.walking) == (["preempted"], False)
+
+
+def test_a_fall_ends_a_goal_that_only_waits_for_the_end_of_a_walk(motion, fake, robot):
+    fake.slow.add("waitUntilMoveIsFinished")
+    thread = play_until(motion, fake.started, f("waitUntilMoveIsFinished"))
+    fake.slow.clear()
+    robot.memory.signals["ALMotion/RobotIsFalling"](True)
+    thread.join(LIMIT)
+    assert motion.server.end == "aborted" and "the robot fell" in motion.server.text
+
+
+def test_news_of_a_fall_that_come_later_than_the_end_of_the_walk_are_waited_for(motion, fake, robot):
+    fall = threading.Timer(0.05, lambda: robot.memory.signals["ALMotion/RobotIsFalling"](True))
+    fake.moveTo = lambda *_: False
+    fake.waitUntilMoveIsFinished = fall.start
+    assert "the robot fell" in play(motion, f("moveTo", values=[0.4, 0, 0])).text
+
+
+def test_news_of_a_fall_that_come_with_the_end_of_the_walk_count(motion, fake, robot):
     def fall(*_):
         robot.memory.signals["ALMotion/RobotIsFalling"](True)
         return False

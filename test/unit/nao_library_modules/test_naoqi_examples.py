@@ -9,9 +9,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.runner import FASTEST
+from nao_sim_bridge.sim.simulation import Scene
 
 PACKAGE = Path(__file__).parents[3] / "nao_library_modules"
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE / "src")}
@@ -41,8 +43,23 @@ def test_a_robot_walks_its_bow_and_rests(server):
     assert max(server.runner.snapshot.stiffnesses) == 0.0
 
 
-def test_without_a_robot_it_says_so():
-    done = run("naoqi_walk", "--port", "1")
+def test_the_things_of_the_lab_are_told_and_drawn(tmp_path):
+    lab = SimulatorServer(ServerOptions(Scene(world="lab"), port=0, paused=True))
+    lab.start()
+    try:
+        done = run("look_at_the_lab", "--port", str(lab.broker.port), "--output", str(tmp_path / "room.png"))
+    finally:
+        lab.stop()
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "ball: x 0.30 m, y -0.55 m, z 0.05 m, 0.63 m from the robot" in done.stdout
+    assert len(done.stdout.splitlines()) == 6
+    with Image.open(tmp_path / "room.png") as picture:
+        assert picture.size == (960, 600)
+
+
+@pytest.mark.parametrize("name", ["naoqi_walk", "look_at_the_lab"])
+def test_without_a_robot_it_says_so(name):
+    done = run(name, "--port", "1")
     assert done.returncode == 1
     assert "NAOqi at 127.0.0.1:1" in done.stdout
     assert "Traceback" not in done.stderr

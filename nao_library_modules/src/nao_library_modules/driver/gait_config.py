@@ -34,8 +34,8 @@ def read_gait_config(name: str, value: Any) -> GaitConfig:
     return config
 
 
-def read_frequency(name: str, value: Any) -> float:
-    """A step frequency, 0 (slowest) to 1.
+def read_share(name: str, value: Any) -> float:
+    """A share from 0 to 1: of the step frequencies, of the stiffness.
 
     Args:
         name: Name of the parameter, for texts.

@@ -26,12 +26,12 @@ from naoqi.errors import NaoError
 from ..health import Report
 from ..joint_names import MOTION
 from ..ros_clock import RosClock
-from .gait_config import read_frequency, read_gait_config
+from .gait_config import read_gait_config, read_share
 from .joint_controller import QUICK_LIMIT, JointController
 from .speaker import Speaker
 from .walk_commands import Velocity, read_step, read_target, read_velocity
 from .walk_inhibition import WalkInhibition
-from .walk_orders import Command, Order, Stop, WalkEnded
+from .walk_orders import Command, Order, Overtaken, Stop
 from .walk_report import WalkJournal
 from .walker import Walker
 
@@ -78,8 +78,8 @@ class NaoWalker:
         timeout = rospy.get_param("~cmd_vel_timeout", 0.5)
         if isinstance(timeout, bool) or not isinstance(timeout, (int, float)) or not 0.0 <= timeout < float("inf"):
             raise NaoError(f"~cmd_vel_timeout is {timeout!r}: s, 0 or more")
-        self._init_stiffness = read_frequency("~init_stiffness", rospy.get_param("~init_stiffness", 0.0))
-        frequency = read_frequency("~step_frequency", rospy.get_param("~step_frequency", 0.5))
+        self._init_stiffness = read_share("~init_stiffness", rospy.get_param("~init_stiffness", 0.0))
+        frequency = read_share("~step_frequency", rospy.get_param("~step_frequency", 0.5))
         gait = self._gait()
         self._inhibition = WalkInhibition()
         self._journal = WalkJournal()
@@ -134,7 +134,7 @@ class NaoWalker:
 
     def _note_end(self, topic: str, answer: Any) -> None:
         error = answer.exception()
-        if isinstance(error, WalkEnded):
+        if isinstance(error, Overtaken):
             rospy.logdebug("%s: %s", topic, error)
         elif error is not None:
             self._journal.failed(topic, error)

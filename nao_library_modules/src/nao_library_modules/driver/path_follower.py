@@ -118,8 +118,8 @@ class NaoPathFollower:
         self._legs.reserve()
         try:
             return self._walk(goal, interrupt, publish)
-        except Replaced:
-            raise  # the new goal goes on from here
+        except (Replaced, RobotLost):
+            raise  # the new goal goes on from here; a robot that is gone cannot be stopped
         except BaseException:
             self._stop()
             raise

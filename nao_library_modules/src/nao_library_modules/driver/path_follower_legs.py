@@ -9,11 +9,12 @@ import rospy
 from geometry_msgs.msg import Pose2D, Twist
 from std_srvs.srv import Empty
 
-from naoqi.errors import NaoError
+from naoqi.errors import NaoError, RobotError
 
 from ..interrupt import Interrupt
 from ..joint_names import MOTION
 from .joint_controller import QUICK_LIMIT
+from .joint_sensors import MEMORY
 from .planar import Place
 from .robot_task import run_task
 
@@ -21,6 +22,7 @@ LISTENER_LIMIT = 5.0
 """s to wait for somebody who listens to the commands."""
 STOP_LIMIT = 10.0
 """s that a walking robot may take to stand."""
+FAILED = "ALMotion/MoveFailed"
 STOP, INHIBIT, LET_GO = "stop_walk_srv", "inhibit_walk", "uninhibit_walk"
 
 
@@ -59,6 +61,7 @@ class WalkTopics:
         )
         self._stop = rospy.ServiceProxy(STOP, Empty)
         self._inhibit = rospy.ServiceProxy(INHIBIT, Empty)
+        self._failed_before: list = []
         self._let_go = rospy.ServiceProxy(LET_GO, Empty)
 
     def prepare(self, interrupt: Interrupt) -> None:
@@ -71,6 +74,7 @@ class WalkTopics:
         self._heard.event.wait(LISTENER_LIMIT)
         if not self._commands.get_num_connections():
             raise NaoError(f"nobody listens to {rospy.resolve_name(self._topic)}: does nao_walker run?")
+        self._failed_before = self._last_failure()
         if not self.walking():
             run_task(self._robot.proxy(MOTION).call_async("moveInit"), interrupt, self._stop_robot)
 
@@ -92,6 +96,11 @@ class WalkTopics:
         """
         return bool(self._quick("moveIsActive"))
 
+    def why_stopped(self) -> str:
+        """What ended a walk since `prepare`: cause of the robot's event MoveFailed; empty if there was none."""
+        failure = self._last_failure()
+        return str(failure[0]) if failure and failure != self._failed_before else ""
+
     def stop(self) -> None:
         """Stand, on both feet.
 
@@ -112,6 +121,14 @@ class WalkTopics:
     def release(self) -> None:
         """Let others walk again."""
         self._call_if_there(self._let_go)
+
+    def _last_failure(self) -> list:
+        """Value of the event: cause, whether the walk had begun, place of an obstacle. Empty before the first one."""
+        try:
+            value = self._robot.proxy(MEMORY).call_async("getData", FAILED).result(timeout=QUICK_LIMIT)
+        except RobotError:
+            return []  # nothing has failed yet, or it is a robot that does not tell
+        return list(value) if isinstance(value, (list, tuple)) else []
 
     def _stop_robot(self) -> None:
         self._robot.proxy(MOTION).call_async("stopMove").result(timeout=STOP_LIMIT)

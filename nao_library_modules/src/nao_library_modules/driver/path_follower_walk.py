@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from naoqi.errors import NaoError
+
 from ..clock import WallClock
 from ..interrupt import Interrupt
 from .pacer import Pacer
@@ -44,8 +46,18 @@ class Legs(Protocol):
     def walking(self) -> bool:
         """Whether it walks."""
 
+    def why_stopped(self) -> str:
+        """What ended a walk since `prepare`, an obstacle for example; empty if nothing did or nobody knows."""
+
     def stop(self) -> None:
         """Stand, on both feet; returns then."""
+
+
+def _check_stop(legs: Legs) -> None:
+    """Give up a walk that a protection of the robot has ended: each new try would get nearer to what is in the way."""
+    cause = legs.why_stopped()
+    if cause:
+        raise NaoError(f"the robot stopped: {cause}")
 
 
 class _Poses:
@@ -76,6 +88,8 @@ class _Poses:
                 return True
         else:
             self._near_since = None
+            if not walking:
+                _check_stop(self._legs)
         if self._moved(aim.place):
             self._tell(way, aim.place, now)
         elif not (near or walking or self._just_told(now)):
@@ -118,9 +132,11 @@ class _Velocities:
         now, wall = self._now(), self._wall.now()
         if self._legs.walking():
             self._seen_at = (now, wall)
-        elif now - self._seen_at[0] > GRACE and wall - self._seen_at[1] > WALL_GRACE:
-            self._legs.prepare(self._interrupt)
-            self._seen_at = (now, wall)
+        else:
+            _check_stop(self._legs)
+            if now - self._seen_at[0] > GRACE and wall - self._seen_at[1] > WALL_GRACE:
+                self._legs.prepare(self._interrupt)
+                self._seen_at = (now, wall)
         self._legs.go_at(*velocity(way, self._settings))
         return False
 

@@ -23,11 +23,11 @@ Command = Union[Velocity, Target, Step, Stop]
 
 
 class WalkEnded(NaoError):
-    """A command to walk did not come to its end.
+    """A command to walk did not come to its end: the robot did not get there.
 
     Attributes:
         command: What was asked for.
-        reason: What came in its way.
+        reason: Why.
     """
 
     def __init__(self, command: Command, reason: str) -> None:
@@ -35,6 +35,10 @@ class WalkEnded(NaoError):
         super().__init__(f"{command} ended before time: {reason}")
         self.command = command
         self.reason = reason
+
+
+class Overtaken(WalkEnded):
+    """Something newer came in the way of a command."""
 
 
 @dataclass(eq=False)
@@ -47,6 +51,7 @@ class Order:
         watched: Whether the robot has to stop when no further command of this kind comes.
         to_the_end: Whether steps count as carried out when they are made, and not when the robot has taken them.
         arrived: Time in s when it came.
+        replaces: Whether the robot walked by an older order when this one's turn came.
         stopped_by: What stops it on its way, once something does.
         answer: Done when it was carried out, failed, or was overtaken by another one.
     """
@@ -56,6 +61,7 @@ class Order:
     watched: bool = False
     to_the_end: bool = False
     arrived: float = 0.0
+    replaces: bool = False
     stopped_by: str = ""
     answer: Future = field(default_factory=Future)
 
@@ -80,7 +86,7 @@ class Order:
 
     def overtaken(self, reason: str) -> None:
         """Something newer came in its way."""
-        self.fail(WalkEnded(self.command, reason))
+        self.fail(Overtaken(self.command, reason))
 
 
 class OrderBox:

@@ -19,7 +19,7 @@ from .gait_config import GaitConfig
 from .joint_controller import QUICK_LIMIT
 from .robot_task import run_task
 from .walk_commands import Step, Target, Velocity
-from .walk_orders import Command, Order, OrderBox, Stop, WalkEnded
+from .walk_orders import Command, Order, OrderBox, Overtaken, Stop, WalkEnded
 from .walk_pace import WalkPace
 from .walk_watchdog import WalkWatchdog
 
@@ -27,7 +27,7 @@ log = logging.getLogger(__name__)
 
 STEP_TIME = 0.5
 """s that a step takes."""
-NOT_THERE = "the robot did not get there; another client or a protection of the robot stopped it"
+NOT_THERE = "another client or a protection of the robot stopped it"
 STANDS, CLOSED = "nothing", "the node ends"
 
 
@@ -154,9 +154,8 @@ class Walker:
     def _stop_by_watchdog(self) -> None:
         self.watchdog_stops += 1
         log.warning("no command on cmd_vel for %g s: the robot is told to stop", self._watchdog.limit)
-        stop = Order(Stop(), "the end of the commands on cmd_vel")
-        stop.answer.add_done_callback(_log_failure)
-        self._carry_out(stop)
+        self._watchdog.rest()
+        self._stop_for("the end of the commands on cmd_vel")
 
     def _carry_out(self, order: Order) -> None:
         start: dict[type, Callable[[Order, Any], None]] = {
@@ -235,6 +234,7 @@ class Walker:
             before = [old for old in self._running if not old.answer.done()]
             steps = [old for old in before if isinstance(order.command, Step) and isinstance(old.command, Step)]
             self._running = [*steps, order]
+            order.replaces = self._doing != STANDS
             self._doing = STANDS if order.halts else str(order.command)
         ending = [old for old in before if old not in steps]
         if isinstance(order.command, Stop):
@@ -301,19 +301,25 @@ class Walker:
             order.overtaken(f"{order.stopped_by} stopped it")
         elif error is not None:
             order.fail(error)
+            if order.replaces and not order.halts and not isinstance(error, WalkEnded):
+                self._stop_for("a command that failed")  # the older walk goes on, and nobody watches it any more
         else:
             order.succeed()
+
+    def _stop_for(self, reason: str) -> None:
+        stop = Order(Stop(), reason)
+        stop.answer.add_done_callback(_log_failure)
+        self._put(stop)
 
     def _connection_changed(self, *_: Any) -> None:
         """Called from the thread that the connection has for its listeners."""
         with self._lock:
             owed = self._owes_stop
         if owed and self._robot.connection.state == "connected":
-            stop = self.order(Stop(), "the return of the robot, which was to stop,")
-            stop.answer.add_done_callback(_log_failure)
+            self._stop_for("the return of the robot, which was to stop,")
 
 
 def _log_failure(answer: Any) -> None:
     error = answer.exception()
-    if error is not None and not isinstance(error, WalkEnded):
+    if error is not None and not isinstance(error, Overtaken):
         log.error("the robot cannot be stopped: %s", error)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nao_library_modules.driver.gait_config import read_frequency, read_gait_config
+from nao_library_modules.driver.gait_config import read_gait_config, read_share
 from naoqi.errors import NaoError
 
 NAME = "~foot_gait_config"
@@ -43,11 +43,11 @@ def test_everything_else_is_told(value, words):
 
 
 @pytest.mark.parametrize("value", [0, 0.5, 1.0])
-def test_a_frequency_is_a_fraction(value):
-    assert read_frequency("~step_frequency", value) == value
+def test_a_share_is_a_number_from_0_to_1(value):
+    assert read_share("~step_frequency", value) == value
 
 
 @pytest.mark.parametrize("value", [-0.1, 1.1, float("nan"), True, "fast"])
-def test_a_frequency_is_nothing_else(value):
+def test_a_share_is_nothing_else(value):
     with pytest.raises(NaoError, match="~step_frequency is .*: 0 to 1"):
-        read_frequency("~step_frequency", value)
+        read_share("~step_frequency", value)

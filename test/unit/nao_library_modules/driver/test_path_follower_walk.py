@@ -29,6 +29,7 @@ class PointRobot:
         place: Where it is.
         able: What `prepare` raises otherwise.
         wall: x it cannot get beyond.
+        cause: What has stopped it.
     """
 
     def __init__(self):
@@ -36,6 +37,7 @@ class PointRobot:
         self.time = 0.0
         self.able = None
         self.wall = math.inf
+        self.cause = ""
         self.commands = []
         self.stops = 0
         self.track = [ORIGIN]
@@ -69,6 +71,9 @@ class PointRobot:
 
     def walking(self):
         return self._goal is not None or any(self._speed)
+
+    def why_stopped(self):
+        return self.cause
 
     def stop(self):
         self.stops += 1
@@ -184,6 +189,18 @@ def test_a_robot_that_ceases_to_walk_says_why(robot, settings):
     with pytest.raises(NaoError, match="fallen"):
         walk(robot, TargetCourse(lambda: Place(1.0, 0.0, 0.0)), settings, report=fall)
     assert robot.time < 6.0
+
+
+@pytest.mark.parametrize("settings", [BY_POSES, BY_VELOCITIES], ids=["poses", "velocities"])
+def test_a_robot_that_stops_before_an_obstacle_is_not_sent_nearer(robot, settings):
+    def see(place, aim):
+        if place.x > 0.4 and not robot.cause:
+            robot.cause = "an obstacle 0.39 m ahead"
+            robot.stop()
+
+    with pytest.raises(NaoError, match="the robot stopped: an obstacle 0.39 m ahead"):
+        walk(robot, TargetCourse(lambda: Place(1.0, 0.0, 0.0)), settings, report=see)
+    assert robot.place.x < 0.42
 
 
 def test_one_that_was_stopped_by_somebody_is_told_again(robot):

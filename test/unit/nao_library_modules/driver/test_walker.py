@@ -11,7 +11,7 @@ import pytest
 
 from nao_library_modules.clock import WallClock
 from nao_library_modules.driver.walk_commands import Step, Target, Velocity
-from nao_library_modules.driver.walk_orders import Stop, WalkEnded
+from nao_library_modules.driver.walk_orders import Overtaken, Stop, WalkEnded
 from nao_library_modules.driver.walker import Walker
 from naoqi.errors import ConnectionLost, NaoError, RobotError, RobotUnreachable
 
@@ -167,7 +167,7 @@ def test_a_robot_that_is_slow_gets_only_the_newest(walker, proxy, walk, make_cal
     done(first)
     done(last)
     assert [call[1] for call in proxy.calls] == [0.5, 1.0]
-    assert all(isinstance(order.answer.exception(LIMIT), WalkEnded) for order in overtaken)
+    assert all(isinstance(order.answer.exception(LIMIT), Overtaken) for order in overtaken)
 
 
 def test_a_walk_whose_commands_cease_is_stopped(walker, proxy, clock, walk, eventually, caplog):
@@ -243,7 +243,7 @@ def test_a_newer_command_replaces_a_target(walker, walk, newer, eventually):
     target = walker.order(Target(3.0, 0.0, 0.0), "cmd_pose from /me")
     eventually(lambda: walk.walks)
     walker.order(newer, "cmd_vel from /you")
-    with pytest.raises(WalkEnded, match="cmd_vel from /you came after it"):
+    with pytest.raises(Overtaken, match="cmd_vel from /you came after it"):
         done(target)
     assert walk.walking
 
@@ -252,8 +252,9 @@ def test_a_robot_that_stops_on_the_way_is_told(walker, walk, eventually):
     target = walker.order(Target(3.0, 0.0, 0.0), "cmd_pose from /me")
     eventually(lambda: walk.walks)
     walk._stand()
-    with pytest.raises(WalkEnded, match="did not get there"):
+    with pytest.raises(WalkEnded, match="another client or a protection") as caught:
         done(target)
+    assert not isinstance(caught.value, Overtaken)
 
 
 def test_steps_queue_up_and_can_be_waited_for(walker, walk, proxy, eventually):
@@ -287,6 +288,26 @@ def test_what_the_robot_refuses_is_told_and_not_repeated_with_every_message(walk
     assert len(proxy.calls) == 1
     with pytest.raises(RobotError, match=fake_walk.LIMP):
         done(walker.order(Target(1.0, 0.0, 0.0), "cmd_pose_srv from /me"))
+
+
+@pytest.mark.parametrize("refused", [Target(1.0, 0.0, 0.0), Step("LLeg", 0.02, 0.1, 0.0), FASTER])
+def test_a_command_that_is_refused_leaves_no_older_walk_unwatched(walker, walk, eventually, refused):
+    done(steer(walker, FORWARD))
+    walk.limp = True
+    with pytest.raises(RobotError):
+        done(walker.order(refused, "another"))
+    eventually(lambda: not walk.walking)
+
+
+def test_a_target_that_others_end_does_not_stop_what_they_do(walker, walk, proxy, eventually):
+    done(steer(walker, FORWARD))
+    target = walker.order(Target(3.0, 0.0, 0.0), "cmd_pose from /me")
+    eventually(lambda: walk.walks)
+    walk.moveTo(1.0, 0.0, 0.0)  # by another client
+    with pytest.raises(WalkEnded):
+        done(target)
+    done(walker.order(Step("LLeg", 0.02, 0.1, 0.0), "step"))
+    assert "stopMove" not in methods(proxy)
 
 
 def test_a_velocity_of_a_service_is_always_sent(walker, walk):

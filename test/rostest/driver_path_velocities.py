@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""Walking to a target and along a path when the path follower leads by velocities."""
+
+import math
+import unittest
+
+import rospy
+import rostest
+from actionlib import SimpleActionClient
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import Pose2D, Twist
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from nav_msgs.msg import Odometry
+from rospy import Duration
+
+from nao_library_actions.msg import FollowPathAction, FollowPathGoal
+from nao_library_modules.driver.planar import Place, yaw_of_quaternion
+from nao_library_modules.driver.planar_frames import pose_stamped
+from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+
+FRAME = "base_footprint"
+NEAR = 0.08
+"""m: the threshold of the node, and what odometry is off."""
+
+
+class DriverPathVelocities(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        rospy.wait_for_message("odom", Odometry, 60.0)
+        cls.motion = cls.robot.module("ALMotion")
+        cls.poses = []
+        cls.velocities = []
+        cls.subscribers = [
+            rospy.Subscriber("cmd_pose", Pose2D, cls.poses.append),
+            rospy.Subscriber("cmd_vel", Twist, cls.velocities.append),
+        ]
+
+    def setUp(self):
+        self.robot.reset()
+        self.motion.wakeUp()
+        self.robot.advance(0.5)
+        self.velocities.clear()
+
+    def tearDown(self):
+        self.assertFalse(self.motion.moveIsActive(), "the robot still walks")
+
+    def truth(self):
+        pose = self.robot.true_pose()
+        turn = pose.orientation
+        return Place(pose.position.x, pose.position.y, yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w))
+
+    def walk(self, name, action, goal, way):
+        client = SimpleActionClient(name, action)
+        wait_until(lambda: client.wait_for_server(Duration(0.01)), 60.0, name)
+        before = self.truth()
+        with self.robot.at_speed(2.0):  # what the machine delays a command by counts as so much less of the way
+            run = send(client, goal).wait(150.0)
+        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
+        off = before.then(way).seen_from(self.truth())
+        self.assertLess(off.distance, NEAR)
+        self.assertLess(abs(off.yaw), math.radians(10.0))
+        self.assertEqual(self.poses, [])
+        self.assertGreater(len(self.velocities), 20)
+        self.assertLessEqual(max(abs(twist.linear.x) for twist in self.velocities), 0.7)
+        last = self.velocities[-1]
+        self.assertEqual((last.linear.x, last.linear.y, last.angular.z), (0.0, 0.0, 0.0))
+
+    def test_a_target(self):
+        way = Place(0.3, 0.1, 0.5)
+        self.walk("walk_target", MoveBaseAction, MoveBaseGoal(pose_stamped(way, FRAME, rospy.Time())), way)
+
+    def test_a_path(self):
+        places = [Place(0, 0, 0), Place(0.2, 0, 0), Place(0.35, 0.15, 0.8)]
+        goal = FollowPathGoal()
+        goal.path.header.frame_id = FRAME
+        goal.path.poses = [pose_stamped(place, FRAME, rospy.Time()) for place in places]
+        self.walk("walk_path", FollowPathAction, goal, places[-1])
+
+
+if __name__ == "__main__":
+    rospy.init_node("driver_path_velocities_test")
+    rostest.rosrun("nao_library_tests", "driver_path_velocities", DriverPathVelocities)
