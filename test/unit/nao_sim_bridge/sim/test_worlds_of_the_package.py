@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+import re
+from pathlib import Path
 
 import pybullet
 import pytest
+import yaml
 
 from nao_sim_bridge.sim.rotations import rotate
 from nao_sim_bridge.sim.world import load_world, world_names
+from nao_sim_bridge.sim.world_reader import read_world
 
+ROOT = Path(__file__).parents[4]
 WORLDS = world_names()
 
 
@@ -110,6 +115,13 @@ def test_the_ball_of_the_lab_rolls_and_comes_to_rest(bench):
     one.run(12.0)
     rest = one.now.objects["ball"].position
     assert math.dist(one.run(1.0).objects["ball"].position, rest) < 2e-3
+
+
+def test_the_world_of_the_documents_can_be_read():
+    (text,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "worlds.md").read_text(encoding="utf-8"), re.DOTALL)
+    world = read_world(yaml.safe_load(text), "mine", "mine.yaml")
+    assert [thing.name for thing in world.objects] == ["ball", "chair"]
+    assert len(world.floor.rugs) == 1 and len(world.floor.bumps) == 20
 
 
 def test_bumps_of_the_uneven_floor_are_3_to_8_mm_high():
