@@ -65,7 +65,7 @@ LAYERS = (
     Layer(
         "driver",
         "nao_library_modules/src/nao_library_modules/driver",
-        frozenset({"naoqi", "definitions", "ros", "modules"}),
+        frozenset({"naoqi", "definitions", "ros", "modules", "sdk"}),
     ),
     Layer("sim", "nao_sim_bridge/src/nao_sim_bridge/sim", frozenset({"pybullet", "sim paths"})),
     Layer("services", "nao_sim_bridge/src/nao_sim_bridge/services", frozenset({"sim", "qi", "sim paths"})),

@@ -76,7 +76,7 @@ def test_a_body_at_home_or_nearly_so_gets_no_correction(law, motion):
 def test_a_swing_ahead_presses_the_toes_down_and_one_back_the_heels(law, lean, velocity, sign):
     found = law.corrections(body(lean, velocity=(velocity, 0.0)), STAND, DT)
     assert found[index("LAnklePitch")] == found[index("RAnklePitch")]
-    assert sign * found[index("LAnklePitch")] > 0.05
+    assert sign * found[index("LAnklePitch")] > 0.04
     assert law.acting
 
 
