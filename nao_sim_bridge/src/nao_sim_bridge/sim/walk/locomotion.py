@@ -24,7 +24,7 @@ from nao_sim_bridge.sim.tasks import Task, TaskIds
 from nao_sim_bridge.sim.walk.arm_swing import ArmSwing
 from nao_sim_bridge.sim.walk.body import WalkingBody
 from nao_sim_bridge.sim.walk.courses import STANDSTILL, Course, Rate, rate_limits
-from nao_sim_bridge.sim.walk.footsteps import FootPose, side_by_side
+from nao_sim_bridge.sim.walk.footsteps import FootPose, middle, side_by_side
 from nao_sim_bridge.sim.walk.gait import FeetGait, parameters
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.sim.walk.plan import Phase
@@ -329,7 +329,7 @@ class Locomotion:
         if self._course is not None:
             self._course.haste = walker.haste
         if walker.plan.phase is Phase.STAND and self._to_begin and self._course is not None:
-            walker.plan.begin(self._course)
+            self._begin_course(walker, self._course, now)
             self._to_begin = False
 
     # --- inside ---------------------------------------------------------------------------------------------------
@@ -415,12 +415,15 @@ class Locomotion:
             return {i: _LegCurve(self, i) for i in self._legs}
         self._walker = walker = Walker(self._body, self._settings, self._gravity, commands)
         self._stability.walk = lambda: walker.feedback.error
-        if self._course is not None:
-            now = self._now()
-            here = robot_on_ground(self._body, now.odometry, now.positions)
-            self._course.frame = here
-            self._course.begin_at(here)
         return {i: _LegCurve(self, i) for i in self._legs}
+
+    def _begin_course(self, walker: Walker, course: Course, now: Snapshot) -> None:
+        """Make the first step from where both feet stand."""
+        here = robot_on_ground(self._body, now.odometry, now.positions)
+        feet = walker.plan.feet
+        course.frame = frame_from(here, middle(feet[LEFT], feet[RIGHT]))
+        course.begin_at(here)
+        walker.plan.begin(course)
 
     def _place_frame(self, walker: Walker, now: Snapshot) -> None:
         """See where the plan's frame lies, once a step, when one foot stands alone and surely flat."""

@@ -74,7 +74,6 @@ class WalkPlan:
         self.pressure = com
         self._start_com = com
         self._course: Course | None = None
-        self._nominal: FootPose | None = None
         self._take_off = self.feet[RIGHT]
         # What remains of the phase or step: pieces with the time of their end, and the divergent component after them.
         self._pieces: list[tuple[float, Segment]] = []
@@ -149,21 +148,6 @@ class WalkPlan:
             end += piece.duration
             self._pieces.append((end, piece))
 
-    def adjust(self, ahead: float, aside: float) -> None:
-        """Let the foot in the air land elsewhere than planned first, m along the axes of the foot that carries.
-
-        What comes after the landing moves with it.
-        """
-        step = self.step
-        if step is None or self._nominal is None:
-            return
-        support = self.feet[self.support]
-        nominal = self._nominal.seen_from(support)
-        landing = support.moved(nominal.x + ahead, nominal.y + aside, nominal.yaw)
-        moved_x, moved_y = landing.x - step.landing.x, landing.y - step.landing.y
-        self.step = step._replace(landing=landing)
-        self._after = (self._after[0] + moved_x, self._after[1] + moved_y)
-
     def take_course(self, course: Course) -> None:
         """Go somewhere else from the next step on."""
         self._course = course
@@ -236,7 +220,6 @@ class WalkPlan:
             return False
         self._course.take(foot, side)
         self.step = steps[0]
-        self._nominal = steps[0].landing
         self._after = self._beyond(steps)
         return True
 

@@ -81,6 +81,8 @@ class Walker:
         com, _ = body.center_of_mass(self._upper, body.leg_pose(commands))
         self._com_in_torso = com
         self._in_air = 0.0
+        # How far commands are from flat soles and bent knees at the start, rad by index; None before the first tick.
+        self._off: Dict[int, float] | None = None
 
     def tick(self, readings: Readings, commands: Sequence[float], dt: float) -> Dict[int, float]:
         """Advance by one tick.
@@ -111,7 +113,8 @@ class Walker:
         ]
         self._hip, left, right = body.legs.solve(torso, turn, soles[0], soles[1], self._hip)
         self._com_in_torso, _ = body.center_of_mass(self._upper, (self._hip, left, right))
-        return self._angles(list(left), list(right))
+        angles = self._angles(list(left), list(right))
+        return angles if begun >= 1.0 else self._joined(angles, commands, begun)
 
     @property
     def haste(self) -> float:
@@ -119,6 +122,12 @@ class Walker:
         settings = self._settings
         beyond = hypot(*self.feedback.error) - settings.calm_from
         return min(max(1.0 - beyond / settings.calm_range, 0.0), 1.0)
+
+    def _joined(self, angles: Dict[int, float], commands: Sequence[float], begun: float) -> Dict[int, float]:
+        """`angles`, less and less off by what the robot's own stance differs from the walk's: legs do not jump."""
+        if self._off is None:
+            self._off = {i: commands[i] - angle for i, angle in angles.items()}
+        return {i: angle + (1.0 - begun) * self._off[i] for i, angle in angles.items()}
 
     def _landed(self, loads: Vector2, dt: float) -> bool:
         """Whether the foot in the air feels the ground: one that lands bounces, and carries little at first."""
