@@ -20,6 +20,8 @@ ARMS = ("LArm", "RArm")
 PARTS = ("Move", *ARMS)
 # Echoes from further away, m, are none: nothing there is in reach.
 FARTHEST = 1.0
+# No hand gets further than this from a sonar, m.
+FARTHEST_HAND = 0.5
 # An arm this close to an obstacle, m, has only this share of its speed left.
 CLOSEST, SLOWEST = 0.02, 0.1
 
@@ -53,7 +55,7 @@ class ExternalCollision:
     def speed_shares(self, positions: Sequence[float], echoes: Sequence[float]) -> Mapping[int, float]:
         """Share of the top speed that the joints of arms have, by index, for those that may not use all of it."""
         arms = self.enabled.intersection(ARMS)
-        if not arms or min(echoes) > FARTHEST:
+        if not arms or min(echoes) > FARTHEST_HAND + self.tangential:
             return {}
         links = link_transforms(self._model, positions)
         shares: dict[int, float] = {}

@@ -162,6 +162,7 @@ class SimulatedRobot:
         if self.locomotion.active:
             self.locomotion.tick(self._dt)
             self.motion.idle = self.locomotion.arms.over(self.motion.idle)
+            self.reflexes.self_collision.suspended |= self.locomotion.arms.alone
         self.motion.tick(now, self._dt)
         if self._sensed is not None:
             self.stability.act(self._sensed, self.getting_up, self._dt)

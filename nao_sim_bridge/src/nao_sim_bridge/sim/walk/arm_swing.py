@@ -51,6 +51,11 @@ class ArmSwing:
         # Arm to where it joined the swing, and how far it has joined in, 0..1.
         self._from: dict[str, tuple[Sequence[float], float]] = {}
 
+    @property
+    def alone(self) -> bool:
+        """Whether both arms do nothing but swing: there they come close to nothing."""
+        return len(self._from) == len(ARMS) and all(joined >= 1.0 for _, joined in self._from.values())
+
     def over(self, others: IdleMotion | None) -> ArmSwing:
         """This swing, and beneath it what else moves idle joints."""
         self._beneath = others
