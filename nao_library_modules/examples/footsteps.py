@@ -55,7 +55,7 @@ def main() -> int:
     def show(feedback: ExecFootstepsFeedback) -> None:
         print(f"\r{len(feedback.executed_footsteps)} of {len(asked)} steps are made", end="", flush=True)
 
-    rospy.on_shutdown(client.cancel_goal)
+    rospy.on_shutdown(lambda: client.get_state() == GoalStatus.ACTIVE and client.cancel_goal())
     client.send_goal(ExecFootstepsGoal(asked, 5.0), feedback_cb=show)
     client.wait_for_result()
     state = client.get_state()

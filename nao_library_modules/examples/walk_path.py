@@ -63,7 +63,7 @@ def main() -> int:
     def show(feedback: FollowPathFeedback) -> None:
         print(f"\rwaypoint {feedback.index} of {len(points) - 1} is next", end="", flush=True)
 
-    rospy.on_shutdown(client.cancel_goal)
+    rospy.on_shutdown(lambda: client.get_state() == GoalStatus.ACTIVE and client.cancel_goal())
     client.send_goal(goal(points), feedback_cb=show)
     client.wait_for_result()
     state = client.get_state()

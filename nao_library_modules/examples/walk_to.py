@@ -49,9 +49,7 @@ def main() -> int:
     parser.add_argument("x", type=float, help="m ahead")
     parser.add_argument("y", type=float, nargs="?", default=0.0, help="m to the left (0)")
     parser.add_argument("--turn", type=float, default=0.0, help="degrees to the left (0)")
-    parser.add_argument(
-        "--frame", default="base_footprint", help="frame of it (base_footprint: the robot's own)"
-    )
+    parser.add_argument("--frame", default="base_footprint", help="frame of it (base_footprint: the robot's own)")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("walk_to", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
@@ -59,7 +57,7 @@ def main() -> int:
     if not client.wait_for_server(LIMIT):
         print("there is no nao_path_follower: start it with roslaunch nao_library nao_sim.launch")
         return 1
-    rospy.on_shutdown(client.cancel_goal)
+    rospy.on_shutdown(lambda: client.get_state() == GoalStatus.ACTIVE and client.cancel_goal())
     client.send_goal(goal(options.x, options.y, options.turn, options.frame), feedback_cb=show)
     client.wait_for_result()
     state = client.get_state()

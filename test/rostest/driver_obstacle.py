@@ -11,8 +11,8 @@ from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
 from rospy import Duration
 
-from nao_library_modules.driver.planar import Place
 from nao_library_modules.driver.planar_frames import pose_stamped
+from nao_library_modules.places import Place
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 WALL_X = 0.96

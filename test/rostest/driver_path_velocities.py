@@ -14,8 +14,8 @@ from nav_msgs.msg import Odometry
 from rospy import Duration
 
 from nao_library_actions.msg import FollowPathAction, FollowPathGoal
-from nao_library_modules.driver.planar import Place, yaw_of_quaternion
 from nao_library_modules.driver.planar_frames import pose_stamped
+from nao_library_modules.places import Place, yaw_of_quaternion
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 FRAME = "base_footprint"

@@ -18,8 +18,8 @@ from std_srvs.srv import Empty as EmptyService
 
 from nao_library_actions.msg import FollowPathAction, FollowPathGoal
 from nao_library_modules.driver.path_follower_path import WalkPath
-from nao_library_modules.driver.planar import Place, yaw_of_quaternion
 from nao_library_modules.driver.planar_frames import pose_stamped
+from nao_library_modules.places import Place, yaw_of_quaternion
 from nao_library_msgs.srv import SetTransform
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 

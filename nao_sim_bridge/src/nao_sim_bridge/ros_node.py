@@ -48,9 +48,10 @@ def main() -> int:
         rospy.logfatal("%s", error)
         return 1
     wants_clock = {"auto": parsed.speed != 1.0, "true": True, "false": False}[parsed.publish_clock]
+    # Before the services: who waits for these may ask for it.
+    rospy.set_param("~bound_port", server.broker.port)
     ros_side = RosSide(server, Path(parsed.record_dir).expanduser(), wants_clock)
     rospy.loginfo("simulated NAO ready on port %d, world %s, speed %g", server.broker.port, parsed.world, parsed.speed)
-    rospy.set_param("~bound_port", server.broker.port)
     failed = False
     while not server.ended.wait(0.5):
         failed = not server.runner.running

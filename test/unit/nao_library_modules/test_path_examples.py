@@ -14,8 +14,8 @@ from geometry_msgs.msg import PoseStamped
 from nao_library_modules.driver.footsteps import read_steps, step_target
 from nao_library_modules.driver.footsteps_walk import FootstepWalk
 from nao_library_modules.driver.path_follower_path import WalkPath
-from nao_library_modules.driver.planar import ORIGIN
 from nao_library_modules.driver.planar_frames import read_path, read_place
+from nao_library_modules.places import ORIGIN
 
 EXAMPLES = Path(__file__).parents[3] / "nao_library_modules" / "examples"
 SERVERS = {

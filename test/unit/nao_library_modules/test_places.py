@@ -1,4 +1,4 @@
-"""Places on the floor: known values and round trips."""
+"""Places on the floor."""
 
 from __future__ import annotations
 
@@ -6,28 +6,38 @@ import math
 
 import pytest
 
-from nao_library_modules.places import Place
+from nao_library_modules.places import ORIGIN, Place, wrapped, yaw_of_quaternion
 
 QUARTER = math.pi / 2
 
 
+def test_a_way_is_told_in_the_frame_of_where_it_begins():
+    assert Place(1.0, 2.0, QUARTER).then(Place(0.5, 0.0, 0.1)) == pytest.approx((1.0, 2.5, QUARTER + 0.1))
+
+
+@pytest.mark.parametrize("here", [Place(0.3, -0.2, 2.5), Place(-1.0, 4.0, -3.0)])
+@pytest.mark.parametrize("there", [Place(1.0, 0.5, -2.9), ORIGIN])
+def test_the_way_from_here_to_there_leads_there(here, there):
+    assert here.then(there.seen_from(here)) == pytest.approx(there)
+
+
+def test_there_and_back_is_the_origin():
+    place = Place(0.7, -0.1, 1.2)
+    assert place.then(place.inverse()) == pytest.approx(ORIGIN)
+
+
 @pytest.mark.parametrize(
-    "start, way, end",
-    [
-        (Place(0, 0, 0), Place(1, 2, 0.5), Place(1, 2, 0.5)),
-        (Place(1, 1, QUARTER), Place(1, 0, 0), Place(1, 2, QUARTER)),
-        (Place(1, 1, QUARTER), Place(0, 1, QUARTER), Place(0, 1, math.pi)),
-        (Place(0, 0, 3.0), Place(0, 0, 1.0), Place(0, 0, 4.0 - 2 * math.pi)),
-    ],
+    "angle, same",
+    [(0.0, 0.0), (math.pi, math.pi), (-math.pi, math.pi), (4.0, 4.0 - 2 * math.pi), (-7.0, -7.0 + 2 * math.pi)],
 )
-def test_a_way_leads_on_and_is_seen_from_where_it_began(start, way, end):
-    reached = start.then(way)
-    assert reached[:2] == pytest.approx(end[:2])
-    assert math.cos(reached.yaw - end.yaw) == pytest.approx(1.0)
-    assert reached.seen_from(start) == pytest.approx(way)
+def test_angles_are_wrapped_to_half_a_turn(angle, same):
+    assert wrapped(angle) == pytest.approx(same)
 
 
-def test_the_way_back_leads_back():
-    a, b = Place(0.3, -0.7, 2.0), Place(-1.0, 0.4, -2.5)
-    assert a.then(b.seen_from(a)) == pytest.approx(b)
-    assert Place(0, 0, 0).seen_from(a).then(a) == pytest.approx((0, 0, 0))
+def test_headings_of_quaternions():
+    assert yaw_of_quaternion(0.0, 0.0, math.sin(0.4), math.cos(0.4)) == pytest.approx(0.8)
+    assert yaw_of_quaternion(0.0, 0.0, 2 * math.sin(0.4), 2 * math.cos(0.4)) == pytest.approx(0.8)  # not of length 1
+    tilt = math.sin(0.1), math.cos(0.1)
+    assert yaw_of_quaternion(0.0, tilt[0], 0.0, tilt[1]) == pytest.approx(0.0)
+    assert yaw_of_quaternion(0.0, 0.0, 0.0, 0.0) is None
+    assert yaw_of_quaternion(0.0, 0.0, math.nan, 1.0) is None

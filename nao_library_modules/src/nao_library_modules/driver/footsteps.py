@@ -22,12 +22,12 @@ from naoqi.errors import NaoError
 from ..errors import BadGoal, RobotLost
 from ..health import Report
 from ..interrupt import Interrupt
+from ..places import Place
 from ..ros_clock import RosClock
 from .footsteps_clipping import LEFT, RIGHT
 from .footsteps_walk import FootstepWalk, Step
 from .goal_crowd import GoalCrowd, Outcome
 from .joint_controller import JointController
-from .planar import Place
 
 START_STIFFNESS = "init_stiffness"
 COMPLAINT_PERIOD = 5.0

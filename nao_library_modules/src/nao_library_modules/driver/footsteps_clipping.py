@@ -13,7 +13,7 @@ from almath import Pose2D, Position2D, avoidFootCollision, clipFootWithEllipse
 from naoqi.errors import NaoError
 
 from ..errors import BadGoal
-from .planar import Place
+from ..places import Place
 
 LEFT, RIGHT = "LLeg", "RLeg"
 MIN_X, MAX_X = -0.04, 0.08

@@ -11,9 +11,9 @@ from naoqi.errors import NaoError
 from ..errors import BadGoal, Preempted
 from ..interrupt import Interrupt
 from ..joint_names import MOTION
+from ..places import Place
 from .footsteps_clipping import check_legs, clip
 from .joint_controller import QUICK_LIMIT
-from .planar import Place
 
 STEP_TIME = 0.5
 """s from step to step."""

@@ -12,8 +12,8 @@ from std_msgs.msg import Empty
 from naoqi.errors import NaoError
 
 from ..health import Report
+from ..places import Place
 from .moveto_walk import Goal, MoveToWalk
-from .planar import Place
 from .planar_frames import PlanarFrames, read_place, tf_prefix
 
 

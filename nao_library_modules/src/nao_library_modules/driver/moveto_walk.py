@@ -12,7 +12,7 @@ from naoqi.errors import NaoError
 
 from ..health import Level, Report
 from ..joint_names import MOTION
-from .planar import Place
+from ..places import Place
 
 log = logging.getLogger(__name__)
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from naoqi.errors import NaoError
 
-from .planar import ORIGIN, Place
+from ..places import ORIGIN, Place
 
 
 class OdometryOffset:

@@ -14,8 +14,8 @@ from nao_library_msgs.srv import SetTransform, SetTransformResponse
 from naoqi.errors import NaoError
 
 from ..errors import BadGoal
+from ..places import Place, yaw_of_quaternion
 from .odometry_offset import OdometryOffset
-from .planar import Place, yaw_of_quaternion
 
 
 def offer_odometry_services(offset: OdometryOffset) -> None:

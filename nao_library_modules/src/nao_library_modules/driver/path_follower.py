@@ -24,6 +24,7 @@ from naoqi.errors import NaoError
 from ..errors import RobotLost
 from ..health import Report
 from ..interrupt import Interrupt
+from ..places import Place
 from ..ros_clock import RosClock
 from .goal_crowd import GoalCrowd, Outcome, Replaced
 from .path_follower_courses import Aim, PathCourse, TargetCourse
@@ -31,7 +32,6 @@ from .path_follower_legs import WalkTopics
 from .path_follower_path import WalkPath
 from .path_follower_settings import Settings
 from .path_follower_walk import lead
-from .planar import Place
 from .planar_frames import PlanarFrames, pose_stamped, read_path, read_place, tf_prefix
 
 SHUTDOWN_LIMIT = 4.0

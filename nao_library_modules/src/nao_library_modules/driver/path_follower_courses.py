@@ -7,9 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..errors import BadGoal
+from ..places import Place, wrapped
 from .path_follower_path import WalkPath
 from .path_follower_settings import Settings
-from .planar import Place, wrapped
 
 WINDOW = 0.5
 """m of a path beyond the robot's last place in which it is looked for: it does not jump where a path crosses itself."""

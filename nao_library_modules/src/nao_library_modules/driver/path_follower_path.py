@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..errors import BadGoal
-from .planar import Place
+from ..places import Place
 
 SHORTEST = 1e-3
 """m: waypoints nearer to each other than this are one."""

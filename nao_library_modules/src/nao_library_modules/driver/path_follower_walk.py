@@ -10,11 +10,11 @@ from naoqi.errors import NaoError
 
 from ..clock import WallClock
 from ..interrupt import Interrupt
+from ..places import ORIGIN, Place
 from .pacer import Pacer
 from .path_follower_courses import Aim, reached
 from .path_follower_settings import Settings
 from .path_follower_steering import StuckWatch, velocity
-from .planar import ORIGIN, Place
 
 RESEND_DISTANCE, RESEND_TURN = 0.02, math.radians(4.0)
 """m and rad that the aim moves before the robot is told: it plans its steps anew each time."""
@@ -69,7 +69,7 @@ class _Poses:
         self._settings = settings
         self._now = now
         self._wall = WallClock()
-        self._told: Place | None = None
+        self._told: Aim | None = None
         self._told_at = (-math.inf, -math.inf)
         self._near_since: float | None = None
 
@@ -90,21 +90,21 @@ class _Poses:
             self._near_since = None
             if not walking:
                 _check_stop(self._legs)
-        if self._moved(aim.place):
-            self._tell(way, aim.place, now)
+        if self._moved(aim):
+            self._tell(way, aim, now)
         elif not (near or walking or self._just_told(now)):
             self._legs.prepare(self._interrupt)  # says why it does not walk, if it knows
-            self._tell(way, aim.place, now)
+            self._tell(way, aim, now)
         return False
 
-    def _tell(self, way: Place, place: Place, now: float) -> None:
+    def _tell(self, way: Place, aim: Aim, now: float) -> None:
         self._legs.go_to(way)
-        self._told, self._told_at = place, (now, self._wall.now())
+        self._told, self._told_at = aim, (now, self._wall.now())
 
-    def _moved(self, place: Place) -> bool:
-        if self._told is None:
+    def _moved(self, aim: Aim) -> bool:
+        if self._told is None or aim.final != self._told.final:
             return True
-        change = place.seen_from(self._told)
+        change = aim.place.seen_from(self._told.place)
         return change.distance > RESEND_DISTANCE or abs(change.yaw) > RESEND_TURN
 
     def _just_told(self, now: float) -> bool:

@@ -15,7 +15,7 @@ from naoqi.errors import NaoError
 
 from ..clock import WallClock
 from ..errors import BadGoal
-from .planar import Place, yaw_of_quaternion
+from ..places import Place, yaw_of_quaternion
 from .rotation import from_roll_pitch_yaw, product, rotate
 
 PATIENCE = 2.0

@@ -11,12 +11,17 @@ from .moving_tick import MovingTick
 from .physics_tick import PhysicsTick
 from .proxy_call import ProxyCall
 from .real_time_factor import RealTimeFactor
+from .walking_real_time_factor import WalkingRealTimeFactor
+from .walking_tick import WalkController, WalkingTick
 
 # Those that compute come first, while nothing else runs yet.
 ROWS: tuple[Row, ...] = (
     PhysicsTick(),
     MovingTick(),
+    WalkingTick(),
+    WalkController(),
     RealTimeFactor(),
+    WalkingRealTimeFactor(),
     ProxyCall(),
     GoalRoundTrip(),
     ChainedFunctions(),

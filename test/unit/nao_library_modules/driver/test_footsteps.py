@@ -8,8 +8,8 @@ import pytest
 
 from nao_library_modules.driver.footsteps import read_step, read_steps, step_target
 from nao_library_modules.driver.footsteps_walk import Step
-from nao_library_modules.driver.planar import Place
 from nao_library_modules.errors import BadGoal
+from nao_library_modules.places import Place
 from nao_library_msgs.msg import StepTarget
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from almath import Pose2D, areTwoBoxesInCollision, computeBox
 from nao_library_modules.driver.footsteps_clipping import LEFT_BOX, RIGHT_BOX, check_legs, clip
-from nao_library_modules.driver.planar import Place
+from nao_library_modules.places import Place
 from naoqi.errors import NaoError
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from nao_library_modules.driver.footsteps_walk import FootstepWalk, Step
-from nao_library_modules.driver.planar import Place
 from nao_library_modules.errors import BadGoal, RobotLost
 from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.places import Place
 from naoqi.errors import NaoError, RobotError
 
 FORWARD = [

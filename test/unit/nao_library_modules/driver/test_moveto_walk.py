@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from nao_library_modules.driver.moveto_walk import Goal, MoveToWalk
-from nao_library_modules.driver.planar import Place
 from nao_library_modules.health import Level
+from nao_library_modules.places import Place
 from naoqi.errors import NaoError, RobotError
 
 

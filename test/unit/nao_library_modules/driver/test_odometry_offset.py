@@ -7,7 +7,7 @@ import math
 import pytest
 
 from nao_library_modules.driver.odometry_offset import OdometryOffset
-from nao_library_modules.driver.planar import Place
+from nao_library_modules.places import Place
 from naoqi.errors import NaoError
 
 QUARTER = math.pi / 2

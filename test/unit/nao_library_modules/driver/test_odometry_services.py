@@ -20,7 +20,8 @@ def transform(x, y, z, *turn):
 
 
 def test_what_lies_in_the_plane_of_the_floor_counts():
-    assert read_transform(transform(1.0, 2.0, 9.0, *from_roll_pitch_yaw(0.1, 0.0, 0.8))) == pytest.approx((1.0, 2.0, 0.8))
+    turn = from_roll_pitch_yaw(0.1, 0.0, 0.8)
+    assert read_transform(transform(1.0, 2.0, 9.0, *turn)) == pytest.approx((1.0, 2.0, 0.8))
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,8 @@ import pytest
 from nao_library_modules.driver.path_follower_courses import PathCourse, TargetCourse, reached
 from nao_library_modules.driver.path_follower_path import WalkPath
 from nao_library_modules.driver.path_follower_settings import Settings
-from nao_library_modules.driver.planar import Place
 from nao_library_modules.errors import BadGoal
+from nao_library_modules.places import Place
 
 QUARTER = math.pi / 2
 SETTINGS = Settings()

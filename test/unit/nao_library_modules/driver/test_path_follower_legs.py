@@ -7,8 +7,8 @@ import rospy
 
 from nao_library_modules.driver import path_follower_legs
 from nao_library_modules.driver.path_follower_legs import WalkTopics
-from nao_library_modules.driver.planar import Place
 from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.places import Place
 from naoqi.errors import NaoError, RobotError
 
 OBSTACLE = ["an obstacle 0.39 m ahead", 1, [0.9, 0.0, 0.3]]

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from nao_library_modules.driver.path_follower_path import WalkPath
-from nao_library_modules.driver.planar import Place
 from nao_library_modules.errors import BadGoal
+from nao_library_modules.places import Place
 
 QUARTER = math.pi / 2
 CORNER = [Place(0.0, 0.0, 3.0), Place(1.0, 0.0, 3.0), Place(1.0, 0.5, 0.25)]

@@ -8,7 +8,7 @@ import pytest
 
 from nao_library_modules.driver.path_follower_settings import Settings
 from nao_library_modules.driver.path_follower_steering import StuckWatch, velocity
-from nao_library_modules.driver.planar import Place
+from nao_library_modules.places import Place
 from naoqi.errors import NaoError
 
 SETTINGS = Settings(max_vel_x=0.8, max_vel_y=0.4, max_vel_yaw=0.5)

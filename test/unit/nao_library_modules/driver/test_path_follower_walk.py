@@ -12,9 +12,9 @@ from nao_library_modules.driver.path_follower_courses import PathCourse, TargetC
 from nao_library_modules.driver.path_follower_path import WalkPath
 from nao_library_modules.driver.path_follower_settings import Settings
 from nao_library_modules.driver.path_follower_walk import lead
-from nao_library_modules.driver.planar import ORIGIN, Place
 from nao_library_modules.errors import Preempted
 from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.places import ORIGIN, Place
 from naoqi.errors import NaoError
 
 SPEED, TURN = 0.095, 0.83
@@ -160,6 +160,13 @@ def test_a_path_is_kept_to_from_its_beginning_to_its_end(robot, settings, path):
     assert len(set(indices)) > 0.8 * len(path.waypoints) - 1
     assert indices[-1] == len(path.waypoints) - 1
     assert robot.time > 0.9 * path.length / SPEED
+
+
+def test_by_poses_the_end_of_a_path_is_told_to_the_point(robot):
+    # Nearly where the robot aimed before, but not quite.
+    end = Place(0.405, 0.0, 0.06)
+    walk(robot, PathCourse(WalkPath([ORIGIN, end]), BY_POSES), BY_POSES)
+    assert robot.place == pytest.approx(end, abs=1e-6)
 
 
 @pytest.mark.parametrize("settings", [BY_POSES, BY_VELOCITIES], ids=["poses", "velocities"])

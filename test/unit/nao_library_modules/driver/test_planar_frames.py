@@ -12,7 +12,6 @@ from geometry_msgs.msg import PoseStamped, TransformStamped
 from nav_msgs.msg import Path
 
 from nao_library_modules.driver import planar_frames
-from nao_library_modules.driver.planar import Place
 from nao_library_modules.driver.planar_frames import (
     PlanarFrames,
     level_quaternion,
@@ -22,6 +21,7 @@ from nao_library_modules.driver.planar_frames import (
 )
 from nao_library_modules.driver.rotation import from_roll_pitch_yaw
 from nao_library_modules.errors import BadGoal
+from nao_library_modules.places import Place
 from naoqi.errors import NaoError
 
 QUARTER = math.pi / 2
