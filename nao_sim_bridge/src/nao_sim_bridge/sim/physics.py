@@ -9,7 +9,6 @@ import os
 import tempfile
 from typing import Mapping, Sequence
 
-import numpy as np
 import pybullet
 
 from nao_sim_bridge.sim.collision import LOAD_FLAGS, apart
@@ -70,7 +69,12 @@ class Physics:
         self._indices = [joints[j.name] for j in model.joints]
         self._travel = model.simulated_hand.travel
         self._hands = [i for i, j in enumerate(model.joints) if j.is_hand]
-        self._torques = np.array([j.max_torque for j in model.joints])
+        self._torques = [float(j.max_torque) for j in model.joints]
+        self._position_gains = [settings.motor.position_gain] * len(self._indices)
+        self._velocity_gains = [settings.motor.velocity_gain] * len(self._indices)
+        self._efforts: Sequence[float] = ()
+        self._limp: list[int] = []
+        self._forces: list[float] = []
         self._keep_apart()
         self._set_friction()
         self._load_torso(payload)
@@ -124,22 +128,33 @@ class Physics:
 
     def drive(self, joints: JointCommands) -> None:
         """Tell the motors commands and stiffnesses; a limp joint has only the friction of its gears."""
-        motor = self._settings.motor
-        stiffness = np.array(joints.efforts)
-        stiff = stiffness > 0.0
-        targets = np.where(stiff, self._to_engine(joints.aims), self._to_engine(joints.rests))
-        velocities = np.array(self._to_engine_speeds(joints.aim_velocities)) * motor.feed_forward
+        share = self._settings.motor.feed_forward
+        if joints.efforts is not self._efforts:  # replaced as a whole and never changed
+            self._take_efforts(joints.efforts)
+        targets = self._to_engine(joints.aims)
+        velocities = [share * speed for speed in self._to_engine_speeds(joints.aim_velocities)]
+        if self._limp:
+            rests = self._to_engine(joints.rests)
+            for index in self._limp:
+                targets[index], velocities[index] = rests[index], 0.0
         pybullet.setJointMotorControlArray(
             self.robot,
             self._indices,
             pybullet.POSITION_CONTROL,
-            targetPositions=targets.tolist(),
-            targetVelocities=np.where(stiff, velocities, 0.0).tolist(),
-            forces=(self._torques * np.maximum(stiffness, motor.limp_friction)).tolist(),
-            positionGains=[motor.position_gain] * len(self._indices),
-            velocityGains=[motor.velocity_gain] * len(self._indices),
+            targetPositions=targets,
+            targetVelocities=velocities,
+            forces=self._forces,
+            positionGains=self._position_gains,
+            velocityGains=self._velocity_gains,
             physicsClientId=self.client,
         )
+
+    def _take_efforts(self, efforts: Sequence[float]) -> None:
+        """Work out from efforts (26, 0..1) what stays the same until they change."""
+        self._efforts = efforts
+        self._limp = [index for index, effort in enumerate(efforts) if effort <= 0.0]
+        least = self._settings.motor.limp_friction
+        self._forces = [torque * max(effort, least) for torque, effort in zip(self._torques, efforts)]
 
     def step(self, pushes: Mapping[str, Vector3] = NO_PUSHES) -> None:
         """Advance by one tick while `pushes` (link name -> force in N, in world) act on the links' centres of mass."""

@@ -92,6 +92,11 @@ class Snapshot:
         return self.sensors.foot_forces("R", self._presses)
 
     @cached_property
+    def foot_loads(self) -> Tuple[float, float]:
+        """Upward force on the left and on the right foot, N; about the totals of their sensors."""
+        return self.sensors.foot_loads(self.contacts)
+
+    @cached_property
     def touched(self) -> frozenset:
         """Names of touch sensors, bumpers and buttons that something presses."""
         return self.fingers | self.sensors.touched(self._presses)

@@ -84,3 +84,12 @@ def test_the_robot_does_not_hear_its_own_arm(bench):
     one.aim(3.0, LShoulderPitch=0.6, LElbowRoll=-1.5, LElbowYaw=-1.2)
     after = one.run(1.2).sonars
     assert min(after) >= min(before) - 0.05
+
+
+def test_foot_loads_are_about_the_totals_of_the_foot_sensors(bench):
+    one = bench("StandInit")
+    one.run(0.5)
+    left, right = one.now.foot_loads
+    assert left == pytest.approx(one.now.left_foot.total, rel=0.01)
+    assert right == pytest.approx(one.now.right_foot.total, rel=0.01)
+    assert left + right == pytest.approx(one.model.total_mass * 9.81, rel=0.05)

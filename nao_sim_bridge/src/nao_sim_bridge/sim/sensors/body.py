@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Mapping, Sequence, Tuple
 
 from nao_sim_bridge.sim.model import RobotModel
-from nao_sim_bridge.sim.readings import FootForces
+from nao_sim_bridge.sim.readings import Contact, FootForces
 from nao_sim_bridge.sim.sensors.contacts import Presses
 from nao_sim_bridge.sim.sensors.feet import FootSensors
 from nao_sim_bridge.sim.sensors.touch import TouchSensors
@@ -34,6 +34,16 @@ class BodySensors:
     def foot_forces(self, side: str, presses: Presses) -> FootForces:
         """Force sensors of the foot of `side`, "L" or "R"."""
         return self._feet[side].read(presses.get(self._ankles[side], ()))
+
+    def foot_loads(self, contacts: Sequence[Contact]) -> Tuple[float, float]:
+        """Upward force on the left and on the right foot, N: at the price of a sum, without the single sensors."""
+        left = right = 0.0
+        for link, _, normal, force in contacts:
+            if link == self._ankles["L"]:
+                left += force * normal[2]
+            elif link == self._ankles["R"]:
+                right += force * normal[2]
+        return left, right
 
     def touched(self, presses: Presses) -> frozenset:
         """Names of the touch sensors that something presses."""

@@ -7,7 +7,7 @@ from typing import Tuple
 
 from nao_sim_bridge.sim.walk.body import LegPose, WalkingBody
 from nao_sim_bridge.sim.walk.legs import LEFT
-from nao_sim_bridge.sim.walk.matrices import Vector, about_x, about_y, product, turned
+from nao_sim_bridge.sim.walk.matrices import Vector, about_y, then_about_x, turned
 from nao_sim_bridge.sim.walk.observer import PendulumObserver
 from nao_sim_bridge.sim.walk.plan import WalkPlan
 from nao_sim_bridge.sim.walk.settings import WalkSettings
@@ -97,12 +97,13 @@ class WalkFeedback:
         """Place of the centre of mass in the plan's frame, seen from the foot that carries."""
         com, legs = self._body.center_of_mass(upper, pose)
         ankle, foot = legs[0 if plan.support == LEFT else 1]
-        level = product(about_y(tilt[1]), about_x(tilt[0]))
-        foot = product(level, foot)
+        level = then_about_x(about_y(tilt[1]), tilt[0])
+        up_x, up_y, _ = turned(level, (foot[2], foot[5], foot[8]))
+        ahead_x, ahead_y, _ = turned(level, (foot[0], foot[3], foot[6]))
         height = self._body.legs.sole_height
         x, y, _ = turned(level, (com[0] - ankle[0], com[1] - ankle[1], com[2] - ankle[2]))
-        x, y = x + foot[2] * height, y + foot[5] * height
+        x, y = x + up_x * height, y + up_y * height
         stands = plan.feet[plan.support]
-        turn = stands.yaw - atan2(foot[3], foot[0])
+        turn = stands.yaw - atan2(ahead_y, ahead_x)
         c, s = cos(turn), sin(turn)
         return (stands.x + c * x - s * y, stands.y + s * x + c * y)

@@ -7,7 +7,16 @@ from math import acos, asin, atan2, cos, pi, sin, sqrt
 from typing import Tuple
 
 from nao_sim_bridge.sim.model import RobotModel
-from nao_sim_bridge.sim.walk.matrices import Matrix, Vector, about_x, about_y, product, transposed, turned, turned_back
+from nao_sim_bridge.sim.walk.matrices import (
+    Matrix,
+    Vector,
+    product,
+    then_about_x,
+    then_about_y,
+    transposed,
+    turned,
+    turned_back,
+)
 
 # HipRoll, HipPitch, KneePitch, AnklePitch, AnkleRoll, rad.
 LegAngles = Tuple[float, float, float, float, float]
@@ -18,7 +27,7 @@ ROOT_HALF = sqrt(0.5)
 # A knee never quite straight keeps the solution from jumping, m.
 RESERVE = 1e-4
 # The feet may be turned off unevenly by this, rad.
-ENOUGH = 1e-4
+ENOUGH = 5e-4
 
 
 @dataclass(frozen=True)
@@ -125,12 +134,15 @@ class Legs:
         knee = acos(min(max(cos_knee, self._least_cos_knee), 1.0))
         reach_x, reach_z = -self.tibia * sin(knee), -self.thigh - self.tibia * cos(knee)
         pitch = atan2(x * reach_z - z * reach_x, x * reach_x + z * reach_z)
-        shank = product(product(hip, about_x(roll)), about_y(pitch + knee))
+        shank = then_about_y(then_about_x(hip, roll), pitch + knee)
         rest = product(transposed(shank), foot)
         ankle_roll = -asin(min(max(rest[5], -1.0), 1.0))
         ankle_pitch = atan2(rest[2], rest[8])
-        off = product(transposed(product(about_y(ankle_pitch), about_x(ankle_roll))), rest)
-        return (roll, pitch, knee, ankle_pitch, ankle_roll), atan2(off[3], off[0])
+        # What the two ankle joints leave of the turn, a rotation about Z: its first column.
+        sp, cp, sr, cr = sin(ankle_pitch), cos(ankle_pitch), sin(ankle_roll), cos(ankle_roll)
+        off_x = cp * rest[0] - sp * rest[6]
+        off_y = sr * (sp * rest[0] + cp * rest[6]) + cr * rest[3]
+        return (roll, pitch, knee, ankle_pitch, ankle_roll), atan2(off_y, off_x)
 
     def state(self, side: int, hip_yaw: float, angles: LegAngles) -> tuple[Vector, Vector, Matrix]:
         """Forward kinematics of one leg in the torso frame.
@@ -140,11 +152,11 @@ class Legs:
         """
         roll, pitch, knee, ankle_pitch, ankle_roll = angles
         yaw_turn = hip_rotation(side, hip_yaw)
-        roll_turn = product(yaw_turn, about_x(roll))
-        thigh_turn = product(roll_turn, about_y(pitch))
-        shank_turn = product(roll_turn, about_y(pitch + knee))
-        ankle_turn = product(roll_turn, about_y(pitch + knee + ankle_pitch))
-        foot = product(ankle_turn, about_x(ankle_roll))
+        roll_turn = then_about_x(yaw_turn, roll)
+        thigh_turn = then_about_y(roll_turn, pitch)
+        shank_turn = then_about_y(roll_turn, pitch + knee)
+        ankle_turn = then_about_y(roll_turn, pitch + knee + ankle_pitch)
+        foot = then_about_x(ankle_turn, ankle_roll)
         hip = (0.0, side * self.hip_y, self.hip_z)
         t, s = self.thigh, self.tibia
         knee_at = (hip[0] - t * thigh_turn[2], hip[1] - t * thigh_turn[5], hip[2] - t * thigh_turn[8])

@@ -316,7 +316,7 @@ class Locomotion:
         walker, now = self._walker, self._snapshot()
         if walker is None or now is None:
             return
-        loads = (now.left_foot.total, now.right_foot.total)
+        loads = now.foot_loads
         cause = self._unsafe(loads, dt)
         if cause:
             self._fail(cause, started=True)
@@ -460,7 +460,7 @@ class Locomotion:
         soft = self._soft_joints()
         if soft:
             return f"stiffness of {soft} is {LEAST_STIFFNESS} or less: wakeUp first"
-        if self._reflexes.switches[CONTACT_SWITCH] and not self._on_ground((now.left_foot.total, now.right_foot.total)):
+        if self._reflexes.switches[CONTACT_SWITCH] and not self._on_ground(now.foot_loads):
             return "the feet feel no ground"
         family = recognise(self._model, now).family
         if family not in (STANDING, CROUCHING):

@@ -46,6 +46,20 @@ def product(first: Matrix, second: Matrix) -> Matrix:
     )
 
 
+def then_about_x(matrix: Matrix, angle: float) -> Matrix:
+    """`matrix` times a rotation by `angle` rad about X, at half the cost of a product."""
+    s, k = sin(angle), cos(angle)
+    a, b, c, d, e, f, g, h, i = matrix
+    return (a, k * b + s * c, k * c - s * b, d, k * e + s * f, k * f - s * e, g, k * h + s * i, k * i - s * h)
+
+
+def then_about_y(matrix: Matrix, angle: float) -> Matrix:
+    """`matrix` times a rotation by `angle` rad about Y, at half the cost of a product."""
+    s, k = sin(angle), cos(angle)
+    a, b, c, d, e, f, g, h, i = matrix
+    return (k * a - s * c, b, s * a + k * c, k * d - s * f, e, s * d + k * f, k * g - s * i, h, s * g + k * i)
+
+
 def transposed(matrix: Matrix) -> Matrix:
     """The inverse of a rotation."""
     a, b, c, d, e, f, g, h, i = matrix

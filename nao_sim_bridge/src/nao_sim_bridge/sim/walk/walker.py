@@ -9,7 +9,17 @@ from nao_sim_bridge.sim.walk.body import WalkingBody
 from nao_sim_bridge.sim.walk.feedback import Vector2, WalkFeedback
 from nao_sim_bridge.sim.walk.footsteps import FootPose, middle
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT, Sole
-from nao_sim_bridge.sim.walk.matrices import Matrix, Vector, about_x, about_y, about_z, product, turned
+from nao_sim_bridge.sim.walk.matrices import (
+    Matrix,
+    Vector,
+    about_x,
+    about_y,
+    about_z,
+    product,
+    then_about_x,
+    then_about_y,
+    turned,
+)
 from nao_sim_bridge.sim.walk.plan import Phase, WalkPlan
 from nao_sim_bridge.sim.walk.settings import WalkSettings
 
@@ -155,8 +165,8 @@ class Walker:
             roll += (1.0 - begun) * (start_roll - roll)
             pitch += (1.0 - begun) * (start_pitch - pitch)
             yaw += (1.0 - begun) * start_yaw
-        turn = product(about_z(yaw), about_y(pitch))
-        return product(turn, about_x(roll)) if roll else turn
+        turn = then_about_y(about_z(yaw), pitch)
+        return then_about_x(turn, roll) if roll else turn
 
     def _angles(self, left: list[float], right: list[float]) -> Dict[int, float]:
         roll, pitch = self.feedback.ankle
