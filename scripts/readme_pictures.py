@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
-"""Draws the pictures of README.md anew: the simulated robot standing, sitting, lying, waving, and in the lab."""
+"""Draws the pictures of README.md anew: the simulated robot standing, sitting, lying, waving, and in the lab.
+
+And what it leaves behind when it walks: its footprints.
+"""
 
 from __future__ import annotations
 
 import argparse
 import math
+import subprocess
 import sys
 from pathlib import Path
 
@@ -13,7 +17,9 @@ import qi
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene
 
-FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
+ROOT = Path(__file__).resolve().parents[1]
+FOLDER = ROOT / "docs" / "images"
+PLOT_WALK = ROOT / "nao_library_modules" / "examples" / "plot_walk.py"
 VIEW, SIZE = "three_quarter", 320
 ROOM_SIZE = (640, 400)
 POSTURES = {"standing": "Stand", "sitting": "Sit", "lying": "LyingBelly"}
@@ -77,6 +83,18 @@ def draw(folder: Path) -> None:
         robot.save("lab", "room", *ROOM_SIZE)
 
 
+def draw_walk(folder: Path) -> None:
+    """Let a robot walk and draw its footprints, as the example does it."""
+    # Not faster than real: the example looks at the robot at times of the wall clock.
+    server = SimulatorServer(ServerOptions(Scene(), port=0, speed=1.0))
+    server.start()
+    try:
+        command = [sys.executable, str(PLOT_WALK), "--port", str(server.broker.port)]
+        subprocess.run([*command, "--output", str(folder / "walk.png")], check=True, timeout=LIMIT)
+    finally:
+        server.stop()
+
+
 def main() -> int:
     """Draw."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -84,6 +102,7 @@ def main() -> int:
     folder = parser.parse_args().folder
     folder.mkdir(parents=True, exist_ok=True)
     draw(folder)
+    draw_walk(folder)
     return 0
 
 

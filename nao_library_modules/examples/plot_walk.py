@@ -12,7 +12,6 @@ import sys
 import time
 from pathlib import Path
 
-from nao_library_modules.errors import NaoLibraryError
 from nao_library_modules.walk_picture import draw
 from nao_library_modules.walk_record import LEFT, OTHER, RIGHT, Place, Sample, load, moved, save
 from naoqi import ALProxy
@@ -89,7 +88,7 @@ def main() -> int:
         if options.record:
             save(samples, options.record)
         draw(samples).save(options.output)
-    except (NaoError, NaoLibraryError, OSError) as error:
+    except (NaoError, OSError) as error:
         print(error)
         return 1
     except KeyboardInterrupt:

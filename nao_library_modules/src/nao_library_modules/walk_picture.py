@@ -79,6 +79,7 @@ def draw(samples: Sequence[Sample]) -> Image.Image:
     for number, each in enumerate(prints, 1):
         if each.planned:
             _cross(pen, ground.at(*each.planned[:2]), LINES[each.foot])
+            _ring(pen, ground.at(*each.place[:2]), LINES[each.foot])
         pen.text(
             ground.at(*moved(each.place, NUMBER_AT, 0.0)), str(number), LINES[each.foot], _font(14 * FINE), anchor="mm"
         )
@@ -119,7 +120,7 @@ def _draw_legend(pen: ImageDraw.ImageDraw, ground: _Map, prints: Sequence[Footpr
         pen.rectangle([x, y - 5 * FINE, x + 10 * FINE, y + 5 * FINE], fill=color)
         pen.text((x + 15 * FINE, y), text, INK, font, anchor="lm")
         x += 15 * FINE + pen.textlength(text, font) + 16 * FINE
-    words = "squares of 0.1 m" + (", x: as planned" if any(each.planned for each in prints) else "")
+    words = "squares of 0.1 m" + (", ankle: o as it is, x as planned" if any(each.planned for each in prints) else "")
     pen.text((x, y), words, INK, font, anchor="lm")
 
 
@@ -128,6 +129,11 @@ def _cross(pen: ImageDraw.ImageDraw, at: Point, color: Color) -> None:
     arm = 4 * FINE
     pen.line([(x - arm, y - arm), (x + arm, y + arm)], fill=color, width=FINE)
     pen.line([(x - arm, y + arm), (x + arm, y - arm)], fill=color, width=FINE)
+
+
+def _ring(pen: ImageDraw.ImageDraw, at: Point, color: Color) -> None:
+    x, y = at
+    pen.ellipse([x - 4 * FINE, y - 4 * FINE, x + 4 * FINE, y + 4 * FINE], outline=color, width=FINE)
 
 
 def _dot(pen: ImageDraw.ImageDraw, at: Point, color: Color) -> None:

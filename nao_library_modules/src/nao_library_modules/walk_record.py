@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, List, Optional, Sequence, Tuple
 
-from nao_library_modules.errors import NaoLibraryError
+from naoqi.errors import NaoError
 
 Point = Tuple[float, float]
 # x, y in m, heading in rad.
@@ -26,7 +26,7 @@ STEP_LENGTH, STEP_TURN = 0.01, 0.07
 FORMAT = "nao_walk_record"
 
 
-class WalkRecordError(NaoLibraryError):
+class WalkRecordError(NaoError):
     """A file is no record of a walk."""
 
 

@@ -57,7 +57,18 @@ def test_the_things_of_the_lab_are_told_and_drawn(tmp_path):
         assert picture.size == (960, 600)
 
 
-@pytest.mark.parametrize("name", ["naoqi_walk", "look_at_the_lab"])
+def test_a_robot_that_is_watched_is_drawn_and_so_is_its_record(server, tmp_path):
+    record, first, second = (tmp_path / name for name in ("walk.json", "first.png", "second.png"))
+    watched = ["--port", str(server.broker.port), "--watch", "0.2", "--record", str(record), "--output", str(first)]
+    done = run("plot_walk", *watched)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert not server.runner.snapshot.stiffnesses[0]  # watching moves nothing
+    again = run("plot_walk", "--from", str(record), "--output", str(second))
+    assert again.returncode == 0, again.stdout + again.stderr
+    assert first.read_bytes() == second.read_bytes()
+
+
+@pytest.mark.parametrize("name", ["naoqi_walk", "look_at_the_lab", "plot_walk"])
 def test_without_a_robot_it_says_so(name):
     done = run(name, "--port", "1")
     assert done.returncode == 1

@@ -19,7 +19,7 @@ class WalkingTick(Row):
     subject = "tick while walking"
     against = "the same, standing still"
     unit = "us"
-    bound = at_most(1.6)
+    bound = at_most(1.4)
 
     def measure(self, stack: Stack) -> Figures:
         """Measure in a process of its own."""
@@ -33,7 +33,7 @@ class WalkController(Row):
     subject = "the walk's part of a tick"
     against = "physics steps of the same tick"
     unit = "us"
-    bound = at_most(0.35)
+    bound = at_most(0.2)
 
     def measure(self, stack: Stack) -> Figures:
         """Measure in a process of its own."""

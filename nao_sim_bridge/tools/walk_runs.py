@@ -1,0 +1,210 @@
+"""Single runs of walking robots, each in a world of its own, from a few numbers to a few numbers; for `check_walk.py`.
+
+All of them are plain functions of plain values, so that they can run in processes of their own.
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Mapping
+
+from walk_trial import REAL, Trial
+
+from nao_sim_bridge.sim.walk.footsteps import FootPose
+
+# Until a walk has its speed, s.
+RAMP = 4.0
+# How often orders change and pushes come, s.
+EVERY = 2.0
+GOAL = (1.0, 0.3, 0.8)
+POSTURES = ("Stand", "StandInit", "StandZero", "Crouch")
+# Everything that a floor needs besides what a run is about.
+FLOOR = "friction: 1.0, color: [1, 1, 1], tile_color: [1, 1, 1], tile_size: 1.0"
+
+
+@dataclass(frozen=True)
+class Straight:
+    """A walk at one velocity.
+
+    Attributes:
+        up: It did not fall.
+        speed: m/s, m/s, rad/s, true, in its own frame.
+        aside: Deviation to the side, m for each m of way.
+        turn: Deviation of the heading, rad for each m of way.
+        odometry: Error of the place that it thinks it is at, by the way.
+        fastest: Largest share of a joint's top speed, with the joint's name.
+        above: Longest time that a joint was over its top speed, s, with the joint's name.
+    """
+
+    up: bool
+    speed: tuple[float, float, float]
+    aside: float
+    turn: float
+    odometry: float
+    fastest: tuple[float, str]
+    above: tuple[float, str]
+
+
+@dataclass(frozen=True)
+class Fall:
+    """How a push ended.
+
+    Attributes:
+        fell: Whether the robot fell.
+        noticed_before: How long before the impact the fall was noticed, s; None when it was not, or nothing hit.
+        impact: Whether torso, head or an upper arm hit the floor.
+        stood_up: Whether the robot stands in the end.
+    """
+
+    fell: bool
+    noticed_before: float | None
+    impact: bool
+    stood_up: bool
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """How a walk to a place ended.
+
+    Attributes:
+        reached: The walk says that it is there.
+        distance: From the place where it should be, true, m.
+        turn: The same of the heading, rad.
+        odometry: Error of the place that it thinks it is at, by the way.
+    """
+
+    reached: bool
+    distance: float
+    turn: float
+    odometry: float
+
+
+def straight(
+    velocity: tuple[float, float, float], gait: Mapping[str, float], seconds: float, seed: int = 0
+) -> Straight:
+    """Walk at a velocity for so long, with ideal sensors; s."""
+    with Trial(seed) as trial:
+        start, believed = trial.place, trial.believed
+        trial.go(*velocity, gait=dict(gait))
+        trial.run(RAMP)
+        before, turned, way, yaw = trial.place, 0.0, 0.0, trial.place.yaw
+        steps = round(seconds / 0.42)
+        for _ in range(steps):
+            # As long as a step: the sway of the body comes out nearly the same each time.
+            last = trial.place
+            if not trial.run(seconds / steps):
+                break
+            now = trial.place.seen_from(last)
+            turned += now.yaw
+            way += math.hypot(now.x, now.y)
+        after = trial.place
+        up = trial.stop()
+        end = trial.place.seen_from(start)
+        error = _apart(end, trial.believed.seen_from(believed))
+        moved = after.seen_from(FootPose(before.x, before.y, yaw))
+        length = math.hypot(end.x, end.y)
+        sideways = end.x if abs(velocity[1]) > abs(velocity[0]) else end.y
+        straight_on = velocity[2] == 0.0 and length > 0.0
+        fastest = max((share, name) for name, share in trial.fastest.items())
+        above = max((time, name) for name, time in trial.longest_above.items())
+        return Straight(
+            up,
+            (moved.x / seconds, moved.y / seconds, turned / seconds),
+            abs(sideways) / length if straight_on else 0.0,
+            abs(end.yaw) / length if straight_on else 0.0,
+            error / max(length, way, 1e-9),
+            fastest,
+            above,
+        )
+
+
+def wander(seed: int, seconds: float, impulse: float) -> tuple[bool, float, str]:
+    """Obey random orders, maybe pushed at random; whether it is still up, for how long it was, s, and what ended it."""
+    with Trial(seed, **REAL) as trial:
+        begun = trial.time
+        while trial.up and trial.time < begun + seconds:
+            trial.wander()
+            if not impulse:
+                trial.run(EVERY)
+                continue
+            moment = trial.chance.uniform(0.0, EVERY)
+            trial.run(moment)
+            trial.push(impulse, trial.chance.uniform(-math.pi, math.pi))
+            trial.run(EVERY - moment)
+        fell = "fell" if trial.noticed is not None or trial.impact is not None else ""
+        return trial.up, trial.time - begun, fell or trial.ended
+
+
+def push(seed: int, side: int, impulse: float, get_up: bool) -> Fall:
+    """Push a walking robot once, from the front, left, back or right (0..3), at any phase of its steps."""
+    with Trial(seed, **REAL) as trial:
+        trial.go(0.07, 0.0, 0.0)
+        trial.run(trial.chance.uniform(3.0, 3.84))
+        trial.push(impulse, side * math.pi / 2.0 + trial.chance.uniform(-0.3, 0.3))
+        if trial.run(4.0):
+            return Fall(False, None, False, True)
+        trial.fall()
+        early = trial.impact - trial.noticed if trial.impact is not None and trial.noticed is not None else None
+        return Fall(True, early, trial.impact is not None, trial.get_up() if get_up else False)
+
+
+def arrive(seed: int) -> Arrival:
+    """Walk to a place from a random posture, with a real robot's sensors."""
+    with Trial(seed, POSTURES[seed % len(POSTURES)], **REAL) as trial:
+        trial.run(trial.chance.uniform(0.0, 1.0))
+        start, believed = trial.place, trial.believed
+        task = trial.walk_to(*GOAL)
+        trial.until(lambda: task.finished, 60.0)
+        trial.run(0.5)
+        there = trial.place.seen_from(start)
+        off = FootPose(*GOAL).seen_from(there)
+        error = _apart(there, trial.believed.seen_from(believed))
+        reached = task.finished and task.value is True and trial.up
+        return Arrival(reached, math.hypot(off.x, off.y), abs(off.yaw), error / math.hypot(*GOAL[:2]))
+
+
+def on_ground(scene: Mapping[str, Any], seed: int, seconds: float) -> tuple[bool, float]:
+    """Walk a bow on another ground or with a load; whether it walks on to the end, and how far it gets, m."""
+    with Trial(seed, **{**REAL, **scene}) as trial:
+        start = trial.place
+        trial.go(0.08, 0.0, 0.05)
+        trial.run(seconds)
+        end = trial.place.seen_from(start)
+        return trial.stop(), math.hypot(end.x, end.y)
+
+
+def on_slope(heading: float, degrees: float, seed: int, seconds: float) -> tuple[bool, float]:
+    """The same on a floor that rises in a direction, rad."""
+    along, aside = (degrees * part for part in (math.cos(heading), math.sin(heading)))
+    with tempfile.TemporaryDirectory() as folder:
+        world = Path(folder) / "slope.yaml"
+        world.write_text(f"floor: {{{FLOOR}, slope_deg: [{along:.3f}, {aside:.3f}]}}\n", encoding="utf-8")
+        return on_ground({"world": str(world)}, seed, seconds)
+
+
+def stop_somewhere(seed: int) -> bool:
+    """Stop a walk, or cancel one to a place, at a random moment; whether the robot stands 2 s later."""
+    with Trial(seed, **REAL) as trial:
+        if seed % 2:
+            task = trial.walk_to(*(trial.chance.uniform(-1.0, 1.0) for _ in range(3)))
+            trial.run(trial.chance.uniform(0.0, 6.0))
+            task.kill()
+            return trial.stop()
+        trial.wander()
+        trial.run(trial.chance.uniform(0.0, 3.0))
+        trial.wander()
+        trial.run(trial.chance.uniform(0.0, 3.0))
+        return trial.stop()
+
+
+def total_mass() -> float:
+    """Of the robot, kg."""
+    with Trial(0) as trial:
+        return trial.simulation.model.total_mass
+
+
+def _apart(one: FootPose, other: FootPose) -> float:
+    return math.hypot(one.x - other.x, one.y - other.y)
