@@ -8,9 +8,10 @@ from nao_sim_bridge.services.arguments import numbers
 from nao_sim_bridge.services.motion.walking import WalkPart
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.sim.walk.footstep_plan import SIDES, FootstepPlan, PlannedStep
 from nao_sim_bridge.sim.walk.footsteps import FootPose
 from nao_sim_bridge.sim.walk.gait import FeetGait
-from nao_sim_bridge.sim.walk.locomotion import SIDES, FootstepPlan, Locomotion, PlannedStep
+from nao_sim_bridge.sim.walk.locomotion import Locomotion
 from nao_sim_bridge.sim.walk.steps_course import Placement
 
 

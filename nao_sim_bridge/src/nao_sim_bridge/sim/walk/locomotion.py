@@ -6,7 +6,6 @@ place reached, steps made, a stop) are tasks of their own that this one settles.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
 from typing import Callable, Sequence, Tuple
 
@@ -14,9 +13,8 @@ from nao_sim_bridge.sim.errors import MoveRefused
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.motion.engine import MotionEngine
 from nao_sim_bridge.sim.motion.joints import JointCommands
-from nao_sim_bridge.sim.posture_recognition import CROUCHING, STANDING, recognise
 from nao_sim_bridge.sim.reflexes import Reflexes
-from nao_sim_bridge.sim.rotations import Vector3, rotate
+from nao_sim_bridge.sim.rotations import Vector3
 from nao_sim_bridge.sim.settings import Settings
 from nao_sim_bridge.sim.snapshot import Snapshot
 from nao_sim_bridge.sim.stability import Stability
@@ -24,62 +22,22 @@ from nao_sim_bridge.sim.tasks import Task, TaskIds
 from nao_sim_bridge.sim.walk.arm_swing import ArmSwing
 from nao_sim_bridge.sim.walk.body import WalkingBody
 from nao_sim_bridge.sim.walk.courses import STANDSTILL, Course, Rate, rate_limits
+from nao_sim_bridge.sim.walk.footstep_plan import FootstepPlan, steps_to_come
 from nao_sim_bridge.sim.walk.footsteps import FootPose, middle, side_by_side
-from nao_sim_bridge.sim.walk.gait import FeetGait, parameters
+from nao_sim_bridge.sim.walk.gait import FeetGait
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.sim.walk.plan import Phase
 from nao_sim_bridge.sim.walk.settings import load_walk_settings
 from nao_sim_bridge.sim.walk.steps_course import Placement, StepsCourse
 from nao_sim_bridge.sim.walk.target_course import TargetCourse
 from nao_sim_bridge.sim.walk.velocity_course import VelocityCourse
+from nao_sim_bridge.sim.walk.walk_guard import WalkGuard
 from nao_sim_bridge.sim.walk.walker import Readings, Walker
 from nao_sim_bridge.sim.walk.whereabouts import foot_on_ground, frame_from, robot_on_ground
 
-SIDES = {"LLeg": LEFT, "RLeg": RIGHT}
-LEGS = {side: leg for leg, side in SIDES.items()}
-STIFFNESS_SWITCH, CONTACT_SWITCH = "ENABLE_STIFFNESS_PROTECTION", "ENABLE_FOOT_CONTACT_PROTECTION"
-# Legs at this stiffness or below do not walk; a robot that feels no ground for this time, s, does not either.
-LEAST_STIFFNESS = 0.6
-LIFTED_TIME = 0.2
-# Both feet together carry less than this of the weight when somebody holds the robot.
-LIFTED_SHARE = 0.1
 # Where in a step the foot that carries tells where the plan's frame lies in the world.
 MIDDLE = 0.5
-# Steps that getFootSteps shows of a walk that has no end.
-SHOWN_STEPS = 4
 Velocity = Tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class PlannedStep:
-    """A step to come.
-
-    Attributes:
-        leg: "LLeg" or "RLeg".
-        time: From now to its landing, s.
-        placement: In the frame of the other foot.
-    """
-
-    leg: str
-    time: float
-    placement: FootPose
-
-
-@dataclass(frozen=True)
-class FootstepPlan:
-    """Feet and the steps to come.
-
-    Attributes:
-        left: Left foot in the world.
-        right: Right foot in the world.
-        fixed: Steps that nothing can change any more.
-        clearable: Steps after them.
-    """
-
-    left: FootPose
-    right: FootPose
-    fixed: Tuple[PlannedStep, ...]
-    clearable: Tuple[PlannedStep, ...]
 
 
 class _LegCurve:
@@ -127,18 +85,16 @@ class Locomotion:
         task_ids: TaskIds,
         snapshot: Callable[[], Snapshot | None],
     ) -> None:
-        self._model = model
         self._gravity = settings.gravity_m_s2
         self._joints = joints
         self._motion = motion
         self._stability = stability
-        self._reflexes = reflexes
         self._ids = task_ids
         self._snapshot = snapshot
         self._settings = load_walk_settings()
         self._body = WalkingBody(model)
         self._legs = sorted(i for side in (LEFT, RIGHT) for i in self._body.legs.indices[side])
-        self._weight = model.total_mass * settings.gravity_m_s2
+        self._guard = WalkGuard(model, self._gravity, joints, self._legs, stability, reflexes)
         self.arms = ArmSwing(model, joints, self._settings, self._stride)
         self.failures: list[Callable[[str, bool, Vector3 | None], None]] = []
         self._job: Task | None = None
@@ -150,8 +106,6 @@ class Locomotion:
         self._goal: Task | None = None
         self._waiting: list[Task] = []
         self._commands: dict[int, float] = {}
-        self._lifted = 0.0
-        self._echoes: Sequence[float] = ()
         self._obstructed = False
 
     # --- what callers ask for -------------------------------------------------------------------------------------
@@ -206,7 +160,7 @@ class Locomotion:
         Raises:
             MoveRefused: The robot cannot walk now.
         """
-        here = self.position(use_sensors=True) if not self.active else self._heading_for()
+        here = self.position(use_sensors=True)
         period = (gait.period(LEFT) + gait.period(RIGHT)) / 2.0
         course = TargetCourse(
             self._settings,
@@ -282,20 +236,10 @@ class Locomotion:
         """Feet in the world, and the steps to come."""
         now = self._now()
         left, right = (foot_on_ground(self._body, now.odometry, now.positions, side) for side in (LEFT, RIGHT))
-        walker = self._walker
-        if walker is None or walker.plan.step is None:
-            return FootstepPlan(left, right, (), ())
-        plan = walker.plan
-        made = plan.step
-        time = made.period - plan.time
-        fixed = PlannedStep(LEGS[made.side], time, made.landing.seen_from(plan.feet[plan.support]))
-        count = len(self._course.left) if isinstance(self._course, StepsCourse) else SHOWN_STEPS
-        further, support = [], made.landing
-        for step in plan.further(count):
-            time += step.period
-            further.append(PlannedStep(LEGS[step.side], time, step.landing.seen_from(support)))
-            support = step.landing
-        return FootstepPlan(left, right, (fixed,), tuple(further))
+        if self._walker is None:
+            return FootstepPlan(left, right)
+        fixed, clearable = steps_to_come(self._walker.plan, self._course)
+        return FootstepPlan(left, right, tuple(fixed), tuple(clearable))
 
     # --- the tick -------------------------------------------------------------------------------------------------
 
@@ -316,14 +260,13 @@ class Locomotion:
         walker, now = self._walker, self._snapshot()
         if walker is None or now is None:
             return
-        loads = now.foot_loads
-        cause = self._unsafe(loads, dt)
+        cause = self._guard.danger(now, dt)
         if cause:
             self._fail(cause, started=True)
             self.kill()
             return
         self._look_ahead(now)
-        readings = Readings(now.positions, now.imu.angles[:2], now.imu.gyroscope[:2], loads)
+        readings = Readings(now.positions, now.imu.angles[:2], now.imu.gyroscope[:2], now.foot_loads)
         self._place_frame(walker, now)
         self._commands = walker.tick(readings, self._joints.commands, dt)
         if self._course is not None:
@@ -390,25 +333,22 @@ class Locomotion:
     def _rate(self) -> Rate:
         return self._course.rate if self._course is not None else STANDSTILL
 
-    def _heading_for(self) -> FootPose:
-        """Where a walking robot's next moves count from."""
-        return self.position(use_sensors=True)
-
     def _begin(self, name: str, course: Course | None) -> None:
-        cause = self._hindrance()
+        cause = self._guard.hindrance(self._now())
         if cause:
             self._fail(cause, started=False)
             raise MoveRefused(cause)
         self._course = course
         self._to_begin, self._hindered = course is not None, False
-        self._lifted, self._obstructed = 0.0, False
+        self._obstructed = False
+        self._guard.begin()
         self._job = self._motion.follow(name, self._legs, self._curves, noticed=False)
         self._job.add_done_callback(self._ended)
 
     def _curves(self, commands: Sequence[float]) -> dict[int, _LegCurve]:
         """Called when the legs are free; who had them may have taken the robot off its feet."""
         self._commands = {i: commands[i] for i in self._legs}
-        cause = self._hindrance()
+        cause = self._guard.hindrance(self._now())
         if cause:
             self._fail(cause, started=False)
             self._hindered = True
@@ -452,50 +392,15 @@ class Locomotion:
         if goal is not None:
             goal.finish(reached)
 
-    def _hindrance(self) -> str:
-        """Why the robot cannot walk now; empty when it can."""
-        now = self._now()
-        if self._stability.falls.falling:
-            return "the robot is falling"
-        soft = self._soft_joints()
-        if soft:
-            return f"stiffness of {soft} is {LEAST_STIFFNESS} or less: wakeUp first"
-        if self._reflexes.switches[CONTACT_SWITCH] and not self._on_ground(now.foot_loads):
-            return "the feet feel no ground"
-        family = recognise(self._model, now).family
-        if family not in (STANDING, CROUCHING):
-            return f"the robot is {family}, it walks only from standing or crouching: goToPosture first"
-        return ""
-
     def _look_ahead(self, now: Snapshot) -> None:
         """End a walk that leads into an obstacle which the sonars see."""
-        guard, course = self._reflexes.external_collision, self._course
-        if self._obstructed or course is None or now.sonars is self._echoes:
+        if self._obstructed or self._course is None:
             return
-        self._echoes = now.sonars
-        ahead = course.rate[0] / parameters()["MaxStepX"].default
-        if guard.blocks(ahead, now.sonars):
-            seen = rotate(now.odometry.orientation, guard.obstacle_ahead(now.sonars).tolist())
-            x, y, z = (a + b for a, b in zip(now.odometry.position, seen))
-            self._fail(f"an obstacle {min(now.sonars):.2f} m ahead", started=True, obstacle=(x, y, z))
+        seen = self._guard.obstacle(now, self._course.rate[0])
+        if seen is not None:
+            self._fail(seen.cause, started=True, obstacle=seen.place)
             self._stop_course()
             self._obstructed = True
-
-    def _unsafe(self, loads: tuple[float, float], dt: float) -> str:
-        """Why the walk must end at once; empty when it need not."""
-        self._lifted = 0.0 if self._on_ground(loads) else self._lifted + dt
-        if self._lifted > LIFTED_TIME and self._reflexes.switches[CONTACT_SWITCH]:
-            return "the feet have lost the ground"
-        soft = self._soft_joints()
-        return f"stiffness of {soft} is {LEAST_STIFFNESS} or less" if soft else ""
-
-    def _soft_joints(self) -> str:
-        stiffnesses = self._joints.stiffnesses
-        least = LEAST_STIFFNESS if self._reflexes.switches[STIFFNESS_SWITCH] else 0.0
-        return ", ".join(self._model.joints[i].name for i in self._legs if stiffnesses[i] <= least)
-
-    def _on_ground(self, loads: tuple[float, float]) -> bool:
-        return sum(loads) > LIFTED_SHARE * self._weight
 
     def _fail(self, cause: str, started: bool, obstacle: Vector3 | None = None) -> None:
         for call in self.failures:
