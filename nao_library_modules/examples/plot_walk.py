@@ -22,6 +22,8 @@ FEET = {"LLeg": LEFT, "RLeg": RIGHT}
 READINGS = ("TotalWeight", "CenterOfPressure/X", "CenterOfPressure/Y")
 KEYS = [f"Device/SubDeviceList/{side}Foot/FSR/{name}/Sensor/Value" for side in "LR" for name in READINGS]
 GOAL = (0.6, 0.15, 0.6)
+# Enough for a drawing, and a small file.
+COLORS = 64
 # Between two looks, ms; a step takes 420 ms at least.
 PERIOD = 20
 
@@ -87,7 +89,7 @@ def main() -> int:
                 samples = watch(body, memory, options.watch)
         if options.record:
             save(samples, options.record)
-        draw(samples).save(options.output)
+        draw(samples).quantize(COLORS).save(options.output, optimize=True)
     except (NaoError, OSError) as error:
         print(error)
         return 1
