@@ -308,13 +308,16 @@ class DriverWalker(unittest.TestCase):
         self.publishing(velocity(x=0.5))
         self.wait_for_walk()
 
-        def status():
-            message = rospy.wait_for_message("/diagnostics", DiagnosticArray, 10.0)
-            found = [one for one in message.status if one.name == "nao_walker: walk"]
-            return {pair.key: pair.value for pair in found[0].values} if found else {}
+        status = {}
 
-        wait_until(lambda: status().get("robot") == "walks", LIMIT, "diagnostics of a walk")
-        wait_until(lambda: status().get("commanded", "").startswith("walking at (0.50"), LIMIT, "its velocity")
+        def read(message):
+            for one in message.status:
+                if one.name == "nao_walker: walk":
+                    status.update({pair.key: pair.value for pair in one.values})
+
+        self.addCleanup(rospy.Subscriber("/diagnostics", DiagnosticArray, read).unregister)
+        wait_until(lambda: status.get("robot") == "walks", LIMIT, "diagnostics of a walk")
+        wait_until(lambda: status.get("commanded", "").startswith("walking at (0.50"), LIMIT, "its velocity")
 
     def test_the_end_of_the_node_stops_the_walk(self):
         program = rospkg.RosPack().get_path("nao_library_modules") + "/nodes/nao_walker"

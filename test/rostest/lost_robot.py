@@ -32,6 +32,10 @@ class LostRobot(unittest.TestCase):
     def setUp(self):
         self.simulator = None
         self.addCleanup(self.kill)
+        self.level = None
+        # One subscriber that stays: a new one each time would see whichever of the many nodes speaks first.
+        diagnostics = rospy.Subscriber("/diagnostics", DiagnosticArray, self.read_level)
+        self.addCleanup(diagnostics.unregister)
         self.client = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
         self.assertTrue(self.client.wait_for_server(Duration(30)))
 
@@ -56,13 +60,14 @@ class LostRobot(unittest.TestCase):
         memory = ALProxy("ALMemory", "127.0.0.1", int(PORT))
         wait_until(lambda: 0.4 < memory.getData(BRAIN0) < 0.4999, 20.0, "the fade")
 
-    def wait_for_level(self, level):
-        def seen():
-            message = rospy.wait_for_message("/diagnostics", DiagnosticArray, timeout=10.0)
-            robot = [s for s in message.status if s.name.endswith("NaoLights robot")]
-            return bool(robot) and robot[0].level == level
+    def read_level(self, message):
+        for status in message.status:
+            if status.name.endswith("NaoLights robot"):
+                self.level = status.level
 
-        wait_until(seen, 20.0, f"level {level!r} on /diagnostics")
+    def wait_for_level(self, level):
+        self.level = None
+        wait_until(lambda: self.level == level, 20.0, f"level {level!r} on /diagnostics")
 
     def test_robot_that_is_late_dies_and_comes_back(self):
         early = self.play(HALF).wait()
