@@ -35,6 +35,8 @@ class WalkFeedback:
         gains = (omega, settings.observer_place, settings.observer_speed)
         self._x, self._y = PendulumObserver(*gains), PendulumObserver(*gains)
         self._support: int | None = None
+        # Divergent component and pressure that were planned when the readings were taken: at the end of the last tick.
+        self._planned: Tuple[Vector2, Vector2] | None = None
         self._own: Vector2 = (0.0, 0.0)
         self._usual: Vector2 = (0.0, 0.0)
         self.error: Vector2 = (0.0, 0.0)
@@ -58,15 +60,18 @@ class WalkFeedback:
         settings = self._settings
         x, y = self._measured(plan, pose, upper, tilt)
         observers = (self._x, self._y)
+        now = (plan.divergent, plan.pressure)
+        divergent, pressure = self._planned or now
+        self._planned = now
         if self._support != plan.support:
             # What was measured from one foot does not meet what is measured from the other; the speed does.
             for observer, place in zip(observers, (x, y)):
                 observer.reset(place, observer.speed if self._support is not None else 0.0)
             self._support = plan.support
         else:
-            self._x.update(x, plan.pressure[0], dt)
-            self._y.update(y, plan.pressure[1], dt)
-        off_x, off_y = self._x.divergent - plan.divergent[0], self._y.divergent - plan.divergent[1]
+            self._x.update(x, pressure[0], dt)
+            self._y.update(y, pressure[1], dt)
+        off_x, off_y = self._x.divergent - divergent[0], self._y.divergent - divergent[1]
         off_x, off_y = self._beside_habit(off_x, off_y, dt)
         yaw = plan.feet[plan.support].yaw
         c, s = cos(yaw), sin(yaw)
