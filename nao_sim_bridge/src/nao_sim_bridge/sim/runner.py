@@ -23,6 +23,8 @@ log = logging.getLogger("nao_sim.runner")
 # When the machine cannot keep the pace, this much lag (s of wall time) is made up for; the rest is given up.
 MAX_LAG = 0.1
 FASTEST = math.inf
+# How soon to look again at what time waits for when nobody said that it is ready, s of wall time.
+HOLD_LOOK = 0.005
 
 
 class SimulationRunner:
@@ -55,6 +57,7 @@ class SimulationRunner:
         self._pace_wall = 0.0
         self._pace_time = 0.0
         simulation.task_ids.ask = self._kill_later
+        simulation.wake = self._notify
         self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
 
     # --- from any thread ------------------------------------------------------------------------------------------
@@ -144,6 +147,10 @@ class SimulationRunner:
                 return None
         return self.snapshot if self.snapshot.tick > after else None
 
+    def _notify(self) -> None:
+        with self._wake:
+            self._wake.notify()
+
     def _kill_later(self, task: Task) -> None:
         with self._wake:
             if not self._stopping:  # else the end of the simulation ends the task
@@ -220,16 +227,25 @@ class SimulationRunner:
             if self._advances[0][1] == 0:
                 self._finish_advance(self.snapshot)
                 return self._delay()
-            return 0.0
+            return self._hold()
         if self._paused:
             return math.inf
         if self._speed == FASTEST:
-            return 0.0
+            return self._hold()
         ahead = self._simulation.time + self._simulation.settings.tick_s - self._pace_time
         delay = self._pace_wall + ahead / self._speed - time.monotonic()
         if delay < -MAX_LAG:
             self._restart_pace()
+        if self._speed > 1.0 and delay <= 0.0:
+            return self._hold()
         return delay
+
+    def _hold(self) -> float:
+        """As `_delay` for time that runs faster than the wall clock and is due: it waits for slower work."""
+        for waits in self._simulation.holds:
+            if waits():
+                return HOLD_LOOK
+        return 0.0
 
     def _restart_pace(self) -> None:
         self._pace_wall = time.monotonic()

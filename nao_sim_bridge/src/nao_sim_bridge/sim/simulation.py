@@ -12,6 +12,7 @@ from nao_sim_bridge.sim.robot import SimulatedRobot
 from nao_sim_bridge.sim.scene import Scene
 from nao_sim_bridge.sim.settings import Settings, load_settings
 from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.sound.sound_world import SoundWorld
 from nao_sim_bridge.sim.start_lean import start_pitch
 from nao_sim_bridge.sim.tasks import TaskIds
 
@@ -27,6 +28,10 @@ class Simulation:
         task_ids: Source of the numbers of all tasks.
         snapshot: What was sensed at the last tick; any thread may read it.
         after_tick: Called with the snapshot at the end of every tick; they stay at a reset.
+        sound: What sounds and what is heard; it stays at a reset, which ends everything that plays.
+        holds: As long as one of them answers True, time that runs faster than the wall clock waits: for work in other
+            threads without which a fast run would give other results. Asked in the simulation thread.
+        wake: To be called, from any thread, when one of `holds` may answer differently; set by who lets time pass.
     """
 
     def __init__(self, scene: Scene | None = None, settings: Settings | None = None) -> None:
@@ -39,6 +44,11 @@ class Simulation:
         self._tick = 0
         self.task_ids = TaskIds()
         self.after_tick: list[Callable[[Snapshot], None]] = []
+        self.wake: Callable[[], None] = lambda: None
+        self.sound = SoundWorld(
+            self.model, self.settings.tick_s, self.task_ids, self.scene.seed, released=lambda: self.wake()
+        )
+        self.holds: list[Callable[[], bool]] = [self.sound.ears.holds]
         self.robot: SimulatedRobot
         self.snapshot: Snapshot
         self.reset()
@@ -58,6 +68,7 @@ class Simulation:
         if self._physics is not None:
             self.robot.motion.kill_all()
             self.robot.leds.kill_all()
+            self.sound.stop_all()
             self._physics.close()
         angles = posture(self.model, self.scene.posture)
         pitch = start_pitch(self.scene.posture)
@@ -66,12 +77,14 @@ class Simulation:
             self.model, self.led_layout, self.settings, self._physics, angles, self.scene, self.task_ids
         )
         self.snapshot = self.robot.sense(self._tick, self.time)
+        self.sound.begin(self.snapshot)
 
     def tick(self) -> Snapshot:
-        """Advance by one tick: LEDs, motion, motors, physics, sensors, in this order."""
+        """Advance by one tick: LEDs, motion, motors, physics, sensors, sound, in this order."""
         self._tick += 1
         self.robot.act()
         self.snapshot = self.robot.sense(self._tick, self.time)
+        self.sound.tick(self.snapshot)
         for look in self.after_tick:
             look(self.snapshot)
         return self.snapshot
@@ -84,6 +97,7 @@ class Simulation:
 
     def close(self) -> None:
         """Free the engine."""
+        self.sound.close()
         if self._physics is not None:
             self.robot.motion.kill_all()
             self.robot.leds.kill_all()

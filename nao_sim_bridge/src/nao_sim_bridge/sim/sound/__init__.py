@@ -1,0 +1,1 @@
+"""Sound in simulated time: what plays, what the microphones hear, and who listens."""

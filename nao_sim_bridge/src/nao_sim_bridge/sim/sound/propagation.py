@@ -1,0 +1,154 @@
+"""The way of sound through the air: delays of fractions of a frame, and what distance takes away. Pure functions.
+
+A signal is first taken to twice its rate with a long filter; between those samples a cubic is good enough: a sine of
+8 kHz is right within 0.02 dB, one of 16 kHz within 0.3 dB.
+"""
+
+from __future__ import annotations
+
+from typing import Callable
+
+import numpy as np
+
+HALF = 20
+"""Samples on each side that the filter to the double rate looks at."""
+ROUNDS, ENOUGH = 8, 1e-3
+"""For moving sources: how often, at most, the way is worked out again, and the error in frames that is good enough."""
+MARGIN = HALF + 2
+"""Samples that are needed before the first and after the last place that is asked for."""
+
+
+def _half_way() -> np.ndarray:
+    """Filter whose output lies half-way between two samples."""
+    at = np.arange(-HALF + 0.5, HALF)
+    taps = np.sinc(at) * np.kaiser(2 * HALF + 2, 7.0)[1:-1]
+    return (taps / taps.sum()).astype(np.float32)
+
+
+HALF_WAY = _half_way()
+
+
+def doubled(signal: np.ndarray) -> np.ndarray:
+    """The signal at twice its rate.
+
+    Args:
+        signal: (n,) float32.
+
+    Returns:
+        (2 n - 4 HALF + 2,) float32; the first is `signal[HALF - 1]`, the next is half-way to the following one.
+    """
+    out = np.empty(2 * (len(signal) - 2 * HALF + 1), np.float32)
+    out[0::2] = signal[HALF - 1 : len(signal) - HALF]
+    out[1::2] = np.convolve(signal, HALF_WAY, "valid")
+    return out
+
+
+def cubic(fraction: np.ndarray | float) -> tuple:
+    """Weights of the four samples around a place `fraction` (0..1) after the second of them."""
+    f = fraction
+    below, above, beyond = f + 1, f - 1, f - 2
+    inner, outer = above * beyond, f * below
+    return f * inner * (-1.0 / 6.0), below * inner * 0.5, outer * beyond * -0.5, outer * above * (1.0 / 6.0)
+
+
+def at_places(read: Callable[[int, int], np.ndarray | None], places: np.ndarray) -> np.ndarray | None:
+    """A signal at any places between its samples.
+
+    Args:
+        read: (first, last) to the (last - first,) samples of the signal, or None for silence.
+        places: (...) float64, in samples.
+
+    Returns:
+        Values in the shape of `places`, float32; None when all is silence.
+    """
+    first = int(np.floor(places.min())) - MARGIN
+    signal = read(first, int(np.ceil(places.max())) + MARGIN + 1)
+    if signal is None:
+        return None
+    double = doubled(signal)
+    # In samples of the double rate, from the one before the first of the four.
+    exact = (places - (first + HALF - 1)) * 2.0 - 1.0
+    index = exact.astype(np.int32)
+    weights = cubic((exact - index).astype(np.float32))
+    out = np.take(double, index)
+    out *= weights[0]
+    for step in range(1, 4):
+        index += 1
+        part = np.take(double, index)
+        part *= weights[step]
+        out += part
+    return out
+
+
+def delayed(read: Callable[[int, int], np.ndarray | None], first: int, last: int, delays: np.ndarray) -> np.ndarray:
+    """A signal with several delays that do not change.
+
+    Args:
+        read: As above.
+        first: First frame asked for.
+        last: The one after the last.
+        delays: (k,) in frames.
+
+    Returns:
+        (k, last - first) float32, or None when all is silence.
+    """
+    low = int(np.floor(first - delays.max())) - MARGIN
+    signal = read(low, int(np.ceil(last - delays.min())) + MARGIN + 1)
+    if signal is None:
+        return None
+    double = doubled(signal)
+    out = np.empty((len(delays), last - first), np.float32)
+    for row, delay in enumerate(delays):
+        exact = (first - float(delay) - (low + HALF - 1)) * 2.0 - 1.0
+        index = int(exact)
+        weights = cubic(exact - index)
+        stop = index + 2 * (last - first)
+        out[row] = double[index:stop:2] * np.float32(weights[0])
+        for step in range(1, 4):
+            out[row] += double[index + step : stop + step : 2] * np.float32(weights[step])
+    return out
+
+
+def between_knots(values: np.ndarray, step: int, skip: int, count: int, kind: type = np.float64) -> np.ndarray:
+    """Straight lines between values that are `step` frames apart.
+
+    Args:
+        values: (n, k) of k lines.
+        step: Frames from one to the next.
+        skip: How many frames after the first value the result begins.
+        count: Frames of the result.
+        kind: Type of the result.
+
+    Returns:
+        (k, count).
+    """
+    shares = (np.arange(step) / step).astype(kind)
+    lines = values.T.astype(kind)
+    whole = np.diff(lines)[:, :, None] * shares
+    whole += lines[:, :-1, None]
+    return whole.reshape(len(lines), -1)[:, skip : skip + count]
+
+
+def arrivals(
+    microphones: np.ndarray, frames: np.ndarray, places: Callable[[np.ndarray], np.ndarray], frames_per_meter: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """When a source gave off what microphones hear at certain frames.
+
+    Args:
+        microphones: (n, k, 3) places of k microphones at n times, in world, m.
+        frames: (n,) those times, in frames.
+        places: Frames of any shape to places of the source there (..., 3), in world, m.
+        frames_per_meter: How long sound takes, in frames.
+
+    Returns:
+        (n, k) frames at which it was given off, and (n, k) distances in m.
+    """
+    arrived = frames[:, None].astype(float)
+    given_off = np.repeat(arrived, microphones.shape[1], axis=1)
+    # Each round makes the error smaller by the ratio of the source's speed to that of sound.
+    for _ in range(ROUNDS):
+        distances = np.linalg.norm(places(given_off) - microphones, axis=-1)
+        before, given_off = given_off, arrived - distances * frames_per_meter
+        if np.abs(given_off - before).max() < ENOUGH:
+            break
+    return given_off, distances

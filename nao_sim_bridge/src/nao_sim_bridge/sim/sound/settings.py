@@ -1,0 +1,83 @@
+"""Settings of sound, read strictly from `config/sound.json`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Mapping, Tuple
+
+from nao_sim_bridge.paths import config_file
+from nao_sim_bridge.sim.config import check_keys, read_json
+from nao_sim_bridge.sim.errors import ConfigError
+
+FILE = "sound.json"
+CHANNELS = ("left", "right", "front", "rear")
+"""NAOqi's microphones in the order of their channels."""
+
+
+@dataclass(frozen=True)
+class SoundSettings:
+    """All of `sound.json`.
+
+    Attributes:
+        speed_of_sound: m/s.
+        microphone_full_scale_db: Level of a sine that just reaches full scale, dB SPL.
+        loudspeaker_full_scale_db: Level at 1 m of a full scale sine from both loudspeakers at volume 100, dB SPL.
+        near_field_m: Nearer than this nothing gets louder.
+        talk_db: A talking person at 1 m, dB SPL.
+        background_db: Level of the background noise, dB SPL.
+        keep_s: How long the past is kept, s.
+        channels: NAOqi's name of a channel to the microphone that it is.
+        energies: NAOqi's name of an energy to the microphones whose mean it is.
+    """
+
+    speed_of_sound: float
+    microphone_full_scale_db: float
+    loudspeaker_full_scale_db: float
+    near_field_m: float
+    talk_db: float
+    background_db: float
+    keep_s: float
+    channels: Mapping[str, str]
+    energies: Mapping[str, Tuple[str, ...]]
+
+    @property
+    def order(self) -> Tuple[str, ...]:
+        """Names of the microphones in the order of the channels."""
+        return tuple(self.channels[name] for name in CHANNELS)
+
+    def energy_channels(self, name: str) -> Tuple[int, ...]:
+        """Indices of the channels whose mean is the energy `left`, `right`, `front` or `rear`."""
+        return tuple(self.order.index(microphone) for microphone in self.energies[name])
+
+    def peak_of(self, level_db: float) -> float:
+        """Peak of a sine of that level as a microphone's samples have it, 1 is full scale."""
+        return 10.0 ** ((level_db - self.microphone_full_scale_db) / 20.0)
+
+
+@lru_cache(maxsize=None)
+def load_sound_settings() -> SoundSettings:
+    """Settings as the file gives them.
+
+    Raises:
+        ConfigError: The file cannot be read, or a key is unknown or missing, or a number is none that makes sense.
+    """
+    content = read_json(config_file(FILE))
+    names = [field.name for field in fields(SoundSettings)]
+    check_keys(content, FILE, names, ["_meta"])
+    values = {name: content[name] for name in names}
+    for name in ("channels", "energies"):
+        check_keys(content[name], f"{FILE}: {name}", CHANNELS)
+    for name in names[:7]:
+        if not isinstance(content[name], (int, float)) or isinstance(content[name], bool):
+            raise ConfigError(f"{FILE}: {name}", f"is {content[name]!r}, not a number")
+        if name in ("speed_of_sound", "near_field_m", "keep_s") and content[name] <= 0.0:
+            raise ConfigError(f"{FILE}: {name}", f"is {content[name]!r}, has to be above 0")
+    known = set(content["channels"].values())
+    for name, pair in content["energies"].items():
+        if not pair or not set(pair) <= known:
+            raise ConfigError(f"{FILE}: energies: {name}", f"is {pair!r}, not among {sorted(known)}")
+    values["channels"] = MappingProxyType(dict(content["channels"]))
+    values["energies"] = MappingProxyType({name: tuple(pair) for name, pair in content["energies"].items()})
+    return SoundSettings(**values)

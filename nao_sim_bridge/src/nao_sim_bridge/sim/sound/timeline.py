@@ -1,0 +1,72 @@
+"""The clock of sound, and what is due on it. Simulation thread only, but for `now`."""
+
+from __future__ import annotations
+
+import logging
+from typing import Callable, Protocol
+
+from nao_sim_bridge.sim.sound.samples import RATE
+
+log = logging.getLogger("nao_sim.sound")
+
+NEVER = 2**62
+HOUSEKEEPING = RATE
+"""Frames between two looks at what nobody can ask for any more."""
+
+
+class Due(Protocol):
+    """Something that has work to do at certain frames."""
+
+    def next_due(self) -> int | None:
+        """The next frame at which there is work; None when there is none."""
+
+    def work(self, frame: int) -> None:
+        """Do what is due up to `frame`."""
+
+
+class Timeline:
+    """Simulated time in frames. A tick without work costs one comparison.
+
+    Attributes:
+        now: The frame of now: what is before it is past and never changes; any thread may read it.
+        forget: Called with a frame now and then: what was over before it may be forgotten.
+
+    Args:
+        keep: How long the past is kept, s.
+    """
+
+    def __init__(self, keep: float) -> None:
+        self.now = 0
+        self.forget: list[Callable[[int], None]] = []
+        self._keep = round(keep * RATE)
+        self._active: list[Due] = []
+        self._next = 0
+        self._housekeeping = 0
+
+    @property
+    def oldest(self) -> int:
+        """The first frame that is still known."""
+        return max(0, self.now - self._keep)
+
+    def add(self, item: Due) -> None:
+        """Look after `item` until it has nothing due any more."""
+        if item not in self._active:
+            self._active.append(item)
+        self._next = min(self._next, self.now)
+
+    def tick(self, frame: int) -> None:
+        """Time has come to `frame`."""
+        self.now = frame
+        if frame >= self._next:
+            self._work(frame)
+
+    def _work(self, frame: int) -> None:
+        for item in list(self._active):
+            item.work(frame)
+        due = {item: item.next_due() for item in self._active}
+        self._active = [item for item, at in due.items() if at is not None]
+        if frame >= self._housekeeping:
+            self._housekeeping = frame + HOUSEKEEPING
+            for forget in self.forget:
+                forget(self.oldest)
+        self._next = min([self._housekeeping, *(at for at in due.values() if at is not None)])

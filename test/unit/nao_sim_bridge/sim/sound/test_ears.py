@@ -1,0 +1,202 @@
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.sound.ears import BLOCK
+from nao_sim_bridge.sim.sound.samples import RATE, pcm16, sine
+from nao_sim_bridge.sim.sound.sources import SoundSource
+
+
+@pytest.fixture
+def loud(room):
+    """A room with a radio."""
+    one = room(background_db=30.0)
+    one.sources.add(SoundSource("radio", (1.0, 0.5, 0.3), sine(1000.0, 5.0, 0.5), level_db=80.0, loop=True))
+    return one
+
+
+def test_blocks_follow_each_other_and_are_what_the_microphones_heard(loud):
+    blocks = []
+    listener = loud.ears.listen("test", blocks.append)
+    loud.run(2.0)
+    loud.ears.catch_up()
+    listener.close()
+    assert len(blocks) == 11
+    assert [block.time for block in blocks] == pytest.approx([0.17 * k for k in range(11)])
+    samples = np.concatenate([block.samples for block in blocks])
+    assert samples.shape == (11 * BLOCK, 4) and samples.dtype == np.int16
+    wanted = pcm16(loud.microphones.heard(0.0, 11 * 0.17))
+    assert np.abs(samples.astype(int) - wanted).max() <= 1
+
+
+def test_the_first_block_is_the_first_whole_one(loud):
+    loud.run(0.25)
+    blocks = []
+    loud.ears.listen("test", blocks.append)
+    loud.run(0.5)
+    loud.ears.catch_up()
+    assert [block.time for block in blocks] == pytest.approx([0.34, 0.51])
+
+
+def test_one_microphone_at_16_khz(loud):
+    one, mean, wide = [], [], []
+    loud.ears.listen("one", one.append, "16k1", "rear")
+    loud.ears.listen("mean", mean.append, "16k1", "all")
+    loud.ears.listen("wide", wide.append)
+    loud.run(1.0)
+    loud.ears.catch_up()
+    assert all(block.samples.shape == (2720, 1) and block.rate == 16000 for block in one + mean)
+    assert [block.time for block in one] == [block.time for block in wide]
+    narrow = np.concatenate([block.samples for block in one])[:, 0].astype(float)
+    every_third = np.concatenate([block.samples for block in wide])[::3].astype(float)
+    # A tone of 1 kHz fits into both; noise above 8 kHz does not.
+    assert np.abs(narrow - every_third[:, 3])[300:].max() < 40
+    assert np.corrcoef(narrow[300:], every_third[300:, 3])[0, 1] > 0.999
+    assert np.concatenate([b.samples for b in mean])[300:, 0] == pytest.approx(every_third[300:].mean(axis=1), abs=40)
+
+
+@pytest.mark.parametrize("wants, rate", [("48k4", 48000), ("16k1", 16000)])
+def test_an_exact_listener_hears_from_its_first_to_its_last_moment(loud, wants, rate):
+    loud.run(0.1)
+    blocks = []
+    listener = loud.ears.listen("recorder", blocks.append, wants, exact=True)
+    loud.run(1.0)
+    listener.close()
+    loud.run(1.0)
+    loud.ears.catch_up()
+    assert blocks[0].time == pytest.approx(0.1, abs=1e-4)
+    assert sum(len(block.samples) for block in blocks) == rate
+    for first, second in zip(blocks, blocks[1:]):
+        assert first.end == pytest.approx(second.time)
+
+
+def test_an_exact_listener_can_join_while_others_wait_for_their_first_block(loud):
+    loud.run(0.05)
+    whole, exact = [], []
+    loud.ears.listen("whole", whole.append)
+    listener = loud.ears.listen("exact", exact.append, exact=True)
+    loud.run(0.05)
+    listener.close()
+    assert sum(len(block.samples) for block in exact) == 0.05 * RATE and not whole
+
+
+def test_equal_runs_sound_equal_to_the_last_bit_however_fast_they_are(room):
+    """Once with ears that keep up at each tick, once with all the work at the end."""
+    results = []
+    for keep_up in (True, False):
+        one = room(background_db=30.0)
+        blocks = []
+        one.ears.listen("test", blocks.append)
+        one.moves = lambda time, one=one: setattr(one, "yaw", np.sin(3.0 * time))
+        playing = one.loudspeakers.play(sine(300.0, 3.0, 0.3), "say")
+        one.sources.add(SoundSource("radio", (1.0, 0.5, 0.3), sine(1000.0, 5.0, 0.5), loop=True))
+        for step in range(40):
+            one.run(0.05)
+            if step == 10:
+                playing.pause()
+                one.sources.move("radio", (2.0, -1.0, 0.3))
+            if step == 20:
+                playing.resume()
+                one.loudspeakers.volume = 40.0
+            if keep_up:
+                one.ears.catch_up()
+        one.ears.catch_up()
+        results.append(np.concatenate([block.samples for block in blocks]))
+    assert len(results[0]) == 11 * BLOCK and np.array_equal(*results)
+
+
+def test_a_listener_that_fails_is_logged_once_and_goes_on(loud, caplog):
+    calls, others = [], []
+
+    def fail(block):
+        calls.append(block)
+        raise ValueError("deaf")
+
+    loud.ears.listen("bad one", fail)
+    loud.ears.listen("good one", others.append)
+    loud.run(1.0)
+    loud.ears.catch_up()
+    assert len(calls) == len(others) == 5
+    assert caplog.text.count("ValueError: deaf") == 1 and "bad one" in caplog.text
+
+
+def test_ears_lag_behind_a_slow_listener_and_ask_time_to_wait(loud, patience):
+    entered, go_on, blocks = threading.Event(), threading.Event(), []
+
+    def slow(block):
+        entered.set()
+        assert go_on.wait(patience)
+        blocks.append(block)
+
+    loud.ears.listen("slow", slow)
+    loud.run(0.2)
+    assert entered.wait(patience)
+    assert not loud.ears.holds()
+    loud.run(0.3)
+    assert loud.ears.lag == pytest.approx(0.34) and loud.ears.holds()
+    go_on.set()
+    loud.ears.catch_up(patience)
+    assert loud.ears.lag == 0.0 and not loud.ears.holds() and len(blocks) == 2
+
+
+def test_no_callback_after_close_and_the_thread_ends_with_the_last(loud, patience):
+    blocks = []
+    listener = loud.ears.listen("test", blocks.append)
+    loud.run(0.5)
+    loud.ears.catch_up()
+    thread = loud.ears._thread
+    listener.close()
+    listener.close()
+    heard = len(blocks)
+    loud.run(0.5)
+    loud.ears.catch_up()
+    thread.join(patience)
+    assert len(blocks) == heard == 2 and not thread.is_alive() and not loud.ears.listening
+    again = []
+    loud.ears.listen("test", again.append)
+    loud.run(0.5)
+    loud.ears.catch_up()
+    assert again[0].time == pytest.approx(1.02)
+
+
+def test_a_listener_may_close_itself(loud, patience):
+    blocks = []
+
+    def once(block):
+        blocks.append(block)
+        listener.close()
+
+    listener = loud.ears.listen("once", once)
+    loud.run(1.0)
+    loud.ears.catch_up(patience)
+    assert len(blocks) == 1
+
+
+def test_wrong_wishes_are_refused(loud):
+    with pytest.raises(BadValue, match="48k4 or 16k1"):
+        loud.ears.listen("test", print, "44k2")
+    with pytest.raises(BadValue, match="left, right"):
+        loud.ears.listen("test", print, "16k1", "top")
+    assert not loud.ears.listening
+
+
+def test_somebody_who_never_hears_leaves_a_gap_and_not_an_error(loud, patience, caplog):
+    entered, go_on, blocks = threading.Event(), threading.Event(), []
+
+    def slow(block):
+        entered.set()
+        assert go_on.wait(patience)
+        blocks.append(block)
+
+    loud.ears.listen("slow", slow)
+    loud.run(0.2)
+    assert entered.wait(patience)
+    loud.run(70.0)
+    go_on.set()
+    loud.ears.catch_up(patience)
+    assert "too slow" in caplog.text
+    assert blocks[0].time == 0.0 and blocks[-1].end == pytest.approx(70.2, abs=0.2)

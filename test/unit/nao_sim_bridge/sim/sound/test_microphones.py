@@ -1,0 +1,126 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
+from nao_sim_bridge.sim.sound.sources import SoundSource
+
+
+def rms(samples):
+    return float(np.sqrt(np.mean(np.square(samples, dtype=float))))
+
+
+def test_a_quiet_room_has_the_noise_that_the_settings_say(room):
+    one = room(background_db=30.0)
+    one.run(1.0)
+    heard = one.frames(0.0, 1.0)
+    assert 20 * math.log10(rms(heard) * math.sqrt(2.0)) == pytest.approx(30.0 - 104.0, abs=0.1)
+    assert np.abs(np.corrcoef(heard) - np.eye(4)).max() < 0.02
+
+
+def test_noise_depends_on_seed_and_time_only(room):
+    first, second, other = room(background_db=30.0), room(background_db=30.0), room(background_db=30.0, seed=5)
+    for one in (first, second, other):
+        one.run(1.0)
+    whole = first.frames(0.0, 1.0)
+    assert np.array_equal(whole[:, 12345:30000], second.frames(12345 / RATE, 30000 / RATE))
+    assert abs(np.corrcoef(whole[0], other.frames(0.0, 1.0)[0])[0, 1]) < 0.02
+    assert abs(np.corrcoef(whole[0, :24000], whole[0, 24000:])[0, 1]) < 0.02
+
+
+def test_own_speech_is_heard_louder_at_the_nearer_side(room):
+    one = room(near_field_m=0.01)
+    one.loudspeakers.play(sine(1000.0, 1.0, 0.5), "say", pan=1.0)
+    one.run(0.5)
+    left, right, front, rear = (rms(channel) for channel in one.frames(0.1, 0.4))
+    assert right > 1.5 * left and rear > front  # "front" and "rear" of such a head are its front left and right
+
+
+def test_own_speech_has_the_level_of_the_loudspeakers(room):
+    """Full scale is 80 dB at 1 m; microphones at 10 cm or less hear what is 20 dB more, from each of the two half."""
+    one = room(near_field_m=1.0)
+    one.loudspeakers.play(sine(100.0, 1.0), "say")
+    one.run(0.5)
+    for channel in one.frames(0.1, 0.4):
+        assert 104.0 + 20 * math.log10(rms(channel) * math.sqrt(2.0)) == pytest.approx(80.0, abs=0.2)
+
+
+def test_own_speech_arrives_after_the_way_from_the_loudspeaker(room):
+    one = room(near_field_m=0.01)
+    click = np.zeros(2000, np.float32)
+    click[0] = 1.0
+    one.run(0.1)
+    one.loudspeakers.play(Sound(click), "play", pan=-1.0)
+    one.run(0.1)
+    speaker = np.asarray(one.model.loudspeakers[0].position)
+    for channel, place in zip(one.frames(0.1, 0.15), one.world.microphones.places):
+        assert np.argmax(np.abs(channel)) == pytest.approx(np.linalg.norm(place - speaker) / 343.0 * RATE, abs=0.51)
+
+
+def test_parts_fit_together(room):
+    """What is heard does not depend on how it is cut into questions."""
+    one = room(background_db=30.0)
+    one.sources.add(SoundSource("it", (1.0, 0.7, 0.2), sine(440.0, 3.0, 0.5)))
+    one.loudspeakers.play(sine(700.0, 0.7, 0.5), "say")
+    one.moves = lambda time: setattr(one, "yaw", time)
+    one.run(1.0)
+    whole = one.frames(0.0, 0.9)
+    for first, last in ((0, 1), (399, 401), (5000, 13160), (13160, 43200)):
+        assert one.frames(first / RATE, last / RATE) == pytest.approx(whole[:, first:last], abs=2e-6)
+
+
+def test_what_is_too_loud_is_cut(room):
+    one = room()
+    one.sources.add(SoundSource("siren", (0.3, 0.0, 0.2), sine(440.0, 1.0), level_db=120.0))
+    one.run(0.5)
+    heard = one.frames(0.1, 0.4)
+    assert heard.max() == 1.0 and heard.min() == -1.0 and (np.abs(heard) == 1.0).mean() > 0.5
+
+
+def test_a_file_takes_the_place_of_the_air_and_the_past_stays(room):
+    one = room(background_db=30.0)
+    one.run(0.5)
+    before = one.frames(0.0, 0.4).copy()
+    one.microphones.replaced_by = Sound(np.linspace(0.0, 0.5, RATE // 10, dtype=np.float32))
+    one.run(0.5)
+    assert np.array_equal(one.frames(0.0, 0.4), before)
+    heard = one.frames(0.5, 0.9)
+    assert heard[3, : RATE // 10] == pytest.approx(np.linspace(0.0, 0.5, RATE // 10), abs=1e-6)
+    assert one.microphones.replaced_by is None
+    assert rms(heard[:, RATE // 10 :]) == pytest.approx(rms(before), rel=0.05)  # it is over
+    with pytest.raises(BadValue, match="1 or 2 .* or 4"):
+        one.microphones.replaced_by = Sound(np.zeros((5, 3)))
+
+
+def test_a_file_can_be_ended_and_replaced_while_it_is_heard(room):
+    one = room()
+    for level in (0.1, 0.2):
+        one.microphones.replaced_by = Sound(np.full((RATE, 2), level, np.float32))
+        one.run(0.1)
+    assert one.microphones.replaced_by is not None
+    one.microphones.replaced_by = None
+    one.run(0.2)
+    assert one.microphones.replaced_by is None
+    assert [float(one.microphones.heard(at, at + 0.01).max()) for at in (0.05, 0.15)] == pytest.approx([0.1, 0.2])
+    assert not (np.abs(one.microphones.heard(0.2, 0.3)) > 0.001).any()
+
+
+def test_a_file_of_four_channels_keeps_them(room):
+    one = room()
+    one.microphones.replaced_by = Sound(np.tile(np.array([0.1, 0.2, 0.3, 0.4], np.float32), (RATE, 1)))
+    one.run(0.5)
+    assert one.microphones.heard(0.1, 0.2)[0].tolist() == pytest.approx([0.1, 0.2, 0.3, 0.4])
+
+
+def test_energies_are_of_the_microphones_at_that_side(room):
+    settings = room().world.settings
+    assert {name: settings.energy_channels(name) for name in settings.energies} == {
+        "left": (0, 2),
+        "right": (1, 3),
+        "front": (2, 3),
+        "rear": (0, 1),
+    }
