@@ -1,0 +1,163 @@
+"""The handle of the speech process: starts it, has it speak, starts it again when it has died."""
+
+from __future__ import annotations
+
+import logging
+import os
+import subprocess
+import sys
+import threading
+from dataclasses import replace
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, Mapping
+
+import numpy as np
+
+from nao_sim_bridge.sim.speech.speech import Speech, SpeechError, Utterance, Word, listed
+
+log = logging.getLogger("nao_sim.speech")
+
+START_TIMEOUT = 30.0
+"""s; it is there within a fraction of one, but a busy machine may need long to start an interpreter."""
+ANSWER_TIMEOUT = 30.0
+STOP_TIMEOUT = 2.0
+# What is less than this, as part of full scale, is a pause.
+QUIET = 0.003
+SOURCES = Path(__file__).resolve().parents[3]
+# Which Debian package brings an engine.
+PACKAGES = {"flite": "flite", "espeak-ng": "espeak-ng"}
+MODULE = "nao_sim_bridge.sim.speech.worker"
+
+
+class Engines:
+    """All engines of this machine, in one process. Any thread may ask; one text is spoken at a time.
+
+    Attributes:
+        command: What the process is started with, but for the number of its pipe; engines named behind it are left out.
+        answer_timeout: Longest time to wait for a text to be spoken, s.
+    """
+
+    def __init__(self) -> None:
+        self.command = [sys.executable, "-m", MODULE]
+        self.answer_timeout = ANSWER_TIMEOUT
+        self._lock = threading.Lock()
+        self._process: subprocess.Popen | None = None
+        self._pipe: Connection | None = None
+        self._found: Mapping[str, Any] | None = None
+
+    @property
+    def pid(self) -> int | None:
+        """Process id of the speech process; None while there is none."""
+        return self._process.pid if self._process is not None else None
+
+    def warm_up(self) -> None:
+        """Start the process without waiting for it; else the first text does."""
+        with self._lock:
+            if self._process is None:
+                self._start()
+
+    def missing(self, engine: str, voice: str) -> str | None:
+        """Why a voice cannot speak, None when it can."""
+        with self._lock:
+            found = self._engines()
+        if engine not in found:
+            return f"unknown engine {engine!r}, there are {listed(sorted(found))}"
+        voices = found[engine]
+        if isinstance(voices, str):
+            return f"the engine {engine} is not installed (Debian package {PACKAGES.get(engine, engine)}): {voices}"
+        if voices is not None and voice not in voices:
+            return f"the engine {engine} has no voice {voice!r}, it has {listed(voices)}"
+        return None
+
+    def synthesise(self, utterance: Utterance) -> Speech:
+        """Make the sound of a text; blocks until it is there.
+
+        Raises:
+            SpeechError: The engine or the voice is missing, it cannot say this, or the process died of it.
+        """
+        problem = self.missing(utterance.engine, utterance.voice)
+        if problem is not None:
+            raise SpeechError(problem)
+        with self._lock:
+            self._engines()
+            try:
+                self._pipe.send(("synthesise", (utterance.engine, utterance.voice, utterance.text, utterance.speed)))
+                kind, content = self._receive(self.answer_timeout)
+                if kind == "error":
+                    raise SpeechError(content)
+                rate, words = content
+                sound = self._pipe.recv_bytes()
+            except (EOFError, OSError) as error:
+                raise SpeechError(f"{self._drop()} while it spoke {utterance.text[:60]!r}") from error
+        samples = np.frombuffer(sound, dtype=np.int16).astype(np.float32) / 32768.0
+        samples.flags.writeable = False
+        heard = (Word(*word) for word in words)
+        return Speech(samples, rate, tuple(_without_pause(word, samples, rate) for word in heard if word.end > word.start))
+
+    def close(self) -> None:
+        """End the process; a later text would start it again."""
+        with self._lock:
+            if self._process is not None:
+                self._drop()
+
+    # --- inside, under the lock -----------------------------------------------------------------------------------
+
+    def _engines(self) -> Mapping[str, Any]:
+        """What the running process has found; it is started when it does not run."""
+        if self._process is not None and self._process.poll() is not None:
+            log.error("%s; it is started again", self._drop())
+        if self._process is None:
+            self._start()
+        if self._found is None:
+            try:
+                _, self._found = self._receive(START_TIMEOUT)
+            except (EOFError, OSError) as error:
+                raise SpeechError(f"{self._drop()} while it started") from error
+        return self._found
+
+    def _receive(self, timeout: float) -> Any:
+        """The next answer.
+
+        Raises:
+            OSError: It does not come in time, or the process is gone.
+        """
+        if not self._pipe.poll(timeout):
+            raise OSError("no answer")
+        return self._pipe.recv()
+
+    def _start(self) -> None:
+        """By name, not forked: it must not run the caller's main program again. It ends when its pipe is closed."""
+        here, there = Pipe(duplex=True)
+        paths = [str(SOURCES), os.environ.get("PYTHONPATH", "")]
+        try:
+            self._process = subprocess.Popen(
+                [*self.command[:3], str(there.fileno()), *self.command[3:]],
+                pass_fds=(there.fileno(),),
+                stdin=subprocess.DEVNULL,
+                env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
+            )
+        finally:
+            there.close()
+        self._pipe, self._found = here, None
+
+    def _drop(self) -> str:
+        """Forget the process, which is gone or late; how it ended."""
+        process, self._process, self._found = self._process, None, None
+        self._pipe.close()
+        try:
+            return f"the speech process ended with status {process.wait(STOP_TIMEOUT)}"
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+            return "the speech process did not answer"
+
+
+def _without_pause(word: Word, samples: np.ndarray, rate: int) -> Word:
+    """A word that ends where its sound does: engines count the pause behind it in."""
+    begin, end = round(word.start * rate), round(word.end * rate)
+    loud = np.flatnonzero(np.abs(samples[begin:end]) > QUIET)
+    if not len(loud):
+        return word
+    return replace(word, end=min(word.end, (begin + int(loud[-1]) + 1) / rate))

@@ -1,0 +1,78 @@
+"""The speech process: `python -m nao_sim_bridge.sim.speech.worker FD [ENGINE ...]`. It holds the engines' libraries.
+
+The named engines are left out, as if they were not installed.
+
+In a process of its own, because libraries of that kind crash now and then, and because what they compute must not
+take time from the simulation. Each text is spoken in a copy of the process that ends with it: the engines keep a
+state from text to text, which would make the sound of a text depend on what was said before.
+
+It talks over the inherited pipe FD in tuples (kind, content): first it sends ("ready", {engine: [voices] or None for
+any, or a text that says why it is missing}), then it answers ("synthesise", (engine, voice, text, speed)) with
+("speech", (samples a second, words)) and the samples as raw bytes (int16, mono), or with ("error", text). Words are
+tuples (first character, length, start, end), times in s. It ends when the pipe is closed.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from multiprocessing.connection import Connection
+from typing import Any
+
+from nao_sim_bridge.sim.speech.espeak import Espeak
+from nao_sim_bridge.sim.speech.flite import Flite
+
+ENGINES = {"flite": Flite, "espeak-ng": Espeak}
+
+
+def main(arguments: list[str]) -> int:
+    """Serve one pipe until it is closed."""
+    pipe = Connection(int(arguments[0]))
+    # Ctrl-C in a terminal goes to all processes; the owner of the pipe decides when this one ends.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    engines: dict[str, Any] = {}
+    found: dict[str, Any] = {}
+    for name, make in ENGINES.items():
+        try:
+            if name in arguments[1:]:
+                raise OSError("it is left out")
+            engines[name] = make()
+            found[name] = engines[name].voices()
+        except OSError as error:
+            found[name] = str(error)
+    try:
+        pipe.send(("ready", found))
+        while True:
+            _, (engine, *request) = pipe.recv()
+            _speak(pipe, engines[engine], request)
+    except (EOFError, BrokenPipeError, ConnectionResetError):
+        return 0  # the parent is gone or wants no more
+
+
+def _speak(pipe: Connection, engine: Any, request: list) -> None:
+    """Answer one request, from a copy of this process."""
+    engine.prepare(request[0])
+    copy = os.fork()
+    if copy == 0:
+        try:
+            _answer(pipe, engine, request)
+        finally:
+            os._exit(0)
+    _, status = os.waitpid(copy, 0)
+    if os.WIFSIGNALED(status):
+        pipe.send(("error", f"the engine crashed (signal {os.WTERMSIG(status)})"))
+
+
+def _answer(pipe: Connection, engine: Any, request: list) -> None:
+    try:
+        rate, sound, words = engine.synthesise(*request)
+    except (ValueError, OSError) as error:
+        pipe.send(("error", str(error)))
+    else:
+        pipe.send(("speech", (rate, words)))
+        pipe.send_bytes(sound)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
