@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 import threading
-from multiprocessing.connection import Connection
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from nao_sim_bridge.sim.child_process import ChildProcess
 from nao_sim_bridge.sim.errors import SimulationError
 from nao_sim_bridge.sim.render.scene import Camera, RenderState
 
 START_TIMEOUT = 60.0
 """s; building the robot takes well below one, but a busy machine may need long to start an interpreter."""
-STOP_TIMEOUT = 2.0
-SOURCES = Path(__file__).resolve().parents[3]
+MODULE = "nao_sim_bridge.sim.render.worker"
 
 
 class RenderError(SimulationError):
@@ -29,76 +24,10 @@ class PictureRefused(RenderError):
     """The picture process is well but cannot make this picture."""
 
 
-class _Worker:
-    """One picture process and the pipe to it.
-
-    A process that is started by name, not forked or spawned by multiprocessing: it must not run the caller's
-    main program again. It ends by itself when the other end of its pipe is closed, so it cannot outlive its
-    parent.
-    """
-
-    def __init__(self, mode: str, world_name: str, version: str) -> None:
-        here, there = os_pipe()
-        paths = [str(SOURCES), os.environ.get("PYTHONPATH", "")]
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))}
-        command = [sys.executable, "-m", "nao_sim_bridge.sim.render.worker"]
-        try:
-            self.process = subprocess.Popen(
-                [*command, str(there.fileno()), mode, world_name, version],
-                pass_fds=(there.fileno(),),
-                stdin=subprocess.DEVNULL,
-                # The window talks about its threads on the standard output.
-                stdout=subprocess.DEVNULL if mode == "window" else None,
-                env=environment,
-            )
-        finally:
-            there.close()
-        self.pipe = here
-
-    def receive(self, timeout: float, what: str) -> Any:
-        """The next answer; an error it reports is raised.
-
-        Raises:
-            PictureRefused: If it reports an error.
-            RenderError: If it has ended or does not answer in time.
-        """
-        try:
-            if not self.pipe.poll(timeout):
-                raise RenderError(f"{what}: no answer of the picture process within {timeout:g} s")
-            kind, content = self.pipe.recv()
-        except (EOFError, OSError) as error:
-            raise RenderError(f"{what}: {self.last_words()}") from error
-        if kind == "error":
-            raise PictureRefused(f"{what}: {content}")
-        return content
-
-    def last_words(self) -> str:
-        """How the process ended."""
-        try:
-            return f"the picture process ended with status {self.process.wait(STOP_TIMEOUT)}"
-        except subprocess.TimeoutExpired:
-            return "the picture process closed its pipe"
-
-    def stop(self) -> None:
-        """End it: by closing the pipe, and if that does not help, by force."""
-        self.pipe.close()
-        try:
-            self.process.wait(STOP_TIMEOUT)
-        except subprocess.TimeoutExpired:
-            self.kill()
-
-    def kill(self) -> None:
-        """End it by force."""
-        self.pipe.close()
-        self.process.kill()
-        self.process.wait()
-
-
-def os_pipe() -> tuple[Connection, Connection]:
-    """Two connected ends of a two-way pipe."""
-    from multiprocessing import Pipe  # starts nothing
-
-    return Pipe(duplex=True)
+def _process(mode: str, world_name: str, version: str) -> ChildProcess:
+    """A new picture process; a window talks about its threads on the standard output, which nobody wants to read."""
+    arguments = (mode, world_name, version)
+    return ChildProcess(MODULE, arguments, "picture process", RenderError, PictureRefused, silent=mode == "window")
 
 
 class Renderer:
@@ -112,7 +41,7 @@ class Renderer:
     def __init__(self, world_name: str = "empty", version: str = "V6") -> None:
         self._world_name = world_name
         self._version = version
-        self._worker: _Worker | None = None
+        self._worker: ChildProcess | None = None
         self._lock = threading.Lock()
 
     @property
@@ -172,9 +101,9 @@ class Renderer:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _ensure_worker(self) -> _Worker:
+    def _ensure_worker(self) -> ChildProcess:
         if self._worker is None:
-            worker = _Worker("pictures", self._world_name, self._version)
+            worker = _process("pictures", self._world_name, self._version)
             try:
                 worker.receive(START_TIMEOUT, "starting")
             except RenderError:
@@ -200,7 +129,7 @@ class Viewer:
     def __init__(self, world_name: str = "empty", version: str = "V6") -> None:
         self._world_name = world_name
         self._version = version
-        self._worker: _Worker | None = None
+        self._worker: ChildProcess | None = None
         self._drawing = False
 
     def start(self) -> Viewer:
@@ -211,7 +140,7 @@ class Viewer:
         """
         if not os.environ.get("DISPLAY"):
             raise RenderError("window: there is no display (DISPLAY is not set); leave the window out, or set it")
-        worker = _Worker("window", self._world_name, self._version)
+        worker = _process("window", self._world_name, self._version)
         try:
             worker.receive(START_TIMEOUT, "window")
         except RenderError:

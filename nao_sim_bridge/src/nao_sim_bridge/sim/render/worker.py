@@ -8,25 +8,23 @@ with ("error", text); ("show", state) is answered with ("shown", None). It ends 
 from __future__ import annotations
 
 import os
-import signal
 import sys
-import traceback
 from multiprocessing.connection import Connection
 from typing import Any
+
+from nao_sim_bridge.sim.child_process import error_text, pipe_to_parent
 
 
 def main(arguments: list[str]) -> int:
     """Serve one pipe until it is closed."""
     descriptor, mode, world_name, version = arguments
-    pipe = Connection(int(descriptor))
-    # Ctrl-C in a terminal goes to all processes; the owner of the pipe decides when this one ends.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    pipe = pipe_to_parent(descriptor)
     try:
         serve = (
             _open_pictures(pipe, world_name, version) if mode == "pictures" else _open_window(pipe, world_name, version)
         )
     except Exception as error:
-        pipe.send(("error", _text(error)))
+        pipe.send(("error", error_text(error)))
         return 1
     pipe.send(("ready", None))
     try:
@@ -34,13 +32,6 @@ def main(arguments: list[str]) -> int:
     except (EOFError, BrokenPipeError, ConnectionResetError):
         pass  # the parent is gone or wants no more
     return 0
-
-
-def _text(error: Exception) -> str:
-    """What to tell about an error: its text, and where it came from when it is not one of ours."""
-    from nao_sim_bridge.sim.errors import SimulationError
-
-    return str(error) if isinstance(error, SimulationError) else traceback.format_exc()
 
 
 def _quiet_import() -> Any:
@@ -71,7 +62,7 @@ def _open_pictures(pipe: Connection, world_name: str, version: str) -> Any:
             try:
                 picture = studio.take(state, camera)
             except Exception as error:
-                pipe.send(("error", _text(error)))
+                pipe.send(("error", error_text(error)))
                 continue
             pipe.send(("picture", picture.shape))
             pipe.send_bytes(picture.tobytes())

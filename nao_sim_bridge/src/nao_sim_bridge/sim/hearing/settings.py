@@ -1,0 +1,113 @@
+"""Numbers of speech recognition, from `config/recognition.json`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from typing import Any, Mapping, Tuple, Type, TypeVar
+
+from nao_sim_bridge.paths import config_file
+from nao_sim_bridge.sim.config import check_keys, read_json
+
+FILE = "recognition.json"
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class VoiceActivitySettings:
+    """When speech begins and ends; the file has the meanings. Levels in dB below full scale, times in s."""
+
+    frame_s: float
+    margin_db: Tuple[float, float]
+    least_level_db: float
+    begin_frames: int
+    window_frames: int
+    pause_s: float
+    before_s: float
+    after_s: float
+    background_s: float
+    least_speech_s: float
+    longest_s: float
+
+    def margin(self, sensitivity: float) -> float:
+        """How far above the background a loud frame is, dB."""
+        low, high = self.margin_db
+        return low + sensitivity * (high - low)
+
+
+@dataclass(frozen=True)
+class NoiseReductionSettings:
+    """How steady noise is taken out of speech."""
+
+    least_gain: float
+    smoothing: float
+    background_s: float
+
+
+@dataclass(frozen=True)
+class GainSettings:
+    """The level that speech is brought to, dB below full scale, and the most gain for it, dB."""
+
+    level_db: float
+    most_db: float
+
+
+@dataclass(frozen=True)
+class ConfidenceSettings:
+    """How confidence follows from scores."""
+
+    more_frames: float
+    middle: float
+    slope: float
+    least: float
+
+
+@dataclass(frozen=True)
+class OtherSpeechSettings:
+    """How likely other speech is beside the words of a phrase."""
+
+    weight: float
+
+
+@dataclass(frozen=True)
+class RecognitionSettings:
+    """All of the file."""
+
+    languages: Tuple[str, ...]
+    voice_activity: VoiceActivitySettings
+    noise_reduction: NoiseReductionSettings
+    gain: GainSettings
+    confidence: ConfidenceSettings
+    other_speech: OtherSpeechSettings
+
+
+SECTIONS = {
+    "voice_activity": VoiceActivitySettings,
+    "noise_reduction": NoiseReductionSettings,
+    "gain": GainSettings,
+    "confidence": ConfidenceSettings,
+    "other_speech": OtherSpeechSettings,
+}
+
+
+@lru_cache(maxsize=None)
+def load_recognition() -> RecognitionSettings:
+    """The settings of the package.
+
+    Raises:
+        ConfigError: The file does not hold what it should.
+    """
+    return parse_recognition(read_json(config_file(FILE)))
+
+
+def parse_recognition(content: Mapping[str, Any]) -> RecognitionSettings:
+    """Settings from the content of the file; see `load_recognition`."""
+    check_keys(content, FILE, ["languages", *SECTIONS], ["_note"])
+    sections = {name: _section(content[name], name, kind) for name, kind in SECTIONS.items()}
+    return RecognitionSettings(languages=tuple(content["languages"]), **sections)
+
+
+def _section(entry: Any, name: str, kind: Type[T]) -> T:
+    keys = [field.name for field in fields(kind)]
+    check_keys(entry, f"{FILE} {name}", keys, ["_note"])
+    return kind(**{key: tuple(entry[key]) if isinstance(entry[key], list) else entry[key] for key in keys})
