@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import math
+from pathlib import Path
 from typing import Sequence
 
+from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR
 from nao_sim_bridge.server import ServerOptions
 from nao_sim_bridge.sim.model import VERSIONS
 from nao_sim_bridge.sim.postures import load_postures
@@ -40,6 +42,18 @@ def parser(prog: str) -> argparse.ArgumentParser:
         "--sensor-noise", type=_amount, default=0.0, help="errors of the sensors: 0 none, 1 as those of a real robot"
     )
     options.add_argument("--sensor-delay", type=_amount, default=0.0, help="how late readings of sensors arrive, s")
+    options.add_argument(
+        "--record-dir", type=Path, default=DEFAULT_RECORD_DIR, help="folder for pictures, recordings and other files"
+    )
+    options.add_argument(
+        "--sound-file",
+        default="",
+        metavar="FILE",
+        help="keep everything that the loudspeakers play as this WAV, a name inside the folder above; empty: don't",
+    )
+    options.add_argument(
+        "--sound-card", action="store_true", help="let it be heard on this computer, too (at speed 1; needs PortAudio)"
+    )
     options.add_argument("--paused", action="store_true", help="start without time passing")
     options.add_argument("--verbose", action="store_true", help="log more")
     return options
@@ -57,7 +71,17 @@ def server_options(arguments: argparse.Namespace) -> ServerOptions:
         sensor_noise=arguments.sensor_noise,
         sensor_delay=arguments.sensor_delay,
     )
-    return ServerOptions(scene, arguments.listen, arguments.port, arguments.speed, arguments.paused, arguments.gui)
+    return ServerOptions(
+        scene,
+        arguments.listen,
+        arguments.port,
+        arguments.speed,
+        arguments.paused,
+        arguments.gui,
+        arguments.record_dir,
+        arguments.sound_file,
+        arguments.sound_card,
+    )
 
 
 def parse(prog: str, arguments: Sequence[str] | None = None) -> argparse.Namespace:

@@ -10,7 +10,7 @@ PACKAGE = "nao_sim_bridge"
 
 @lru_cache(maxsize=None)
 def data_root() -> Path:
-    """Directory that holds `config`, `urdf` and `worlds`.
+    """Directory that holds `config`, `urdf`, `worlds` and `sounds`.
 
     In a source tree (and in catkin's devel space, which imports from it) this is the package folder two
     levels above the Python package. In an install space rospack knows the share directory.
@@ -49,3 +49,8 @@ def urdf_file(name: str) -> Path:
 def world_directory() -> Path:
     """Directory of the worlds that come with the package."""
     return data_root() / "worlds"
+
+
+def sounds_directory() -> Path:
+    """Directory of the sounds that come with the package, a folder a sound set."""
+    return data_root() / "sounds"

@@ -1,12 +1,72 @@
-"""The one folder that clients may have files written to."""
+"""The one folder that clients may have files written to, and the places that they may have files read from."""
 
 from __future__ import annotations
 
+import posixpath
 from pathlib import Path
+from typing import Sequence
+
+DEFAULT_RECORD_DIR = Path("~/.ros/nao_recordings")
+# Where a real robot keeps the files of its users. Scripts that were written for one name it in full.
+ROBOT_HOME = "/home/nao"
 
 
 class OutsideRecordDir(ValueError):
     """A file name that leads out of the folder for recordings."""
+
+
+class NoSuchFile(ValueError):
+    """A file that a client names and that is not there."""
+
+
+class ClientFiles:
+    """Turns file names of clients into paths that they may use.
+
+    Attributes:
+        folder: The folder for recordings, absolute.
+        shipped: Folders that come with the simulator.
+
+    Args:
+        folder: See above; "~" stands for the home of the user.
+        shipped: Where files are read from when `folder` has none of the name.
+    """
+
+    def __init__(self, folder: Path | str, shipped: Sequence[Path] = ()) -> None:
+        self.folder = Path(folder).expanduser().absolute()
+        self.shipped = tuple(shipped)
+
+    def to_write(self, name: str) -> Path:
+        """Path of a file that is to be written; folders on the way are made.
+
+        Raises:
+            OutsideRecordDir: The name leads out of the folder.
+        """
+        return inside(self.folder, relative_to_home(name))
+
+    def to_read(self, name: str) -> Path:
+        """Path of a file that is there.
+
+        Raises:
+            OutsideRecordDir: The name leads out of the folder.
+            NoSuchFile: There is no such file.
+        """
+        relative = relative_to_home(name)
+        found = [path for path in (_inside(folder, relative) for folder in (self.folder, *self.shipped)) if path]
+        if not found:
+            raise _outside(self.folder, name)
+        for path in found:
+            if path.is_file():
+                return path
+        if any(path.is_dir() for path in found):
+            raise NoSuchFile(f"{name!r} is a folder, not a file")
+        raise NoSuchFile(f"no file {name!r} in {self.folder}")
+
+
+def relative_to_home(name: str) -> str:
+    """A name as clients give it, without a real robot's home in front: the folder for recordings stands for it."""
+    if posixpath.normpath(name).startswith(ROBOT_HOME + "/"):
+        return posixpath.relpath(name, ROBOT_HOME)
+    return name
 
 
 def inside(folder: Path, name: str) -> Path:
@@ -15,9 +75,21 @@ def inside(folder: Path, name: str) -> Path:
     Raises:
         OutsideRecordDir: The name is absolute, empty, or leads out of the folder, also through a link.
     """
-    root = folder.resolve()
-    path = (root / name).resolve()
-    if not name or Path(name).is_absolute() or root not in path.parents:
-        raise OutsideRecordDir(f"file {name!r} is not inside {root}; give a relative name")
+    path = _inside(folder, name)
+    if path is None:
+        raise _outside(folder, name)
     path.parent.mkdir(parents=True, exist_ok=True)
     return path
+
+
+def _inside(folder: Path, name: str) -> Path | None:
+    """Path of `name` inside `folder`, None when it leads out of it."""
+    if not name or "\0" in name or Path(name).is_absolute():
+        return None
+    root = folder.resolve()
+    path = (root / name).resolve()
+    return path if root in path.parents else None
+
+
+def _outside(folder: Path, name: str) -> OutsideRecordDir:
+    return OutsideRecordDir(f"file {name!r} is not inside {folder.resolve()}; give a relative name")

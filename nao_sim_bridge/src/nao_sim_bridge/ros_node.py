@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
 import rospy
 
@@ -26,16 +25,16 @@ VALUES = (
     "sensor_noise",
     "sensor_delay",
     "record_dir",
+    "sound_file",
     "publish_clock",
 )
-SWITCHES = ("gui", "paused", "verbose")
+SWITCHES = ("gui", "paused", "verbose", "sound_card")
 
 
 def main() -> int:
     """Run until ROS shuts down, a client shuts the robot down, or the simulation fails; returns the exit status."""
     arguments = rospy.myargv(sys.argv)[1:]
     options = parser("rosrun nao_sim_bridge nao_sim")
-    options.add_argument("--record-dir", default="recordings", help="folder for pictures and recordings")
     options.add_argument("--publish-clock", choices=("auto", "true", "false"), default="auto", help="publish /clock")
     parsed = options.parse_args(arguments)
     rospy.init_node("nao_sim", disable_signals=False)
@@ -50,7 +49,7 @@ def main() -> int:
     wants_clock = {"auto": parsed.speed != 1.0, "true": True, "false": False}[parsed.publish_clock]
     # Before the services: who waits for these may ask for it.
     rospy.set_param("~bound_port", server.broker.port)
-    ros_side = RosSide(server, Path(parsed.record_dir).expanduser(), wants_clock)
+    ros_side = RosSide(server, wants_clock)
     rospy.loginfo("simulated NAO ready on port %d, world %s, speed %g", server.broker.port, parsed.world, parsed.speed)
     failed = False
     while not server.ended.wait(0.5):
@@ -70,4 +69,4 @@ def _from_parameters(options) -> list[str]:
         value = rospy.get_param(f"~{name}", None)
         if value is not None:
             words += ["--" + name.replace("_", "-"), str(value).lower() if isinstance(value, bool) else str(value)]
-    return words + [f"--{name}" for name in SWITCHES if rospy.get_param(f"~{name}", False)]
+    return words + [f"--{name.replace('_', '-')}" for name in SWITCHES if rospy.get_param(f"~{name}", False)]

@@ -24,7 +24,7 @@ from nao_library_msgs.srv import (
     TakePicture,
     TakePictureResponse,
 )
-from nao_sim_bridge.record_dir import inside
+from nao_sim_bridge.ros_sounds import RosSounds
 from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.snapshot import Snapshot
 
@@ -41,17 +41,15 @@ class RosSide:
         Publishes `ground_truth/odom` (nav_msgs/Odometry): true pose of the torso in world, velocity in torso; 50 Hz of
         simulated time. `/clock` (rosgraph_msgs/Clock) when asked to.
         Services `~advance`, `~push`, `~press`, `~picture` (nao_library_msgs), `~reset`, `~pause`, `~resume`
-        (std_srvs/Empty), `get_truepose` (nao_library_msgs/GetTruepose).
+        (std_srvs/Empty), `get_truepose` (nao_library_msgs/GetTruepose), and those of `RosSounds`.
 
     Args:
         server: The running simulator.
-        record_dir: Folder for pictures.
         publish_clock: Whether to publish `/clock`.
     """
 
-    def __init__(self, server: SimulatorServer, record_dir: Path, publish_clock: bool) -> None:
+    def __init__(self, server: SimulatorServer, publish_clock: bool) -> None:
         self._server = server
-        self._record_dir = record_dir
         self._clock = rospy.Publisher("/clock", Clock, queue_size=1) if publish_clock else None
         self._truth = rospy.Publisher("ground_truth/odom", Odometry, queue_size=5)
         self._services = [
@@ -64,6 +62,7 @@ class RosSide:
             rospy.Service("~resume", Empty, self._empty(self._server.runner.resume)),
             rospy.Service("get_truepose", GetTruepose, self._on_true_pose),
         ]
+        self._sounds = RosSounds(server.sounds)
         self._closing = threading.Event()
         rospy.on_shutdown(self.close)  # topics close next
         self._thread = threading.Thread(target=self._publish, name="ros publisher", daemon=True)
@@ -122,7 +121,7 @@ class RosSide:
 
         def take() -> None:
             nonlocal path
-            path = inside(self._record_dir, request.file or "picture.png")
+            path = self._server.files.to_write(request.file or "picture.png")
             path.write_bytes(self._server.picture(request.view or "three_quarter", *size))
 
         success, message = _success(take)

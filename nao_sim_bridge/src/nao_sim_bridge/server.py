@@ -6,12 +6,18 @@ import logging
 import sys
 import threading
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Sequence
 
 from nao_sim_bridge.broker import Broker
+from nao_sim_bridge.paths import sounds_directory
 from nao_sim_bridge.pictures import Pictures
+from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR, ClientFiles, OutsideRecordDir
 from nao_sim_bridge.services import motion
 from nao_sim_bridge.services.arguments import number, numbers
+from nao_sim_bridge.services.audio import sound_detection, sound_localization
+from nao_sim_bridge.services.audio.speech_wiring import SpeechModules
+from nao_sim_bridge.services.audio.wiring import AudioModules
 from nao_sim_bridge.services.binding import make_service
 from nao_sim_bridge.services.diagnosis_events import DiagnosisEvents
 from nao_sim_bridge.services.fall_events import FallEvents
@@ -30,6 +36,8 @@ from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Scene, Simulation
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.sound_outlets import SoundCard, SoundFile
+from nao_sim_bridge.world_sounds_control import WorldSoundsControl
 
 MAX_PUSH = 60.0
 # How long a thread that computes keeps Python's interpreter when another wants it, s. The simulation computes nearly
@@ -49,6 +57,9 @@ class ServerOptions:
         speed: Simulated seconds per wall second, infinity for as fast as possible.
         paused: Start without time passing.
         gui: Show the robot in a window.
+        record_dir: Folder for files of clients; "~" stands for the home of the user.
+        sound_file: Name in `record_dir` of a WAV for everything that the loudspeakers play; empty for none.
+        sound_card: Let it be heard on this computer, too; only at speed 1.
     """
 
     scene: Scene = field(default_factory=Scene)
@@ -57,6 +68,9 @@ class ServerOptions:
     speed: float = 1.0
     paused: bool = False
     gui: bool = False
+    record_dir: Path = DEFAULT_RECORD_DIR
+    sound_file: str = ""
+    sound_card: bool = False
 
 
 class SimulatorServer:
@@ -68,6 +82,8 @@ class SimulatorServer:
         memory: What ALMemory keeps.
         broker: The libqi side.
         pictures: Drawings of the robot.
+        files: Where clients may have files written to and read from.
+        sounds: Sounds of the world.
         ended: Set when a client shut the robot down or the simulation failed.
     """
 
@@ -79,13 +95,22 @@ class SimulatorServer:
         self.memory = MemoryStore(lambda: self.runner.snapshot.time)
         self.broker = Broker()
         self.pictures = Pictures(self.simulation, self.runner)
+        self.files = ClientFiles(options.record_dir, [sounds_directory()])
+        self._audio = AudioModules(self.simulation, self.runner, self.files, self.broker)
+        self._speech = SpeechModules(self.simulation, self.runner, self.memory, self.files)
+        self.sounds = WorldSoundsControl(self.simulation, self.runner, self.files)
+        self._outlets: list[SoundFile | SoundCard] = []
 
     def start(self) -> None:
         """Listen, register the modules and let time pass.
 
         Raises:
             RuntimeError: The address cannot be had.
+            SimulationError: The sound card, the file for sound, or a sound of the world cannot be had.
         """
+        self._speech.begin()
+        self.sounds.begin()
+        self._open_outlets()
         sys.setswitchinterval(SWITCH_INTERVAL)
         self.broker.listen(self.options.address, self.options.port, lambda: not self.ended.is_set())
         robot_leds = lambda: self.simulation.robot.leds.values  # noqa: E731
@@ -112,15 +137,36 @@ class SimulatorServer:
             "ALLeds": [ALLeds(self.simulation, self.runner)],
             "ALMotion": motion.parts(self.simulation, self.runner, self.memory),
             "ALRobotPosture": [ALRobotPosture(self.simulation, self.runner, self.memory)],
+            **self._audio.modules(),
+            **self._speech.modules(),
+            sound_detection.NAME: sound_detection.parts(self.simulation, self.memory),
+            **{name: sound_localization.parts(name, self.simulation, self.memory) for name in sound_localization.NAMES},
             "ALSystem": [ALSystem(self.memory, self.reset_task, self.ended.set)],
         }
 
     def stop(self) -> None:
         """Leave the network and end the simulation."""
         self.ended.set()
+        self._audio.close()
+        self.sounds.close()
         self.broker.close()
         self.runner.stop()
+        self._speech.close()
         self.pictures.close()
+        for outlet in self._outlets:
+            outlet.close()
+
+    def _open_outlets(self) -> None:
+        if self.options.sound_card and self.options.speed != 1.0:
+            raise BadValue("speed", self.options.speed, "1 with a sound card")
+        if self.options.sound_file:
+            try:
+                path = self.files.to_write(self.options.sound_file)
+            except OutsideRecordDir as error:
+                raise BadValue("sound file", self.options.sound_file, f"a name inside {self.files.folder}") from error
+            self._outlets.append(SoundFile(self.simulation, path))
+        if self.options.sound_card:
+            self._outlets.append(SoundCard(self.simulation))
 
     # --- what only a simulator can do; for any thread, blocking until it is done -----------------------------------
 

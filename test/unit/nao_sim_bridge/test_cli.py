@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
@@ -17,14 +18,15 @@ def options(*arguments):
 
 def test_the_defaults_are_a_robot_on_the_loopback_in_real_time():
     assert options() == ServerOptions(Scene("empty", "V6", "Crouch", 0), "127.0.0.1", 9559, 1.0, False, False)
+    assert options().record_dir == Path("~/.ros/nao_recordings")
 
 
 def test_every_option_reaches_the_server():
     network, scene = "--port 0 --listen 0.0.0.0", "--world my.yaml --seed 7 --robot V5 --posture Stand"
     trouble = "--friction 0.4 --payload 0.5 --sensor-noise 1 --sensor-delay 0.03"
-    chosen = options(*f"{network} {scene} {trouble} --speed 2.5 --gui --paused".split())
+    chosen = options(*f"{network} {scene} {trouble} --speed 2.5 --gui --paused --record-dir my/files".split())
     expected = Scene("my.yaml", "V5", "Stand", 7, friction=0.4, payload=0.5, sensor_noise=1.0, sensor_delay=0.03)
-    assert chosen == ServerOptions(expected, "0.0.0.0", 0, 2.5, True, True)
+    assert chosen == ServerOptions(expected, "0.0.0.0", 0, 2.5, True, True, Path("my/files"))
 
 
 def test_the_friction_of_the_world_can_be_asked_for():
@@ -67,7 +69,7 @@ def test_help_names_every_option_and_its_default(capsys):
         parse("nao_sim", ["--help"])
     assert ended.value.code == 0
     text = capsys.readouterr().out
-    names = "port listen speed gui world seed robot posture friction payload sensor-noise sensor-delay paused verbose"
-    for option in names.split():
+    scene = "world seed robot posture friction payload sensor-noise sensor-delay"
+    for option in f"port listen speed gui {scene} record-dir paused verbose".split():
         assert f"--{option}" in text
     assert "(default: 9559)" in text and "empty" in text

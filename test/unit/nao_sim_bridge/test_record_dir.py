@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nao_sim_bridge.record_dir import OutsideRecordDir, inside
+from nao_sim_bridge.record_dir import ClientFiles, NoSuchFile, OutsideRecordDir, inside
 
 
 @pytest.mark.parametrize("name", ["a.wav", "day/one/a.wav", "day/../a.wav", "..a.wav"])
@@ -38,3 +38,61 @@ def test_a_folder_that_is_a_link_itself_is_fine(tmp_path):
     (tmp_path / "real").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "real")
     assert inside(tmp_path / "link", "a.wav") == tmp_path / "real" / "a.wav"
+
+
+# --- names as clients give them ---------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Recordings with one file, and a folder that is shipped with another."""
+    for name in ("records/day/one.wav", "shipped/chime.wav", "records/both.wav", "shipped/both.wav"):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(name)
+    return ClientFiles(tmp_path / "records", [tmp_path / "shipped"])
+
+
+@pytest.mark.parametrize(
+    "name, found",
+    [
+        ("day/one.wav", "records/day/one.wav"),
+        ("chime.wav", "shipped/chime.wav"),
+        ("both.wav", "records/both.wav"),
+        ("/home/nao/day/one.wav", "records/day/one.wav"),
+        ("/home//nao/day/../both.wav", "records/both.wav"),
+    ],
+)
+def test_files_are_read_from_the_recordings_or_from_what_is_shipped(files, name, found):
+    assert files.to_read(name).read_text() == found
+
+
+@pytest.mark.parametrize("name", ["", "../x.wav", "/etc/passwd", "/home/nao/../x", "/home/naomi/x", "a\0b"])
+def test_nothing_is_read_or_written_outside(files, name):
+    for way in (files.to_read, files.to_write):
+        with pytest.raises(OutsideRecordDir, match="is not inside .*records; give a relative name"):
+            way(name)
+
+
+def test_a_file_that_is_not_there_is_named(files):
+    with pytest.raises(NoSuchFile, match="no file 'two.wav' in .*records"):
+        files.to_read("two.wav")
+    with pytest.raises(NoSuchFile, match="'day' is a folder, not a file"):
+        files.to_read("day")
+
+
+def test_files_are_written_to_the_recordings_only(files, tmp_path):
+    assert files.to_write("chime.wav") == tmp_path / "records/chime.wav"
+    assert files.to_write("/home/nao/new/a.wav") == tmp_path / "records/new/a.wav"
+    assert (tmp_path / "records/new").is_dir()
+
+
+def test_reading_makes_no_folders(files, tmp_path):
+    with pytest.raises(NoSuchFile):
+        files.to_read("new/a.wav")
+    assert not (tmp_path / "records/new").exists()
+
+
+def test_the_home_of_the_user_may_be_named(monkeypatch, tmp_path):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert ClientFiles("~/records").folder == tmp_path / "records"

@@ -12,6 +12,7 @@ from nao_sim_bridge.sim.errors import ConfigError
 
 FILE = "naoqi_api.json"
 COMMON = "_common_module"
+EXTRACTOR = "_common_extractor"
 
 SIMPLE_TYPES = {
     "void": "v",
@@ -82,7 +83,7 @@ def qi_type(name: str) -> str:
 
 @lru_cache(maxsize=None)
 def module_methods(module: str) -> Mapping[str, Method]:
-    """Methods of a module by name, those that every module has included.
+    """Methods of a module by name, those included that it shares with others: "_inherits" names their tables.
 
     Raises:
         ConfigError: The module is not in the table.
@@ -91,7 +92,9 @@ def module_methods(module: str) -> Mapping[str, Method]:
     if module not in tables:
         raise ConfigError(FILE, f"no module {module!r}")
     methods: dict[str, Method] = {}
-    for table in (COMMON, module):
+    # The common methods are of every module, also of one whose entry does not say so.
+    shared = [COMMON, *(table for table in tables[module].get("_inherits", ()) if table != COMMON)]
+    for table in (*shared, module):
         for name, entry in tables[table].items():
             if not name.startswith("_"):
                 methods[name] = _method(name, entry)

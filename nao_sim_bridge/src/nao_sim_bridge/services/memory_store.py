@@ -169,6 +169,12 @@ class MemoryStore:
         with self._lock:
             return sorted(n for n, e in self._entries.items() if e.kind == EVENT and e.extractor == extractor)
 
+    def put_quietly(self, name: str, value: Any) -> None:
+        """Write an event's value for whoever asks for it, and tell nobody."""
+        with self._lock:
+            entry = self._entries.setdefault(name, _Entry(EVENT))
+            entry.value, entry.time, entry.exists = value, self._clock(), True
+
     def history(self, name: str) -> list[tuple[Any, float]]:
         """The last values of an event or key with their times, oldest first."""
         with self._lock:

@@ -16,7 +16,7 @@ class NaoSimulation:
     """Control of the simulation over libqi; a real robot has no such service.
 
     Args:
-        host: The server: its `runner`, and its methods `push`, `press`, `picture` and `reset_task`.
+        host: The server: its `runner` and `sounds`, and its methods `push`, `press`, `picture` and `reset_task`.
     """
 
     def __init__(self, host: Any) -> None:
@@ -88,6 +88,34 @@ class NaoSimulation:
     def objectPoses(self) -> dict[str, list[float]]:
         """True poses of the movable objects of the world, as `torsoPose`."""
         return {n: [*p.position, *p.orientation] for n, p in self._runner.snapshot.objects.items()}
+
+    @qi.bind(qi.Void, [qi.String, qi.String, qi.List(qi.Float), qi.Float, qi.Bool])
+    def addSound(self, name: str, sound: str, position: Sequence[float], level_db: float, loop: bool) -> Any:
+        """Place a sound at `position` [x, y, z] m in world: a file, "noise:white", "noise:pink", "tone:440"."""
+        return _answer("addSound", lambda: self._host.sounds.add(name, sound, position, level_db, loop))
+
+    @qi.bind(qi.Void, [qi.String, qi.List(qi.Float)])
+    def moveSound(self, name: str, position: Sequence[float]) -> Any:
+        """Put a sound of the world to another place, [x, y, z] m in world."""
+        return _answer("moveSound", lambda: self._host.sounds.move(name, position))
+
+    @qi.bind(qi.Void, [qi.String])
+    def removeSound(self, name: str) -> Any:
+        """Silence a sound of the world."""
+        return _answer("removeSound", lambda: self._host.sounds.remove(name))
+
+    @qi.bind(qi.Map(qi.String, qi.List(qi.Float)), [])
+    def sounds(self) -> Any:
+        """Where the sounds of the world are, by name: [x, y, z] m in world."""
+        return _answer("sounds", self._host.sounds.places)
+
+    @qi.bind(qi.Void, [qi.String, qi.List(qi.Float), qi.String, qi.Float])
+    def personSays(self, text: str, position: Sequence[float], voice: str, level_db: float) -> Any:
+        """Let a person say a text at `position` [x, y, z] m in world; ends when it has been said.
+
+        `voice` is one of those of ALTextToSpeech, "" for the first; `level_db` is that at 1 m, 0 for a person's (65).
+        """
+        return _answer("personSays", lambda: self._host.sounds.person_says(text, position, voice, level_db))
 
 
 def _answer(method: str, call: Callable[[], Any]) -> Any:

@@ -87,9 +87,10 @@ def connected(port):
 
 
 @pytest.fixture(scope="module")
-def shared_robot(client_of):
+def shared_robot(client_of, tmp_path_factory):
     interval = sys.getswitchinterval()
-    server = SimulatorServer(ServerOptions(Scene(posture="Stand"), port=0, paused=True))
+    records = tmp_path_factory.mktemp("records")
+    server = SimulatorServer(ServerOptions(Scene(posture="Stand"), port=0, paused=True, record_dir=records))
     server.start()
     client = client_of(server)
     yield client

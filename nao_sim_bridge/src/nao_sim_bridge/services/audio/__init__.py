@@ -1,0 +1,1 @@
+"""NAOqi's audio modules."""

@@ -1,0 +1,283 @@
+"""What ALAudioPlayer has loaded and plays. Its sounds are numbered; one number sounds once at a time."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from dataclasses import dataclass
+from typing import Any, Callable
+
+from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.sim.runner import SimulationRunner
+from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.sound.pitch import shifted
+from nao_sim_bridge.sim.sound.samples import Sound
+from nao_sim_bridge.sim.tasks import Task
+
+
+@dataclass
+class LoadedSound:
+    """A sound that has a number; everything but its name and sound is touched in the simulation thread only.
+
+    Attributes:
+        number: What clients call it by.
+        name: Name of the file as it was given.
+        sound: As it was read.
+        volume: 0 to 1.
+        pan: -1 left to 1 right.
+        begins: Where it begins when it is played next, s.
+        altered: At another pitch; as long as `sound`.
+        temporary: Forgotten when it has been played.
+        run: What plays it now.
+    """
+
+    number: int
+    name: str
+    sound: Sound
+    volume: float = 1.0
+    pan: float = 0.0
+    begins: float = 0.0
+    altered: Sound | None = None
+    temporary: bool = False
+    run: Run | None = None
+
+    @property
+    def heard(self) -> Sound:
+        """What sounds when it is played."""
+        return self.altered or self.sound
+
+
+@dataclass
+class Run:
+    """One time that a sound is played: a task for who waits for its end, which outlives a change of the sound."""
+
+    task: Task
+    playing: Any
+    loop: bool
+
+
+class Player:
+    """Loaded sounds and how they are played.
+
+    Args:
+        simulation: Whose loudspeakers these are; touched in the simulation thread only.
+        runner: That thread.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._lock = threading.Lock()  # guards the table; the sounds in it belong to the simulation thread
+        self._sounds: dict[int, LoadedSound] = {}
+        self._numbers = itertools.count(1)
+        self._volume = 1.0
+        self._panorama = 0.0
+        self._stops = 0
+
+    # --- from any thread ------------------------------------------------------------------------------------------
+
+    def load(self, name: str, sound: Sound, temporary: bool = False) -> LoadedSound:
+        """Give a sound a number."""
+        loaded = LoadedSound(next(self._numbers), name, sound, temporary=temporary)
+        with self._lock:
+            self._sounds[loaded.number] = loaded
+        return loaded
+
+    def loaded(self) -> list[LoadedSound]:
+        """All sounds that have a number, in its order."""
+        with self._lock:
+            return list(self._sounds.values())
+
+    def find(self, number: int) -> LoadedSound:
+        """The sound of a number.
+
+        Raises:
+            NaoqiError: There is none.
+        """
+        with self._lock:
+            if number not in self._sounds:
+                known = ", ".join(map(str, self._sounds)) or "none"
+                raise NaoqiError(f"no sound is loaded under the id {number}; ids in use: {known}")
+            return self._sounds[number]
+
+    @property
+    def volume(self) -> float:
+        """Volume of the whole player, 0 to 1."""
+        return self._volume
+
+    def in_simulation(self, action: Callable[[], Any], name: str) -> Task:
+        """Do something in the simulation thread."""
+        return self._runner.execute(action, name)
+
+    def play_when_there(
+        self, fetch: Callable[[Callable[[], bool]], Sound], play: Callable[[Sound], Task], name: str
+    ) -> Task:
+        """Play what takes its time to get.
+
+        Args:
+            fetch: Gets the sound, in a thread of its own; it may ask its argument whether anybody still wants it.
+            play: Begins to play it, in the simulation thread.
+            name: Name of the task.
+
+        Returns:
+            A task that ends with the task of the playing, or when nobody wants it any more.
+        """
+        stops, cancelled = self._stops, threading.Event()
+
+        def cancel(asked: Task) -> None:
+            cancelled.set()
+            asked.finish()
+
+        def wanted() -> bool:
+            return self._stops == stops and not cancelled.is_set()
+
+        task = Task(name, 0, ask=cancel)
+
+        def work() -> None:
+            try:
+                sound = fetch(wanted)
+                begun = self._runner.execute(lambda: play(sound) if wanted() else None, name)
+            except Exception as error:
+                task.finish(error=error if wanted() else None)
+            else:
+                begun.add_done_callback(lambda done: task.finish(done.value, done.error))
+
+        threading.Thread(target=work, name=name, daemon=True).start()
+        return task
+
+    def change_pitch(self, number: int, factor: float) -> Task:
+        """Give a sound another pitch, 1 for its own; what plays goes on at the place where it is."""
+        loaded = self.find(number)
+        changed = Task("setPitch", 0)
+
+        def work() -> None:
+            # In a thread of its own: a minute of music takes some seconds of computing.
+            try:
+                sound = loaded.sound
+                altered = None if factor == 1.0 else Sound(shifted(sound.samples, factor, sound.rate), sound.rate)
+                done = self._runner.execute(lambda: self._exchange(loaded, altered), "setPitch")
+            except Exception as error:
+                changed.finish(error=error)
+            else:
+                done.add_done_callback(lambda end: changed.finish(error=end.error))
+
+        threading.Thread(target=work, name="change of pitch", daemon=True).start()
+        return changed
+
+    # --- in the simulation thread ---------------------------------------------------------------------------------
+
+    def play(self, loaded: LoadedSound, name: str, loop: bool = False) -> Task:
+        """Let a sound be heard; one that is paused goes on, one that plays begins anew. Returns its task."""
+        run = loaded.run
+        if run is not None and run.playing.paused and run.loop == loop:
+            run.playing.resume()
+            self._adjust(loaded)
+            return run.task
+        if run is not None:
+            run.task.kill()
+        task = self._simulation.task_ids.make(name, lambda _: self._silence(loaded))
+        loaded.run = Run(task, None, loop)
+        self._begin(loaded, loaded.begins)
+        loaded.begins = 0.0
+        return task
+
+    def pause(self, loaded: LoadedSound) -> None:
+        """Let a sound wait where it is."""
+        self._running(loaded).playing.pause()
+
+    def position(self, loaded: LoadedSound) -> float:
+        """Where a sound is, s; where it will begin when it does not play."""
+        return loaded.run.playing.position if loaded.run is not None else loaded.begins
+
+    def go_to(self, loaded: LoadedSound, position: float) -> None:
+        """Jump to a place, s; a sound that does not play begins there next time."""
+        if loaded.run is not None:
+            loaded.run.playing.seek(position)
+        else:
+            loaded.begins = position
+
+    def set_volume(self, loaded: LoadedSound, volume: float, pan: float | None = None) -> None:
+        """Volume 0 to 1 and pan -1 to 1 of a sound."""
+        loaded.volume = volume
+        if pan is not None:
+            loaded.pan = pan
+        self._adjust(loaded)
+
+    def set_all(self, volume: float | None = None, panorama: float | None = None) -> None:
+        """Volume 0 to 1 and panorama -1 to 1 of the whole player, on top of those of each sound."""
+        self._volume = self._volume if volume is None else volume
+        self._panorama = self._panorama if panorama is None else panorama
+        for loaded in self.loaded():
+            self._adjust(loaded)
+
+    def stop(self, loaded: LoadedSound) -> None:
+        """Silence a sound."""
+        if loaded.run is not None:
+            loaded.run.task.kill()
+
+    def stop_all(self) -> None:
+        """Silence all, and forget what is still on its way."""
+        self._stops += 1
+        for loaded in self.loaded():
+            self.stop(loaded)
+
+    def unload(self, loaded: LoadedSound) -> None:
+        """Forget a sound; it is silent then."""
+        self.stop(loaded)
+        with self._lock:
+            self._sounds.pop(loaded.number, None)
+
+    def unload_all(self) -> None:
+        """Forget all sounds."""
+        for loaded in self.loaded():
+            self.unload(loaded)
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _begin(self, loaded: LoadedSound, position: float) -> None:
+        run = loaded.run
+        pan = max(-1.0, min(1.0, loaded.pan + self._panorama))
+        speakers = self._simulation.sound.loudspeakers
+        playing = speakers.play(loaded.heard, loaded.name, loaded.volume * self._volume, pan, position, run.loop)
+        run.playing = playing
+        playing.task.add_done_callback(lambda done: self._ended(loaded, run, playing, done))
+
+    def _ended(self, loaded: LoadedSound, run: Run, playing: Any, done: Task) -> None:
+        if run.playing is not playing or loaded.run is not run:
+            return  # it was exchanged for another, or silenced
+        self._forget_run(loaded)
+        run.task.killed = done.killed
+        run.task.finish(error=done.error)
+
+    def _silence(self, loaded: LoadedSound) -> None:
+        run = loaded.run
+        self._forget_run(loaded)
+        if run is not None:
+            run.playing.stop()
+
+    def _forget_run(self, loaded: LoadedSound) -> None:
+        loaded.run = None
+        if loaded.temporary:
+            with self._lock:
+                self._sounds.pop(loaded.number, None)
+
+    def _exchange(self, loaded: LoadedSound, altered: Sound | None) -> None:
+        loaded.altered = altered
+        run = loaded.run
+        if run is None:
+            return
+        old, position, paused = run.playing, run.playing.position, run.playing.paused
+        self._begin(loaded, position)
+        old.stop()
+        if paused:
+            run.playing.pause()
+
+    def _adjust(self, loaded: LoadedSound) -> None:
+        if loaded.run is not None:
+            loaded.run.playing.set_volume(loaded.volume * self._volume)
+            loaded.run.playing.set_pan(max(-1.0, min(1.0, loaded.pan + self._panorama)))
+
+    def _running(self, loaded: LoadedSound) -> Run:
+        if loaded.run is None:
+            raise NaoqiError(f"the sound {loaded.number} ({loaded.name}) does not play")
+        return loaded.run

@@ -1,0 +1,148 @@
+"""The methods of NAOqi's extractors: modules that work while somebody is subscribed, and raise events.
+
+An extractor's service is made of two parts: an object with the methods of its own, and an `Extractor`. It works from
+the first subscriber to the last; periods and precisions are kept and answered, what they mean is up to the module.
+"""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from typing import Any, Callable, Mapping, Sequence
+
+from nao_sim_bridge.services.arguments import number
+from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.services.memory_store import MemoryStore
+from nao_sim_bridge.sim.errors import BadValue
+
+DEFAULT_PERIOD_MS = 30
+DEFAULT_PRECISION = 0.0
+
+
+@dataclass(frozen=True)
+class Subscription:
+    """What a subscriber asks for: a period in ms, and a precision in 0..1."""
+
+    period: int = DEFAULT_PERIOD_MS
+    precision: float = DEFAULT_PRECISION
+
+
+class Extractor:
+    """Subscribers of an extractor, and the methods that NAOqi has for them. Only NAOqi methods are public.
+
+    Args:
+        module: NAOqi name of the module.
+        memory: Where its events are declared.
+        start: Called when the first subscriber comes; when it raises, nobody is subscribed and the caller gets the
+            error.
+        stop: Called when the last subscriber has gone.
+        events: Names of the events that it raises.
+        keys: Names of the keys that it writes and that are no events.
+        default: What a subscriber gets that asks for nothing.
+
+    `start` and `stop` are called in the caller's thread, one at a time and in turn. Neither may call back here.
+    """
+
+    def __init__(
+        self,
+        module: str,
+        memory: MemoryStore,
+        start: Callable[[], Any],
+        stop: Callable[[], Any],
+        events: Sequence[str] = (),
+        keys: Sequence[str] = (),
+        default: Subscription = Subscription(),
+    ) -> None:
+        self._start = start
+        self._stop = stop
+        self._events = tuple(events)
+        self._keys = tuple(keys)
+        self._default = default
+        self._subscriptions: dict[str, Subscription] = {}
+        self._lock = threading.Lock()
+        for event in events:
+            memory.declare_event(event, module)
+
+    def subscribe(self, name: str, *asked: Any) -> None:
+        """Work for `name` from now on; who is subscribed already changes what it asks for."""
+        subscription = self._default
+        if not name:
+            raise BadValue("name", name, "a name, not empty")
+        if asked:
+            subscription = Subscription(_period(asked[0]), _precision(asked[1]))
+        with self._lock:
+            if not self._subscriptions:
+                self._start()
+            self._subscriptions[name] = subscription
+
+    def unsubscribe(self, name: str) -> None:
+        """Work for `name` no longer."""
+        with self._lock:
+            self._of(name)
+            del self._subscriptions[name]
+            if not self._subscriptions:
+                self._stop()
+
+    def updatePeriod(self, name: str, period: int) -> None:
+        """Change the period of a subscriber, ms."""
+        period = _period(period)
+        with self._lock:
+            self._subscriptions[name] = Subscription(period, self._of(name).precision)
+
+    def updatePrecision(self, name: str, precision: float) -> None:
+        """Change the precision of a subscriber."""
+        precision = _precision(precision)
+        with self._lock:
+            self._subscriptions[name] = Subscription(self._of(name).period, precision)
+
+    def getCurrentPeriod(self) -> int:
+        """The smallest period that somebody asks for, ms; that of the module when nobody does."""
+        return min((s.period for s in self._all().values()), default=self._default.period)
+
+    def getCurrentPrecision(self) -> float:
+        """The highest precision that somebody asks for."""
+        return max((s.precision for s in self._all().values()), default=self._default.precision)
+
+    def getMyPeriod(self, name: str) -> int:
+        """Period of a subscriber, ms."""
+        with self._lock:
+            return self._of(name).period
+
+    def getMyPrecision(self, name: str) -> float:
+        """Precision of a subscriber."""
+        with self._lock:
+            return self._of(name).precision
+
+    def getSubscribersInfo(self) -> list:
+        """[[name, period, precision], ...], first come first."""
+        return [[name, s.period, s.precision] for name, s in self._all().items()]
+
+    def getEventList(self) -> list[str]:
+        """Events that the module raises."""
+        return list(self._events)
+
+    def getMemoryKeyList(self) -> list[str]:
+        """Keys that the module writes, without the events."""
+        return list(self._keys)
+
+    def getOutputNames(self) -> list[str]:
+        """Events and keys."""
+        return [*self._events, *self._keys]
+
+    def _all(self) -> Mapping[str, Subscription]:
+        with self._lock:
+            return dict(self._subscriptions)
+
+    def _of(self, name: str) -> Subscription:
+        if name not in self._subscriptions:
+            known = ", ".join(map(repr, self._subscriptions)) or "nobody"
+            raise NaoqiError(f"{name!r} is not subscribed; subscribed is {known}")
+        return self._subscriptions[name]
+
+
+def _period(value: Any) -> int:
+    return int(number(value, "period", 0.0))
+
+
+def _precision(value: Any) -> float:
+    return number(value, "precision", 0.0, 1.0)
