@@ -1,7 +1,7 @@
 """Worlds: what surrounds the robot, the same for the physics and for pictures.
 
-A world file (YAML) has `floor`, and may have `description`, `light`, `background` and `objects`; the reader
-(`world_reader.py`) says what each of them may hold.
+A world file (YAML) has `floor`, and may have `description`, `light`, `background`, `objects` and `sounds`; the readers
+(`world_reader.py`, `world_sounds.py`) say what each of them may hold.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from nao_sim_bridge.paths import world_directory
 from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.rotations import Quaternion, Vector3, from_roll_pitch_yaw
 from nao_sim_bridge.sim.shapes import Shape
+from nao_sim_bridge.sim.world_sounds import WorldSound
 
 FLOOR = "floor"
 """A name that no object may have."""
@@ -165,6 +166,7 @@ class World:
         light: The light of the pictures.
         background: Colours behind everything.
         objects: Everything else.
+        sounds: What is to be heard.
     """
 
     name: str
@@ -173,6 +175,7 @@ class World:
     light: Light
     background: Background
     objects: tuple[WorldObject, ...]
+    sounds: tuple[WorldSound, ...] = ()
 
 
 def world_names() -> tuple[str, ...]:
@@ -201,4 +204,4 @@ def load_world(name_or_path: str) -> World:
         content = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (OSError, yaml.YAMLError) as error:
         raise WorldError(path.name, f"cannot be read: {error}") from error
-    return read_world(content, path.stem, path.name)
+    return read_world(content, path.stem, path.name, path.parent)

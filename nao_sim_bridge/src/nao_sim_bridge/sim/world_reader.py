@@ -9,6 +9,7 @@ An object has `name` and `position`, and is a shape (`box: [x, y, z]`, `sphere: 
 or `capsule: [radius, length]`) or has `parts`: a list of such shapes with `xyz` and maybe `rpy` and `color`, placed in
 a frame that is at `position`. It may have `rpy`, `mass` (0, the default, is immovable), `color`, `friction`,
 `rolling_friction`, `restitution`. On a slope all places count from the floor: z is along its normal.
+`sounds` are read by `world_sounds.py`.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -38,7 +40,9 @@ from nao_sim_bridge.sim.world import (
     WorldObject,
 )
 from nao_sim_bridge.sim.world_bumps import read_bumps
+from nao_sim_bridge.sim.world_sounds import read_sounds
 
+SECTIONS = ("description", "light", "background", "objects", "sounds")
 OBJECT_OPTIONS = ("parts", "rpy", "mass", "color", "friction", "rolling_friction", "restitution")
 FLOOR_OPTIONS = ("color", "tile_color", "tile_size", "slope_deg", "rugs", "bumps")
 GREY = (0.6, 0.6, 0.6)
@@ -46,18 +50,19 @@ GREY = (0.6, 0.6, 0.6)
 MAX_SLOPE = 30.0
 
 
-def read_world(content: Any, name: str, where: str) -> World:
+def read_world(content: Any, name: str, where: str, folder: Path | None = None) -> World:
     """A world from the content of its file.
 
     Args:
         content: What the file holds.
         name: Of the world.
         where: File name for error texts.
+        folder: Where the file is: files that it names are beside it.
 
     Raises:
         WorldError: If an entry is wrong, unknown or missing.
     """
-    check_keys(content, where, ("floor",), ("description", "light", "background", "objects"), WorldError)
+    check_keys(content, where, ("floor",), SECTIONS, WorldError)
     try:
         objects = tuple(_read_object(entry, place) for place, entry in _entries(content, "objects", where))
         floor = _read_floor(content["floor"], f"{where}: floor")
@@ -69,6 +74,7 @@ def read_world(content: Any, name: str, where: str) -> World:
     for index, thing in enumerate(objects):
         if thing.name in names[: index + 1]:
             raise WorldError(f"{where}: objects[{index}].name", f"{thing.name!r} is taken")
+    sounds = read_sounds(_entries(content, "sounds", where), names[1:], folder, WorldError)
     return World(
         name=name,
         description=str(content.get("description", "")),
@@ -76,6 +82,7 @@ def read_world(content: Any, name: str, where: str) -> World:
         light=_read_light(content.get("light", {}), f"{where}: light"),
         background=_read_background(content.get("background", {}), f"{where}: background"),
         objects=objects,
+        sounds=sounds,
     )
 
 

@@ -42,7 +42,7 @@ def edges(name, world="lab"):
 
 
 def test_the_worlds_that_there_are():
-    assert set(WORLDS) == {"empty", "lab", "obstacles", "slope_3deg", "uneven"}
+    assert set(WORLDS) == {"empty", "lab", "obstacles", "party", "slope_3deg", "uneven"}
     assert all(load_world(name).description for name in WORLDS)
 
 
@@ -117,9 +117,12 @@ def test_the_ball_of_the_lab_rolls_and_comes_to_rest(bench):
     assert math.dist(one.run(1.0).objects["ball"].position, rest) < 2e-3
 
 
-def test_the_world_of_the_documents_can_be_read():
-    (text,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "worlds.md").read_text(encoding="utf-8"), re.DOTALL)
-    world = read_world(yaml.safe_load(text), "mine", "mine.yaml")
+def test_the_world_of_the_documents_can_be_read(tmp_path):
+    (tmp_path / "music.ogg").touch()
+    texts = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "worlds.md").read_text(encoding="utf-8"), re.DOTALL)
+    content = yaml.safe_load("".join(texts))
+    world = read_world(content, "mine", "mine.yaml", tmp_path)
+    assert [sound.name for sound in world.sounds] == ["anna", "radio", "hum", "knock"]
     assert [thing.name for thing in world.objects] == ["ball", "chair"]
     assert len(world.floor.rugs) == 1 and len(world.floor.bumps) == 20
 
