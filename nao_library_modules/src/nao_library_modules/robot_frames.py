@@ -34,7 +34,7 @@ class RobotFrames:
         Raises:
             NaoError: If it is not connected with the robot.
         """
-        robot = _tf_prefix() + ROBOT
+        robot = tf_prefix() + ROBOT
         patience = rospy.Duration.from_sec(PATIENCE)
         try:
             found = self._buffer.lookup_transform(robot, frame.lstrip("/"), rospy.Time(), patience).transform
@@ -45,7 +45,7 @@ class RobotFrames:
         return Place(found.translation.x, found.translation.y, yaw)
 
 
-def _tf_prefix() -> str:
+def tf_prefix() -> str:
     """Prefix of the robot's frames, with its slash; empty without the parameter tf_prefix (searched upwards)."""
     found = rospy.search_param("tf_prefix")
     prefix = str(rospy.get_param(found)).strip("/") if found else ""

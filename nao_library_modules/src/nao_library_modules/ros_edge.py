@@ -15,7 +15,7 @@ from .answers import json_of
 from .diagnostics import DiagnosticsPublisher
 from .health import Report
 from .places import Place
-from .robot_frames import RobotFrames
+from .robot_frames import RobotFrames, tf_prefix
 from .ros_clock import RosClock
 
 EVENT_TOPIC = "memory_events"
@@ -41,6 +41,10 @@ class RosEdge:
     def namespace(self) -> str:
         """Namespace of the node."""
         return rospy.get_namespace()
+
+    def frame_prefix(self) -> str:
+        """Prefix of the robot's frames on /tf, with its slash; may be empty."""
+        return tf_prefix()
 
     def action_server(
         self, name: str, action: type, execute: Callable[[Any], None], on_preempt: Callable[[], None]

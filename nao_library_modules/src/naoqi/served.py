@@ -17,6 +17,11 @@ EVENT_ARGUMENTS = 3
 """ALMemory calls a callback with the name of the event, its value, and the message of the subscription."""
 NOT_SERVED = frozenset(("BIND_PYTHON", "exit"))
 """Methods of ALModule itself that are for its own process; a subclass that defines its own is served."""
+DECLARED = {"processRemote": ["m", "m", "m", "r"]}
+"""Methods that NAOqi calls with raw bytes (ALAudioDevice: channels, samples a channel, time, sound).
+
+libqi 3.1.5 would turn bytes for a parameter of any type into the text of their repr.
+"""
 
 
 def public_methods(module: Any, base: type) -> List[str]:
@@ -72,7 +77,7 @@ def _served_method(module: Any, module_name: str, name: str, worker: Worker) -> 
 
     serve.__name__ = name
     serve.__doc__ = inspect.getdoc(method) or ""
-    parameters = ["m"] * lowest if fixed else qi.AnyArguments
+    parameters = DECLARED.get(name) or (["m"] * lowest if fixed else qi.AnyArguments)
     return qi.bind("m", parameters)(serve)
 
 

@@ -361,6 +361,9 @@ class FakeEdge:
             raise NaoError(f"the frame {frame} cannot be found")
         return self.frames[frame]
 
+    def frame_prefix(self):
+        return "robot1/"
+
     def action_server(self, name, action, execute, on_preempt):
         return FakeServer(action, execute, on_preempt)
 

@@ -24,7 +24,7 @@ def launch(request):
 
 def test_every_argument_has_a_default_and_says_what_it_is(launch):
     for argument in launch.findall("arg"):
-        assert argument.get("default"), argument.attrib
+        assert argument.get("default") is not None, argument.attrib
         assert argument.get("doc"), argument.attrib
 
 

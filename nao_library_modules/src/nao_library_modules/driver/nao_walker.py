@@ -28,7 +28,6 @@ from ..joint_names import MOTION
 from ..ros_clock import RosClock
 from .gait_config import read_gait_config, read_share
 from .joint_controller import QUICK_LIMIT, JointController
-from .speaker import Speaker
 from .walk_commands import Velocity, read_step, read_target, read_velocity
 from .walk_inhibition import WalkInhibition
 from .walk_orders import Command, Order, Overtaken, Stop
@@ -51,8 +50,8 @@ class NaoWalker:
     ROS API (relative names):
         Subscribes `cmd_vel` (geometry_msgs/Twist: linear.x, linear.y, angular.z as fractions -1..1 of the top speed;
         all below 0.001: stand), `cmd_pose` (geometry_msgs/Pose2D: m, rad, in the robot's frame), `cmd_step`
-        (nao_library_msgs/StepTarget; steps queue up), `speech` (std_msgs/String; only with `~speak`).
-        Publishes `speech` (std_msgs/String, latched): "Walker online" when the robot is reached.
+        (nao_library_msgs/StepTarget; steps queue up).
+        Publishes `speech` (std_msgs/String, latched): "Walker online" when the robot is reached; nao_speech says it.
         Services that answer when the walk has ended, with an error when it did not get there: `cmd_pose_srv`
         (nao_library_msgs/CmdPoseService), `cmd_step_srv` (nao_library_msgs/StepTargetService), `stop_walk_srv`,
         `inhibit_walk` (std_srvs/Empty). Others: `cmd_vel_srv` (nao_library_msgs/CmdVelService), `uninhibit_walk`,
@@ -61,8 +60,7 @@ class NaoWalker:
         Parameters `~cmd_vel_timeout` (0.5 s; 0: none), `~step_frequency` (0.5; 0..1, of velocities), `~use_walk_pose`
         (false; true: the first walk begins with the pose for walking), `~use_foot_gait_config` (false),
         `~foot_gait_config` (pairs of name and value for ALMotion), `~init_stiffness` (0),
-        `~enable_foot_contact_protection` (unset: left as it is), `~speak` (true; false where another node says what
-        comes on `speech`).
+        `~enable_foot_contact_protection` (unset: left as it is).
     """
 
     def __init__(self, robot: Any) -> None:
@@ -95,9 +93,6 @@ class NaoWalker:
         rospy.Subscriber("cmd_vel", Twist, self._on_velocity, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("cmd_pose", Pose2D, self._on_pose, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("cmd_step", StepTarget, self._on_step, queue_size=STEPS_IN_LINE)
-        if rospy.get_param("~speak", True):
-            speaker = Speaker(robot)
-            rospy.Subscriber("speech", String, lambda message: speaker.say(message.data), queue_size=10)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""

@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""Records what the robot hears: `record_sound.py hello.wav --seconds 3`, or `--all` for all four microphones.
+
+The file is on the robot; that of a simulated one is in its record_dir. Ctrl-C ends the recording, and the file is good.
+
+Needs a running server, for example `roslaunch nao_library nao_sim.launch`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+
+from nao_library_actions.msg import NaoAudioInAction, NaoAudioInGoal
+from nao_library_msgs.msg import AudioInFunction
+
+LIMIT = rospy.Duration(20)
+
+
+def chain(name: str, seconds: float, everything: bool) -> list[AudioInFunction]:
+    """How loud it is before, then the recording."""
+    return [
+        AudioInFunction(function="getEnergy"),
+        AudioInFunction(function="record", str_param=name, duration=seconds, rate=48000 if everything else 16000),
+    ]
+
+
+def main() -> int:
+    """Record; the exit status tells whether all of it was recorded."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("name", help="the file, .wav or .ogg")
+    parser.add_argument("--seconds", type=float, default=5.0, help="how long (default: 5)")
+    parser.add_argument("--all", action="store_true", help="all four microphones, not the front ones only")
+    options = parser.parse_args(rospy.myargv()[1:])
+    rospy.init_node("record_sound", anonymous=True)
+    rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
+    ears = actionlib.SimpleActionClient("nao_audio_in", NaoAudioInAction)
+    if not ears.wait_for_server(LIMIT):
+        print("there is no server nao_audio_in: start one with roslaunch nao_library nao_sim.launch")
+        return 1
+    rospy.on_shutdown(lambda: ears.get_state() == GoalStatus.ACTIVE and ears.cancel_goal())
+    goal = NaoAudioInGoal(chain(options.name, options.seconds, options.all))
+    state = ears.send_goal_and_wait(goal, rospy.Duration.from_sec(options.seconds) + LIMIT)
+    print(f"{options.name}: {GoalStatus.to_string(state).lower()} {ears.get_goal_status_text()}".rstrip())
+    result = ears.get_result()
+    for name, energy in zip(result.microphones, result.energies) if result else ():
+        print(f"    {name:<5} {energy:8.1f} before")
+    for file in result.files if result else ():
+        print(f"    {file.path}: {file.duration:.1f} s, {file.rate} Hz, {', '.join(file.channels)}")
+    return 0 if state == GoalStatus.SUCCEEDED else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

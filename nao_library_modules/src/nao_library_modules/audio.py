@@ -1,0 +1,141 @@
+"""What the audio modules share: the robot's sound card, ALAudioDevice. To be mixed into NaoBasic."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from .audio_checks import check_device_parameter, check_device_setting, check_output_volume
+from .function_chain import checked_by
+
+DEVICE = "ALAudioDevice"
+DECIMALS = 6
+
+
+class NaoAudio:
+    """Functions of ALAudioDevice. Parameters are fields of the function message; it need not have those with defaults.
+
+    `revert` puts back what a function has changed, after the wait that follows it, however the goal ends.
+    """
+
+    robot: Any  # Robot
+    call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts
+    call_now: Callable[..., Any]  # of NaoBasic: a call that it does not
+    after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
+
+    def audio_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "setOutputVolume": self.set_output_volume,
+            "getOutputVolume": self.get_output_volume,
+            "muteAudioOut": self.mute_audio_out,
+            "isAudioOutMuted": self.is_audio_out_muted,
+            "flushAudioOutputs": self.flush_audio_outputs,
+            "openAudioOutputs": self.open_audio_outputs,
+            "closeAudioOutputs": self.close_audio_outputs,
+            "isOutputClosed": self.is_output_closed,
+            "openAudioInputs": self.open_audio_inputs,
+            "closeAudioInputs": self.close_audio_inputs,
+            "isInputClosed": self.is_input_closed,
+            "listOutputs": self.list_outputs,
+            "listInputs": self.list_inputs,
+            "setParameter": self.set_device_parameter,
+            "getParameter": self.get_device_parameter,
+        }
+
+    # Volume
+
+    @checked_by(check_output_volume)
+    def set_output_volume(self, volume: float, revert: bool = False) -> None:
+        """Set the volume of everything that sounds, 0..100."""
+        if revert:
+            self.put_back(DEVICE, "setOutputVolume", int(self.device("getOutputVolume")))
+        self.device("setOutputVolume", int(volume))
+
+    def get_output_volume(self) -> int:
+        """Volume of everything that sounds, 0..100."""
+        return int(self.device("getOutputVolume"))
+
+    def mute_audio_out(self, enable: bool, revert: bool = False) -> None:
+        """Silence the loudspeakers (`enable` true), or let them sound again."""
+        if revert:
+            self.put_back(DEVICE, "muteAudioOut", bool(self.device("isAudioOutMuted")))
+        self.device("muteAudioOut", bool(enable))
+
+    def is_audio_out_muted(self) -> bool:
+        """Whether the loudspeakers are silenced."""
+        return bool(self.device("isAudioOutMuted"))
+
+    # Outputs and inputs
+
+    def flush_audio_outputs(self) -> None:
+        """Drop sound that waits to be played."""
+        self.device("flushAudioOutputs")
+
+    def open_audio_outputs(self) -> None:
+        """Take the loudspeakers again."""
+        self.device("openAudioOutputs")
+
+    def close_audio_outputs(self) -> None:
+        """Release the loudspeakers."""
+        self.device("closeAudioOutputs")
+
+    def is_output_closed(self) -> bool:
+        """Whether the loudspeakers are released."""
+        return bool(self.device("isOutputClosed"))
+
+    def open_audio_inputs(self) -> None:
+        """Take the microphones again."""
+        self.device("openAudioInputs")
+
+    def close_audio_inputs(self) -> None:
+        """Release the microphones."""
+        self.device("closeAudioInputs")
+
+    def is_input_closed(self) -> bool:
+        """Whether the microphones are released."""
+        return bool(self.device("isInputClosed"))
+
+    def list_outputs(self) -> list[Any]:
+        """Outputs of the robot, as it describes them."""
+        return list(self.device("listOutputs"))
+
+    def list_inputs(self) -> list[Any]:
+        """Inputs of the robot, as it describes them."""
+        return list(self.device("listInputs"))
+
+    # Parameters
+
+    @checked_by(check_device_setting)
+    def set_device_parameter(self, str_param: str, values: list[float], revert: bool = False) -> None:
+        """Set a parameter of the sound card named in `str_param`: outputSampleRate, Hz."""
+        name = str_param.strip()
+        if revert:
+            self.put_back(DEVICE, "setParameter", name, int(self.device("getParameter", name)))
+        self.device("setParameter", name, int(values[0]))
+
+    @checked_by(check_device_parameter)
+    def get_device_parameter(self, str_param: str) -> int:
+        """A parameter of the sound card named in `str_param`: outputSampleRate, inputBufferSize."""
+        return int(self.device("getParameter", str_param.strip()))
+
+    # For library functions
+
+    def device(self, method: str, *args: Any) -> Any:
+        """Call ALAudioDevice; preemption ends the call."""
+        return self.call(self.robot.proxy(DEVICE), method, *args)
+
+    def put_back(self, module: str, method: str, *args: Any) -> None:
+        """Have a quick method called when the running function and the wait after it are over, however they end.
+
+        Args:
+            module: Name of the NAOqi module.
+            method: Its method, which puts something back.
+            args: The arguments that it is put back with.
+        """
+        self.after_wait(lambda: self.call_now(self.robot.proxy(module), method, *args))
+
+
+def decimal(value: Any) -> float:
+    """A number of the robot as it was meant: it keeps 32-bit numbers, and 0.3 comes back as 0.30000001192092896."""
+    return round(float(value), DECIMALS)

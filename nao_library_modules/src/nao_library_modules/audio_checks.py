@@ -1,0 +1,110 @@
+"""What fields of the audio modules may hold. Pure; every function raises BadGoal."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from pathlib import PurePosixPath
+
+from .errors import BadGoal
+from .suggestion import did_you_mean
+
+OUTPUT_RATES = (16000, 22050, 44100, 48000)
+DEVICE_PARAMETERS = ("outputSampleRate", "inputBufferSize")
+HOME = "/home/nao/"
+"""Folder of the robot's user: absolute file names lead there."""
+LONGEST_NAME = 255
+CONTROL = re.compile(r"[\x00-\x1f\x7f]")
+
+
+def require_number(field: str, value: float, lowest: float, highest: float, allowed: str = "") -> float:
+    """A number between two others, both included.
+
+    Args:
+        field: Name of the field.
+        value: What it holds.
+        lowest: The least it may hold.
+        highest: The most it may hold.
+        allowed: What it may hold, in words; the two numbers if none are given.
+    """
+    if not lowest <= value <= highest:  # also for NaN
+        raise BadGoal(field, value, allowed or f"{lowest:g}..{highest:g}")
+    return float(value)
+
+
+def require_whole(field: str, value: float, lowest: int, highest: int, unit: str = "") -> int:
+    """A whole number between two others, both included."""
+    if not (math.isfinite(value) and value == int(value) and lowest <= value <= highest):
+        raise BadGoal(field, value, f"a whole number {lowest}..{highest}{unit}")
+    return int(value)
+
+
+def require_known(field: str, value: str, known: Sequence[str], kind: str = "") -> str:
+    """One of several words, without blanks around it.
+
+    Args:
+        field: Name of the field.
+        value: What it holds.
+        known: What it may hold.
+        kind: What it names, in words: "voice".
+    """
+    word = value.strip()
+    if word not in known:
+        problem = f"{word!r} is {f'no {kind}' if kind else 'not known'}{did_you_mean(word, known)}"
+        raise BadGoal(field, value, f"one of {', '.join(known)}" if known else "there is none", problem=problem)
+    return word
+
+
+def require_text(field: str, value: str, what: str) -> str:
+    """Text with something in it."""
+    if not value.strip():
+        raise BadGoal(field, value, what, problem="it is empty")
+    return value.strip()
+
+
+def require_file(field: str, name: str, suffixes: Sequence[str]) -> str:
+    """Name of a file on the robot: relative, or in the home folder of its user; whether it is there the robot knows.
+
+    Args:
+        field: Name of the field.
+        name: What it holds.
+        suffixes: Allowed ends of the name, in lower case: ".wav".
+
+    Returns:
+        The name without blanks around it.
+    """
+    path = require_text(field, name, "the name of a file")
+    allowed = f"a relative name or one in {HOME}, without '..', that ends in {', '.join(suffixes)}"
+    if CONTROL.search(path):
+        raise BadGoal(field, name, allowed, problem=f"{name!r} has characters that names do not have")
+    if ".." in PurePosixPath(path).parts or (path.startswith("/") and not path.startswith(HOME)):
+        raise BadGoal(field, name, allowed, problem=f"{name!r} leads out of the folder for sounds")
+    if path.startswith("~") or "\\" in path:
+        raise BadGoal(field, name, allowed, problem=f"{name!r} is not the name of a file")
+    if max(map(len, PurePosixPath(path).parts)) > LONGEST_NAME:
+        raise BadGoal(field, name, f"up to {LONGEST_NAME} characters", problem="the name is too long")
+    if PurePosixPath(path).suffix.lower() not in suffixes:
+        raise BadGoal(field, name, allowed, problem=f"{name!r} is not a file of a known kind")
+    return path
+
+
+# Checks of NaoAudio's functions: parameters are fields of the function message.
+
+
+def check_output_volume(_self: object, volume: float) -> None:
+    """A volume in %."""
+    require_whole("volume", volume, 0, 100, " (%)")
+
+
+def check_device_parameter(_self: object, str_param: str) -> None:
+    """A parameter of the sound card."""
+    require_known("str_param", str_param, DEVICE_PARAMETERS, "parameter of ALAudioDevice")
+
+
+def check_device_setting(_self: object, str_param: str, values: Sequence[float]) -> None:
+    """The sample rate of the outputs, which is all that can be set."""
+    require_known("str_param", str_param, DEVICE_PARAMETERS[:1], "parameter of ALAudioDevice that can be set")
+    if len(values) != 1 or values[0] not in OUTPUT_RATES:
+        rates = ", ".join(map(str, OUTPUT_RATES))
+        raise BadGoal("values", list(values), f"one of {rates} (Hz)")

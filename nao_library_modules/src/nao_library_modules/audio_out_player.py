@@ -1,0 +1,317 @@
+"""Functions that play sounds: files, tones, streams, sound sets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from .audio import decimal
+from .audio_out_files import FileNotes, LoadedSounds
+from .audio_out_player_checks import (
+    check_go_to,
+    check_load,
+    check_loaded,
+    check_panorama,
+    check_pitch,
+    check_play,
+    check_play_file,
+    check_play_from,
+    check_set,
+    check_set_file,
+    check_set_file_name,
+    check_set_name,
+    check_share,
+    check_sine,
+    check_stream,
+    check_unload,
+    check_unload_all,
+    check_volume,
+    check_volume_of,
+)
+from .audio_out_sounds import PLAYER, Sounds
+from .audio_out_voices import SPEECH
+from .errors import Preempted
+from .function_chain import checked_by
+
+
+class PlayerFunctions(Sounds):
+    """Functions of ALAudioPlayer. Parameters are fields of AudioOutFunction.
+
+    Attributes:
+        loaded: Sounds that this server has loaded.
+        files: Files that the chain played or wrote.
+    """
+
+    loaded: LoadedSounds
+    files: FileNotes
+
+    def player_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "playFile": self.play_file,
+            "playFileInLoop": self.play_file_in_loop,
+            "playFileFromPosition": self.play_file_from_position,
+            "playSine": self.play_sine,
+            "playWebStream": self.play_web_stream,
+            "loadFile": self.load_file,
+            "play": self.play,
+            "playInLoop": self.play_in_loop,
+            "pause": self.pause,
+            "goTo": self.go_to,
+            "getCurrentPosition": self.get_current_position,
+            "getFileLength": self.get_file_length,
+            "setPitch": self.set_pitch,
+            "disablePitch": self.disable_pitch,
+            "unloadFile": self.unload_file,
+            "unloadAllFiles": self.unload_all_files,
+            "getLoadedFilesIds": self.get_loaded_files_ids,
+            "getLoadedFilesNames": self.get_loaded_files_names,
+            "setVolume": self.set_volume,
+            "getVolume": self.get_volume,
+            "setMasterVolume": self.set_master_volume,
+            "getMasterVolume": self.get_master_volume,
+            "setPanorama": self.set_panorama,
+            "playSoundSetFile": self.play_sound_set_file,
+            "loadSoundSet": self.load_sound_set,
+            "unloadSoundSet": self.unload_sound_set,
+            "isSoundSetInstalled": self.is_sound_set_installed,
+            "isSoundSetLoaded": self.is_sound_set_loaded,
+            "isSoundSetFileInstalled": self.is_sound_set_file_installed,
+            "getSoundSetFileNames": self.get_sound_set_file_names,
+            "getInstalledSoundSetsList": self.get_installed_sound_sets_list,
+            "getLoadedSoundSetsList": self.get_loaded_sound_sets_list,
+        }
+
+    # Files
+
+    @checked_by(check_play_file)
+    def play_file(self, str_param: str, volume: float, pan: float, duration: float, background: bool) -> None:
+        """Play a file, and wait until it is over."""
+        name = str_param.strip()
+        self._play(name, "playFile", name, *_level(volume, pan), duration=duration, background=background)
+
+    @checked_by(check_play_file)
+    def play_file_in_loop(self, str_param: str, volume: float, pan: float, duration: float, background: bool) -> None:
+        """Play a file again and again, for `duration` or, with 0, until it is stopped."""
+        name, endless = str_param.strip(), background or duration == 0.0
+        self._play(name, "playFileInLoop", name, *_level(volume, pan), duration=duration, background=endless)
+
+    @checked_by(check_play_from)
+    def play_file_from_position(
+        self, str_param: str, position: float, volume: float, pan: float, duration: float, background: bool
+    ) -> None:
+        """Play a file from a time on, and wait until it is over."""
+        name, level = str_param.strip(), _level(volume, pan)
+        self._play(name, "playFileFromPosition", name, position, *level, duration=duration, background=background)
+
+    @checked_by(check_stream)
+    def play_web_stream(self, str_param: str, volume: float, pan: float, duration: float, background: bool) -> None:
+        """Play a stream of the network, and wait until it is over."""
+        address = str_param.strip()
+        level = (volume or 1.0, pan)
+        self._play(address, "playWebStream", address, *level, duration=duration, background=background)
+
+    @checked_by(check_sine)
+    def play_sine(self, frequency: float, volume: float, pan: float, duration: float, background: bool) -> None:
+        """Play a tone, and wait until it is over."""
+        gain = round(100.0 * (volume or 1.0))
+        self.sound(PLAYER, "playSine", int(frequency), gain, int(pan), duration, background=background)
+
+    # Sounds that are loaded
+
+    @checked_by(check_load)
+    def load_file(self, str_param: str) -> int:
+        """Load a file, so that it begins to play at once; answers the id of the sound."""
+        name = str_param.strip()
+        number = int(self.player("loadFile", name))
+        self.loaded.add(name, number)
+        return number
+
+    @checked_by(check_play)
+    def play(self, sound_id: int, str_param: str, volume: float, pan: float, duration: float, background: bool) -> None:
+        """Play a sound that is loaded, from where it was paused; and wait until it is over."""
+        number = self._number(sound_id, str_param)
+        name, level = self.loaded.name(number), _level(volume, pan)
+        self._play(name, "play", number, *level, duration=duration, background=background)
+
+    @checked_by(check_play)
+    def play_in_loop(
+        self, sound_id: int, str_param: str, volume: float, pan: float, duration: float, background: bool
+    ) -> None:
+        """Play a sound that is loaded again and again, for `duration` or, with 0, until it is stopped."""
+        number = self._number(sound_id, str_param)
+        name, level, endless = self.loaded.name(number), _level(volume, pan), background or duration == 0.0
+        self._play(name, "playInLoop", number, *level, duration=duration, background=endless)
+
+    @checked_by(check_loaded)
+    def pause(self, sound_id: int, str_param: str) -> None:
+        """Pause a sound; `play` goes on with it."""
+        self.player("pause", self._number(sound_id, str_param))
+
+    @checked_by(check_go_to)
+    def go_to(self, sound_id: int, str_param: str, position: float) -> None:
+        """Go to a time of a sound."""
+        self.player("goTo", self._number(sound_id, str_param), position)
+
+    @checked_by(check_loaded)
+    def get_current_position(self, sound_id: int, str_param: str) -> float:
+        """Where a sound is, s from its beginning."""
+        return decimal(self.player("getCurrentPosition", self._number(sound_id, str_param)))
+
+    @checked_by(check_loaded)
+    def get_file_length(self, sound_id: int, str_param: str) -> float:
+        """Length of a sound, s."""
+        return decimal(self.player("getFileLength", self._number(sound_id, str_param)))
+
+    @checked_by(check_pitch)
+    def set_pitch(self, sound_id: int, str_param: str, pitch: float) -> None:
+        """Change the pitch of a sound."""
+        self.player("setPitch", self._number(sound_id, str_param), pitch)
+
+    @checked_by(check_loaded)
+    def disable_pitch(self, sound_id: int, str_param: str) -> None:
+        """Play a sound at its own pitch again."""
+        self.player("disablePitch", self._number(sound_id, str_param))
+
+    @checked_by(check_unload)
+    def unload_file(self, sound_id: int, str_param: str) -> None:
+        """Forget a sound that is loaded."""
+        number = self._number(sound_id, str_param)
+        self.player("unloadFile", number)
+        self.loaded.remove(self.loaded.name(number))
+
+    @checked_by(check_unload_all)
+    def unload_all_files(self) -> None:
+        """Forget all sounds that are loaded."""
+        self.player("unloadAllFiles")
+        self.loaded.clear()
+
+    def get_loaded_files_ids(self) -> list[Any]:
+        """Ids of all sounds that are loaded."""
+        return list(self.player("getLoadedFilesIds"))
+
+    def get_loaded_files_names(self) -> list[str]:
+        """Names of all files that are loaded."""
+        return list(self.player("getLoadedFilesNames"))
+
+    # Volume and direction
+
+    @checked_by(check_volume)
+    def set_volume(self, sound_id: int, str_param: str, volume: float, revert: bool) -> None:
+        """Set the volume of speech, or of a sound that is loaded, 0..1."""
+        module, subject = self._volume_of(sound_id, str_param)
+        if revert:
+            before = decimal(self.call(self.robot.proxy(module), "getVolume", *subject))
+            self.put_back(module, "setVolume", *subject, before)
+        self.call(self.robot.proxy(module), "setVolume", *subject, volume)
+
+    @checked_by(check_volume_of)
+    def get_volume(self, sound_id: int, str_param: str) -> float:
+        """Volume of speech, or of a sound that is loaded, 0..1."""
+        module, subject = self._volume_of(sound_id, str_param)
+        return decimal(self.call(self.robot.proxy(module), "getVolume", *subject))
+
+    @checked_by(check_share)
+    def set_master_volume(self, volume: float, revert: bool) -> None:
+        """Set the volume of all sounds that are played, 0..1."""
+        if revert:
+            self.put_back(PLAYER, "setMasterVolume", decimal(self.player("getMasterVolume")))
+        self.player("setMasterVolume", volume)
+
+    def get_master_volume(self) -> float:
+        """Volume of all sounds that are played, 0..1."""
+        return decimal(self.player("getMasterVolume"))
+
+    @checked_by(check_panorama)
+    def set_panorama(self, pan: float) -> None:
+        """Have all sounds come from a direction, -1 (left) to 1 (right)."""
+        self.player("setPanorama", pan)
+
+    # Sound sets
+
+    @checked_by(check_set_file)
+    def play_sound_set_file(
+        self,
+        str_param: str,
+        file_name: str,
+        position: float,
+        volume: float,
+        pan: float,
+        loop: bool,
+        duration: float,
+        background: bool,
+    ) -> None:
+        """Play a file of a sound set, or of any that is loaded; and wait until it is over."""
+        names = [name for name in (str_param.strip(), file_name.strip()) if name]
+        level: list[Any] = [position, volume or 1.0, pan, loop] if position or volume or pan or loop else []
+        quiet = background or (loop and duration == 0.0)
+        self._play("/".join(names), "playSoundSetFile", *names, *level, duration=duration, background=quiet)
+
+    @checked_by(check_set)
+    def load_sound_set(self, str_param: str) -> None:
+        """Load a sound set."""
+        self.player("loadSoundSet", str_param.strip())
+
+    @checked_by(check_set)
+    def unload_sound_set(self, str_param: str) -> None:
+        """Forget a sound set that is loaded."""
+        self.player("unloadSoundSet", str_param.strip())
+
+    @checked_by(check_set_name)
+    def is_sound_set_installed(self, str_param: str) -> bool:
+        """Whether the robot has a sound set."""
+        return bool(self.player("isSoundSetInstalled", str_param.strip()))
+
+    @checked_by(check_set_name)
+    def is_sound_set_loaded(self, str_param: str) -> bool:
+        """Whether a sound set is loaded."""
+        return bool(self.player("isSoundSetLoaded", str_param.strip()))
+
+    @checked_by(check_set_file_name)
+    def is_sound_set_file_installed(self, str_param: str, file_name: str) -> bool:
+        """Whether a sound set has a file."""
+        return bool(self.player("isSoundSetFileInstalled", str_param.strip(), file_name.strip()))
+
+    @checked_by(check_set)
+    def get_sound_set_file_names(self, str_param: str) -> list[str]:
+        """Files of a sound set."""
+        return list(self.player("getSoundSetFileNames", str_param.strip()))
+
+    def get_installed_sound_sets_list(self) -> list[str]:
+        """Sound sets that the robot has."""
+        return list(self.player("getInstalledSoundSetsList"))
+
+    def get_loaded_sound_sets_list(self) -> list[str]:
+        """Sound sets that are loaded."""
+        return list(self.player("getLoadedSoundSetsList"))
+
+    # For library functions and checks
+
+    def player(self, method: str, *args: Any) -> Any:
+        """Call ALAudioPlayer; preemption ends the call."""
+        return self.call(self.robot.proxy(PLAYER), method, *args)
+
+    # Inside
+
+    def _play(self, name: str, method: str, *args: Any, duration: float, background: bool) -> None:
+        """Play something, and note how long it was to be heard, unless it could not be played."""
+        began = self.clock.now()
+        try:
+            self.sound(PLAYER, method, *args, duration=duration, background=background)
+        except Preempted:
+            self.files.note(name, self.clock.now() - began)
+            raise
+        self.files.note(name, 0.0 if background else self.clock.now() - began)
+
+    def _number(self, sound_id: int, name: str) -> int:
+        """Id of a sound: given, of a file that is loaded, or of the one loaded last."""
+        return sound_id or self.loaded.number(name.strip())
+
+    def _volume_of(self, sound_id: int, name: str) -> tuple[str, list[int]]:
+        """Module that knows a volume, and what it is of: a sound, or speech where none is named."""
+        return (PLAYER, [self._number(sound_id, name)]) if sound_id or name.strip() else (SPEECH, [])
+
+
+def _level(volume: float, pan: float) -> list[float]:
+    """Volume and direction as arguments; none where the message leaves both to the robot."""
+    return [volume or 1.0, pan] if volume or pan else []

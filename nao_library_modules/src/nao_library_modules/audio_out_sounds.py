@@ -1,0 +1,187 @@
+"""Calls to the robot that last as long as something sounds: waited for, ended, left to go on."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from naoqi.errors import CallCanceled, NaoError
+
+from .audio import NaoAudio
+from .audio_out_voices import SPEECH
+from .interrupt import Interrupt
+from .motion_walk_end import wait_for_call
+from .robot import CANCEL_LIMIT, QUICK_ANSWER
+
+log = logging.getLogger(__name__)
+
+PLAYER, ANIMATED = "ALAudioPlayer", "ALAnimatedSpeech"
+# Modules that have no `stopAll`, and the one whose it is.
+SILENCED_BY = {ANIMATED: SPEECH}
+CANCEL_PATIENCE = 0.1
+"""s that a cancelled call has to end by itself, as it does on a robot that knows cancellation."""
+FALSE_START = 0.05
+"""s that a sound in the background has to fail, when it cannot begin: then the function fails."""
+
+
+@dataclass(frozen=True)
+class Sounding:
+    """Something that sounds in the background.
+
+    Attributes:
+        module: NAOqi module that it is of.
+        call: The call that ends with it.
+    """
+
+    module: str
+    call: Any
+
+
+class Sounds(NaoAudio):
+    """Sounds of a module, each a call that ends with it. To be mixed into NaoBasic.
+
+    The thread that executes goals begins sounds; the end of the node silences them from another.
+    """
+
+    interrupt: Interrupt  # of NaoBasic
+    clock: Any  # of NaoBasic
+
+    def start_sounds(self) -> None:
+        """Nothing sounds yet: for the constructor of the module."""
+        self._lock = threading.Lock()  # guards the two lists
+        self._begun: list[Sounding] = []  # in the background, by this chain
+        self._left: list[Sounding] = []  # by chains that succeeded
+
+    def sound(
+        self,
+        module: str,
+        method: str,
+        *args: Any,
+        duration: float = 0.0,
+        background: bool = False,
+        ended: Callable[[], None] = lambda: None,
+    ) -> float:
+        """Begin a sound, and wait until it is over; preemption silences it.
+
+        Args:
+            module: NAOqi module.
+            method: Its method that takes as long as the sound.
+            args: Its arguments.
+            duration: s after which the sound is ended, if it is still there; 0: never.
+            background: Whether it is not waited for.
+            ended: Called when a sound in the background is over, from a thread of libqi.
+
+        Returns:
+            How long it sounded, s; 0 in the background.
+
+        Raises:
+            NaoError: If the call fails.
+            Preempted: Or whatever reason the interrupt has.
+        """
+        self.interrupt.check()
+        call = self.robot.proxy(module).call_async(method, *args)
+        sounding = Sounding(module, call)
+        if background:
+            call.add_done_callback(lambda _: ended())
+            self._leave(sounding)
+            return 0.0
+        began = self.clock.now()
+        if not call.wait(QUICK_ANSWER):  # quicker than to set up the wait for both
+            self._wait(call, duration)
+        if not call.done():
+            self._end(sounding)
+            self.interrupt.check()
+        else:
+            call.result(timeout=0)
+        return max(0.0, self.clock.now() - began)
+
+    def wait_for_sounds(self) -> None:
+        """Wait until nothing sounds that goals of this server have left in the background.
+
+        Raises:
+            NaoError: Of a sound that failed.
+            Preempted: Or whatever reason the interrupt has.
+        """
+        for sounding in self._background():
+            if not wait_for_call(sounding.call, self.interrupt):
+                self.interrupt.check()
+            sounding.call.result(timeout=0)
+
+    def begin_sounds(self) -> None:
+        """A chain begins: what earlier ones left sounds on."""
+        with self._lock:
+            self._left = [sounding for sounding in self._left + self._begun if not sounding.call.done()]
+            self._begun = []
+
+    def end_sounds(self, keep: bool) -> None:
+        """A chain is over.
+
+        Args:
+            keep: Whether what it began in the background sounds on.
+        """
+        if not keep:
+            with self._lock:
+                begun, self._begun = self._begun, []
+            self._silence(begun)
+
+    def silence(self) -> None:
+        """Silence everything that goals of this server have left in the background; raises nothing."""
+        with self._lock:
+            sounding, self._left, self._begun = self._left + self._begun, [], []
+        self._silence(sounding)
+
+    # Inside
+
+    def _background(self) -> list[Sounding]:
+        with self._lock:
+            return [*self._left, *self._begun]
+
+    def _leave(self, sounding: Sounding) -> None:
+        """Let a sound go on; a file that is not there is told at once."""
+        with self._lock:
+            self._begun.append(sounding)
+        if sounding.call.wait(FALSE_START):
+            sounding.call.result(timeout=0)
+        else:
+            sounding.call.add_done_callback(_tell_failure)
+
+    def _wait(self, call: Any, duration: float) -> None:
+        if duration <= 0.0:
+            wait_for_call(call, self.interrupt)
+            return
+        news = Interrupt()
+        call.add_done_callback(lambda _: news.trigger())
+        with self.interrupt.waking(news.trigger):
+            self.clock.wait(duration, news)
+
+    def _silence(self, soundings: list[Sounding]) -> None:
+        for sounding in soundings:
+            if not sounding.call.done():
+                self._end(sounding)
+
+    def _end(self, sounding: Sounding) -> None:
+        """Cancel the call and see it end; on a robot whose calls go on, everything of the module is silenced."""
+        call = sounding.call
+        call.cancel()
+        if call.wait(CANCEL_PATIENCE):
+            return
+        try:
+            self.call_now(self.robot.proxy(SILENCED_BY.get(sounding.module, sounding.module)), "stopAll")
+        except NaoError as error:
+            log.warning("what was interrupted may sound on: %s", error)
+            return
+        if not call.wait(CANCEL_LIMIT):
+            log.warning("what was interrupted sounds on: the robot did not end it within %g s", CANCEL_LIMIT)
+
+
+def _tell_failure(call: Any) -> None:
+    """Say in the log that a sound in the background failed; runs in a thread of libqi."""
+    try:
+        call.result(timeout=0)
+    except CallCanceled:
+        pass
+    except NaoError as error:
+        log.warning("a sound in the background failed: %s", error)

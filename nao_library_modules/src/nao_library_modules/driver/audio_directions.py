@@ -1,0 +1,134 @@
+"""Where sounds come from, while somebody wants to know. No ROS."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from naoqi.errors import NaoError, UnknownModule
+
+from ..event_relay import EventRelay
+from ..health import Level, Report
+from .demand import Demand
+
+log = logging.getLogger(__name__)
+
+MODULES = ("ALSoundLocalization", "ALAudioSourceLocalization")
+"""Newer name first."""
+ENERGY = "EnergyComputation"
+ANSWER_LIMIT = 2.0
+CLOSE_LIMIT = 2.0
+
+
+@dataclass(frozen=True)
+class Direction:
+    """Where a sound came from.
+
+    Attributes:
+        time: Robot's time, s.
+        azimuth: In the frame of the head, positive to the left, rad.
+        elevation: Positive upwards, rad.
+        confidence: 0 to 1.
+        energy: Loudness as the robot reports it.
+        head_in_torso: x, y, z in m, roll, pitch, yaw in rad, at that time.
+    """
+
+    time: float
+    azimuth: float
+    elevation: float
+    confidence: float
+    energy: float
+    head_in_torso: tuple[float, ...]
+
+
+def read_direction(value: Any) -> Direction | None:
+    """Direction from an event; None for one that holds none.
+
+    Args:
+        value: [[s, us], [azimuth, elevation, confidence, energy], head in torso, head in robot].
+    """
+    if not isinstance(value, (list, tuple)) or len(value) < 3 or len(value[1]) < 3 or len(value[2]) != 6:
+        return None
+    azimuth, elevation, confidence, *energy = (float(each) for each in value[1])
+    stamp = value[0][0] + 1e-6 * value[0][1]
+    pose = tuple(float(each) for each in value[2])
+    return Direction(stamp, azimuth, elevation, confidence, energy[0] if energy else 0.0, pose)
+
+
+class SoundDirections:
+    """Has the robot locate sounds while that is wanted, after a lost connection as well."""
+
+    def __init__(self, robot: Any, subscriber: str, sensitivity: float, sink: Callable[[Direction], None]) -> None:
+        """Begin without; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            subscriber: Name under which the robot knows who listens.
+            sensitivity: 0 to 1; below 0 leaves what the robot has.
+            sink: Gets each direction, in a thread of libqi.
+        """
+        self._robot = robot
+        self._subscriber = subscriber
+        self._sensitivity = sensitivity
+        self._sink = sink
+        self._module = MODULES[0]
+        self._relay = EventRelay(lambda: robot.proxy("ALMemory"), self._on_event)
+        self._locating = Demand(robot, "sound localisation", self._begin, self._end)
+
+    def want(self, wanted: bool) -> None:
+        """Locate sounds, or not, from now on."""
+        self._locating.want(wanted)
+
+    def report(self) -> Report:
+        """Whether sounds are located."""
+        values = {"module": self._module, "last error": self._locating.problem}
+        if not self._locating.wanted:
+            return Report(Level.OK, "nobody listens", values)
+        if self._locating.running:
+            return Report(Level.OK, "sounds are located", values)
+        problem = self._locating.problem or "the robot is not connected"
+        return Report(Level.ERROR, f"sounds cannot be located: {problem}", values)
+
+    def close(self) -> None:
+        """Locate no more."""
+        self._locating.close(CLOSE_LIMIT)
+
+    def _begin(self) -> None:
+        self._module = self._find_module()
+        self._ask("setParameter", ENERGY, True)
+        if self._sensitivity >= 0.0:
+            self._ask("setParameter", "Sensitivity", self._sensitivity)
+        for event in self._relay.names:  # those of a connection that was lost
+            self._relay.unsubscribe(event)
+        self._relay.subscribe(f"{self._module}/SoundLocated")
+        self._ask("subscribe", self._subscriber)
+
+    def _end(self) -> None:
+        self._relay.close()
+        self._ask("unsubscribe", self._subscriber)
+
+    def _find_module(self) -> str:
+        """The module that this robot has.
+
+        Raises:
+            NaoError: If it has neither, or cannot be asked.
+        """
+        missing: NaoError | None = None
+        for module in MODULES:
+            try:
+                self._robot.proxy(module).call_async("ping").result(timeout=ANSWER_LIMIT)
+            except UnknownModule as error:
+                missing = missing or error
+            else:
+                return module
+        raise missing or NaoError("there is no module that locates sounds")
+
+    def _ask(self, method: str, *arguments: Any) -> None:
+        self._robot.proxy(self._module).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+
+    def _on_event(self, _name: str, value: Any) -> None:
+        direction = read_direction(value)
+        if direction is not None:
+            self._sink(direction)

@@ -1,0 +1,94 @@
+"""What clients of nao_audio ask for, checked and in the words of NAOqi. No ROS."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..errors import BadGoal
+
+HOME = "/home/nao"
+"""Home of the robot's user, which file names are relative to; the simulator keeps these files in its `record_dir`."""
+KINDS = {0: "wav", 1: "ogg"}
+RATES = (16000, 48000)
+LONGEST = 3600
+"""s of the longest recording."""
+CHANNELS = ("left", "right", "front", "rear")
+
+
+def file_on_robot(name: str) -> str:
+    """Full name of a file on the robot.
+
+    Args:
+        name: Relative to the home of the robot's user, or in full.
+
+    Raises:
+        BadGoal: If it leads out of that home.
+    """
+    allowed = f"a name inside {HOME}"
+    if not name.strip() or "\0" in name or name.endswith("/"):
+        raise BadGoal("file_path", name, allowed)
+    # Many a client writes "/music/a.ogg" for a file in the home, because that was put before the name as it is.
+    inside = name if posixpath.normpath(name).startswith(HOME + "/") else f"{HOME}/{name.lstrip('/')}"
+    full = posixpath.normpath(inside)
+    if not full.startswith(HOME + "/"):
+        raise BadGoal("file_path", name, allowed, f"{name!r} leads out of it")
+    return full
+
+
+@dataclass(frozen=True)
+class RecordingRequest:
+    """A recording of the microphones.
+
+    Attributes:
+        file: Full name on the robot.
+        seconds: How long.
+        kind: wav or ogg.
+        rate: Samples a second.
+        channels: A flag for each of left, right, front, rear: 0 or 1.
+    """
+
+    file: str
+    seconds: int
+    kind: str
+    rate: int
+    channels: tuple[int, ...]
+
+
+def read_recording(file: str, seconds: int, kind: int, channels: Sequence[bool], rate: int) -> RecordingRequest:
+    """Check a request.
+
+    Args:
+        file: Name of the file; without an ending it gets that of its kind.
+        seconds: How long.
+        kind: 0 wav, 1 ogg.
+        channels: Whether left, right, front and rear are wanted.
+        rate: Hz.
+
+    Raises:
+        BadGoal: If something in it will not do. Which channels go with which rate is the robot's to say.
+    """
+    if kind not in KINDS:
+        raise BadGoal("audio_type", kind, "0 (wav) or 1 (ogg)")
+    if not 0 < seconds <= LONGEST:
+        raise BadGoal("secs", seconds, f"1 to {LONGEST}")
+    if rate not in RATES:
+        raise BadGoal("samplerate", rate, "16000 (one channel) or 48000 (all four)")
+    if not any(channels):
+        raise BadGoal("channels", list(channels), f"at least one of {', '.join(CHANNELS)}", "none is chosen")
+    full = file_on_robot(file)
+    if not posixpath.splitext(full)[1]:
+        full = f"{full}.{KINDS[kind]}"
+    return RecordingRequest(full, seconds, KINDS[kind], rate, tuple(int(flag) for flag in channels))
+
+
+def read_volume(volume: int) -> int:
+    """Check a volume in percent.
+
+    Raises:
+        BadGoal: If it is none.
+    """
+    if not 0 <= volume <= 100:
+        raise BadGoal("master_volume", volume, "0 to 100")
+    return volume

@@ -1,0 +1,182 @@
+"""Something that runs on the robot exactly while somebody wants it: after a lost connection as well. No ROS."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from naoqi.errors import NaoError
+
+log = logging.getLogger(__name__)
+
+FIRST_RETRY, RETRY = 0.1, 1.0
+"""s after which a start that failed is tried again: the first time, and in the long run. Then it is told as well."""
+LOOK_PERIOD = 1.0
+"""s between two looks whether what runs is alive."""
+
+
+class Demand:
+    """Starts and stops, in a thread of its own.
+
+    Any thread may say what is wanted. One lock keeps starts and stops apart; the condition guards the rest, and is not
+    held during calls to the robot.
+    """
+
+    def __init__(
+        self,
+        robot: Any,
+        name: str,
+        start: Callable[[], None],
+        stop: Callable[[], None],
+        alive: Callable[[], bool] = lambda: True,
+    ) -> None:
+        """Nothing is wanted yet.
+
+        Args:
+            robot: Its connection, see `nao_library_modules.robot`.
+            name: What it is, for the log.
+            start: Starts it. It may have been started before, on a robot that was lost since.
+            stop: Stops it.
+            alive: Whether it still does what it should; if not, it is stopped and started.
+        """
+        self._robot = robot
+        self._name = name
+        self._start, self._stop, self._alive = start, stop, alive
+        self._condition = threading.Condition()
+        self._work = threading.Lock()
+        self._wanted = False
+        self._stale = False
+        self._closed = False
+        self._generation: int | None = None
+        self._problem = ""
+        self._delay = FIRST_RETRY
+        self._told = False
+        robot.connection.add_listener(self._on_state)
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+
+    @property
+    def wanted(self) -> bool:
+        """Whether somebody wants it."""
+        return self._wanted
+
+    @property
+    def running(self) -> bool:
+        """Whether it runs, on the robot as it is connected now."""
+        connection = self._robot.connection
+        return connection.state == "connected" and self._generation == connection.generation
+
+    @property
+    def problem(self) -> str:
+        """Why it does not run although it is wanted; empty if it does."""
+        return self._problem
+
+    def want(self, wanted: bool) -> None:
+        """Have it run, or not, from now on."""
+        with self._condition:
+            self._wanted = wanted
+            self._condition.notify_all()
+
+    def start_now(self) -> None:
+        """Start it in the calling thread, unless it runs; from then on it is wanted.
+
+        Raises:
+            NaoError: If it cannot be started; then it is not wanted.
+        """
+        with self._work:
+            if not self.running:
+                self.want(False)
+                self._start()
+                self._generation = self._robot.connection.generation
+            self._problem = ""
+            self.want(True)
+
+    def stop_now(self) -> None:
+        """Stop it in the calling thread; from then on it is not wanted.
+
+        Raises:
+            NaoError: If the robot cannot be asked.
+        """
+        self.want(False)
+        with self._work:
+            if self._generation is not None:
+                runs, self._generation = self.running, None
+                if runs:
+                    self._stop()
+
+    def restart(self) -> None:
+        """Stop and start it, if it runs, because something about it has changed."""
+        with self._condition:
+            self._stale = True
+            self._condition.notify_all()
+
+    def close(self, limit: float) -> None:
+        """Stop it for good.
+
+        Args:
+            limit: Longest wait for that, s.
+        """
+        self._robot.connection.remove_listener(self._on_state)
+        with self._condition:
+            self._closed, self._wanted = True, False
+            self._condition.notify_all()
+        self._thread.join(limit)
+
+    def _on_state(self, *_: Any) -> None:
+        with self._condition:
+            self._condition.notify_all()
+
+    # --- the thread -----------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        while True:
+            with self._condition:
+                if not self._due() and not self._closed:
+                    self._condition.wait(LOOK_PERIOD if self._generation is not None else None)
+                closed, due = self._closed, self._due()
+            if due or (self.running and not self._alive()):
+                self._do()
+            if closed:
+                return
+
+    def _due(self) -> bool:
+        if self._robot.connection.state != "connected":
+            return False
+        return self._wanted != self.running or (self._stale and self.running)
+
+    def _do(self) -> None:
+        with self._work:
+            try:
+                self._stale = False
+                if self.running:
+                    self._generation = None
+                    self._stop()
+                if self._wanted:
+                    generation = self._robot.connection.generation
+                    self._start()
+                    self._generation = generation
+                self._succeeded()
+                return
+            except NaoError as error:
+                self._problem = str(error)
+            except Exception as error:  # a mistake in here must not leave a node that lives and does nothing
+                log.exception("%s failed", self._name)
+                self._problem = f"unexpected error: {error!r}"
+        self._wait_after_failure()
+
+    def _succeeded(self) -> None:
+        if self._told:
+            log.info("%s: it works again", self._name)
+        self._problem, self._delay, self._told = "", FIRST_RETRY, False
+
+    def _wait_after_failure(self) -> None:
+        """A robot that starts, or has just come back, needs a moment: so the first failures are no news."""
+        if self._delay >= RETRY and not self._told:
+            log.warning("%s: %s", self._name, self._problem)
+            self._told = True
+        with self._condition:
+            if self._wanted and not self._closed:
+                self._condition.wait(self._delay)
+        self._delay = min(2.0 * self._delay, RETRY)

@@ -1,0 +1,115 @@
+"""Blocks of sound from the microphones: format, channels, time, and which are missing. No ROS."""
+
+from __future__ import annotations
+
+import sys
+from array import array
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from naoqi.errors import NaoError
+
+# nao_library_msgs/AudioBuffer has the same numbers.
+FRONT_LEFT, FRONT_CENTER, FRONT_RIGHT, REAR_LEFT, REAR_CENTER, REAR_RIGHT = range(6)
+MAPS = {
+    "V6": (REAR_LEFT, REAR_RIGHT, FRONT_LEFT, FRONT_RIGHT),
+    "older": (FRONT_LEFT, FRONT_RIGHT, FRONT_CENTER, REAR_CENTER),
+}
+"""Head -> where its microphones are, in NAOqi's order: left, right, front, rear.
+
+Source: the NAO pages of NAOqi 2.8 (V6: four corners of the head) and 2.1 (V4, V5: the sides, front and back), and how
+the naoqi drivers number them.
+"""
+FIRST_OF_CORNERS = 6
+ALL_CHANNELS, FRONT_CHANNEL = 0, 3
+"""What ALAudioDevice calls the channels."""
+FORMATS = {16000: (FRONT_CHANNEL, 1), 48000: (ALL_CHANNELS, 4)}
+"""Rate in Hz -> what ALAudioDevice is asked for, and how many channels that are."""
+FRONT = 2
+DRIFT = 1e-4
+"""How fast one clock may run away from the other: s a second."""
+GAP = 0.5
+"""Share of a block from which on a jump in time is a gap."""
+
+
+def channel_map(channels: int, version: str) -> tuple[int, ...]:
+    """Where the microphones are that the channels of a block come from.
+
+    Args:
+        channels: 4, or 1 for the front one.
+        version: Version of the head or body, such as "6.0.0"; anything else is taken for a V6.
+    """
+    major = version.lstrip("Vv").split(".")[0]
+    older = major.isdigit() and int(major) < FIRST_OF_CORNERS
+    places = MAPS["older" if older else "V6"]
+    return places if channels == len(places) else (places[FRONT],)
+
+
+def read_samples(sound: bytes, channels: int, frames: int) -> array:
+    """The samples of a block: one of each channel, then the next.
+
+    Args:
+        sound: 16 bit, little end first.
+        channels: How many there should be.
+        frames: How many samples of each.
+
+    Raises:
+        NaoError: If there are more or fewer.
+    """
+    samples = array("h")
+    if len(sound) != channels * frames * samples.itemsize:
+        raise NaoError(f"a block of {channels} channels and {frames} frames has {len(sound)} bytes")
+    samples.frombytes(sound)
+    if sys.byteorder == "big":
+        samples.byteswap()
+    return samples
+
+
+@dataclass(frozen=True)
+class BlockTime:
+    """When a block was heard.
+
+    Attributes:
+        robot: Robot's time of the first sample, s.
+        ros: The same moment in ROS time, s.
+    """
+
+    robot: float
+    ros: float
+
+
+class BlockClock:
+    """Times of the blocks of one stream, and how many are missing. For one thread.
+
+    A block comes some time after it was heard, sometimes sooner and sometimes later. The quickest ones tell how the
+    robot's clock and ROS time go together.
+    """
+
+    def __init__(self) -> None:
+        """Begin a stream."""
+        self.lost = 0
+        self._expected: float | None = None
+        self._offset: float | None = None
+
+    def restart(self) -> None:
+        """Begin another stream: the time until its first block is no gap, and its clock may be another one."""
+        self._expected = self._offset = None
+
+    def take(self, stamp: Sequence[float], duration: float, now: float) -> BlockTime:
+        """Time of the next block.
+
+        Args:
+            stamp: Robot's time of its first sample: [s, us].
+            duration: How long it is, s.
+            now: ROS time of its arrival, s.
+        """
+        robot = stamp[0] + 1e-6 * stamp[1]
+        since = 0.0 if self._expected is None else robot - self._expected
+        if since < -GAP * duration:
+            self._offset = None  # the robot's clock was set back
+        elif since > GAP * duration:
+            self.lost += round(since / duration)
+        self._expected = robot + duration
+        latest = now - self._expected
+        self._offset = latest if self._offset is None else min(latest, self._offset + DRIFT * duration)
+        return BlockTime(robot, robot + self._offset)

@@ -1,0 +1,141 @@
+"""The node nao_audio: sound files, volume, recordings, and where sounds come from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+from rospy.rostime import is_wallclock
+
+from nao_library_msgs.msg import AudioSourceLocalization
+from nao_library_msgs.srv import (
+    AudioPlayback,
+    AudioPlaybackResponse,
+    AudioRecorder,
+    AudioRecorderResponse,
+    GetAudioMasterVolume,
+    GetAudioMasterVolumeResponse,
+    SetAudioMasterVolume,
+    SetAudioMasterVolumeResponse,
+)
+from naoqi.errors import NaoError
+
+from ..errors import Preempted
+from ..health import Report
+from ..interrupt import Interrupt
+from ..ros_clock import RosClock
+from .audio_directions import Direction, SoundDirections
+from .audio_player import AudioPlayer
+from .audio_requests import file_on_robot, read_recording, read_volume
+from .planar_frames import tf_prefix
+from .rotation import from_roll_pitch_yaw
+from .topic_demand import TopicDemand
+
+TORSO = "torso"
+ROBOTS_OWN = -1.0
+"""Sensitivity that leaves what the robot has."""
+
+
+class NaoAudioServices:
+    """Sound of one robot, under the names of nao_interaction.
+
+    File names are relative to the home of the robot's user; for the simulator that is its `record_dir`. What goes
+    wrong is the error of the service that was called: the others go on.
+
+    ROS API (relative names):
+        Services `nao_audio/play_file` (nao_library_msgs/AudioPlayback: answers when the file was played),
+        `nao_audio/record` (nao_library_msgs/AudioRecorder: answers when it was recorded), `nao_audio/master_volume`
+        (nao_library_msgs/SetAudioMasterVolume), `nao_audio/get_master_volume` (nao_library_msgs/GetAudioMasterVolume).
+        Publishes `nao_audio/audio_source_localization` (nao_library_msgs/AudioSourceLocalization: direction in the
+        frame of the head, and the pose of the head in the frame of the header, the torso); sounds are located only
+        while somebody listens.
+        Parameter `~sensitivity` (-1): of the localisation, 0 to 1; -1: what the robot has.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+
+        Raises:
+            NaoError: If a parameter is wrong.
+        """
+        sensitivity = rospy.get_param("~sensitivity", ROBOTS_OWN)
+        if isinstance(sensitivity, bool) or not isinstance(sensitivity, (int, float)) or sensitivity > 1.0:
+            raise NaoError(f"~sensitivity is {sensitivity!r}: 0 to 1, or -1 for what the robot has")
+        self._interrupt = Interrupt()
+        self._frame = tf_prefix() + TORSO
+        self._player = AudioPlayer(robot, RosClock(), self._interrupt)
+        subscriber = "ros" + rospy.get_name().replace("/", "_")
+        self._directions = SoundDirections(robot, subscriber, float(sensitivity), self._publish)
+        name = "nao_audio/audio_source_localization"
+        self._topic = rospy.Publisher(name, AudioSourceLocalization, queue_size=10)
+        self._demand = TopicDemand(self._topic, self._directions.want)
+        _offer("nao_audio/play_file", AudioPlayback, self._play)
+        _offer("nao_audio/record", AudioRecorder, self._record)
+        _offer("nao_audio/master_volume", SetAudioMasterVolume, self._set_volume)
+        _offer("nao_audio/get_master_volume", GetAudioMasterVolume, self._volume)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {"sound localisation": self._directions.report}
+
+    def close(self) -> None:
+        """End what is played, recorded and located."""
+        self._interrupt.stop()
+        self._directions.close()
+
+    # --- services -------------------------------------------------------------------------------------------------
+
+    def _play(self, request: Any) -> AudioPlaybackResponse:
+        self._player.play(file_on_robot(request.file_path.data))
+        return AudioPlaybackResponse()
+
+    def _record(self, request: Any) -> AudioRecorderResponse:
+        flags = [getattr(request, f"{side}_channel").data for side in ("left", "right", "front", "rear")]
+        file, rate = request.file_path.data, request.samplerate.data
+        self._player.record(read_recording(file, request.secs.data, request.audio_type.data, flags, rate))
+        return AudioRecorderResponse()
+
+    def _set_volume(self, request: Any) -> SetAudioMasterVolumeResponse:
+        self._player.set_volume(read_volume(request.master_volume.data))
+        return SetAudioMasterVolumeResponse()
+
+    def _volume(self, _request: Any) -> GetAudioMasterVolumeResponse:
+        response = GetAudioMasterVolumeResponse()
+        response.master_volume.data = self._player.volume()
+        return response
+
+    # --- topic ----------------------------------------------------------------------------------------------------
+
+    def _publish(self, direction: Direction) -> None:
+        """Called in a thread of libqi."""
+        message = AudioSourceLocalization()
+        # The simulated robot's clock is the one on /clock; that of a real robot may be any.
+        message.header.stamp = rospy.Time.now() if is_wallclock() else rospy.Time.from_sec(direction.time)
+        message.header.frame_id = self._frame
+        for field in ("azimuth", "elevation", "confidence", "energy"):
+            getattr(message, field).data = getattr(direction, field)
+        position, orientation = message.head_pose.position, message.head_pose.orientation
+        position.x, position.y, position.z = direction.head_in_torso[:3]
+        turned = from_roll_pitch_yaw(*direction.head_in_torso[3:])
+        orientation.x, orientation.y, orientation.z, orientation.w = turned
+        try:
+            self._topic.publish(message)
+        except rospy.ROSException as error:  # the topic was closed before the robot was left
+            rospy.logdebug("audio_source_localization: %s", error)
+
+
+def _offer(name: str, kind: type, answer: Callable[[Any], Any]) -> None:
+    def serve(request: Any) -> Any:
+        try:
+            return answer(request)
+        except Preempted as signal:
+            raise rospy.ServiceException("the node ends") from signal
+        except NaoError as error:
+            rospy.logerr("%s: %s", name, error)
+            raise rospy.ServiceException(str(error)) from error
+
+    rospy.Service(name, kind, serve)

@@ -1,0 +1,74 @@
+"""The node naoqi_microphone: what the robot's microphones hear, as a topic."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import rospy
+from rospy.rostime import is_wallclock
+
+from nao_library_msgs.msg import AudioBuffer
+
+from ..health import Report
+from ..ros_clock import RosClock
+from .microphone import Block, Microphone
+from .microphone_blocks import FORMATS
+from .planar_frames import tf_prefix
+from .reconfigure import Field, serve
+from .topic_demand import TopicDemand
+
+HEAD = "Head"
+QUEUE = 50
+RATES = {rate: f"{count} channel{'s'[: count > 1]}" for rate, (_, count) in FORMATS.items()}
+
+
+class NaoMicrophone:
+    """Publishes blocks of 170 ms while somebody listens; otherwise the robot sends nothing.
+
+    ROS API:
+        Publishes `~audio_raw` (nao_library_msgs/AudioBuffer), stamped with the time of its first sample.
+        Parameters, also by dynamic_reconfigure: `~frequency` (16000 Hz: the front microphone; 48000 Hz: all four),
+        `~use_ros_time` (true: stamps in ROS time; false: stamps of the robot's own clock. Default true; false on
+        simulated time, which is the clock of the simulated robot). `~frame_id` (Head, after `tf_prefix`).
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer the topic; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+        """
+        self._use_ros_time = True
+        self._frame = tf_prefix() + str(rospy.get_param("~frame_id", HEAD)).lstrip("/")
+        name = "ros" + rospy.get_name().replace("/", "_")
+        self._microphone = Microphone(robot, name, RosClock(), self._publish)
+        fields = (
+            Field("frequency", min(FORMATS), "samples a second and channel", min(FORMATS), max(FORMATS), RATES),
+            Field("use_ros_time", is_wallclock(), "whether stamps are in ROS time, instead of the robot's own"),
+        )
+        self._server = serve(fields, self._changed)
+        self._audio = rospy.Publisher("~audio_raw", AudioBuffer, queue_size=QUEUE)
+        self._demand = TopicDemand(self._audio, self._microphone.want)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {"microphones": self._microphone.report}
+
+    def close(self) -> None:
+        """Hear no more."""
+        self._microphone.close()
+
+    def _changed(self, _before: Mapping[str, Any], after: Mapping[str, Any]) -> Mapping[str, Any]:
+        self._microphone.set_rate(after["frequency"])
+        self._use_ros_time = after["use_ros_time"]
+        return after
+
+    def _publish(self, block: Block) -> None:
+        message = AudioBuffer(frequency=block.rate, channelMap=bytes(block.places), data=block.samples)
+        message.header.stamp = rospy.Time.from_sec(block.time.ros if self._use_ros_time else block.time.robot)
+        message.header.frame_id = self._frame
+        try:
+            self._audio.publish(message)
+        except rospy.ROSException as error:  # the topic was closed before the robot was left
+            rospy.logdebug("audio_raw: %s", error)

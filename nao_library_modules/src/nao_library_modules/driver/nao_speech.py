@@ -1,0 +1,250 @@
+"""The node nao_speech: the one that speaks, and listens for words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import rosgraph
+import rospy
+from actionlib import ActionServer
+from std_msgs.msg import String
+from std_srvs.srv import Empty, EmptyResponse
+
+from nao_library_actions.msg import (
+    SetSpeechVocabularyAction,
+    SetSpeechVocabularyGoal,
+    SetSpeechVocabularyResult,
+    SpeechWithFeedbackAction,
+    SpeechWithFeedbackFeedback,
+    SpeechWithFeedbackGoal,
+    SpeechWithFeedbackResult,
+)
+from nao_library_msgs.msg import WordRecognized
+from naoqi.errors import NaoError, UnknownModule
+
+from ..errors import BadGoal
+from ..health import Report
+from ..interrupt import Interrupt
+from ..ros_clock import RosClock
+from .goal_crowd import GoalCrowd, Outcome
+from .reconfigure import Field, serve
+from .speech import Speech
+from .speech_recognition import Heard, Recognition
+from .speech_settings import (
+    FORMER_NAMES,
+    FULL_VOLUME,
+    ROBOTS_OWN,
+    SpeechSettings,
+    from_config,
+    given_parameters,
+    join_vocabulary,
+)
+from .speech_voice import ANSWER_LIMIT, SPEECH
+
+START = "start_recognition"
+SHUTDOWN_LIMIT = 1.0
+PROBE_LIMIT = 1.0
+"""s that another node of this kind has to show that it is alive."""
+VOICE = frozenset({"the voice"})
+VOCABULARY = frozenset({"the vocabulary"})
+PARAMETERS = (
+    Field("voice", "", "name of the voice; empty: the robot's own"),
+    Field("language", "", "name of the language, such as English; empty: the robot's own"),
+    Field("volume", ROBOTS_OWN, "volume of the speech in percent; -1: the robot's own", ROBOTS_OWN, FULL_VOLUME),
+    Field("vocabulary", "", "words and phrases to listen for, separated by /"),
+    Field("audio_expression", True, "whether the robot beeps when it begins to listen"),
+    Field("visual_expression", True, "whether its eyes show that it listens"),
+    Field("word_spotting", False, "whether words are found within longer sentences"),
+)
+KNOWN = {"voice": "getAvailableVoices", "language": "getAvailableLanguages"}
+
+
+class NaoSpeech:
+    """Says what comes by topic or action, each text once and one after the other; publishes words that were heard.
+
+    A second node of this kind in the same namespace does not start: the robot would say everything twice.
+
+    ROS API (relative names):
+        Subscribes `speech` (std_msgs/String). Publishes `word_recognized` (nao_library_msgs/WordRecognized), whoever
+        has started the recognition.
+        Actions `speech_action` (nao_library_actions/SpeechWithFeedback: feedback when the robot begins to talk, result
+        when it has ended; a cancelled one is silent at once; a newer goal ends the one before),
+        `speech_vocabulary_action` (nao_library_actions/SetSpeechVocabulary).
+        Services `start_recognition`, `stop_recognition`, `reconfigure` (reads the parameters again) (std_srvs/Empty).
+        Parameters, all of them also by dynamic_reconfigure: `~voice`, `~language`, `~volume` (percent, or a share of
+        1 written with a point): used for each text and put back after it; `~vocabulary` ("yes / no" or a list),
+        `~audio_expression`, `~visual_expression`, `~word_spotting` (with `enable_` before them as well).
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+
+        Raises:
+            NaoError: If a parameter is wrong, or another node speaks already.
+        """
+        other = _node_that_offers(START)
+        if other:
+            raise NaoError(f"{other} speaks for this robot already ({rospy.resolve_name('speech')}): one is enough")
+        self._robot = robot
+        for name, value in _read_parameters().items():
+            rospy.set_param(f"~{name}", value)  # in today's form, as the server of the parameters wants it
+        self._settings = SpeechSettings()
+        self._words = rospy.Publisher("word_recognized", WordRecognized, queue_size=10)
+        self._speech = Speech(robot, RosClock(), lambda: self._settings)
+        subscriber = "ros" + rospy.get_name().replace("/", "_")
+        self._recognition = Recognition(robot, subscriber, lambda: self._settings, self._publish)
+        self._server = serve(PARAMETERS, self._changed)
+        self._goals = {
+            "speech_action": GoalCrowd(lambda _: VOICE, self._say, with_feedback=True),
+            "speech_vocabulary_action": GoalCrowd(lambda _: VOCABULARY, self._set_vocabulary),
+        }
+        for (name, crowd), action in zip(self._goals.items(), (SpeechWithFeedbackAction, SetSpeechVocabularyAction)):
+            ActionServer(name, action, crowd.on_goal, crowd.on_cancel, auto_start=False).start()
+        robot.connection.add_listener(self._connection_changed)
+        rospy.Subscriber("speech", String, self._on_text, queue_size=100)
+        _offer("stop_recognition", self._recognition.stop)
+        _offer("reconfigure", self._reconfigure)
+        _offer(START, self._recognition.start)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        goals = {f"goals {name}": crowd.counter.report for name, crowd in self._goals.items()}
+        return {"speech": self._speech.report, "recognition": self._recognition.report, **goals}
+
+    def close(self) -> None:
+        """Be silent and listen no longer."""
+        self._robot.connection.remove_listener(self._connection_changed)
+        for crowd in self._goals.values():
+            crowd.close(SHUTDOWN_LIMIT / len(self._goals))
+        self._speech.close()
+        self._recognition.close()
+
+    # --- speech ---------------------------------------------------------------------------------------------------
+
+    def _on_text(self, message: String) -> None:
+        text = message.data
+        if not text.strip():
+            rospy.logwarn("speech: an empty text, so nothing is said")
+            return
+        try:
+            self._speech.say(text, on_failure=lambda error: _complain(text, error))
+        except NaoError as error:
+            _complain(text, error)
+
+    def _say(self, goal: SpeechWithFeedbackGoal, interrupt: Interrupt, feedback: Callable[[Any], None]) -> Outcome:
+        if not goal.say.strip():
+            raise BadGoal("say", goal.say, "a text", "it is empty")
+        utterance = self._speech.say(goal.say, on_start=lambda: feedback(SpeechWithFeedbackFeedback()))
+        with interrupt.waking(lambda: self._speech.silence(utterance)):
+            utterance.ended.wait()
+        if utterance.error is not None:
+            raise utterance.error
+        return Outcome(SpeechWithFeedbackResult())
+
+    # --- recognition ----------------------------------------------------------------------------------------------
+
+    def _set_vocabulary(self, goal: SetSpeechVocabularyGoal, _interrupt: Interrupt) -> Outcome:
+        if not goal.words:
+            raise BadGoal("words", goal.words, "at least one word", "it is empty")
+        self._update({"vocabulary": join_vocabulary(goal.words)})
+        return Outcome(SetSpeechVocabularyResult(success=True))
+
+    def _publish(self, heard: Heard) -> None:
+        try:
+            self._words.publish(WordRecognized(list(heard.words), list(heard.confidences)))
+        except rospy.ROSException as error:  # the topic was closed before the robot was left
+            rospy.logdebug("word_recognized: %s", error)
+
+    # --- parameters -----------------------------------------------------------------------------------------------
+
+    def _reconfigure(self) -> None:
+        self._update(_read_parameters())
+
+    def _update(self, changes: Mapping[str, Any]) -> None:
+        try:
+            self._server.update_configuration(changes)
+        except rospy.ServiceException as error:
+            if isinstance(error.__cause__, NaoError):
+                raise error.__cause__ from None
+            raise NaoError(str(error)) from error
+
+    def _changed(self, before: Mapping[str, Any], after: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Take new values of the parameters; those of the first time are not tried on the robot."""
+        former, self._settings = self._settings, from_config(after)
+        try:
+            if before:
+                self._try_voice(former, self._settings)
+                if _listening(former) != _listening(self._settings):
+                    self._recognition.apply()
+        except NaoError:
+            self._settings = former
+            raise
+        return {**after, "vocabulary": join_vocabulary(self._settings.vocabulary)}
+
+    def _try_voice(self, former: SpeechSettings, settings: SpeechSettings) -> None:
+        """Refuse what the robot does not have; one that is not there is asked when it speaks."""
+        if self._robot.connection.state != "connected":
+            return
+        for name, method in KNOWN.items():
+            wanted = getattr(settings, name)
+            if wanted and wanted != getattr(former, name):
+                known = self._robot.proxy(SPEECH).call_async(method).result(timeout=ANSWER_LIMIT)
+                if wanted not in known:
+                    raise NaoError(f"the robot has no {name} {wanted!r}: it has {', '.join(sorted(known))}")
+
+    # --- the connection -------------------------------------------------------------------------------------------
+
+    def _connection_changed(self, *_: Any) -> None:
+        """Called from the thread that the connection has for its listeners."""
+        if self._robot.connection.state == "connected":
+            self._speech.robot_is_back()
+
+
+def _listening(settings: SpeechSettings) -> tuple[Any, ...]:
+    """The part of the settings that recognition depends on."""
+    return settings.vocabulary, settings.audio_expression, settings.visual_expression, settings.word_spotting
+
+
+def _read_parameters() -> dict[str, Any]:
+    """Private parameters that somebody has set, in today's form; former names are gone afterwards."""
+    given = rospy.get_param("~", {})
+    values = given_parameters(given)
+    for former in FORMER_NAMES.values():
+        if former in given:
+            rospy.delete_param(f"~{former}")
+    return values
+
+
+def _complain(text: str, error: Exception) -> None:
+    log = rospy.loginfo if isinstance(error, UnknownModule) else rospy.logerr
+    log("speech: %r was not said: %s", text, error)
+
+
+def _offer(name: str, action: Callable[[], None]) -> None:
+    def serve_call(_request: Any) -> EmptyResponse:
+        try:
+            action()
+        except NaoError as error:
+            rospy.logerr("%s: %s", name, error)
+            raise rospy.ServiceException(str(error)) from error
+        return EmptyResponse()
+
+    rospy.Service(name, Empty, serve_call)
+
+
+def _node_that_offers(service: str) -> str:
+    """Another node that offers a service and is alive; empty if there is none."""
+    name, own = rospy.resolve_name(service), rospy.get_name()
+    _, _, services = rosgraph.Master(own).getSystemState()
+    others = [node for offered, nodes in services if offered == name for node in nodes if node != own]
+    if not others:
+        return ""
+    try:
+        rospy.wait_for_service(name, timeout=PROBE_LIMIT)
+    except rospy.ROSException:
+        return ""  # it was killed, and the master does not know
+    return others[0]

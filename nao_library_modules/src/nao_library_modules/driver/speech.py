@@ -1,0 +1,297 @@
+"""Texts that the robot says, one after the other and each once. No ROS."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from ..errors import Preempted, RobotLost
+from ..event_relay import EventRelay
+from ..health import Level, Report
+from ..interrupt import Interrupt
+from .robot_task import end_call
+from .speech_settings import SpeechSettings
+from .speech_voice import ANSWER_LIMIT, SPEECH, BorrowedVoice
+
+log = logging.getLogger(__name__)
+
+STARTED = f"{SPEECH}/TextStarted"
+SIGNS_OF_LIFE = (STARTED, f"{SPEECH}/CurrentSentence", f"{SPEECH}/CurrentWord")
+QUIET_LIMIT = 120.0
+"""s of the robot's time without a word after which a text is given up."""
+PATIENCE = 3.0
+"""s that a text waits for a robot that has never been reached yet: its sender may have started in the same moment."""
+LONGEST_QUEUE = 100
+CLOSE_LIMIT = 2.0
+
+
+class NothingSaid(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """The robot took a text, and then said nothing for long.
+
+    Attributes:
+        limit: s after which it was given up.
+    """
+
+    def __init__(self, limit: float) -> None:
+        """Compose the text."""
+        super().__init__(f"the robot has said nothing for {limit:g} s: the text was given up")
+        self.limit = limit
+
+
+class Utterance:
+    """A text on its way through the queue.
+
+    Attributes:
+        text: What is said.
+        ended: Set when it was said, or will not be.
+        error: Why it was not, or not to its end; None if it was.
+    """
+
+    def __init__(self, text: str, on_start: Callable[[], None], on_failure: Callable[[Exception], None]) -> None:
+        """Keep text and callbacks, which come from threads of the queue or of libqi and must not wait."""
+        self.text = text
+        self.ended = threading.Event()
+        self.error: Exception | None = None
+        self.interrupt = Interrupt()
+        self.arrived = time.monotonic()
+        self._on_start = on_start
+        self._on_failure = on_failure
+        self._lock = threading.Lock()
+        self._started = False
+
+    def start(self) -> None:
+        """Tell, once, that the robot began to say it."""
+        with self._lock:
+            first, self._started = not self._started, True
+        if first:
+            self._on_start()
+
+    def end(self, error: Exception | None) -> None:
+        """Note how it ended."""
+        self.error = error
+        if isinstance(error, NaoError):
+            self._on_failure(error)
+        self.ended.set()
+
+
+class Speech:
+    """The one voice of the robot: a queue of texts, and a thread that has them said.
+
+    Any thread may call. The lock guards queue and counters; it is not held during calls to the robot.
+    """
+
+    def __init__(self, robot: Any, clock: Any, settings: Callable[[], SpeechSettings]) -> None:
+        """Begin with an empty queue; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            clock: The robot's time: `now()` and `wait(duration, interrupt)`.
+            settings: Gives what the next text is said with.
+        """
+        self._robot = robot
+        self._clock = clock
+        self._settings = settings
+        self._voice = BorrowedVoice(robot)
+        self._events = EventRelay(lambda: robot.proxy("ALMemory"), self._on_event)
+        self._news = threading.Condition()
+        self._waiting: deque[Utterance] = deque()
+        self._current: Utterance | None = None
+        self._closed = False
+        self._counts = {"said": 0, "interrupted": 0, "not said": 0}
+        self._last_error = ""
+        self._last_sign = 0.0
+        self._gave_back_to = 0
+        self._thread = threading.Thread(target=self._run, name="speech", daemon=True)
+        self._thread.start()
+
+    def say(
+        self,
+        text: str,
+        on_start: Callable[[], None] = lambda: None,
+        on_failure: Callable[[Exception], None] = lambda error: None,
+    ) -> Utterance:
+        """Put a text at the end of the queue.
+
+        Args:
+            text: What to say.
+            on_start: Called when the robot begins to say it.
+            on_failure: Called with the error if it could not be said.
+
+        Raises:
+            NaoError: If too many are waiting.
+        """
+        utterance = Utterance(text, on_start, on_failure)
+        with self._news:
+            if len(self._waiting) >= LONGEST_QUEUE:
+                self._count("not said", f"{LONGEST_QUEUE} texts are waiting already")
+                raise NaoError(self._last_error)
+            if self._closed:
+                utterance.end(Preempted())
+                return utterance
+            self._waiting.append(utterance)
+            self._news.notify_all()
+        return utterance
+
+    def silence(self, utterance: Utterance, reason: Exception | None = None) -> None:
+        """End a text: at once if it is being said, and before it begins if it waits.
+
+        Args:
+            utterance: What `say` gave.
+            reason: What its `error` is then; Preempted if none is given.
+        """
+        with self._news:
+            waits = utterance in self._waiting
+            if waits:
+                self._waiting.remove(utterance)
+                self._count("interrupted")
+        utterance.interrupt.trigger(reason)
+        if waits:
+            utterance.end(reason or Preempted())
+
+    def robot_is_back(self) -> None:
+        """Listen to the robot's words again, after a connection was made anew, and put back what is still owed."""
+        self._events.renew()
+        with self._news:
+            self._news.notify_all()
+
+    def report(self) -> Report:
+        """What was said, and what was not."""
+        with self._news:
+            values = {name: str(count) for name, count in self._counts.items()}
+            values["waiting"] = str(len(self._waiting))
+            values["last error"] = self._last_error
+            current = self._current
+        if current is not None:
+            return Report(Level.OK, "speaks", values)
+        return Report(Level.OK, "ready for texts", values)
+
+    def close(self) -> None:
+        """Be silent, now and for all texts to come, and give the voice back."""
+        with self._news:
+            self._closed = True
+            waiting = [*self._waiting]
+            current = self._current
+            self._news.notify_all()
+        for utterance in [*waiting, *([current] if current else [])]:
+            self.silence(utterance)
+        self._thread.join(CLOSE_LIMIT)
+        self._events.close()
+
+    # --- the thread -----------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        while True:
+            with self._news:
+                self._news.wait_for(lambda: self._waiting or self._closed or self._can_give_back())
+                if self._closed and not self._waiting:
+                    return
+                utterance = self._current = self._waiting.popleft() if self._waiting else None
+            if utterance is None:
+                self._give_back()
+                continue
+            error = self._outcome(utterance)
+            with self._news:
+                self._current = None
+            utterance.end(error)
+
+    def _can_give_back(self) -> bool:
+        """Whether the robot is back that was lost with a voice that is not its own; one attempt a connection."""
+        connection = self._robot.connection
+        return self._voice.owed and connection.state == "connected" and self._gave_back_to != connection.generation
+
+    def _outcome(self, utterance: Utterance) -> Exception | None:
+        """Have a text said; why it was not, if so."""
+        try:
+            self._speak(utterance)
+        except Preempted as signal:
+            self._count("interrupted")
+            return signal
+        except NaoError as error:
+            self._count("not said", str(error))
+            return error
+        except Exception as error:  # a mistake in here must not silence the robot for ever
+            log.exception("%r was not said", utterance.text)
+            self._count("not said", repr(error))
+            return NaoError(f"unexpected error: {error!r}")
+        self._count("said")
+        return None
+
+    def _speak(self, utterance: Utterance) -> None:
+        utterance.interrupt.check()
+        self._wait_for_robot(utterance)
+        self._listen()
+        self._voice.take(self._settings())
+        try:
+            utterance.interrupt.check()
+            self._last_sign = self._clock.now()
+            call = self._robot.proxy(SPEECH).call_async("say", utterance.text)
+            self._wait(call, utterance.interrupt)
+            if not call.done():
+                end_call(call, self._stop)
+                utterance.interrupt.check()
+            call.result(timeout=0)
+            utterance.start()  # a robot without events, or a text without a sound
+        finally:
+            self._give_back()
+
+    def _wait_for_robot(self, utterance: Utterance) -> None:
+        """Wait a moment for a robot that was never there; one that was lost fails the text at once."""
+        connection = self._robot.connection
+        while connection.state == "connecting" and not utterance.interrupt.is_set():
+            left = PATIENCE - (time.monotonic() - utterance.arrived)
+            if left <= 0.0 or connection.wait_connected(min(left, 0.5)):
+                break
+        utterance.interrupt.check()
+        if connection.state == "lost":
+            raise RobotLost(self._robot.address, connection.last_error or "no answer")
+
+    def _listen(self) -> None:
+        for name in SIGNS_OF_LIFE:
+            try:
+                self._events.subscribe(name)
+            except NaoError as error:
+                log.debug("event %s: %s", name, error)  # the text is said all the same
+
+    def _wait(self, call: Any, interrupt: Interrupt) -> None:
+        """Wait for the end of a call, an interrupt, or a robot that says nothing."""
+        news = Interrupt()
+        call.add_done_callback(lambda _: news.trigger())
+        with interrupt.waking(news.trigger):
+            while not news.is_set():
+                left = self._last_sign + QUIET_LIMIT - self._clock.now()
+                if left <= 0.0:
+                    interrupt.trigger(NothingSaid(QUIET_LIMIT))
+                    return
+                self._clock.wait(left, news)
+
+    def _stop(self) -> None:
+        """Silence a robot whose calls cannot be cancelled."""
+        self._robot.proxy(SPEECH).call_async("stopAll").result(timeout=ANSWER_LIMIT)
+
+    def _give_back(self) -> None:
+        if self._robot.connection.state != "connected":
+            return  # it is owed until the robot is back
+        self._gave_back_to = self._robot.connection.generation
+        try:
+            self._voice.give_back()
+        except NaoError as error:
+            log.warning("the robot's own voice could not be put back: %s", error)
+
+    def _on_event(self, name: str, value: Any) -> None:
+        """Called in a thread of libqi."""
+        self._last_sign = self._clock.now()
+        current = self._current
+        if name == STARTED and value and current is not None:
+            current.start()
+
+    def _count(self, what: str, error: str = "") -> None:
+        with self._news:
+            self._counts[what] += 1
+            if error:
+                self._last_error = error

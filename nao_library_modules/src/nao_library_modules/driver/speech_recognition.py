@@ -1,0 +1,183 @@
+"""Recognition of words: vocabulary, start and stop, and what was heard. No ROS."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from ..event_relay import EventRelay
+from ..health import Level, Report
+from .demand import Demand
+from .speech_settings import SpeechSettings
+
+RECOGNITION = "ALSpeechRecognition"
+HEARD = "WordRecognized"
+ANSWER_LIMIT = 5.0
+"""s that the robot has to answer; a new vocabulary takes it a while."""
+CLOSE_LIMIT = 1.0
+SPOTTED = re.compile(r"<\.\.\.>")
+"""What stands for the words before and after one that was spotted."""
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What the robot heard.
+
+    Attributes:
+        words: The best word or phrase first.
+        confidences: 0 to 1, one each.
+    """
+
+    words: tuple[str, ...]
+    confidences: tuple[float, ...]
+
+
+class RecognitionInUse(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """Somebody else listens for words, and a new vocabulary would take them away.
+
+    Attributes:
+        owners: Names of the subscribers.
+    """
+
+    def __init__(self, owners: Sequence[str]) -> None:
+        """Compose the text."""
+        super().__init__(f"the recognition of words is in use by {', '.join(owners)}: stop it there first")
+        self.owners = list(owners)
+
+
+class Recognition:
+    """Has the robot listen for words on behalf of one subscriber. Any thread may call."""
+
+    def __init__(
+        self, robot: Any, subscriber: str, settings: Callable[[], SpeechSettings], sink: Callable[[Heard], None]
+    ) -> None:
+        """Begin without listening; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            subscriber: Name under which the robot knows who listens.
+            settings: Gives vocabulary and expressions.
+            sink: Gets what was heard, whoever has started the recognition; in a thread of libqi.
+        """
+        self._robot = robot
+        self._subscriber = subscriber
+        self._settings = settings
+        self._sink = sink
+        self._lock = threading.Lock()
+        self._former_audio: bool | None = None
+        self._relay = EventRelay(lambda: robot.proxy("ALMemory"), self._on_event)
+        self._listening = Demand(robot, "recognition of words", self._begin, self._end)
+        self._hearing = Demand(robot, f"event {HEARD}", self._hear, lambda: self._relay.unsubscribe(HEARD))
+        self._hearing.want(True)
+
+    @property
+    def running(self) -> bool:
+        """Whether this subscriber listens."""
+        return self._listening.wanted
+
+    def start(self) -> None:
+        """Begin to listen; go on after a lost connection. No effect if it listens.
+
+        Raises:
+            NaoError: If there is no vocabulary, the robot cannot be asked, or somebody else uses the recognition.
+        """
+        self._listening.start_now()
+
+    def stop(self) -> None:
+        """Listen no longer. No effect if it does not.
+
+        Raises:
+            NaoError: If the robot cannot be asked.
+        """
+        self._listening.stop_now()
+
+    def apply(self) -> None:
+        """Use the settings of now, if it listens.
+
+        Raises:
+            NaoError: If the robot cannot; then it listens as before, or not at all.
+        """
+        if not self._listening.running:
+            return
+        with self._lock:
+            self._ask("pause", True)
+            try:
+                self._set(self._settings())
+            finally:
+                self._ask("pause", False)
+
+    def report(self) -> Report:
+        """Whether it listens, and for what."""
+        words = " / ".join(self._settings().vocabulary)
+        values = {"vocabulary": words, "last error": self._listening.problem or self._hearing.problem}
+        if not self._listening.wanted:
+            return Report(Level.OK, "does not listen", values)
+        if self._listening.running:
+            return Report(Level.OK, "listens", values)
+        return Report(Level.ERROR, f"cannot listen: {self._listening.problem or 'the robot is not connected'}", values)
+
+    def close(self) -> None:
+        """Listen no longer, for good."""
+        self._listening.close(CLOSE_LIMIT)
+        self._hearing.close(CLOSE_LIMIT)
+
+    # --- what the robot is asked ----------------------------------------------------------------------------------
+
+    def _begin(self) -> None:
+        settings = self._settings()
+        if not settings.vocabulary:
+            raise NaoError("there is no vocabulary: set ~vocabulary, or send one to speech_vocabulary_action")
+        owners = [info[0] for info in self._ask("getSubscribersInfo")]
+        if self._subscriber in owners:  # left over from a process that was killed
+            self._ask("unsubscribe", self._subscriber)
+            owners.remove(self._subscriber)
+        if owners:
+            raise RecognitionInUse(owners)
+        with self._lock:
+            self._former_audio = self._ask("getAudioExpression")
+            self._set(settings)
+        self._ask("subscribe", self._subscriber)
+
+    def _set(self, settings: SpeechSettings) -> None:
+        self._ask("setVocabulary", list(settings.vocabulary), settings.word_spotting)
+        self._ask("setAudioExpression", settings.audio_expression)
+        self._ask("setVisualExpression", settings.visual_expression)
+
+    def _end(self) -> None:
+        self._ask("unsubscribe", self._subscriber)
+        if self._former_audio is not None:
+            self._ask("setAudioExpression", self._former_audio)
+
+    def _hear(self) -> None:
+        if HEARD in self._relay.names:
+            self._relay.unsubscribe(HEARD)  # that one went with the connection
+        self._relay.subscribe(HEARD)
+
+    def _ask(self, method: str, *arguments: Any) -> Any:
+        return self._robot.proxy(RECOGNITION).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+
+    def _on_event(self, _name: str, value: Any) -> None:
+        heard = read_heard(value)
+        if heard is not None:
+            self._sink(heard)
+
+
+def read_heard(value: Any) -> Heard | None:
+    """What an event says was heard; None for one that only takes back what was heard before.
+
+    Args:
+        value: [phrase, confidence, phrase, confidence, ...], the best first; "<...> phrase <...>" if spotted.
+    """
+    if not isinstance(value, (list, tuple)) or len(value) < 2:
+        return None
+    pairs = [(SPOTTED.sub("", str(word)).strip(), float(share)) for word, share in zip(value[::2], value[1::2])]
+    pairs = [(word, share) for word, share in pairs if word]
+    if not pairs:
+        return None
+    words, confidences = zip(*pairs)
+    return Heard(words, confidences)

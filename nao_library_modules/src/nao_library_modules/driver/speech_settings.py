@@ -1,0 +1,144 @@
+"""How the robot speaks and what it listens for: parameters of nao_speech, old and new. No ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from naoqi.errors import NaoError
+
+SEPARATOR = "/"
+ROBOTS_OWN = -1
+"""Volume that leaves the robot's own."""
+FULL_VOLUME = 100
+FORMER_NAMES = {
+    "audio_expression": "enable_audio_expression",
+    "visual_expression": "enable_visual_expression",
+    "word_spotting": "enable_word_spotting",
+}
+"""Parameter -> its name in the first versions of nao_speech."""
+
+
+@dataclass(frozen=True)
+class SpeechSettings:
+    """What a text is said with, and what is listened for.
+
+    Attributes:
+        voice: Name of the voice; empty for the robot's own.
+        language: Name of the language; empty for the robot's own.
+        volume: 0 to 1; None for the robot's own.
+        vocabulary: Words and phrases that are listened for.
+        audio_expression: Whether the robot beeps when it begins to listen.
+        visual_expression: Whether its eyes show that it listens.
+        word_spotting: Whether words are found within longer sentences.
+    """
+
+    voice: str = ""
+    language: str = ""
+    volume: float | None = None
+    vocabulary: tuple[str, ...] = ()
+    audio_expression: bool = True
+    visual_expression: bool = True
+    word_spotting: bool = False
+
+
+def from_config(config: Mapping[str, Any]) -> SpeechSettings:
+    """Settings from the values of the parameters.
+
+    Args:
+        config: Name -> value of each; volume in percent or -1, vocabulary as "yes / no".
+    """
+    volume = config["volume"]
+    return SpeechSettings(
+        voice=config["voice"].strip(),
+        language=config["language"].strip(),
+        volume=None if volume < 0 else volume / FULL_VOLUME,
+        vocabulary=split_vocabulary(config["vocabulary"]),
+        audio_expression=config["audio_expression"],
+        visual_expression=config["visual_expression"],
+        word_spotting=config["word_spotting"],
+    )
+
+
+def given_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters that somebody has set, in the form of today.
+
+    The first versions of nao_speech had the volume as a share of 1, the vocabulary as a list, and longer names for the
+    switches: all of that is understood.
+
+    Args:
+        parameters: Name -> value of the private parameters of the node.
+
+    Raises:
+        NaoError: If one has a value that it cannot have.
+    """
+    given: dict[str, Any] = {}
+    for name in ("voice", "language"):
+        if name in parameters:
+            given[name] = _text(name, parameters[name])
+    if "volume" in parameters:
+        given["volume"] = percent(parameters["volume"])
+    if "vocabulary" in parameters:
+        given["vocabulary"] = _vocabulary(parameters["vocabulary"])
+    for name, former in FORMER_NAMES.items():
+        for each in (name, former):  # the node takes former names away when it has read them: one there is new
+            if each in parameters:
+                given[name] = _switch(each, parameters[each])
+    return given
+
+
+def percent(volume: Any) -> int:
+    """Volume in percent, or -1 for the robot's own.
+
+    Args:
+        volume: A whole number in percent, or a number with a point as a share of 1.
+
+    Raises:
+        NaoError: If it is neither.
+    """
+    if isinstance(volume, float) and 0.0 <= volume <= 1.0:
+        return round(FULL_VOLUME * volume)
+    whole = isinstance(volume, int) or (isinstance(volume, float) and volume.is_integer())
+    if whole and not isinstance(volume, bool) and ROBOTS_OWN <= volume <= FULL_VOLUME:
+        return int(volume)
+    raise NaoError(f"~volume is {volume!r}: 0 to 100 %, 0.0 to 1.0, or -1 for the robot's own")
+
+
+def split_vocabulary(text: str) -> tuple[str, ...]:
+    """Words and phrases of "yes / no / good morning"."""
+    return tuple(word.strip() for word in text.split(SEPARATOR) if word.strip())
+
+
+def join_vocabulary(words: Sequence[str]) -> str:
+    """Words and phrases as one text.
+
+    Raises:
+        NaoError: If one of them is empty or holds what separates them.
+    """
+    for word in words:
+        if SEPARATOR in word:
+            raise NaoError(f"field words: {word!r} holds {SEPARATOR!r}, which separates words")
+        if not word.strip():
+            raise NaoError(f"field words: {word!r} is empty")
+    return f" {SEPARATOR} ".join(word.strip() for word in words)
+
+
+def _vocabulary(value: Any) -> str:
+    if isinstance(value, str):
+        return join_vocabulary(split_vocabulary(value))
+    if isinstance(value, (list, tuple)) and all(isinstance(word, str) for word in value):
+        return join_vocabulary(value)
+    raise NaoError(f"~vocabulary is {value!r}: a text as 'yes / no', or a list of texts")
+
+
+def _text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise NaoError(f"~{name} is {value!r}: a text")
+    return value
+
+
+def _switch(name: str, value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise NaoError(f"~{name} is {value!r}: true or false")
+    return value

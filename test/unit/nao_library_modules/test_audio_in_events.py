@@ -1,0 +1,111 @@
+"""What the events of the robot's hearing say."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from nao_library_modules.audio_in_events import Bearing, begun_sounds, located_sound, recognised, turned
+
+LEVEL = [0.0] * 6
+
+
+def located(azimuth, elevation, head=LEVEL, confidence=0.5, energy=0.2):
+    return [[12, 340000], [azimuth, elevation, confidence, energy], LEVEL, list(head)]
+
+
+@pytest.mark.parametrize(
+    "bearing, vector",
+    [
+        ((0.0, 0.0), (1, 0, 0)),
+        ((math.pi / 2, 0.0), (0, 1, 0)),
+        ((0.0, math.pi / 2), (0, 0, 1)),
+        ((-math.pi, 0), (-1, 0, 0)),
+    ],
+)
+def test_left_and_up_are_positive(bearing, vector):
+    assert Bearing(*bearing).vector == pytest.approx(vector, abs=1e-12)
+
+
+def test_directions_and_vectors_are_two_ways_to_say_it():
+    for azimuth in (-3.0, -1.0, 0.0, 0.4, 2.9):
+        for elevation in (-1.2, 0.0, 0.7):
+            back = Bearing.of(tuple(3.0 * part for part in Bearing(azimuth, elevation).vector))
+            assert (back.azimuth, back.elevation) == pytest.approx((azimuth, elevation))
+
+
+@pytest.mark.parametrize(
+    "angles, turned_x",
+    [((0, 0, math.pi / 2), (0, 1, 0)), ((0, math.pi / 2, 0), (0, 0, -1)), ((math.pi / 2, 0, 0), (1, 0, 0))],
+)
+def test_turns_are_right_handed(angles, turned_x):
+    assert turned((1.0, 0.0, 0.0), angles) == pytest.approx(turned_x, abs=1e-12)
+
+
+def test_the_turn_about_z_comes_last():
+    # Pitched down by 90 degrees, ahead is below; then a turn to the left leaves it there.
+    assert turned((1.0, 0.0, 0.0), (0.0, math.pi / 2, 1.0)) == pytest.approx((0, 0, -1), abs=1e-12)
+
+
+@pytest.mark.parametrize("yaw", [-2.0, 0.0, 1.5])
+def test_a_head_that_is_turned_hears_the_same_place_elsewhere(yaw):
+    sound = located_sound(located(0.3, 0.0, head=[0.0, 0.1, 0.45, 0.0, 0.0, yaw]))
+    assert sound.in_head == Bearing(0.3, 0.0)
+    assert (sound.in_base.azimuth, sound.in_base.elevation) == pytest.approx((0.3 + yaw, 0.0))
+    assert (sound.head, sound.confidence, sound.energy) == ((0.0, 0.1, 0.45), 0.5, 0.2)
+
+
+def test_a_head_that_looks_down_hears_what_is_level_above_itself():
+    sound = located_sound(located(0.0, 0.5, head=[0, 0, 0.4, 0, 0.5, 0]))
+    assert (sound.in_base.azimuth, sound.in_base.elevation) == pytest.approx((0.0, 0.0))
+
+
+def test_old_robots_tell_no_energy():
+    assert located_sound([[1, 2], [0.1, 0.2, 0.3], LEVEL, LEVEL]).energy == 0.0
+
+
+@pytest.mark.parametrize("value", [None, [], [[1, 2], [0.1], LEVEL, LEVEL], [[1, 2], [0.1, 0.2, 0.3], LEVEL], "sound"])
+def test_what_is_no_located_sound_is_told(value):
+    with pytest.raises(ValueError, match="no sound that was located"):
+        located_sound(value)
+
+
+@pytest.mark.parametrize(
+    "value, confidences",
+    [
+        ([[12, 1, 0.8, 5]], [0.8]),
+        ([[12, 0, 0.8, 5]], []),
+        ([[12, 0, 0.8, 5], [90, 1, 0.4, 9]], [0.4]),
+        ([12, 1, 0.7, 5], [0.7]),
+        ([], []),
+    ],
+)
+def test_only_the_begin_of_a_sound_counts(value, confidences):
+    assert begun_sounds(value) == confidences
+
+
+def test_what_are_no_detected_sounds_is_told():
+    with pytest.raises(ValueError, match="no sounds that were detected"):
+        begun_sounds([[1]])
+
+
+@pytest.mark.parametrize(
+    "value, words",
+    [
+        (["yes", 0.6, "no", 0.2], [("yes", 0.6), ("no", 0.2)]),
+        (["<...> stand up <...>", 0.5], [("stand up", 0.5)]),
+        ([], []),
+        (None, []),
+        (["", -3.0], []),
+        (["<...>", 0.0], []),
+    ],
+)
+def test_words_are_bare_and_a_reset_is_none(value, words):
+    assert recognised(value) == words
+
+
+@pytest.mark.parametrize("value", [["yes"], ["yes", "loud"], [3, 0.5], 7])
+def test_what_are_no_words_is_told(value):
+    with pytest.raises(ValueError, match="no words that were recognised"):
+        recognised(value)
