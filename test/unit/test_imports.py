@@ -118,7 +118,8 @@ def layer_of(module: str) -> str | None:
         return "ros"
     if root == "nao_sim_bridge":
         part = inner[0] if inner else ""
-        return {"sim": "sim", "services": "services", "paths": "sim paths"}.get(part, "server")
+        own = {"sim": "sim", "services": "services", "paths": "sim paths", "record_dir": "sim paths"}
+        return own.get(part, "server")
     if root == "nao_library_modules":
         part = inner[0] if inner else ""
         return part if part in ("driver", "process_modules") else "modules"

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""The examples for nao_audio_in, started as users start them."""
+
+import signal
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import numpy as np
+import rospkg
+import rospy
+import rostest
+import soundfile
+
+from nao_sim_bridge.testing import SimulatedRobot, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from sound_fixture import Room, bursts, recording  # noqa: E402
+
+EXAMPLES = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples"
+HEAD_YAW = "Device/SubDeviceList/HeadYaw/Position/Sensor/Value"
+
+
+class AudioInExamples(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.room = Room(cls.robot)
+
+    def setUp(self):
+        self.robot.reset()
+        self.room.clear()
+        self.example = None
+
+    def tearDown(self):
+        if self.example is not None:
+            self.example.kill()
+            self.example.communicate()
+
+    def start(self, name, *arguments):
+        command = [sys.executable, str(EXAMPLES / name), *arguments]
+        self.example = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    def finish(self, status=0):
+        """What the example printed; it ends with this status."""
+        output, _ = self.example.communicate(timeout=90)
+        self.assertEqual(self.example.returncode, status, output)
+        return output
+
+    def wait_for_subscriber(self, module):
+        service = self.robot.module(module)
+        wait_until(service.getSubscribersInfo, 40.0, f"a subscriber of {module}")
+
+    def test_a_recording(self):
+        recording("example.wav").unlink(missing_ok=True)
+        self.start("record_sound.py", "example.wav", "--seconds", "2", "--all")
+        output = self.finish()
+        self.assertIn("example.wav: succeeded", output)
+        self.assertIn("48000 Hz, left, right, front, rear", output)
+        info = soundfile.info(str(recording("example.wav")))
+        self.assertEqual(info.channels, 4)
+        self.assertAlmostEqual(info.duration, 2.0, delta=0.3)
+
+    def test_a_recording_that_is_interrupted_is_good(self):
+        recording("cut.wav").unlink(missing_ok=True)
+        self.start("record_sound.py", "cut.wav", "--seconds", "600")
+        wait_until(recording("cut.wav").exists, 40.0, "the recording")
+        self.robot.advance(1.0)
+        self.example.send_signal(signal.SIGINT)
+        self.example.communicate(timeout=20)
+        recorder = self.robot.module("ALAudioRecorder")
+        wait_until(lambda: begins_to_record(recorder), 10.0, "the end of the recording")
+        recorder.stopMicrophonesRecording()
+        self.assertGreaterEqual(soundfile.info(str(recording("cut.wav"))).duration, 1.0)
+
+    def test_the_head_turns_to_a_sound(self):
+        self.start("turn_to_sound.py", "--timeout", "30")
+        self.wait_for_subscriber("ALSoundLocalization")
+        self.room.place("bursts", bursts(), self.room.around(1.5, 0.9, 0.1), level_db=70.0, loop=True)
+        self.assertRegex(self.finish(), "a sound at [45][0-9] degrees")
+        self.assertAlmostEqual(self.robot.value(HEAD_YAW), 0.9, delta=0.2)
+
+    def dialogue_with(self, answer):
+        self.start("dialogue.py", "--timeout", "30")
+        self.wait_for_subscriber("ALSpeechRecognition")
+        self.room.person_says(answer, self.room.around(1.0, 0.3))
+        return self.finish()
+
+    def test_a_dialogue_with_a_person_who_says_yes(self):
+        output = self.dialogue_with("yes")
+        self.assertIn("robot: Shall we play?\nheard: yes", output)
+        self.assertIn("robot: Great!", output)
+
+    def test_a_dialogue_with_a_person_who_says_no(self):
+        self.assertIn("robot: What a pity.", self.dialogue_with("no"))
+
+    def test_a_dialogue_with_nobody(self):
+        self.start("dialogue.py", "--timeout", "2", "--times", "2")
+        output = self.finish(status=1)
+        self.assertEqual(output.count("robot: Shall we play?"), 2)
+        self.assertIn("I did not hear you.", output)
+
+    def test_the_robot_does_not_understand_what_it_is_not_asked(self):
+        self.start("dialogue.py", "--timeout", "4", "--times", "1")
+        self.wait_for_subscriber("ALSpeechRecognition")
+        self.room.place("bursts", bursts(), self.room.around(1.0, np.pi), level_db=65.0, loop=True)
+        self.assertIn("I did not hear you.", self.finish(status=1))
+
+
+def begins_to_record(recorder):
+    """Whether a recording can begin, for none runs; it runs then."""
+    try:
+        recorder.startMicrophonesRecording("next.wav", "wav", 16000, [0, 0, 1, 0])
+    except RuntimeError:
+        return False
+    return True
+
+
+if __name__ == "__main__":
+    rospy.init_node("audio_in_examples_test")
+    rostest.rosrun("nao_library_tests", "audio_in_examples", AudioInExamples)

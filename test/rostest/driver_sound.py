@@ -1,0 +1,296 @@
+#!/usr/bin/env python3
+"""Microphones as a topic; files, volume, recordings and directions of sounds as services and a topic."""
+
+import math
+import sys
+import threading
+import unittest
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import rospy
+import rostest
+import soundfile
+from diagnostic_msgs.msg import DiagnosticArray
+from dynamic_reconfigure.client import Client
+
+from nao_library_msgs.msg import AudioBuffer, AudioSourceLocalization
+from nao_library_msgs.srv import AudioPlayback, AudioRecorder, GetAudioMasterVolume, SetAudioMasterVolume
+from nao_sim_bridge.testing import SimulatedRobot, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from sound_fixture import Loudspeakers, Room, bursts, delay, noise, recording, strongest_frequency  # noqa: E402
+
+LIMIT = 30.0
+MICROPHONE = "nao_robot/microphone/naoqi_microphone"
+BLOCK = 0.17
+AUDIBLE = 300
+"""Samples above this are no background noise."""
+SIDES = ("left", "right", "front", "rear")
+NOT_IN_HOME = "leads out of it"
+
+
+class Blocks(list):
+    """Messages of the microphones, in the order of their coming."""
+
+    def samples(self):
+        """(frames, channels), and the time of the first one."""
+        channels = len(self[0].channelMap)
+        joined = np.concatenate([np.array(block.data, dtype=float).reshape(-1, channels) for block in self])
+        return joined, self[0].header.stamp.to_sec()
+
+    def end(self):
+        last = self[-1]
+        return last.header.stamp.to_sec() + len(last.data) / len(last.channelMap) / last.frequency
+
+
+class Service:
+    """A service whose fields are std_msgs, called with plain values."""
+
+    def __init__(self, name, kind):
+        rospy.wait_for_service(name, LIMIT)
+        self._kind = kind
+        self._proxy = rospy.ServiceProxy(name, kind)
+
+    def __call__(self, **fields):
+        request = self._kind._request_class()
+        for field, value in fields.items():
+            getattr(request, field).data = value
+        return self._proxy(request)
+
+
+class DriverSound(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.device = cls.robot.module("ALAudioDevice")
+        cls.simulation = cls.robot.module("NaoSimulation")
+        cls.room = Room(cls.robot)
+        cls.loudspeakers = Loudspeakers(cls.robot)
+        cls.settings = Client(MICROPHONE, timeout=LIMIT)
+        cls.reports = {}
+        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.note, queue_size=100)
+        cls.play_file = Service("nao_audio/play_file", AudioPlayback)
+        cls.record = Service("nao_audio/record", AudioRecorder)
+        cls.set_volume = Service("nao_audio/master_volume", SetAudioMasterVolume)
+        cls.volume = Service("nao_audio/get_master_volume", GetAudioMasterVolume)
+        wait_until(lambda: cls.answer(cls.volume) == "", LIMIT, "nao_audio and the robot")
+
+    @staticmethod
+    def answer(call, **fields):
+        """Error text of a service, empty if it did what it was asked."""
+        try:
+            call(**fields)
+        except rospy.ServiceException as error:
+            return str(error)
+        return ""
+
+    @classmethod
+    def note(cls, message):
+        for status in message.status:
+            cls.reports[status.name.split("/")[-1]] = (
+                status.message,
+                {entry.key: entry.value for entry in status.values},
+            )
+
+    def setUp(self):
+        self.robot.reset()
+        self.room.clear()
+        self.set_volume(master_volume=100)
+        self.settings.update_configuration({"frequency": 16000})
+
+    def wait_for_report(self, name, text):
+        wait_until(lambda: self.reports.get(name, ("",))[0] == text, LIMIT, f"{name}: {text}")
+        return self.reports[name][1]
+
+    # --- microphones ----------------------------------------------------------------------------------------------
+
+    @contextmanager
+    def listening(self, frequency=16000):
+        """Blocks of the microphones, in a list that grows while time passes; it stands still but for `advance`."""
+        self.settings.update_configuration({"frequency": frequency})
+        blocks = Blocks()
+        subscriber = rospy.Subscriber(f"{MICROPHONE}/audio_raw", AudioBuffer, blocks.append, queue_size=1000)
+        try:
+            wait_until(lambda: blocks and blocks[-1].frequency == frequency, LIMIT, "a block of the microphones")
+            self.robot.pause()
+            self.robot.advance(BLOCK)
+            self.wait_for_blocks(blocks)
+            blocks.clear()
+            yield blocks
+        finally:
+            self.robot.resume()
+            subscriber.unregister()
+
+    def wait_for_blocks(self, blocks):
+        """Until the last block that has been heard is there."""
+        heard = math.floor((self.simulation.time() - 0.005) / BLOCK) * BLOCK
+        wait_until(lambda: blocks and blocks.end() > heard - 0.01, LIMIT, f"sound up to {heard:.2f} s")
+
+    def test_a_tone_comes_with_its_pitch_and_at_its_time(self):
+        with self.listening() as blocks:
+            before = self.simulation.time()
+            self.device.playSine(1000, 80, 0, 1.0, _async=True)
+            after = self.robot.advance(0.05)
+            self.robot.advance(2.0)
+            self.wait_for_blocks(blocks)
+            samples, start = blocks.samples()
+        self.assertEqual((blocks[0].frequency, list(blocks[0].channelMap)), (16000, [AudioBuffer.CHANNEL_FRONT_LEFT]))
+        stamps = np.array([block.header.stamp.to_sec() for block in blocks])
+        np.testing.assert_allclose(np.diff(stamps), BLOCK, atol=1e-4)
+        loud = np.flatnonzero(np.abs(samples[:, 0]) > AUDIBLE)
+        began, ended = start + loud[0] / 16000, start + loud[-1] / 16000
+        self.assertGreater(began, before - 0.005)
+        self.assertLess(began, after)
+        self.assertAlmostEqual(ended - began, 1.0, delta=0.02)
+        self.assertAlmostEqual(strongest_frequency(samples[loud[0] : loud[-1]], 16000), 1000.0, delta=1.0)
+
+    def test_four_channels_tell_where_a_sound_comes_from(self):
+        with self.listening(48000) as blocks:
+            self.room.place("left", noise(3.0), self.room.around(2.0, math.pi / 2), 70.0)
+            self.robot.advance(2.0)
+            self.wait_for_blocks(blocks)
+            samples, _ = blocks.samples()
+        places = [AudioBuffer.CHANNEL_REAR_LEFT, AudioBuffer.CHANNEL_REAR_RIGHT]
+        places += [AudioBuffer.CHANNEL_FRONT_LEFT, AudioBuffer.CHANNEL_FRONT_RIGHT]
+        self.assertEqual(list(blocks[0].channelMap), places)
+        self.assertEqual(len(blocks[0].data), 4 * 8160)
+        middle = samples[48000:72000]
+        self.assertAlmostEqual(delay(middle[:, 0], middle[:, 1], 48000), 0.1116 / 343.0, delta=3e-5)
+        self.assertAlmostEqual(delay(middle[:, 2], middle[:, 3], 48000), 0.0618 / 343.0, delta=3e-5)
+
+    def test_no_block_is_lost_when_time_runs_fast(self):
+        with self.listening(48000) as blocks:
+            before = int(self.wait_for_report("naoqi_microphone: microphones", "heard")["lost blocks"])
+            self.robot.advance(20.0)
+            self.wait_for_blocks(blocks)
+            stamps = np.array([block.header.stamp.to_sec() for block in blocks])
+        self.assertGreater(len(blocks), 115)
+        np.testing.assert_allclose(np.diff(stamps), BLOCK, atol=1e-4)
+        lost = int(self.wait_for_report("naoqi_microphone: microphones", "nobody listens")["lost blocks"])
+        self.assertEqual(lost, before)
+
+    def test_nothing_is_captured_while_nobody_listens(self):
+        with self.listening():
+            pass
+        counts = []
+        for _ in range(3):  # blocks that are under way still come after the first
+            self.reports.clear()
+            counts.append(self.wait_for_report("naoqi_microphone: microphones", "nobody listens")["blocks"])
+            self.robot.advance(2.0)
+        self.assertEqual(counts[1], counts[2])
+
+    def test_other_frequencies_are_refused(self):
+        self.settings.update_configuration({"frequency": 16000})
+        with self.assertRaises(Exception):  # noqa: B017  the client of dynamic_reconfigure has no narrower one
+            self.settings.update_configuration({"frequency": 22050})
+        self.assertEqual(self.settings.get_configuration()["frequency"], 16000)
+
+    # --- files and volume -----------------------------------------------------------------------------------------
+
+    def channels(self, *sides):
+        return {f"{side}_channel": side in sides for side in SIDES}
+
+    def test_volume_is_set_and_read(self):
+        self.set_volume(master_volume=35)
+        self.assertEqual(self.volume().master_volume.data, 35)
+        self.assertEqual(self.device.getOutputVolume(), 35)
+        self.assertIn("0 to 100", self.answer(self.set_volume, master_volume=101))
+        self.assertEqual(self.device.getOutputVolume(), 35)
+
+    def test_a_recording_holds_what_was_heard_and_plays_as_long(self):
+        # Half of real time: what the machine does meanwhile counts less.
+        with self.robot.at_speed(0.5):
+            self.device.playSine(440, 80, 0, 5.0, _async=True)
+            request = {"file_path": "driver/tone.wav", "secs": 2, "audio_type": 0, "samplerate": 48000}
+            self.record(**request, **self.channels(*SIDES))
+            path = recording("driver/tone.wav")
+            samples, rate = soundfile.read(str(path))
+            self.assertEqual((rate, samples.shape[1]), (48000, 4))
+            self.assertAlmostEqual(len(samples) / rate, 2.0, delta=0.2)
+            self.assertAlmostEqual(strongest_frequency(samples, rate), 440.0, delta=1.0)
+            self.device.flushAudioOutputs()
+            self.robot.reset()
+            before = self.simulation.time()
+            self.play_file(file_path="driver/tone.wav")
+            after = self.simulation.time()
+        self.assertAlmostEqual(after - before, len(samples) / rate, delta=0.2)
+        first, last = self.loudspeakers.span(before - 0.1, after + 0.5)
+        self.assertAlmostEqual(last - first, len(samples) / rate, delta=0.2)
+
+    def test_one_channel_as_ogg(self):
+        request = {"file_path": "driver/front", "secs": 1, "audio_type": 1, "samplerate": 16000}
+        self.record(**request, **self.channels("front"))
+        facts = soundfile.info(str(recording("driver/front.ogg")))
+        self.assertEqual((facts.samplerate, facts.channels, facts.format), (16000, 1, "OGG"))
+
+    def test_what_is_wrong_is_said_and_the_services_go_on(self):
+        good = {"file_path": "a.wav", "secs": 1, "audio_type": 0, "samplerate": 48000}
+        cases = [
+            ("secs", {"secs": 0}, SIDES),
+            ("audio_type", {"audio_type": 7}, SIDES),
+            ("samplerate", {"samplerate": 44100}, SIDES),
+            ("channels", {}, ()),
+            ("channels", {}, ("left", "front")),
+            (NOT_IN_HOME, {"file_path": "../../etc/a.wav"}, SIDES),
+            ("filename", {"file_path": "a.mp3"}, SIDES),
+        ]
+        for text, change, sides in cases:
+            with self.subTest(text, **change):
+                self.assertIn(text, self.answer(self.record, **{**good, **change}, **self.channels(*sides)))
+        for text, name in (("no file", "nothing.wav"), (NOT_IN_HOME, "../a.wav"), ("file_path", "")):
+            with self.subTest(text, name=name):
+                self.assertIn(text, self.answer(self.play_file, file_path=name))
+        self.assertEqual(self.answer(self.volume), "")
+
+    def test_one_recording_at_a_time(self):
+        request = {"file_path": "driver/long.wav", "secs": 20, "audio_type": 0, "samplerate": 48000}
+        answers = []
+
+        def run():
+            answers.append(self.answer(self.record, **request, **self.channels(*SIDES)))
+
+        first = threading.Thread(target=run)
+        first.start()
+        wait_until(lambda: recording("driver/long.wav").exists(), LIMIT, "the beginning of the recording")
+        second = {**request, "file_path": "driver/second.wav", "secs": 1}
+        self.assertIn("one at a time", self.answer(self.record, **second, **self.channels(*SIDES)))
+        first.join(LIMIT)
+        self.assertEqual(answers, [""])
+
+    # --- directions -----------------------------------------------------------------------------------------------
+
+    def test_sounds_are_located_while_somebody_listens(self):
+        localisation = self.robot.module("ALSoundLocalization")
+        self.assertEqual(localisation.getSubscribersInfo(), [])
+        found = []
+        topic = "nao_audio/audio_source_localization"
+        subscriber = rospy.Subscriber(topic, AudioSourceLocalization, found.append)
+        wait_until(localisation.getSubscribersInfo, LIMIT, "a subscriber of ALSoundLocalization")
+        for bearing in (60, -120):
+            with self.subTest(bearing=bearing):
+                place = self.room.around(2.0, math.radians(bearing))
+                self.room.place("burst", bursts(), place, 70.0, loop=True)
+                found.clear()
+                self.robot.advance(3.0)
+                wait_until(lambda: found, LIMIT, "a direction")
+                message = found[-1]
+                x, y, _ = self.room.in_head(place)
+                off = (message.azimuth.data - math.atan2(y, x) + math.pi) % (2 * math.pi) - math.pi
+                self.assertLess(abs(off), math.radians(15.0))
+                self.assertGreater(message.confidence.data, 0.0)
+                self.assertEqual(message.header.frame_id, "torso")
+                self.assertAlmostEqual(message.head_pose.position.z, 0.1265, delta=0.001)
+                orientation = message.head_pose.orientation
+                parts = (orientation.x, orientation.y, orientation.z, orientation.w)
+                self.assertAlmostEqual(math.hypot(*parts), 1.0, delta=1e-6)
+                self.room.clear()
+                self.robot.advance(2.0)
+        subscriber.unregister()
+        wait_until(lambda: localisation.getSubscribersInfo() == [], LIMIT, "the end of the localisation")
+
+
+if __name__ == "__main__":
+    rospy.init_node("driver_sound_test")
+    rostest.rosrun("nao_library_tests", "driver_sound", DriverSound)

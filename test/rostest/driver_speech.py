@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""The one node that speaks: every text once and in turn, and ends that are ends."""
+
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import rospkg
+import rospy
+import rostest
+from actionlib import SimpleActionClient
+from actionlib_msgs.msg import GoalStatus
+from dynamic_reconfigure.client import Client
+from std_msgs.msg import String
+from std_srvs.srv import Empty
+
+from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
+from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from sound_fixture import Loudspeakers, level  # noqa: E402
+
+LIMIT = 60.0
+NODE = rospkg.RosPack().get_path("nao_library_modules") + "/nodes/nao_speech"
+LONG = "This is a long story, and it goes on and on, for nobody has told the robot where such a story ends. " * 3
+
+
+class DriverSpeech(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.voice = cls.robot.module("ALTextToSpeech")
+        cls.simulation = cls.robot.module("NaoSimulation")
+        cls.loudspeakers = Loudspeakers(cls.robot)
+        cls.sentences = []
+        cls.subscriber = cls.robot.module("ALMemory").subscriber("ALTextToSpeech/CurrentSentence")
+        cls.subscriber.signal.connect(lambda text: cls.sentences.append(text) if text else None)
+        cls.topic = rospy.Publisher("speech", String, queue_size=100)
+        wait_until(lambda: cls.topic.get_num_connections() == 1, LIMIT, "the one subscriber of speech")
+        cls.settings = Client("nao_speech", timeout=LIMIT)
+        cls.speech = SimpleActionClient("speech_action", SpeechWithFeedbackAction)
+        assert cls.speech.wait_for_server(rospy.Duration(LIMIT)), "speech_action"
+        wait_until(
+            lambda: cls.say("ready").wait(LIMIT).state == GoalStatus.SUCCEEDED, LIMIT, "nao_speech and the robot"
+        )
+
+    @classmethod
+    def say(cls, text):
+        return send(cls.speech, SpeechWithFeedbackGoal(text))
+
+    @staticmethod
+    def call(name):
+        """Error text of a service, empty if it did what it was asked."""
+        try:
+            rospy.ServiceProxy(name, Empty)()
+        except rospy.ServiceException as error:
+            return str(error)
+        return ""
+
+    def setUp(self):
+        self.robot.reset()
+        self.configure()
+        self.sentences.clear()
+
+    def configure(self, **changes):
+        rest = {"voice": "", "language": "", "volume": -1, "vocabulary": "", "word_spotting": False}
+        self.settings.update_configuration({**rest, **changes})
+
+    def succeed(self, text):
+        run = self.say(text).wait(LIMIT)
+        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
+        return run
+
+    def test_texts_of_topic_and_action_are_said_in_turn_and_once(self):
+        texts = [f"Number {n}" for n in ("one", "two", "three", "four")]
+        for text in texts:
+            self.topic.publish(text)
+        wait_until(lambda: len(self.sentences) >= 1, LIMIT, "the first text")
+        self.topic.publish("Number five")
+        wait_until(lambda: "Number four" in self.sentences, LIMIT, "the fourth text")
+        self.succeed("The end")
+        self.robot.advance(2.0)
+        said = [sentence.strip(" .") for sentence in self.sentences]
+        self.assertEqual(sorted(said), sorted([*texts, "Number five", "The end"]))
+        self.assertEqual([text for text in said if text in texts], texts)
+
+    def test_feedback_comes_when_the_robot_begins_and_the_result_when_it_has_ended(self):
+        with self.robot.at_speed(1.0):
+            before = self.simulation.time()
+            run = self.succeed("Feedback comes first, and the result comes last.")
+            after = self.simulation.time()
+        self.assertEqual(len(run.feedback), 1)
+        first, last = self.loudspeakers.span(before, after + 0.5)
+        self.assertAlmostEqual(run.feedback[0][0], first, delta=0.3)
+        self.assertAlmostEqual(run.ended, last, delta=0.4)
+        self.assertGreater(last - first, 1.5)
+
+    def test_a_cancelled_goal_is_silent_at_once(self):
+        with self.robot.at_speed(1.0):
+            run = self.say(LONG)
+            wait_until(lambda: run.feedback, LIMIT, "the beginning of the story")
+            run.cancel()
+            run.wait(LIMIT)
+            ended = self.simulation.time()
+        self.assertEqual(run.state, GoalStatus.PREEMPTED, run.text)
+        self.robot.advance(3.0)
+        samples, _ = self.loudspeakers.played(ended + 0.05, ended + 3.0)
+        self.assertEqual(level(samples), 0.0)
+        self.succeed("I can still talk.")
+
+    def test_a_newer_goal_ends_the_one_before_and_is_said(self):
+        first = self.say(LONG)
+        wait_until(lambda: first.feedback, LIMIT, "the beginning of the story")
+        second = self.succeed("Something else.")
+        first.wait(LIMIT)
+        self.assertEqual(first.state, GoalStatus.PREEMPTED)
+        self.assertLess(first.ended, second.ended)
+        self.assertIn("newer goal", first.text)
+
+    def test_an_empty_text_is_refused(self):
+        for text in ("", "  "):
+            run = self.say(text).wait(LIMIT)
+            self.assertEqual(run.state, GoalStatus.ABORTED)
+            self.assertIn("field say", run.text)
+
+    def test_voice_and_volume_are_used_for_the_text_and_put_back(self):
+        before = (self.voice.getVoice(), self.voice.getLanguage(), self.voice.getVolume())
+        other = next(voice for voice in self.voice.getAvailableVoices() if voice != before[0])
+
+        def loudness():
+            began = self.simulation.time()
+            self.succeed("How loud am I now?")
+            return self.loudspeakers.level(began, self.simulation.time())
+
+        self.voice.setVolume(1.0)
+        self.addCleanup(self.voice.setVolume, before[2])
+        loud = loudness()
+        self.configure(volume=20)
+        self.assertLess(loudness(), 0.5 * loud)
+        self.assertAlmostEqual(self.voice.getVolume(), 1.0, places=3)
+        self.configure(voice=other)
+        run = self.say("In another voice, for a while.")
+        wait_until(lambda: run.feedback, LIMIT, "the beginning")
+        self.assertEqual(self.voice.getVoice(), other)
+        run.wait(LIMIT)
+        self.assertEqual((self.voice.getVoice(), self.voice.getLanguage()), before[:2])
+
+    def test_a_voice_that_the_robot_does_not_have_is_refused(self):
+        with self.assertRaises(Exception):  # noqa: B017  the client of dynamic_reconfigure has no narrower one
+            self.configure(voice="nobody")
+        self.assertEqual(self.settings.get_configuration()["voice"], "")
+        rospy.set_param("nao_speech/voice", "nobody")
+        self.assertIn("no voice 'nobody': it has", self.call("reconfigure"))
+        rospy.set_param("nao_speech/voice", "")
+        self.succeed("My own voice.")
+
+    def test_parameters_of_former_versions_are_read_again_on_request(self):
+        rospy.set_param("nao_speech/volume", 0.25)
+        rospy.set_param("nao_speech/vocabulary", ["yes", "no"])
+        rospy.set_param("nao_speech/enable_word_spotting", True)
+        self.assertEqual(self.call("reconfigure"), "")
+        found = self.settings.get_configuration()
+        self.assertEqual((found["volume"], found["vocabulary"], found["word_spotting"]), (25, "yes / no", True))
+
+    def test_a_second_one_does_not_start(self):
+        second = subprocess.run(
+            [sys.executable, NODE, "__name:=second_speech", "--pport", str(self.robot.port)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=LIMIT,
+        )
+        self.assertEqual(second.returncode, 1)
+        self.assertIn("/nao_speech speaks for this robot already", second.stdout)
+        self.assertEqual(self.topic.get_num_connections(), 1)
+
+
+if __name__ == "__main__":
+    rospy.init_node("driver_speech_test")
+    rostest.rosrun("nao_library_tests", "driver_speech", DriverSpeech)

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""The robot is late, dies while it talks, and comes back: the nodes of its sound say so, and go on."""
+
+import os
+import subprocess
+import sys
+import time
+import unittest
+
+import rospy
+import rostest
+from actionlib import SimpleActionClient
+from actionlib_msgs.msg import GoalStatus
+from rosgraph_msgs.msg import Log
+from std_msgs.msg import String
+
+from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
+from nao_library_msgs.msg import AudioBuffer, AudioSourceLocalization
+from nao_library_msgs.srv import GetAudioMasterVolume
+from nao_sim_bridge.testing import send, wait_until
+from naoqi import ALProxy
+
+PORT = int(os.environ.get("NAO_PORT", "9559"))
+LIMIT = 30.0
+LONG = "This story takes longer than the robot lives, and nobody will ever know how it ends. " * 4
+
+
+class DriverSpeechLostRobot(unittest.TestCase):
+    def setUp(self):
+        self.simulator = None
+        self.addCleanup(self.kill)
+        self.speech = SimpleActionClient("speech_action", SpeechWithFeedbackAction)
+        self.assertTrue(self.speech.wait_for_server(rospy.Duration(LIMIT)))
+        self.topic = rospy.Publisher("speech", String, queue_size=10)
+        wait_until(lambda: self.topic.get_num_connections() == 1, LIMIT, "the one subscriber of speech")
+        self.blocks, self.complaints = [], []
+        rospy.Subscriber("nao_robot/microphone/naoqi_microphone/audio_raw", AudioBuffer, self.blocks.append)
+        rospy.Subscriber("nao_audio/audio_source_localization", AudioSourceLocalization)
+        rospy.Subscriber("/rosout", Log, lambda log: self.complaints.append(log.msg))
+        self.volume = rospy.ServiceProxy("nao_audio/get_master_volume", GetAudioMasterVolume)
+
+    def start(self):
+        self.simulator = subprocess.Popen([sys.executable, "-m", "nao_sim_bridge", "--port", str(PORT)])
+
+    def kill(self):
+        if self.simulator is not None:
+            self.simulator.kill()
+            self.simulator.wait()
+            self.simulator = None
+
+    def say(self, text):
+        return send(self.speech, SpeechWithFeedbackGoal(text))
+
+    def wait_until_it_works(self):
+        succeeded = GoalStatus.SUCCEEDED
+        wait_until(lambda: self.say("I am here.").wait(LIMIT).state == succeeded, LIMIT, "a text that is said")
+        heard = len(self.blocks)
+        wait_until(lambda: len(self.blocks) > heard, LIMIT, "blocks of the microphones")
+        localisation = ALProxy("ALSoundLocalization", "127.0.0.1", PORT)
+        wait_until(localisation.getSubscribersInfo, LIMIT, "the localisation of sounds")
+
+    def test_robot_that_is_late_dies_and_comes_back(self):
+        early = self.say("Is anybody there?").wait(LIMIT)
+        self.assertEqual(early.state, GoalStatus.ABORTED)
+        self.assertIn(str(PORT), early.text)
+        with self.assertRaisesRegex(rospy.ServiceException, str(PORT)):
+            self.volume()
+        self.start()
+        self.wait_until_it_works()
+        self.assertEqual(self.volume().master_volume.data, 100)
+
+        for attempt in range(2):
+            story = self.say(LONG)
+            wait_until(lambda: story.feedback, LIMIT, "the beginning of the story")
+            late = f"Nobody hears number {attempt}."
+            self.topic.publish(late)
+            began = time.monotonic()
+            self.kill()
+            story.wait(LIMIT)
+            self.assertLess(time.monotonic() - began, 2.5)
+            self.assertEqual(story.state, GoalStatus.ABORTED, story.text)
+            self.assertIn(f"127.0.0.1:{PORT}", story.text)
+            told = f"{late!r} was not said"
+            wait_until(lambda: any(told in text for text in self.complaints), LIMIT, told)
+            self.start()
+            self.wait_until_it_works()
+
+
+if __name__ == "__main__":
+    rospy.init_node("driver_speech_lost_robot_test")
+    rostest.rosrun("nao_library_tests", "driver_speech_lost_robot", DriverSpeechLostRobot)

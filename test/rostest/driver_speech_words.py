@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Words that somebody says, published by the node that listens for them."""
+
+import sys
+import unittest
+from pathlib import Path
+
+import rospy
+import rostest
+from actionlib import SimpleActionClient
+from actionlib_msgs.msg import GoalStatus
+from dynamic_reconfigure.client import Client
+from std_srvs.srv import Empty
+
+from nao_library_actions.msg import SetSpeechVocabularyAction, SetSpeechVocabularyGoal
+from nao_library_msgs.msg import WordRecognized
+from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from sound_fixture import Room  # noqa: E402
+
+LIMIT = 60.0
+SUBSCRIBER = "ros_nao_speech"
+
+
+class DriverSpeechWords(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.recognition = cls.robot.module("ALSpeechRecognition")
+        cls.room = Room(cls.robot)
+        cls.settings = Client("nao_speech", timeout=LIMIT)
+        cls.vocabulary = SimpleActionClient("speech_vocabulary_action", SetSpeechVocabularyAction)
+        assert cls.vocabulary.wait_for_server(rospy.Duration(LIMIT)), "speech_vocabulary_action"
+        cls.settings.update_configuration({"vocabulary": "yes"})
+        wait_until(lambda: cls.call("start_recognition") == "", LIMIT, "nao_speech and the robot")
+        cls.call("stop_recognition")
+
+    @staticmethod
+    def call(name):
+        """Error text of a service, empty if it did what it was asked."""
+        rospy.wait_for_service(name, LIMIT)
+        try:
+            rospy.ServiceProxy(name, Empty)()
+        except rospy.ServiceException as error:
+            return str(error)
+        return ""
+
+    def setUp(self):
+        self.robot.reset()
+        self.room.clear()
+        self.settings.update_configuration({"vocabulary": "", "word_spotting": False})
+
+    def set_vocabulary(self, *words):
+        return send(self.vocabulary, SetSpeechVocabularyGoal(list(words))).wait(LIMIT)
+
+    def test_words_that_somebody_says_are_published(self):
+        heard = []
+        subscriber = rospy.Subscriber("word_recognized", WordRecognized, heard.append)
+        self.addCleanup(subscriber.unregister)
+        self.assertIn("no vocabulary", self.call("start_recognition"))
+        run = self.set_vocabulary("yes", "no", "good morning", "robot")
+        self.assertEqual((run.state, run.result.success), (GoalStatus.SUCCEEDED, True), run.text)
+        self.assertEqual(self.call("start_recognition"), "")
+        self.addCleanup(self.call, "stop_recognition")
+        self.assertEqual([info[0] for info in self.recognition.getSubscribersInfo()], [SUBSCRIBER])
+        self.robot.advance(1.0)
+        self.room.person_says("good morning", self.room.around(1.0, 0.0))
+        self.robot.advance(2.0)
+        wait_until(lambda: heard, LIMIT, "a word")
+        self.assertEqual(heard[0].words[0], "good morning")
+        self.assertEqual(len(heard[0].words), len(heard[0].confidence_values))
+        self.assertGreater(heard[0].confidence_values[0], 0.2)
+
+        self.set_vocabulary("hello", "goodbye")  # while it listens
+        heard.clear()
+        self.room.person_says("goodbye", self.room.around(1.0, 0.0))
+        self.robot.advance(2.0)
+        wait_until(lambda: heard, LIMIT, "a word of the new vocabulary")
+        self.assertEqual(heard[0].words[0], "goodbye")
+
+        self.assertEqual(self.call("stop_recognition"), "")
+        self.assertEqual(self.recognition.getSubscribersInfo(), [])
+        self.assertEqual(self.call("stop_recognition"), "")
+
+    def test_vocabularies_that_will_not_do_are_refused(self):
+        for words, text in ((("",), "is empty"), (("and/or",), "separates words"), ((), "at least one word")):
+            run = self.set_vocabulary(*words)
+            self.assertEqual((run.state, run.result.success), (GoalStatus.ABORTED, False))
+            self.assertIn(text, run.text)
+        self.assertEqual(self.settings.get_configuration()["vocabulary"], "")
+
+    def test_it_does_not_take_the_recognition_from_somebody_else(self):
+        self.settings.update_configuration({"vocabulary": "yes / no"})
+        self.recognition.setVocabulary(["red", "green"], False)
+        self.recognition.subscribe("Somebody")
+        self.addCleanup(self.recognition.unsubscribe, "Somebody")
+        self.assertIn("in use by Somebody", self.call("start_recognition"))
+        self.assertEqual([info[0] for info in self.recognition.getSubscribersInfo()], ["Somebody"])
+
+
+if __name__ == "__main__":
+    rospy.init_node("driver_speech_words_test")
+    rostest.rosrun("nao_library_tests", "driver_speech_words", DriverSpeechWords)
