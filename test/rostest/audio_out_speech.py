@@ -177,6 +177,30 @@ class AudioOutSpeech(unittest.TestCase):
         ended = self.robot.module("ALMotion").getAngles("RArm", False)
         self.assertGreater(max(abs(a - b) for a, b in zip(moved, ended)), 0.1)
 
+    def test_body_language_of_a_text_and_for_good(self):
+        animated = self.robot.module("ALAnimatedSpeech")
+        before = animated.getBodyLanguageModeToStr()
+        run = self.play(
+            f("setBodyLanguageMode", body_language="disabled", revert=True),
+            f("animatedSay", "Hello.", body_language="random"),
+            f("getBodyLanguageMode"),
+        )
+        self.assertEqual(run.result.memList, [before])
+        self.assertEqual(words(run), ["Hello"])
+
+    def test_gestures_end_when_their_text_is_cancelled(self):
+        motion = self.robot.module("ALMotion")
+        motion.setStiffnesses("Body", 1.0)
+        gesture = "^start(animations/Stand/Gestures/Hey_1)"
+        run = send(self.client, NaoAudioOutGoal([f("animatedSay", f"{gesture} {TEXT} {TEXT}")]))
+        self.until_word(run, "brown")
+        run.cancel()
+        self.assertEqual(run.wait().state, GoalStatus.PREEMPTED)
+        self.robot.advance(4.0)
+        at = motion.getAngles("RArm", False)
+        self.robot.advance(1.0)
+        self.assertLess(max(abs(a - b) for a, b in zip(at, motion.getAngles("RArm", False))), 0.01)
+
 
 def words(run):
     """Words of a goal's feedback, in order."""

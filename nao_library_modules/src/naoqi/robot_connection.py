@@ -59,6 +59,7 @@ class Connection:
         self._state = State.CONNECTING
         self._since = time.monotonic()
         self._failed_attempts = 0
+        self._complained = False
         self._check = ""
         self._opening: Optional[Live] = None
         self._closing = threading.Event()
@@ -211,8 +212,8 @@ class Connection:
                 live = self._open()
             except Exception as error:  # whatever it is, this thread is the only one that can bring it back
                 self._note_failed_attempt(error)
-                if not self._closing.wait(delay) and self.generation == 0 and self._failed_attempts == 1:
-                    logger.warning("%s; trying on in the background", str(error).rstrip("."))
+                if not self._closing.wait(delay):
+                    self._complain_once(error)
                 delay = min(2.0 * delay, self.timing.longest_delay)
                 continue
             delay = self.timing.first_delay
@@ -220,6 +221,13 @@ class Connection:
             reason = self._watch(live)
             self._leave(live, reason)
         self._change(State.CLOSED)
+
+    def _complain_once(self, error: Exception) -> None:
+        """Warn of a robot that has never been reached; one that starts together with this program may need a while."""
+        late = time.monotonic() - self._since >= self.timing.patience
+        if late and self.generation == 0 and not self._complained:
+            self._complained = True
+            logger.warning("%s; trying on in the background", str(error).rstrip("."))
 
     def _open(self) -> Live:
         try:

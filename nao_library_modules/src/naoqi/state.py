@@ -40,6 +40,7 @@ class Timing:
         connect_limit: An attempt to connect is given up after this time.
         first_delay: Pause after the first failed attempt; it doubles with each further one.
         longest_delay: Longest pause between two attempts.
+        patience: A robot that has not been reached for so long is complained about in the log.
     """
 
     heartbeat_period: float = 0.3
@@ -47,6 +48,7 @@ class Timing:
     connect_limit: float = 5.0
     first_delay: float = 0.2
     longest_delay: float = 2.0
+    patience: float = 3.0
 
 
 Listener = Callable[[State], None]

@@ -97,7 +97,7 @@ class SimulatorServer:
         self.pictures = Pictures(self.simulation, self.runner)
         self.files = ClientFiles(options.record_dir, [sounds_directory()])
         self._audio = AudioModules(self.simulation, self.runner, self.files, self.broker)
-        self._speech = SpeechModules(self.simulation, self.runner, self.memory, self.files)
+        self._speech = SpeechModules(self.simulation, self.runner, self.memory, self.files, self.broker)
         self.sounds = WorldSoundsControl(self.simulation, self.runner, self.files)
         self._outlets: list[SoundFile | SoundCard] = []
 

@@ -11,6 +11,8 @@ import pytest
 
 import naoqi
 from naoqi import errors
+from naoqi.robot_connection import Connection
+from naoqi.state import Timing
 
 PROMISED = 2.0
 """A call under way fails within this time after the robot fell silent, in s."""
@@ -242,3 +244,19 @@ def test_a_removed_listener_hears_nothing(robot, states):
     connection.close()
     followed.wait_for("closed")
     assert heard == []
+
+
+@pytest.mark.parametrize("patience, complaints", [(0.0, 1), (60.0, 0)])
+def test_a_robot_never_reached_is_complained_about_once_but_not_at_once(
+    robot, caplog, eventually, patience, complaints
+):
+    robot.kill()
+    timing = Timing(first_delay=0.01, longest_delay=0.01, patience=patience)
+    connection = Connection(*robot.address, timing=timing)
+    try:
+        eventually(lambda: connection._failed_attempts > 3, "four failed attempts")
+    finally:
+        connection.close()
+    said = [record for record in caplog.records if record.levelno >= logging.WARNING]
+    assert len(said) == complaints
+    assert all("trying on" in record.getMessage() for record in said)

@@ -30,7 +30,7 @@ class Demand:
         name: str,
         start: Callable[[], None],
         stop: Callable[[], None],
-        alive: Callable[[], bool] = lambda: True,
+        alive: Callable[[], bool] | None = None,
     ) -> None:
         """Nothing is wanted yet.
 
@@ -39,7 +39,7 @@ class Demand:
             name: What it is, for the log.
             start: Starts it. It may have been started before, on a robot that was lost since.
             stop: Stops it.
-            alive: Whether it still does what it should; if not, it is stopped and started.
+            alive: Whether it still does what it should; if not, it is stopped and started. Asked once a second.
         """
         self._robot = robot
         self._name = name
@@ -134,9 +134,10 @@ class Demand:
         while True:
             with self._condition:
                 if not self._due() and not self._closed:
-                    self._condition.wait(LOOK_PERIOD if self._generation is not None else None)
+                    looks = self._alive is not None and self._generation is not None
+                    self._condition.wait(LOOK_PERIOD if looks else None)
                 closed, due = self._closed, self._due()
-            if due or (self.running and not self._alive()):
+            if due or (self._alive is not None and self.running and not self._alive()):
                 self._do()
             if closed:
                 return

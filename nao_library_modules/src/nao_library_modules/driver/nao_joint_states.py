@@ -14,7 +14,7 @@ from rospy import Time
 from sensor_msgs.msg import Imu, JointState
 from tf2_ros import TransformBroadcaster
 
-from naoqi.errors import NaoError
+from naoqi.errors import NaoError, RobotUnreachable
 
 from ..clock import WallClock
 from ..health import Level, Report
@@ -119,6 +119,9 @@ class NaoJointStates:
                 self._robot.connection.wait_connected(RETRY)
                 sensors = JointSensors(self._robot, self._names.body, self._use_sensors, self._use_odometry)
                 self._read_on(sensors)
+            except RobotUnreachable as error:
+                self._problem = str(error)  # the log has it already, from the connection
+                self._interrupt.wait(RETRY)
             except NaoError as error:
                 self._problem = str(error)
                 rospy.logwarn_throttle(COMPLAINT_PERIOD, f"joints cannot be read: {error}")

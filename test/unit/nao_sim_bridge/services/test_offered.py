@@ -34,7 +34,33 @@ COMMON_CALLS = {
     "version": (),
     "wait": (1, 0),
 }
+# Of all extractors; for those about a subscriber see `BEFORE`.
+EXTRACTOR_CALLS = {
+    "getCurrentPeriod": (),
+    "getCurrentPrecision": (),
+    "getEventList": (),
+    "getMemoryKeyList": (),
+    "getMyPeriod": ("Listener",),
+    "getMyPrecision": ("Listener",),
+    "getOutputNames": (),
+    "getSubscribersInfo": (),
+    "subscribe": ("Listener", 100, 0.5),
+    "unsubscribe": ("Listener",),
+    "updatePeriod": ("Listener", 100),
+    "updatePrecision": ("Listener", 0.5),
+}
+# Of the extractors that listen for sounds.
+LISTENING_CALLS = {
+    **EXTRACTOR_CALLS,
+    "isPaused": (),
+    "isProcessing": (),
+    "pause": (False,),
+    "setParameter": ("Sensitivity", 0.9),
+}
 CALLS = {
+    "ALAudioSourceLocalization": LISTENING_CALLS,
+    "ALSoundDetection": LISTENING_CALLS,
+    "ALSoundLocalization": LISTENING_CALLS,
     "ALMemory": {
         "addMapping": ("Listener", "moved", EVENT),
         "declareEvent": (EVENT, "Extractor"),
@@ -313,6 +339,19 @@ CALLS = {
         "showDictionary": (),
         "stopAll": (),
     },
+    "ALAnimatedSpeech": {
+        "addTagsToWords": ({"hello": ["ahoy"]},),
+        "declareTagForAnimations": ({"ahoy": ["animations/Stand/Gestures/Hey_1"]},),
+        "getBodyLanguageMode": (),
+        "getBodyLanguageModeToStr": (),
+        "isBodyLanguageEnabled": (),
+        "isBodyTalkEnabled": (),
+        "say": ("One.", {"bodyLanguageMode": "disabled"}),
+        "setBodyLanguageEnabled": (True,),
+        "setBodyLanguageMode": (2,),
+        "setBodyLanguageModeFromStr": ("contextual",),
+        "setBodyTalkEnabled": (True,),
+    },
 }
 # Answered, but not with success, or not by a robot that is still needed: tests of their own.
 ELSEWHERE = {
@@ -320,6 +359,7 @@ ELSEWHERE = {
     "ALAudioPlayer": {"playFileInLoop", "playInLoop", "playWebStream"},
     "ALMemory": {"getDataOnChange", "getDataPtr", "getFloatPtr", "getIntPtr"},
     "ALSystem": {"shutdown"},
+    "ALAnimatedSpeech": {"declareAnimationsPackage"},
     "ALTextToSpeech": {"loadVoicePreference"},
     COMMON: {"exit"},
 }
@@ -329,6 +369,9 @@ BEFORE = {
     ("ALAudioPlayer", "playSoundSetFile"): ("loadSoundSet", "nao_library"),
     ("ALAudioPlayer", "unloadSoundSet"): ("loadSoundSet", "nao_library"),
 }
+OF_A_SUBSCRIBER = ("getMyPeriod", "getMyPrecision", "unsubscribe", "updatePeriod", "updatePrecision")
+for extractor in [module for module, calls in CALLS.items() if "getSubscribersInfo" in calls]:
+    BEFORE.update({(extractor, method): ("subscribe", "Listener") for method in OF_A_SUBSCRIBER})
 # What would flash the robot's disk or change its users, and its picture: a simulation has neither.
 MISSING_IN_SYSTEM = {
     "appBackupInfo",
@@ -374,6 +417,10 @@ COMPLETE = [
     ("ALAudioDevice", 36),
     ("ALAudioRecorder", 2),
     ("ALTextToSpeech", 26),
+    ("ALAnimatedSpeech", 12),
+    ("ALAudioSourceLocalization", 16),
+    ("ALSoundDetection", 16),
+    ("ALSoundLocalization", 16),
 ]
 
 

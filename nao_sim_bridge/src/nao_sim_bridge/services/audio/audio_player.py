@@ -6,6 +6,7 @@ from typing import Any
 
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.arguments import number
+from nao_sim_bridge.services.audio.background import Background
 from nao_sim_bridge.services.audio.player import LoadedSound, Player
 from nao_sim_bridge.services.audio.sound_files import read_client_file
 from nao_sim_bridge.services.audio.sound_sets import SoundSets
@@ -29,18 +30,20 @@ class ALAudioPlayer:
         simulation: Whose loudspeakers these are; touched in the simulation thread only.
         runner: That thread.
         files: Where clients may have files read from.
+        background: Where sounds are read and changed.
     """
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles) -> None:
-        self._simulation = simulation
-        self._player = Player(simulation, runner)
+    def __init__(
+        self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles, background: Background
+    ) -> None:
+        self._player = Player(simulation, runner, background)
         self._files = files
         self._sets = SoundSets(files.folder / OWN_SETS, *files.shipped)
 
     # --- files ----------------------------------------------------------------------------------------------------
 
-    def loadFile(self, name: str) -> int:
-        return self._player.load(name, read_client_file(self._files, name)).number
+    def loadFile(self, name: str) -> Task:
+        return self._player.load_when_there(lambda: read_client_file(self._files, name), name)
 
     def unloadFile(self, sound_id: int) -> Task:
         loaded = self._player.find(sound_id)
@@ -85,6 +88,7 @@ class ALAudioPlayer:
             lambda wanted: fetch_sound(address, self._files, wanted),
             lambda sound: self._begin_once(address, sound, checked, name),
             name,
+            may_take_long=True,
         )
 
     def pause(self, sound_id: int) -> Task:
@@ -101,6 +105,8 @@ class ALAudioPlayer:
         return self._do(lambda: self._player.position(loaded), "getCurrentPosition")
 
     def stopAll(self) -> Task:
+        # At once, so that what is asked for right after this call is played.
+        self._player.give_up_pending()
         return self._do(self._player.stop_all, "stopAll")
 
     # --- volume, panorama, pitch ----------------------------------------------------------------------------------
@@ -179,7 +185,11 @@ class ALAudioPlayer:
 
     def _play_file(self, file: str, volume_and_pan: Any, name: str, position: float = 0.0, loop: bool = False) -> Task:
         checked = _volume_and_pan(volume_and_pan)
-        return self._play_once(file, read_client_file(self._files, file), checked, name, position, loop)
+        return self._player.play_when_there(
+            lambda _: read_client_file(self._files, file),
+            lambda sound: self._begin_once(file, sound, checked, name, _position(position, sound), loop),
+            name,
+        )
 
     def _play_once(
         self, label: str, sound: Sound, volume_and_pan: Any, name: str, position: float = 0.0, loop: bool = False

@@ -7,6 +7,7 @@ import threading
 from dataclasses import dataclass
 from typing import Any, Callable
 
+from nao_sim_bridge.services.audio.background import Background, Wanted
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
@@ -62,9 +63,11 @@ class Player:
     Args:
         simulation: Whose loudspeakers these are; touched in the simulation thread only.
         runner: That thread.
+        background: Where sounds are read and changed.
     """
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, background: Background) -> None:
+        self._background = background
         self._simulation = simulation
         self._runner = runner
         self._lock = threading.Lock()  # guards the table; the sounds in it belong to the simulation thread
@@ -72,7 +75,6 @@ class Player:
         self._numbers = itertools.count(1)
         self._volume = 1.0
         self._panorama = 0.0
-        self._stops = 0
 
     # --- from any thread ------------------------------------------------------------------------------------------
 
@@ -109,60 +111,45 @@ class Player:
         """Do something in the simulation thread."""
         return self._runner.execute(action, name)
 
+    def load_when_there(self, fetch: Callable[[], Sound], name: str) -> Task:
+        """Give a number to a sound that takes its time to get; the task ends with the number."""
+        return self._background.in_turn(lambda _: self.load(name, fetch()).number, "loadFile")
+
     def play_when_there(
-        self, fetch: Callable[[Callable[[], bool]], Sound], play: Callable[[Sound], Task], name: str
+        self, fetch: Callable[[Wanted], Sound], play: Callable[[Sound], Task], name: str, may_take_long: bool = False
     ) -> Task:
         """Play what takes its time to get.
 
         Args:
-            fetch: Gets the sound, in a thread of its own; it may ask its argument whether anybody still wants it.
+            fetch: Gets the sound; it may ask its argument whether anybody still wants it.
             play: Begins to play it, in the simulation thread.
             name: Name of the task.
+            may_take_long: It may take so long that simulated time should not wait for it.
 
         Returns:
-            A task that ends with the task of the playing, or when nobody wants it any more.
+            A task that leads to the task of the playing; it ends when nobody wants it any more.
         """
-        stops, cancelled = self._stops, threading.Event()
 
-        def cancel(asked: Task) -> None:
-            cancelled.set()
-            asked.finish()
+        def work(wanted: Wanted) -> Task:
+            sound = fetch(wanted)
+            return self._runner.execute(lambda: play(sound) if wanted() else None, name)
 
-        def wanted() -> bool:
-            return self._stops == stops and not cancelled.is_set()
+        return (self._background.beside if may_take_long else self._background.in_turn)(work, name)
 
-        task = Task(name, 0, ask=cancel)
-
-        def work() -> None:
-            try:
-                sound = fetch(wanted)
-                begun = self._runner.execute(lambda: play(sound) if wanted() else None, name)
-            except Exception as error:
-                task.finish(error=error if wanted() else None)
-            else:
-                begun.add_done_callback(lambda done: task.finish(done.value, done.error))
-
-        threading.Thread(target=work, name=name, daemon=True).start()
-        return task
+    def give_up_pending(self) -> None:
+        """Do not play what was asked for up to now and is still on its way."""
+        self._background.stop()
 
     def change_pitch(self, number: int, factor: float) -> Task:
         """Give a sound another pitch, 1 for its own; what plays goes on at the place where it is."""
         loaded = self.find(number)
-        changed = Task("setPitch", 0)
 
-        def work() -> None:
-            # In a thread of its own: a minute of music takes some seconds of computing.
-            try:
-                sound = loaded.sound
-                altered = None if factor == 1.0 else Sound(shifted(sound.samples, factor, sound.rate), sound.rate)
-                done = self._runner.execute(lambda: self._exchange(loaded, altered), "setPitch")
-            except Exception as error:
-                changed.finish(error=error)
-            else:
-                done.add_done_callback(lambda end: changed.finish(error=end.error))
+        def work(_: Wanted) -> Task:
+            sound = loaded.sound
+            altered = None if factor == 1.0 else Sound(shifted(sound.samples, factor, sound.rate), sound.rate)
+            return self._runner.execute(lambda: self._exchange(loaded, altered), "setPitch")
 
-        threading.Thread(target=work, name="change of pitch", daemon=True).start()
-        return changed
+        return self._background.in_turn(work, "setPitch")
 
     # --- in the simulation thread ---------------------------------------------------------------------------------
 
@@ -216,8 +203,7 @@ class Player:
             loaded.run.task.kill()
 
     def stop_all(self) -> None:
-        """Silence all, and forget what is still on its way."""
-        self._stops += 1
+        """Silence all that plays."""
         for loaded in self.loaded():
             self.stop(loaded)
 

@@ -50,7 +50,7 @@ class SpeechEvents:
             self._memory.put_quietly(INTERRUPTED, False)
             raise_event(STARTED, True)
         elif event.kind == steps.SENTENCE:
-            raise_event(SENTENCE, event.value)
+            raise_event(SENTENCE, event.value.text)
         elif event.kind == steps.WORD:
             raise_event(POSITION, event.value.position)
             raise_event(WORD, event.value.text)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any
 
 from nao_sim_bridge.record_dir import ClientFiles
+from nao_sim_bridge.services.audio.animated_speech import ALAnimatedSpeech
 from nao_sim_bridge.services.audio.speech_events import SpeechEvents
 from nao_sim_bridge.services.audio.text_to_speech import ALTextToSpeech
 from nao_sim_bridge.services.audio.voice_settings import VoiceSettings
@@ -13,10 +15,13 @@ from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.speech.speaker import Speaker
 from nao_sim_bridge.sim.speech.studio import Studio
+from nao_sim_bridge.sim.tasks import Task
+
+log = logging.getLogger("nao_sim.speech")
 
 
 class SpeechModules:
-    """ALTextToSpeech of one robot.
+    """ALTextToSpeech and ALAnimatedSpeech of one robot.
 
     Attributes:
         studio: Makes the sound.
@@ -27,21 +32,26 @@ class SpeechModules:
         runner: Its thread.
         memory: Where events are raised.
         files: Where clients may have files read from and written to.
+        broker: Finds modules that a text calls: `service(name)`.
     """
 
     def __init__(
-        self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore, files: ClientFiles
+        self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore, files: ClientFiles, broker: Any
     ) -> None:
+        self._broker = broker
         self.studio = Studio()
         self.speaker = Speaker(simulation, self.studio)
         self._settings = VoiceSettings(self.studio.engines)
         events = SpeechEvents(memory)
         self.speaker.listeners.append(events)
         self._text_to_speech = ALTextToSpeech(self.speaker, self.studio, self._settings, events, runner, files)
+        self._animated_speech = ALAnimatedSpeech(
+            simulation, runner, memory, self.speaker, self.studio, self._settings, files, self._call
+        )
 
     def modules(self) -> dict[str, list[Any]]:
         """The modules by name, as `make_service` wants them."""
-        return {"ALTextToSpeech": [self._text_to_speech]}
+        return {"ALTextToSpeech": [self._text_to_speech], "ALAnimatedSpeech": [self._animated_speech]}
 
     def begin(self) -> None:
         """Have the engines ready for the first text."""
@@ -51,3 +61,14 @@ class SpeechModules:
         """Whoever waits for speech gets an error; the engines end. When the simulation has ended."""
         self.speaker.close()
         self.studio.close()
+
+    def _call(self, module: str, method: str, arguments: list) -> Task:
+        """Call a method that a text names; the task ends with it, a failure is told in the log."""
+
+        def call() -> None:
+            try:
+                self._broker.service(module).call(method, *arguments)
+            except (RuntimeError, AttributeError) as error:
+                log.warning("call of %s.%s in a text failed: %s", module, method, error)
+
+        return self.studio.in_background(call, f"{module}.{method}")

@@ -8,6 +8,7 @@ from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.audio.audio_device import ALAudioDevice
 from nao_sim_bridge.services.audio.audio_player import ALAudioPlayer
 from nao_sim_bridge.services.audio.audio_recorder import ALAudioRecorder
+from nao_sim_bridge.services.audio.background import Background
 from nao_sim_bridge.services.audio.microphone_clients import MicrophoneClients
 from nao_sim_bridge.services.audio.microphone_energy import MicrophoneEnergy
 from nao_sim_bridge.services.audio.recorder import Recorder
@@ -30,14 +31,15 @@ class AudioModules:
     """
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles, broker: Any) -> None:
+        background = Background(released=lambda: simulation.wake())
         ears, settings = simulation.sound.ears, simulation.sound.settings
         self.clients = MicrophoneClients(ears, broker.service, released=lambda: simulation.wake())
         self.recorders = [Recorder(simulation, runner, files) for _ in range(2)]
         self._energy = MicrophoneEnergy(ears, {side: settings.energy_channels(side) for side in settings.energies})
-        self._player = ALAudioPlayer(simulation, runner, files)
+        self._player = ALAudioPlayer(simulation, runner, files, background)
         self._device = ALAudioDevice(simulation, runner, files, self.clients, self._energy, self.recorders[0])
         self._recorder = ALAudioRecorder(self.recorders[1])
-        simulation.holds.append(self.clients.behind)
+        simulation.holds += [self.clients.behind, background.holds]
 
     def modules(self) -> dict[str, list[Any]]:
         """The modules by name, as `make_service` wants them."""

@@ -57,6 +57,9 @@ def write_sound(path: Path | str, sound: Sound) -> None:
         raise SoundFileError(f"sound file {path}: the name has to end with {', '.join(KINDS)}")
     kind, coding = KINDS[path.suffix.lower()]
     try:
-        soundfile.write(str(path), np.clip(sound.samples, -1.0, 1.0), sound.rate, coding, format=kind)
+        with soundfile.SoundFile(str(path), "w", sound.rate, sound.channels, coding, format=kind) as file:
+            # In pieces: the encoder of Vorbis keeps all that it is given at once on its stack.
+            for first in range(0, sound.frames, sound.rate):
+                file.write(np.clip(sound.samples[first : first + sound.rate], -1.0, 1.0))
     except (RuntimeError, OSError, ValueError) as error:
         raise SoundFileError(f"sound file {path}: cannot be written: {error}") from error

@@ -51,6 +51,10 @@ class PoseTrack:
             self._poses.pop(self._first, None)
             self._first += 1
 
+    def knows(self, tick: int) -> bool:
+        """Whether it remembers that tick."""
+        return tick in self._poses
+
     def at(self, first: int, last: int) -> HeadPoses:
         """Poses at the ticks `first` to `last`, this one included.
 

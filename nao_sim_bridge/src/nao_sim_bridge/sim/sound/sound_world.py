@@ -65,7 +65,8 @@ class SoundWorld:
 
     def begin(self, snapshot: Snapshot) -> None:
         """The robot has been put into the world; at the start and at each reset."""
-        self._poses.record(snapshot.tick, snapshot)
+        if not self._poses.knows(snapshot.tick):  # else a reset, from the next tick on: what is past stays
+            self._poses.record(snapshot.tick, snapshot)
         for call in self.after_reset:
             call()
 

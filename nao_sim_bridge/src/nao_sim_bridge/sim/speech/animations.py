@@ -89,7 +89,9 @@ class AnimationLibrary:
             if known == path or known.endswith("/" + path):
                 return self.animations[known]
         family = path.rsplit("/", 1)[-1].rsplit("_", 1)[0]
-        return next((a for known, a in self.animations.items() if known.rsplit("/", 1)[-1].startswith(family + "_")), None)
+        return next(
+            (a for known, a in self.animations.items() if known.rsplit("/", 1)[-1].startswith(family + "_")), None
+        )
 
     def tagged(self, tag: str) -> list[Animation]:
         """Animations of a tag."""

@@ -33,7 +33,7 @@ class PlannedGesture:
 
     @property
     def end(self) -> float:
-        """s from the beginning of the sentence."""
+        """S from the beginning of the sentence."""
         return self.start + self.length
 
 

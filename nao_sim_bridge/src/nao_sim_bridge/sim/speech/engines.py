@@ -94,7 +94,9 @@ class Engines:
         samples = np.frombuffer(sound, dtype=np.int16).astype(np.float32) / 32768.0
         samples.flags.writeable = False
         heard = (Word(*word) for word in words)
-        return Speech(samples, rate, tuple(_without_pause(word, samples, rate) for word in heard if word.end > word.start))
+        return Speech(
+            samples, rate, tuple(_without_pause(word, samples, rate) for word in heard if word.end > word.start)
+        )
 
     def close(self) -> None:
         """End the process; a later text would start it again."""

@@ -38,7 +38,7 @@ class SpeechEvent:
         kind: One of the words above. A text is enqueued and started, has sentences, words and bookmarks, and is at
             last done, stopped, or thrown because it cannot be said.
         task_id: Number of the text.
-        value: The sentence, the `SpokenWord`, the number of the bookmark; None for the others.
+        value: The `Clip` of the sentence, the `SpokenWord`, the number of the bookmark; None for the others.
     """
 
     kind: str
@@ -171,7 +171,7 @@ class Speaker:
 
     def _play(self, talk: _Talk, clip: Clip) -> None:
         log.info("says: %s", clip.text)
-        self._tell(talk, SENTENCE, clip.text)
+        self._tell(talk, SENTENCE, clip)
         marks = [(time, lambda mark=mark: self._pass(talk, mark)) for time, mark in clip.marks]
         loudspeakers = self._simulation.sound.loudspeakers
         talk.playing = loudspeakers.play(clip.sound, talk.task.name, volume=talk.style.volume, marks=marks)

@@ -42,3 +42,9 @@ def test_errors_name_the_file_and_what_is_wrong(tmp_path):
 def test_unknown_endings_are_refused_with_the_known_ones(tmp_path):
     with pytest.raises(SoundFileError, match=r"\.wav, \.flac"):
         write_sound(tmp_path / "a.xyz", Sound(np.zeros(5)))
+
+
+def test_a_long_ogg_can_be_written(tmp_path):
+    long = Sound(np.zeros((300 * 8000, 2), np.float32), 8000)
+    write_sound(tmp_path / "long.ogg", long)
+    assert read_sound(tmp_path / "long.ogg").frames == long.frames
