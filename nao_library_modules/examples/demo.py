@@ -2,31 +2,42 @@
 """Plays a demonstration on a simulated NAO and checks every step against what the robot reports.
 
 Starts simulator and action servers on a ROS master of its own, wakes the robot up, sends the lights through their paces
-as goals, has it walk to a table meanwhile, and leaves pictures, a table and the log of the stack in the output folder.
+as goals, has it walk to a table meanwhile, has it greet and hear itself, and leaves pictures, sound, a table and the
+log of the stack in the output folder.
 The exit status tells whether all of it went as asked.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
-import signal
-import socket
-import subprocess
 import sys
-import time
+import threading
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Callable, Mapping, Sequence
+from typing import Mapping, Sequence
+
+from nao_library_modules.demo_support import (
+    SOUND,
+    Stack,
+    can_connect,
+    count_green_pixels,
+    loud_time,
+    wait_until,
+    write_table,
+)
 
 DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
 EYE_ANGLES = tuple(range(0, 360, 45))
 EYES = ("LeftFaceLeds", "RightFaceLeds")
 START_LIMIT = 60.0
 STEP_LIMIT = 30.0
-WORLD = "lab"
 # m. The near edge of the table is 0.6 m ahead of where the robot starts.
 TO_THE_TABLE = 0.45
+GREETING = "Hello! I am a NAO that lives in a simulator. Welcome to the laboratory."
+# What the robot listens for while it greets, and the word of its own that it should hear.
+WORDS, OWN_WORD = ("hello", "goodbye", "laboratory", "elephant", "umbrella"), "laboratory"
+# How long the greeting lasts at least, s.
+GREETING_TIME = 2.0
 # m: nearer to what the sonars see than a walk comes by itself, 0.4 m.
 NEAR, USUAL = 0.15, 0.4
 # Pixels of the green eyes in a front view of 640 x 480; without them there are none.
@@ -117,39 +128,6 @@ def steps() -> list[Step]:
     ]
 
 
-class Stack:
-    """Simulator and action servers, started by roslaunch on free ports.
-
-    Args:
-        output: Folder for pictures and the log.
-    """
-
-    def __init__(self, output: Path) -> None:
-        self.ros_port, self.nao_port = free_port(), free_port()
-        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{self.ros_port}"
-        self.log = output / "stack.log"
-        command = ["roslaunch", "--port", str(self.ros_port), "nao_library", "nao_sim.launch"]
-        command += [f"nao_port:={self.nao_port}", f"record_dir:={output}", f"world:={WORLD}"]
-        with self.log.open("wb") as log:
-            self._process = subprocess.Popen(
-                command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True
-            )
-
-    def alive(self) -> bool:
-        """Whether roslaunch still runs."""
-        return self._process.poll() is None
-
-    def stop(self) -> None:
-        """End everything that was started."""
-        for number, limit in ((signal.SIGINT, 15.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0)):
-            if self.alive():
-                self._process.send_signal(number)
-                try:
-                    self._process.wait(limit)
-                except subprocess.TimeoutExpired:
-                    continue
-
-
 class Demonstration:
     """Client of a running stack: sends goals, reads the robot, takes pictures, keeps the table.
 
@@ -187,6 +165,33 @@ class Demonstration:
         weights = self._memory.getListData(["leftFootTotalWeight", "rightFootTotalWeight"])
         stands = self._motion.robotIsWakeUp() and 5.0 < sum(weights) < 5.7
         self._report("wake up and stand", f"{weights[0]:.2f} + {weights[1]:.2f} kg on its feet", stands)
+
+    def greet(self) -> None:
+        """Say something, and hear it with its own microphones; what was said is in a file."""
+        import actionlib
+        import rospy
+
+        import nao_library_actions.msg as actions
+        from nao_library_msgs.msg import AudioInFunction, AudioOutFunction
+
+        speaker = actionlib.SimpleActionClient("nao_audio_out", actions.NaoAudioOutAction)
+        listener = actionlib.SimpleActionClient("nao_audio_in", actions.NaoAudioInAction)
+        for client, name in ((speaker, "nao_audio_out"), (listener, "nao_audio_in")):
+            if not client.wait_for_server(rospy.Duration(START_LIMIT)):
+                raise RuntimeError(f"the server {name} did not come up")
+        hear = AudioInFunction(function="listen", vocabulary=list(WORDS), word_spotting=True, timeout=STEP_LIMIT)
+        listens = threading.Event()
+        listener.send_goal(actions.NaoAudioInGoal([hear]), feedback_cb=lambda told: told.status and listens.set())
+        listens.wait(STEP_LIMIT)
+        speaker.send_goal_and_wait(
+            actions.NaoAudioOutGoal([AudioOutFunction(function="say", str_param=GREETING)]), rospy.Duration(STEP_LIMIT)
+        )
+        listener.wait_for_result(rospy.Duration(STEP_LIMIT))
+        result = listener.get_result()
+        words = [word.strip("<.> ") for word in result.words] if result else []
+        seconds = loud_time(self._output / SOUND)
+        report = f"{seconds:.1f} s of speech in {SOUND}; it heard {', '.join(words[:1]) or 'nothing'}"
+        self._report("greet, and hear itself", report, seconds > GREETING_TIME and words[:1] == [OWN_WORD])
 
     def begin_walk(self) -> None:
         """Send the goal that walks to the table and waves; lights can go on meanwhile."""
@@ -274,48 +279,6 @@ class Demonstration:
         print(f"  {'ok  ' if good else 'FAIL'}  {asked}: {reported}", flush=True)
 
 
-def count_green_pixels(path: Path) -> int:
-    """Pixels of a picture that only a lit green LED has."""
-    import numpy as np
-    from PIL import Image
-
-    red, green, blue = (np.asarray(Image.open(path).convert("RGB"))[:, :, i].astype(int) for i in range(3))
-    return int(((green > 150) & (green > 1.6 * red) & (green > 1.6 * blue)).sum())
-
-
-def wait_until(ready: Callable[[], bool], limit: float, what: str, going_on: Callable[[], bool] = lambda: True) -> None:
-    """Wait until `ready()`, looking ten times a second.
-
-    Raises:
-        RuntimeError: It did not become ready within `limit` s, or `going_on()` became false.
-    """
-    give_up = time.monotonic() + limit
-    while not ready():
-        if time.monotonic() > give_up or not going_on():
-            raise RuntimeError(f"{what} did not become ready within {limit:g} s")
-        time.sleep(0.1)
-
-
-def can_connect(port: int) -> bool:
-    """Whether something listens on a port of this machine."""
-    with socket.socket() as probe:
-        return probe.connect_ex(("127.0.0.1", port)) == 0
-
-
-def free_port() -> int:
-    """A port that nobody uses now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-def write_table(rows: Sequence[tuple[str, str, bool]], path: Path) -> None:
-    """Write the table of what was asked and what the robot reports."""
-    lines = ["| asked | the robot reports | |", "|---|---|---|"]
-    lines += [f"| {asked} | {reported} | {'ok' if good else 'FAIL'} |" for asked, reported, good in rows]
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-
-
 def play_all(stack: Stack, output: Path) -> list[tuple[str, str, bool]]:
     """The whole demonstration; returns the table."""
     demonstration = Demonstration(stack, output)
@@ -332,6 +295,7 @@ def play_all(stack: Stack, output: Path) -> list[tuple[str, str, bool]]:
             demonstration.end_walk()
             demonstration.picture("at_the_table", "room")
     demonstration.picture("after", "front", green_eyes=False)
+    demonstration.greet()
     return demonstration.rows
 
 
@@ -352,7 +316,7 @@ def main() -> int:
         stack.stop()
     write_table(rows, output / "table.md")
     failures = sum(not good for _, _, good in rows)
-    print(f"{len(rows) - failures} of {len(rows)} as asked; pictures and table.md are in {output}")
+    print(f"{len(rows) - failures} of {len(rows)} as asked; pictures, {SOUND} and table.md are in {output}")
     return 1 if failures else 0
 
 

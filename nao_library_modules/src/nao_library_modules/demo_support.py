@@ -1,0 +1,103 @@
+"""What the demonstration needs beside its steps: the stack it starts, and how to look at what it left."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import time
+from pathlib import Path
+from typing import Callable, Sequence
+
+WORLD = "lab"
+# Everything the loudspeakers play.
+SOUND = "sound.wav"
+# Root mean square of speech, of full scale.
+LOUD = 0.02
+
+
+class Stack:
+    """Simulator and action servers, started by roslaunch on free ports.
+
+    Args:
+        output: Folder for pictures and the log.
+    """
+
+    def __init__(self, output: Path) -> None:
+        self.ros_port, self.nao_port = free_port(), free_port()
+        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{self.ros_port}"
+        self.log = output / "stack.log"
+        command = ["roslaunch", "--port", str(self.ros_port), "nao_library", "nao_sim.launch"]
+        command += [f"nao_port:={self.nao_port}", f"record_dir:={output}", f"world:={WORLD}", f"sound_file:={SOUND}"]
+        with self.log.open("wb") as log:
+            self._process = subprocess.Popen(
+                command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True
+            )
+
+    def alive(self) -> bool:
+        """Whether roslaunch still runs."""
+        return self._process.poll() is None
+
+    def stop(self) -> None:
+        """End everything that was started."""
+        for number, limit in ((signal.SIGINT, 15.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0)):
+            if self.alive():
+                self._process.send_signal(number)
+                try:
+                    self._process.wait(limit)
+                except subprocess.TimeoutExpired:
+                    continue
+
+
+def loud_time(path: Path) -> float:
+    """How long a sound file is loud, s, looked at in tenths of a second."""
+    import numpy as np
+    import soundfile
+
+    samples, rate = soundfile.read(path, always_2d=True)
+    length = rate // 10
+    tenths = samples[: len(samples) // length * length, 0].reshape(-1, length)
+    return float((np.sqrt((tenths**2).mean(axis=1)) > LOUD).sum()) / 10.0
+
+
+def count_green_pixels(path: Path) -> int:
+    """Pixels of a picture that only a lit green LED has."""
+    import numpy as np
+    from PIL import Image
+
+    red, green, blue = (np.asarray(Image.open(path).convert("RGB"))[:, :, i].astype(int) for i in range(3))
+    return int(((green > 150) & (green > 1.6 * red) & (green > 1.6 * blue)).sum())
+
+
+def wait_until(ready: Callable[[], bool], limit: float, what: str, going_on: Callable[[], bool] = lambda: True) -> None:
+    """Wait until `ready()`, looking ten times a second.
+
+    Raises:
+        RuntimeError: It did not become ready within `limit` s, or `going_on()` became false.
+    """
+    give_up = time.monotonic() + limit
+    while not ready():
+        if time.monotonic() > give_up or not going_on():
+            raise RuntimeError(f"{what} did not become ready within {limit:g} s")
+        time.sleep(0.1)
+
+
+def can_connect(port: int) -> bool:
+    """Whether something listens on a port of this machine."""
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+def free_port() -> int:
+    """A port that nobody uses now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def write_table(rows: Sequence[tuple[str, str, bool]], path: Path) -> None:
+    """Write the table of what was asked and what the robot reports."""
+    lines = ["| asked | the robot reports | |", "|---|---|---|"]
+    lines += [f"| {asked} | {reported} | {'ok' if good else 'FAIL'} |" for asked, reported, good in rows]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
