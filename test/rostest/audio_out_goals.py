@@ -12,6 +12,7 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoAudioOutAction, NaoAudioOutGoal
+from nao_library_modules.memory_functions import MemoryFunctions
 from nao_library_msgs.msg import AudioOutFunction
 from nao_sim_bridge.testing import SimulatedRobot, send
 
@@ -42,6 +43,84 @@ BAD = [
     ([("playWebStream", {"str_param": "ftp://x/y.ogg"})], "begins with http:// or https://"),
 ]
 
+TONE, SET = {"str_param": "nao_library/bip.ogg"}, {"str_param": "nao_library"}
+# Every function once, in an order that each finds what it needs.
+EVERY = [
+    ("getAvailableVoices", {}),
+    ("getAvailableLanguages", {}),
+    ("getSupportedLanguages", {}),
+    ("getVoice", {}),
+    ("setVoice", {"str_param": "rms", "revert": True}),
+    ("getLanguage", {}),
+    ("setLanguage", {"str_param": "French", "revert": True}),
+    ("setLanguageDefaultVoice", {"str_param": "English", "voice": "naoenu"}),
+    ("locale", {}),
+    ("setParameter", {"names": ["pitchShift"], "values": [1.2], "revert": True}),
+    ("getParameter", {"names": ["pitchShift", "speed"]}),
+    ("resetSpeed", {}),
+    ("addToDictionary", {"str_param": "NAO", "texts": ["now"]}),
+    ("showDictionary", {}),
+    ("deleteFromDictionary", {"str_param": "NAO"}),
+    ("setBodyLanguageMode", {"body_language": "random", "revert": True}),
+    ("getBodyLanguageMode", {}),
+    ("addTagsToWords", {"str_param": "hello", "texts": ["hi"]}),
+    ("declareTagForAnimations", {"str_param": "hello", "texts": ["animations/Stand/Gestures/Hey_1"]}),
+    ("say", {"str_param": "Yes."}),
+    ("animatedSay", {"str_param": "Yes."}),
+    ("sayToFile", {"str_param": "Yes.", "file_name": "yes.wav"}),
+    ("sayToFileAndPlay", {"str_param": "Yes."}),
+    ("playFile", TONE),
+    ("playFileFromPosition", {**TONE, "position": 0.05}),
+    ("playFileInLoop", TONE),
+    ("playSine", {"frequency": 440.0, "duration": 0.1}),
+    ("loadFile", TONE),
+    ("getLoadedFilesIds", {}),
+    ("getLoadedFilesNames", {}),
+    ("getFileLength", {}),
+    ("goTo", {"position": 0.01}),
+    ("getCurrentPosition", {}),
+    ("setPitch", {"pitch": 1.5}),
+    ("disablePitch", {}),
+    ("play", {}),
+    ("playInLoop", {}),
+    ("pause", {}),
+    ("setVolume", {"volume": 0.5, "revert": True}),
+    ("getVolume", {}),
+    ("setMasterVolume", {"volume": 0.5, "revert": True}),
+    ("getMasterVolume", {}),
+    ("setPanorama", {"pan": 0.0}),
+    ("stopAll", {}),
+    ("waitUntilSilent", {}),
+    ("unloadFile", {}),
+    ("unloadAllFiles", {}),
+    ("getInstalledSoundSetsList", {}),
+    ("isSoundSetInstalled", SET),
+    ("loadSoundSet", SET),
+    ("isSoundSetLoaded", SET),
+    ("getLoadedSoundSetsList", {}),
+    ("getSoundSetFileNames", SET),
+    ("isSoundSetFileInstalled", {**SET, "file_name": "bip"}),
+    ("playSoundSetFile", {**SET, "file_name": "bip", "volume": 0.5}),
+    ("unloadSoundSet", SET),
+    ("setOutputVolume", {"volume": 80.0, "revert": True}),
+    ("getOutputVolume", {}),
+    ("muteAudioOut", {"enable": True, "revert": True}),
+    ("isAudioOutMuted", {}),
+    ("flushAudioOutputs", {}),
+    ("closeAudioOutputs", {}),
+    ("isOutputClosed", {}),
+    ("openAudioOutputs", {}),
+    ("closeAudioInputs", {}),
+    ("isInputClosed", {}),
+    ("openAudioInputs", {}),
+    ("listOutputs", {}),
+    ("listInputs", {}),
+    ("reset", {}),
+]
+# They need what the simulated robot does not have: a preference, a package, a station on the network.
+ELSEWHERE = {"loadVoicePreference", "declareAnimationsPackage", "playWebStream"}
+MEMORY = set(MemoryFunctions().memory_functions())
+
 
 class AudioOutGoals(unittest.TestCase):
     @classmethod
@@ -66,6 +145,13 @@ class AudioOutGoals(unittest.TestCase):
         ended = self.robot.advance(0.5)
         self.assertLess(self.loudspeakers.level(began, ended), SILENT)
         self.assertEqual(self.play(AudioOutFunction(function="getVoice")).state, GoalStatus.SUCCEEDED)
+
+    def test_every_function_is_carried_out(self):
+        known = self.play(AudioOutFunction(function="?")).text.partition("known are ")[2].split(", ")
+        self.assertEqual({name for name, _ in EVERY}, set(known) - MEMORY - ELSEWHERE)
+        run = self.play(*(AudioOutFunction(function=name, **fields) for name, fields in EVERY))
+        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
+        self.assertEqual([result.function for result in run.result.results], [name for name, _ in EVERY])
 
     def test_what_was_done_before_an_error_is_in_the_result(self):
         run = self.play(

@@ -2,6 +2,7 @@
 """Microphones as a topic; files, volume, recordings and directions of sounds as services and a topic."""
 
 import math
+import subprocess
 import sys
 import threading
 import unittest
@@ -9,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+import rospkg
 import rospy
 import rostest
 import soundfile
@@ -23,6 +25,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is besid
 from sound_fixture import Loudspeakers, Room, bursts, delay, noise, recording, strongest_frequency  # noqa: E402
 
 LIMIT = 30.0
+EXAMPLE = rospkg.RosPack().get_path("nao_library_modules") + "/examples/microphone_to_file.py"
 MICROPHONE = "nao_robot/microphone/naoqi_microphone"
 BLOCK = 0.17
 AUDIBLE = 300
@@ -180,6 +183,17 @@ class DriverSound(unittest.TestCase):
             counts.append(self.wait_for_report("naoqi_microphone: microphones", "nobody listens")["blocks"])
             self.robot.advance(2.0)
         self.assertEqual(counts[1], counts[2])
+
+    def test_the_example_writes_the_topic_to_a_file(self):
+        self.device.playSine(1000, 80, 0, 20.0, _async=True)
+        self.addCleanup(self.device.flushAudioOutputs)
+        path = recording("example.wav")
+        command = [sys.executable, EXAMPLE, str(path), "--seconds", "2", "--frequency", "48000"]
+        ended = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=LIMIT)
+        self.assertEqual(ended.returncode, 0, ended.stdout)
+        samples, rate = soundfile.read(str(path))
+        self.assertEqual((rate, samples.shape), (48000, (96000, 4)))
+        self.assertAlmostEqual(strongest_frequency(samples, rate), 1000.0, delta=1.0)
 
     def test_other_frequencies_are_refused(self):
         self.settings.update_configuration({"frequency": 16000})

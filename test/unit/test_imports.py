@@ -85,7 +85,7 @@ LATER = Layer(
 if (ROOT / LATER.folder).is_dir():
     LAYERS = (*LAYERS, LATER)
 # Files of the server layer that ROS may be in; the others run without.
-ROS_SIDE = {"ros_node.py", "ros_side.py", "testing.py"}
+ROS_SIDE = {"ros_node.py", "ros_side.py", "ros_sounds.py", "testing.py"}
 
 
 def files_of(layer: Layer) -> list[Path]:

@@ -9,8 +9,8 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoLedAction, NaoLedGoal, NaoMotionGoal
-from nao_library_msgs.msg import LedFunction, MotionFunction
+from nao_library_actions.msg import NaoAudioOutGoal, NaoLedAction, NaoLedGoal, NaoMotionGoal
+from nao_library_msgs.msg import AudioOutFunction, LedFunction, MotionFunction
 
 from .errors import BenchmarkError
 
@@ -39,6 +39,11 @@ def interpolate(joint: str, angle: float, duration: float) -> NaoMotionGoal:
     """A goal that moves a joint to an angle (rad) in a time (s)."""
     function = MotionFunction(function="angleInterpolation", names=[joint], angles=[angle], times=[duration])
     return NaoMotionGoal([function])
+
+
+def say(text: str) -> NaoAudioOutGoal:
+    """A goal that says a text and is over when that is said."""
+    return NaoAudioOutGoal([AudioOutFunction(function="say", str_param=text)])
 
 
 class GoalClient:

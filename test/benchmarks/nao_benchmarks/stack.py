@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from .places import LIGHTS_NODE, MOTION_NODE, PROGRAMS
+from .places import AUDIO_OUT_NODE, LIGHTS_NODE, MOTION_NODE, PROGRAMS
 from .program import Program
 from .simulator import Simulator
 
@@ -20,6 +20,7 @@ START_LIMIT = 40.0
 OUR_SERVER = "NaoLights"
 BARE_SERVER = "bare_lights"
 MOTION_SERVER = "NaoMotion"
+AUDIO_OUT_SERVER = "nao_audio_out"
 # s; a client must still find its goal in the list when the result takes longer than the state.
 FORGET_AFTER = 0.2
 
@@ -87,6 +88,18 @@ class Stack:
         robot = ["--pip", "127.0.0.1", "--pport", str(self.simulator.port)]
         self._start("nao_motion", [str(MOTION_NODE), *robot])
         return GoalClient(MOTION_SERVER, START_LIMIT, NaoMotionAction)
+
+    @cached_property
+    def audio_out_client(self) -> GoalClient:
+        """A client of our server for sound."""
+        self.start_ros()
+        from nao_library_actions.msg import NaoAudioOutAction  # not above: it needs the built workspace
+
+        from .goals import GoalClient
+
+        robot = ["--pip", "127.0.0.1", "--pport", str(self.simulator.port)]
+        self._start("nao_audio_out", [str(AUDIO_OUT_NODE), *robot])
+        return GoalClient(AUDIO_OUT_SERVER, START_LIMIT, NaoAudioOutAction)
 
     def _goal_servers(self, name: str, forget_after: float | None = None) -> tuple[GoalClient, GoalClient]:
         self.start_ros()

@@ -8,6 +8,7 @@ import threading
 
 import numpy as np
 import pytest
+import qi
 
 import naoqi
 from naoqi import ALBroker, ALModule, errors
@@ -53,6 +54,9 @@ class Buttons(ALModule):
 
     def size_of(self, raw):
         return [type(raw).__name__, len(raw)]
+
+    def processRemote(self, channels, frames, time, sound):
+        self.heard.append((channels, frames, time, sound))
 
     def _hidden(self, key, value, message):
         self.heard.append("hidden")
@@ -323,3 +327,15 @@ def subscribers(memory):
         return memory.getSubscribers(EVENT)
     except errors.NaoError:
         return None
+
+
+def test_sound_arrives_as_bytes(robot, buttons):
+    """As ALAudioDevice calls it: for a parameter of any type libqi would make text of the bytes."""
+    sound = bytes(range(256)) * 4
+    session = qi.Session()
+    session.connect(f"tcp://127.0.0.1:{robot.port}")
+    try:
+        session.service(buttons.getName()).call("processRemote", 4, 128, [3, 170000], sound)
+    finally:
+        session.close()
+    assert buttons.heard == [(4, 128, [3, 170000], sound)]

@@ -160,6 +160,13 @@ class MemoryStore:
         """Write an event and tell its subscribers."""
         self._write(name, value, EVENT)
 
+    def reset_event(self, name: str, value: Any) -> None:
+        """Write an event without telling its subscribers: what it said is over."""
+        now = self._clock()
+        with self._lock:
+            entry = self._entries.setdefault(name, _Entry(EVENT))
+            entry.value, entry.time, entry.exists = value, now, True
+
     def raise_micro_event(self, name: str, value: Any) -> None:
         """Write a micro event and tell its subscribers."""
         self._write(name, value, MICRO_EVENT)

@@ -5,12 +5,15 @@ from __future__ import annotations
 from ..row import Row
 from .chained_functions import ChainedFunctions
 from .goal_round_trip import GoalRoundTrip
+from .hearing_tick import HearingTick
 from .memory import Memory
 from .motion_latency import MotionStart, MotionStop
 from .moving_tick import MovingTick
 from .physics_tick import PhysicsTick
 from .proxy_call import ProxyCall
 from .real_time_factor import RealTimeFactor
+from .sound import PhysicsWithSound, RecognitionSpeed
+from .speech import SpeechStart, SpeechStop
 from .walking_real_time_factor import WalkingRealTimeFactor
 from .walking_tick import WalkController, WalkingTick
 
@@ -20,12 +23,17 @@ ROWS: tuple[Row, ...] = (
     MovingTick(),
     WalkingTick(),
     WalkController(),
+    HearingTick(),
     RealTimeFactor(),
     WalkingRealTimeFactor(),
+    RecognitionSpeed(),
+    PhysicsWithSound(),
     ProxyCall(),
     GoalRoundTrip(),
     ChainedFunctions(),
     MotionStart(),
     MotionStop(),
+    SpeechStart(),
+    SpeechStop(),
     Memory(),
 )

@@ -21,6 +21,8 @@ from nao_sim_bridge.sim.tasks import Task
 
 log = logging.getLogger("nao_sim.recorder")
 
+# How long the end of the simulator waits for a file, s of wall time.
+CLOSING = 10.0
 KINDS: dict[str, Callable[[Path, int, int], Any]] = {"wav": WavFile, "ogg": OggFile}
 
 
@@ -39,6 +41,30 @@ class RecordingOrder:
     heard: MicrophoneFormat
 
 
+class FilesInUse:
+    """Files that are written to, by whichever recorder."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._paths: set[Path] = set()
+
+    def take(self, path: Path, name: str) -> None:
+        """Take a file, called `name` in errors.
+
+        Raises:
+            NaoqiError: It is written to already.
+        """
+        with self._lock:
+            if path in self._paths:
+                raise NaoqiError(f"{name!r} is being written to by another recording")
+            self._paths.add(path)
+
+    def give_back(self, path: Path) -> None:
+        """It is complete."""
+        with self._lock:
+            self._paths.discard(path)
+
+
 class Recorder:
     """One recording at a time.
 
@@ -46,12 +72,14 @@ class Recorder:
         simulation: Whose microphones these are.
         runner: Its thread.
         files: Where clients may have files written to.
+        in_use: Shared by all recorders.
     """
 
-    def __init__(self, simulation: Any, runner: SimulationRunner, files: ClientFiles) -> None:
+    def __init__(self, simulation: Any, runner: SimulationRunner, files: ClientFiles, in_use: FilesInUse) -> None:
         self._simulation = simulation
         self._runner = runner
         self._files = files
+        self._in_use = in_use
         self._lock = threading.Lock()
         self._recording: _Recording | None = None
 
@@ -66,12 +94,13 @@ class Recorder:
         with self._lock:
             if self._recording is not None:
                 raise NaoqiError(f"a recording to {self._recording.name!r} is under way; stop it first")
+            self._in_use.take(path, order.name)
             try:
                 recording = self._recording = _Recording(order, path)
-            except OSError as error:
-                raise NaoqiError(f"{order.name!r} cannot be written: {error.strerror or error}") from error
-            except LibsndfileError as error:
-                raise NaoqiError(f"{order.name!r} cannot be written: {error.error_string.strip()}") from error
+            except (OSError, LibsndfileError) as error:
+                self._in_use.give_back(path)
+                reason = error.strerror if isinstance(error, OSError) else error.error_string.strip()
+                raise NaoqiError(f"{order.name!r} cannot be written: {reason or error}") from error
         log.info("recording to %s", path)
         return self._runner.execute(lambda: recording.begin(self._simulation.sound.ears), "startMicrophonesRecording")
 
@@ -85,8 +114,10 @@ class Recorder:
             try:
                 recording.end()
             except Exception as error:
+                self._in_use.give_back(recording.path)
                 ended.finish(error=error)
             else:
+                self._in_use.give_back(recording.path)
                 ended.finish()
 
         def mark() -> None:
@@ -106,8 +137,11 @@ class Recorder:
         return ended
 
     def close(self) -> None:
-        """End the recording, if there is one; blocking."""
-        self.stop().result(10.0)
+        """End the recording, if there is one; blocking. What goes wrong is logged."""
+        try:
+            self.stop().result(CLOSING)
+        except (NaoqiError, TimeoutError) as error:
+            log.error("%s", error)
 
 
 class _Recording:
@@ -115,11 +149,12 @@ class _Recording:
 
     Attributes:
         name: Name of the file as it was given.
+        path: The file.
         until: Simulated time at which it ends, s; known once it is stopped.
     """
 
     def __init__(self, order: RecordingOrder, path: Path) -> None:
-        self.name = order.name
+        self.name, self.path = order.name, path
         self.until = math.inf
         self._heard = order.heard
         channels = 4 if order.heard.channel == ALL else 1

@@ -9,7 +9,7 @@ import urllib.error
 import urllib.parse
 import urllib.request
 from pathlib import Path
-from typing import Callable
+from typing import BinaryIO, Callable
 
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.audio.sound_files import read_checked, read_client_file
@@ -53,7 +53,7 @@ def fetch_sound(address: str, files: ClientFiles, wanted: Callable[[], bool] = l
         return read_checked(Path(file.name), address)
 
 
-def _download(address: str, file: tempfile._TemporaryFileWrapper, wanted: Callable[[], bool]) -> None:
+def _download(address: str, file: BinaryIO, wanted: Callable[[], bool]) -> None:
     end, size = time.monotonic() + PATIENCE, 0
     with urllib.request.urlopen(address, timeout=SILENCE) as answer:  # noqa: S310 the scheme is checked above
         while wanted():

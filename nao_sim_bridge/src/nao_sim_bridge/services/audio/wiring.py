@@ -11,7 +11,7 @@ from nao_sim_bridge.services.audio.audio_recorder import ALAudioRecorder
 from nao_sim_bridge.services.audio.background import Background
 from nao_sim_bridge.services.audio.microphone_clients import MicrophoneClients
 from nao_sim_bridge.services.audio.microphone_energy import MicrophoneEnergy
-from nao_sim_bridge.services.audio.recorder import Recorder
+from nao_sim_bridge.services.audio.recorder import FilesInUse, Recorder
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
 
@@ -34,7 +34,8 @@ class AudioModules:
         background = Background(released=lambda: simulation.wake())
         ears, settings = simulation.sound.ears, simulation.sound.settings
         self.clients = MicrophoneClients(ears, broker.service, released=lambda: simulation.wake())
-        self.recorders = [Recorder(simulation, runner, files) for _ in range(2)]
+        in_use = FilesInUse()
+        self.recorders = [Recorder(simulation, runner, files, in_use) for _ in range(2)]
         self._energy = MicrophoneEnergy(ears, {side: settings.energy_channels(side) for side in settings.energies})
         self._player = ALAudioPlayer(simulation, runner, files, background)
         self._device = ALAudioDevice(simulation, runner, files, self.clients, self._energy, self.recorders[0])

@@ -11,7 +11,7 @@ from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.sound.loudspeakers import Loudspeakers, checked_past
 from nao_sim_bridge.sim.sound.noise import Background
 from nao_sim_bridge.sim.sound.poses import PoseTrack
-from nao_sim_bridge.sim.sound.propagation import arrivals, at_places, between_knots, delayed
+from nao_sim_bridge.sim.sound.propagation import FixedWays, arrivals, at_places, between_knots
 from nao_sim_bridge.sim.sound.samples import RATE, Sound
 from nao_sim_bridge.sim.sound.settings import SoundSettings
 from nao_sim_bridge.sim.sound.sources import LONGEST_WAY, SourcePlaying, Sources, Stint
@@ -65,10 +65,9 @@ class Microphones:
         self._per_meter = RATE / settings.speed_of_sound
         speakers = np.array([place.position for place in model.loudspeakers])
         distances = np.linalg.norm(self.places[None] - speakers[:, None], axis=-1)
-        self._own_delays = distances * self._per_meter
         # Each of the two gives half of what both give together at 1 m.
         own = settings.peak_of(settings.loudspeaker_full_scale_db) / 2.0
-        self._own_gains = (own / np.maximum(distances, settings.near_field_m)).astype(np.float32)
+        self._own_ways = FixedWays.of(distances * self._per_meter, own / np.maximum(distances, settings.near_field_m))
         self._replacements: tuple[tuple[int, Sound | None], ...] = ((-(2**62), None),)
         timeline.forget.append(self._forget)
 
@@ -136,22 +135,18 @@ class Microphones:
         return out
 
     def _add_loudspeakers(self, out: np.ndarray, first: int, last: int) -> None:
-        margin = 64
-        low = first - int(self._own_delays.max()) - margin
-        mixed = self._loudspeakers.mixed(low, last + margin)
+        before, after = self._own_ways.span
+        mixed = self._loudspeakers.mixed(first - before, last + after)
         if mixed is None:
             return
         left, right = (np.ascontiguousarray(mixed[:, side]) for side in range(2))
         if np.array_equal(left, right):  # as speech is
-            delays, ways = self._own_delays.ravel(), [(left, slice(0, 8))]
-        else:
-            delays, ways = self._own_delays.ravel(), [(left, slice(0, 4)), (right, slice(4, 8))]
-        gains = self._own_gains.ravel()
-        for channel, which in ways:
-            heard = delayed(lambda a, b, c=channel: c[a - low : b - low], first, last, delays[which])
-            heard *= gains[which, None]
-            for part in heard.reshape(-1, 4, last - first):
-                out += part
+            for k, channel in enumerate(out):
+                channel += self._own_ways.through(left, (slice(None), k))
+            return
+        for side, signal in enumerate((left, right)):
+            for k, channel in enumerate(out):
+                channel += self._own_ways.through(signal, (side, k))
 
     def _add_source(
         self,

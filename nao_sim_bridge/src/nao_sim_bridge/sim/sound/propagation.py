@@ -6,12 +6,15 @@ A signal is first taken to twice its rate with a long filter; between those samp
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Callable
 
 import numpy as np
 
 HALF = 20
 """Samples on each side that the filter to the double rate looks at."""
+FIXED_HALF = 12
+"""The same of the filters for fixed ways, which need not leave anything to a second step."""
 ROUNDS, ENOUGH = 8, 1e-3
 """For moving sources: how often, at most, the way is worked out again, and the error in frames that is good enough."""
 MARGIN = HALF + 2
@@ -80,33 +83,47 @@ def at_places(read: Callable[[int, int], np.ndarray | None], places: np.ndarray)
     return out
 
 
-def delayed(read: Callable[[int, int], np.ndarray | None], first: int, last: int, delays: np.ndarray) -> np.ndarray:
-    """A signal with several delays that do not change.
+@dataclass(frozen=True)
+class FixedWays:
+    """Ways of sound that never change, as filters.
 
-    Args:
-        read: As above.
-        first: First frame asked for.
-        last: The one after the last.
-        delays: (k,) in frames.
-
-    Returns:
-        (k, last - first) float32, or None when all is silence.
+    Attributes:
+        earliest: The filters' first tap is for the sample so many frames ago; negative when it is still to come.
+        taps: (..., n) one filter for each way.
     """
-    low = int(np.floor(first - delays.max())) - MARGIN
-    signal = read(low, int(np.ceil(last - delays.min())) + MARGIN + 1)
-    if signal is None:
-        return None
-    double = doubled(signal)
-    out = np.empty((len(delays), last - first), np.float32)
-    for row, delay in enumerate(delays):
-        exact = (first - float(delay) - (low + HALF - 1)) * 2.0 - 1.0
-        index = int(exact)
-        weights = cubic(exact - index)
-        stop = index + 2 * (last - first)
-        out[row] = double[index:stop:2] * np.float32(weights[0])
-        for step in range(1, 4):
-            out[row] += double[index + step : stop + step : 2] * np.float32(weights[step])
-    return out
+
+    earliest: int
+    taps: np.ndarray
+
+    @classmethod
+    def of(cls, delays: np.ndarray, gains: np.ndarray) -> FixedWays:
+        """Filters for delays in frames and gains, both (...)."""
+        earliest = int(np.floor(delays.min())) - FIXED_HALF
+        at = np.arange(earliest, int(np.ceil(delays.max())) + FIXED_HALF + 1) - delays[..., None]
+        shares = np.clip(np.abs(at) / (FIXED_HALF + 1), 0.0, 1.0)
+        taps = np.sinc(at) * np.i0(7.0 * np.sqrt(1.0 - shares**2))
+        taps *= (gains / taps.sum(axis=-1))[..., None]
+        return cls(earliest, taps.astype(np.float32))
+
+    @property
+    def span(self) -> tuple[int, int]:
+        """How many samples before the first, and after the last frame asked for, they need."""
+        return self.earliest + self.taps.shape[-1] - 1, max(0, -self.earliest)
+
+    def through(self, signal: np.ndarray, which: tuple | int) -> np.ndarray:
+        """A signal that has come one way, or several ways at once.
+
+        Args:
+            signal: From `span[0]` samples before the first frame to `span[1]` after the last one.
+            which: Index of the way in `taps`; when it selects several, their sum arrives.
+
+        Returns:
+            A value for each frame, float32.
+        """
+        taps = self.taps[which]
+        if taps.ndim > 1:
+            taps = taps.sum(axis=0)
+        return np.convolve(signal, taps, "valid")
 
 
 def between_knots(values: np.ndarray, step: int, skip: int, count: int, kind: type = np.float64) -> np.ndarray:

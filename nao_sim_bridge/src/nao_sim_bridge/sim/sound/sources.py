@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Tuple
 
 import numpy as np
@@ -35,15 +35,16 @@ LOUD_PART = 0.1
 
 @dataclass(frozen=True, eq=False)
 class SoundSource:
-    """A sound at a place in the world.
+    """A sound at a place in the world. Best made outside the simulation thread: a long sound takes a moment.
 
     Attributes:
         name: Its name.
         position: In world, m.
-        sound: What sounds; channels are mixed to one.
+        sound: What sounds; becomes one channel at RATE.
         level_db: Level at 1 m, dB SPL, of its loud parts (root mean square).
         loop: Begin again at the end.
         start: Where in the sound to begin, s.
+        loudness: Root mean square of the sound's loud parts.
     """
 
     name: str
@@ -52,6 +53,12 @@ class SoundSource:
     level_db: float = 65.0
     loop: bool = False
     start: float = 0.0
+    loudness: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        sound = self.sound.mono().at_rate(RATE)
+        object.__setattr__(self, "sound", sound)
+        object.__setattr__(self, "loudness", loud_rms(sound.samples))
 
 
 class Stint:
@@ -85,12 +92,12 @@ class SourcePlaying(Playing):
     """
 
     def __init__(self, source: SoundSource, peak: float, timeline: Timeline, ids: TaskIds) -> None:
-        sound = source.sound.mono().at_rate(RATE)
-        loudness = loud_rms(sound.samples)
         self.name = source.name
-        self._gain = peak / math.sqrt(2.0) / loudness if loudness > 0.0 else 0.0
+        self._gain = peak / math.sqrt(2.0) / source.loudness if source.loudness > 0.0 else 0.0
         self.stints: tuple[Stint, ...] = (Stint(position_of(source.position), 1.0),)
-        super().__init__(timeline, ids, source.name, sound, source.start, source.loop, (), None, gains=(self._gain,))
+        super().__init__(
+            timeline, ids, source.name, source.sound, source.start, source.loop, (), None, gains=(self._gain,)
+        )
 
     @property
     def place(self) -> Position:

@@ -12,7 +12,7 @@ DISABLED, RANDOM, CONTEXTUAL = "disabled", "random", "contextual"
 MODES = (DISABLED, RANDOM, CONTEXTUAL)
 # A gesture begins so much before its word, s, and may be so much quicker or slower than it is made.
 LEAD = 0.3
-QUICKEST, SLOWEST = 0.75, 1.5
+QUICKEST, SLOWEST = 0.72, 1.5
 # Gestures of one text do not follow each other closer, s.
 REST = 0.1
 
@@ -61,7 +61,7 @@ def plan(
         for time, word in words:
             start = max(time - LEAD, begin)
             fitting = [a for a in library.of_word(word) if a.length * QUICKEST <= duration - start]
-            if not fitting:
+            if not fitting or start > time:  # the hands are still busy with a word before
                 continue
             animation = chance.choice(fitting)
             planned += _filled(begin, start - REST, library, chance)

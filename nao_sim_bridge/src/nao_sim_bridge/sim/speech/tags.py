@@ -17,6 +17,7 @@ from nao_sim_bridge.sim.tasks import Task
 log = logging.getLogger("nao_sim.speech")
 
 TAG = re.compile(r"\\([A-Za-z]+)(?:=([^\\]*))?\\")
+PLAIN = Prosody()
 LONGEST_PAUSE = 65.535
 LAST_BOOKMARK = 65535
 # Unit of \wait=N\ , s.
@@ -78,7 +79,7 @@ class TagReader:
         self._warn = warn
         self._left_out: set[str] = set()
 
-    def read(self, text: str, prosody: Prosody = Prosody()) -> list[Piece]:
+    def read(self, text: str, prosody: Prosody = PLAIN) -> list[Piece]:
         """Pieces of a text in their order.
 
         Args:

@@ -9,6 +9,7 @@ import soundfile
 
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene
+from nao_sim_bridge.sim.sound import wav_file
 
 RATE = 48000
 ALL, FRONT = [1, 1, 1, 1], [0, 0, 1, 0]
@@ -137,6 +138,30 @@ def test_one_recording_at_a_time_and_the_next_after_it(robot, recorder, read):
     recorder.stopMicrophonesRecording()
     samples, rate = read("one.wav")
     assert (rate, len(samples)) == (16000, pytest.approx(6400, abs=140))
+
+
+def test_two_recordings_need_two_files(robot, recorder, read):
+    recorder.startMicrophonesRecording("both.wav", "wav", 16000, FRONT)
+    with pytest.raises(RuntimeError, match="'day/../both.wav' is being written to by another recording"):
+        robot.ALAudioDevice.startMicrophonesRecording("day/../both.wav")
+    robot.ALAudioDevice.startMicrophonesRecording("other.wav")
+    robot.advance(0.3)
+    recorder.stopMicrophonesRecording()
+    robot.ALAudioDevice.stopMicrophonesRecording()
+    assert read("both.wav")[1] == 16000 and read("other.wav")[1] == 48000
+    robot.ALAudioDevice.startMicrophonesRecording("both.wav")
+
+
+def test_a_file_that_cannot_grow_is_reported(robot, recorder, read, monkeypatch):
+    recorder.startMicrophonesRecording("full.wav", "wav", 48000, ALL)
+    robot.advance(0.5)
+    robot.server.simulation.sound.ears.catch_up()
+    monkeypatch.setattr(wav_file, "LARGEST", 1000)
+    robot.advance(0.5)
+    with pytest.raises(RuntimeError, match="'full.wav' is not complete: .*4 GiB"):
+        recorder.stopMicrophonesRecording()
+    assert 0.1 < len(read("full.wav")[0]) / RATE < 0.6
+    recorder.startMicrophonesRecording("full.wav", "wav", 48000, ALL)
 
 
 def test_the_device_records_by_the_ending_of_the_name(robot, recorder, read):

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.sound.propagation import MARGIN, arrivals, at_places, delayed, doubled
+from nao_sim_bridge.sim.sound.propagation import MARGIN, FixedWays, arrivals, at_places, doubled
 
 RATE = 48000
 
@@ -22,18 +22,29 @@ def test_a_tone_between_samples_is_right_within_a_tenth_of_a_decibel(frequency):
     assert np.abs(heard - wanted).max() < 0.006
 
 
+@pytest.mark.parametrize("frequency", [100.0, 1000.0, 8000.0])
 @pytest.mark.parametrize("delay", [0.0, 0.25, 5.13, 77.5, 400.999])
-def test_a_fixed_delay_is_right(delay):
-    heard = delayed(tone(2000.0), 1000, 3000, np.array([delay, 3.0]))
-    wanted = np.sin(2 * np.pi * 2000.0 / RATE * (np.arange(1000, 3000) - delay))
-    assert np.abs(heard[0] - wanted).max() < 2e-3
-    assert np.abs(heard[1] - np.sin(2 * np.pi * 2000.0 / RATE * (np.arange(1000, 3000) - 3))).max() < 2e-3
+def test_a_fixed_way_delays_and_weakens(delay, frequency):
+    ways = FixedWays.of(np.array([delay, 7.3]), np.array([0.5, 1.0]))
+    before, after = ways.span
+    heard = ways.through(tone(frequency)(1000 - before, 3000 + after), 0)
+    wanted = 0.5 * np.sin(2 * np.pi * frequency / RATE * (np.arange(1000, 3000) - delay))
+    assert heard == pytest.approx(wanted, abs=1e-3)
 
 
-def test_both_ways_agree():
-    delays = np.array([10.3, 20.9])
-    places = np.arange(1000, 1500)[None] - delays[:, None]
-    assert at_places(tone(3000.0), places) == pytest.approx(delayed(tone(3000.0), 1000, 1500, delays), abs=1e-5)
+def test_two_fixed_ways_at_once_are_their_sum():
+    ways = FixedWays.of(np.array([[3.2, 8.0], [10.7, 4.0]]), np.array([[0.5, 1.0], [0.2, 1.0]]))
+    before, after = ways.span
+    signal = tone(700.0)(1000 - before, 1500 + after)
+    both = ways.through(signal, (slice(None), 0))
+    assert both == pytest.approx(ways.through(signal, (0, 0)) + ways.through(signal, (1, 0)), abs=1e-6)
+
+
+def test_both_kinds_of_ways_agree():
+    ways = FixedWays.of(np.array([10.3]), np.array([1.0]))
+    before, after = ways.span
+    fixed = ways.through(tone(3000.0)(1000 - before, 1500 + after), 0)
+    assert at_places(tone(3000.0), np.arange(1000, 1500) - 10.3) == pytest.approx(fixed, abs=1e-3)
 
 
 def test_the_double_rate_keeps_the_samples():
