@@ -160,8 +160,13 @@ class DriverSpeech(unittest.TestCase):
         rospy.set_param("nao_speech/vocabulary", ["yes", "no"])
         rospy.set_param("nao_speech/enable_word_spotting", True)
         self.assertEqual(self.call("reconfigure"), "")
-        found = self.settings.get_configuration()
-        self.assertEqual((found["volume"], found["vocabulary"], found["word_spotting"]), (25, "yes / no", True))
+        wanted = {"volume": 25, "vocabulary": "yes / no", "word_spotting": True}
+
+        def arrived():
+            found = self.settings.get_configuration()
+            return all(found[name] == value for name, value in wanted.items())
+
+        wait_until(arrived, LIMIT, f"parameters {wanted}")
 
     def test_a_second_one_does_not_start(self):
         second = subprocess.run(

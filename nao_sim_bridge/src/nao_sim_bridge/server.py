@@ -16,6 +16,7 @@ from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR, ClientFiles, OutsideRe
 from nao_sim_bridge.services import motion
 from nao_sim_bridge.services.arguments import number, numbers
 from nao_sim_bridge.services.audio import sound_detection, sound_localization
+from nao_sim_bridge.services.audio.speech_recognition import RecognitionModule
 from nao_sim_bridge.services.audio.speech_wiring import SpeechModules
 from nao_sim_bridge.services.audio.wiring import AudioModules
 from nao_sim_bridge.services.binding import make_service
@@ -98,6 +99,7 @@ class SimulatorServer:
         self.files = ClientFiles(options.record_dir, [sounds_directory()])
         self._audio = AudioModules(self.simulation, self.runner, self.files, self.broker)
         self._speech = SpeechModules(self.simulation, self.runner, self.memory, self.files, self.broker)
+        self._recognition = RecognitionModule(self.simulation, self.runner, self.memory, self.files)
         self.sounds = WorldSoundsControl(self.simulation, self.runner, self.files)
         self._outlets: list[SoundFile | SoundCard] = []
 
@@ -139,6 +141,7 @@ class SimulatorServer:
             "ALRobotPosture": [ALRobotPosture(self.simulation, self.runner, self.memory)],
             **self._audio.modules(),
             **self._speech.modules(),
+            **self._recognition.modules(),
             sound_detection.NAME: sound_detection.parts(self.simulation, self.memory),
             **{name: sound_localization.parts(name, self.simulation, self.memory) for name in sound_localization.NAMES},
             "ALSystem": [ALSystem(self.memory, self.reset_task, self.ended.set)],
@@ -152,6 +155,7 @@ class SimulatorServer:
         self.broker.close()
         self.runner.stop()
         self._speech.close()
+        self._recognition.close()
         self.pictures.close()
         for outlet in self._outlets:
             outlet.close()

@@ -258,6 +258,14 @@ def test_a_file_that_ends_before_its_duration_ends_the_function(audio, player):
     assert not player.pending[0].canceled
 
 
+def test_a_file_with_a_duration_is_preempted_before_it_is_over(audio, player, edge):
+    thread = in_background(audio, player, f("playFileInLoop", "ding.wav", duration=1000.0))
+    assert edge.clock.waiting.wait(LIMIT)
+    audio.server.preempt()
+    assert ended(thread, audio).end == "preempted"
+    assert player.pending[0].canceled
+
+
 def test_a_file_in_loop_goes_on_after_its_goal_until_it_is_stopped(audio, player):
     player.quick = False
     assert play(audio, f("playFileInLoop", "ding.wav")).end == "succeeded"

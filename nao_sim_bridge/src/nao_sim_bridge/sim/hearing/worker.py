@@ -33,7 +33,7 @@ class Ear:
         self._decoder = self._decoder_for(self._listening)
 
     def listen(self, listening: Listening) -> None:
-        """Listen for something else from now on; what was heard of an utterance so far is kept unless told to forget."""
+        """Listen for something else from now on, also in an utterance that has begun."""
         if listening.grammars != self._listening.grammars:
             self._decoder = self._decoder_for(listening)
         self._listening = listening

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.sim.errors import SimulationStopped
+from nao_sim_bridge.sim.sound.samples import RATE
 from nao_sim_bridge.sim.speech.clips import Clip, Mark, SpokenWord, Style
 from nao_sim_bridge.sim.speech.sentences import Item, Sentence
 from nao_sim_bridge.sim.speech.studio import Pending, Studio
@@ -18,6 +19,8 @@ log = logging.getLogger("nao_sim.speech")
 
 # How many sentences of a text are made ahead of the one that sounds.
 AHEAD = 2
+# How long before a sentence ends the next one has to be there when time runs faster than the wall clock, s.
+LOOK_AHEAD = 0.1
 ENQUEUED, STARTED, SENTENCE, WORD, BOOKMARK, DONE, STOPPED, THROWN = (
     "enqueued",
     "started",
@@ -110,14 +113,18 @@ class Speaker:
         return bool(self._talks)
 
     def waits_for_sound(self) -> bool:
-        """Whether the next sentence is due and not made yet; any thread may ask."""
-        try:
-            talk = self._talks[0]
-        except IndexError:
+        """Whether the next sentence is due, or will be in a moment, and is not made yet; simulation thread.
+
+        It looks ahead: whether a sentence begins right behind another one must not depend on who is quicker.
+        """
+        if not self._talks:
             return False
-        if talk.until is not None and not talk.until.finished:
-            return False
-        order = talk.orders.get(talk.next)
+        playing = self._talks[0].playing
+        if playing is not None and not playing.ended:
+            end = playing.end_frame
+            if end is None or end / RATE - self._simulation.time > LOOK_AHEAD:
+                return False
+        order = self._next_order()
         return order is not None and not order.ready
 
     def close(self) -> None:
@@ -214,6 +221,13 @@ class Speaker:
         if talk.until is not None:
             talk.until.kill()
         self._tell(talk, STOPPED)
+
+    def _next_order(self) -> Pending | None:
+        """The sentence that will be spoken next, of this text or of one behind it."""
+        for talk in self._talks:
+            if talk.orders:
+                return talk.orders[min(talk.orders)]
+        return None
 
     def _order_ahead(self, talk: _Talk) -> None:
         for number in range(talk.next, min(talk.next + AHEAD, len(talk.items))):

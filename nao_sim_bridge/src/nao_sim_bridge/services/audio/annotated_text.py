@@ -1,0 +1,108 @@
+"""Text with instructions, as ^start(animations/Stand/Gestures/Hey_1), read into what is said and what is done."""
+
+from __future__ import annotations
+
+import ast
+import logging
+import re
+from dataclasses import dataclass
+from typing import Any, Iterator, Tuple, Union
+
+log = logging.getLogger("nao_sim.speech")
+
+ANIMATION, TAG, MODE, CALL = "animation", "tag", "mode", "call"
+# Instruction -> what is done, and what its argument is.
+INSTRUCTIONS = {
+    "start": ("start", ANIMATION),
+    "run": ("run", ANIMATION),
+    "wait": ("wait", ANIMATION),
+    "stop": ("stop", ANIMATION),
+    "startTag": ("start", TAG),
+    "runTag": ("run", TAG),
+    "waitTag": ("wait", TAG),
+    "stopTag": ("stop", TAG),
+    "mode": ("mode", MODE),
+    "call": ("call", CALL),
+    "pCall": ("post", CALL),
+}
+MARK = re.compile(r"\^([A-Za-z]+)\(")
+METHOD = re.compile(r"\s*(\w+)\.(\w+)\s*\((.*)\)\s*", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Instruction:
+    """Something to do at a place of the text.
+
+    Attributes:
+        act: start, run, wait or stop an animation, change the mode, call or post a method.
+        kind: What `value` is: an animation's name, a tag, a mode, or a call.
+        value: As it is written.
+    """
+
+    act: str
+    kind: str
+    value: str
+
+
+def read(text: str) -> list[Union[str, Instruction]]:
+    """Texts and instructions in their order; what is no instruction of NAOqi's is left out, and told in the log."""
+    parts: list[Union[str, Instruction]] = []
+    place = 0
+    for mark, end in _marks(text):
+        parts.append(text[place : mark.start()])
+        name, value = mark.group(1), text[mark.end() : end - 1].strip()
+        if name in INSTRUCTIONS:
+            parts.append(Instruction(*INSTRUCTIONS[name], value))
+        else:
+            log.warning("instruction ^%s(%s) is left out, there are ^%s", name, value, ", ^".join(INSTRUCTIONS))
+        place = end
+    parts.append(text[place:])
+    return [part for part in parts if part != ""]
+
+
+def method_call(text: str) -> Tuple[str, str, list[Any]]:
+    """Module, method and arguments of a call as it is written, for example ALLeds.fadeRGB("FaceLeds", "red", 0.5).
+
+    Raises:
+        ValueError: It is no such call.
+    """
+    found = METHOD.fullmatch(text)
+    if found is None:
+        raise ValueError(f"{text!r} is no call like Module.method(arguments)")
+    module, method, arguments = found.groups()
+    try:
+        values = ast.literal_eval(f"({arguments},)") if arguments.strip() else ()
+    except (SyntaxError, ValueError) as error:
+        raise ValueError(f"{text!r} has arguments that are no texts, numbers or lists") from error
+    return module, method, list(values)
+
+
+def _marks(text: str) -> Iterator[tuple[re.Match, int]]:
+    """The instructions in a text, and where each ends: at the bracket that closes its own."""
+    place = 0
+    while True:
+        mark = MARK.search(text, place)
+        if mark is None:
+            return
+        end = _closing(text, mark.end())
+        if end is None:
+            place = mark.end()
+            continue
+        yield mark, end
+        place = end
+
+
+def _closing(text: str, place: int) -> int | None:
+    """Behind the bracket that closes the one before `place`; brackets in quotes do not count."""
+    depth, quote = 1, ""
+    for number in range(place, len(text)):
+        letter = text[number]
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "\"'" and (depth > 1):
+            quote = letter
+        else:
+            depth += (letter == "(") - (letter == ")")
+        if depth == 0:
+            return number + 1
+    return None

@@ -1,0 +1,187 @@
+"""The engine behind ALSpeechRecognition: ears, recogniser and events put together, without NAOqi's methods."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from typing import Any, Callable, Mapping
+
+from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.services.memory_store import MemoryStore
+from nao_sim_bridge.sim.hearing.listening import Hypothesis, Listening, Recognised
+from nao_sim_bridge.sim.hearing.recogniser import Recogniser
+from nao_sim_bridge.sim.hearing.voice_activity import SpeechChange
+from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.sound.ears import Listener, MicrophoneBlock
+
+log = logging.getLogger("nao_sim.recognition")
+
+NAME = "ALSpeechRecognition"
+WORD, WORD_AND_GRAMMAR, LAST_WORD = "WordRecognized", "WordRecognizedAndGrammar", "LastWordRecognized"
+SPEECH = "SpeechDetected"
+RUNNING, STATUS, ACTIVE = f"{NAME}/IsRunning", f"{NAME}/Status", f"{NAME}/ActiveListening"
+EVENTS = (WORD, WORD_AND_GRAMMAR, SPEECH, RUNNING, STATUS, ACTIVE)
+KEYS = (LAST_WORD,)
+# What the keys hold as long as nothing has been recognised.
+NO_WORD, NO_WORD_AND_GRAMMAR = ["", -3.0], ["", -3.0, ""]
+HOLD_LAG = 0.25
+"""With more unheard sound than this, s, time that runs faster than the wall clock waits."""
+
+
+class RecognitionEngine:
+    """Recognises what the front microphone hears while it is wanted and not paused.
+
+    Methods may be called from any thread; events are raised in the recogniser's.
+
+    Args:
+        simulation: Whose ears.
+        memory: Where events go.
+        on_listen: Called with True when listening begins and with False when it ends; it returns how long, in s, what
+            is heard next should be left out (the bip that it makes).
+        accepts: Tells whether a hypothesis is good enough for its grammar.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        memory: MemoryStore,
+        on_listen: Callable[[bool], float],
+        accepts: Callable[[Hypothesis], bool],
+    ) -> None:
+        self._simulation = simulation
+        self._memory = memory
+        self._on_listen = on_listen
+        self._accepts = accepts
+        self._lock = threading.RLock()
+        self._wanted = False
+        self._paused = False
+        self._listener: Listener | None = None
+        self._deaf_until = 0.0
+        self._speech = False
+        self._recogniser = Recogniser(self._on_event, on_progress=lambda: simulation.wake())
+        simulation.holds.append(self.behind)
+        for key in KEYS:
+            memory.insert(key, NO_WORD)
+        memory.reset_event(WORD, NO_WORD)
+        memory.reset_event(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+        memory.reset_event(SPEECH, False)
+        memory.reset_event(RUNNING, False)
+        memory.reset_event(ACTIVE, False)
+        memory.reset_event(STATUS, "Idle")
+
+    @property
+    def runs(self) -> bool:
+        """Whether it listens: wanted and not paused."""
+        return self._listener is not None
+
+    def behind(self) -> bool:
+        """Whether time should wait for it."""
+        return self._recogniser.lag > HOLD_LAG
+
+    def start(self) -> None:
+        """Somebody wants to know what is said."""
+        with self._lock:
+            self._wanted = True
+            self._update()
+
+    def stop(self) -> None:
+        """Nobody wants to know any more."""
+        with self._lock:
+            self._wanted = False
+            self._update()
+            self._memory.raise_event(STATUS, "Stop")
+
+    def pause(self, paused: bool) -> None:
+        """Stop listening for a while, or go on."""
+        with self._lock:
+            self._paused = paused
+            self._update()
+
+    def check_paused(self, what: str) -> None:
+        """Refuse what must not be changed while the engine listens.
+
+        Raises:
+            NaoqiError: It listens.
+        """
+        if self.runs:
+            raise NaoqiError(f"{what} cannot be changed while the engine runs; call pause(True) first")
+
+    def listen_for(self, listening: Listening) -> None:
+        """What to listen for from now on; returns when it is prepared.
+
+        Raises:
+            RecogniserError: It cannot be listened for; the text says why, and what was before stays.
+        """
+        self._recogniser.listen(listening)
+
+    def catch_up(self) -> None:
+        """Wait until everything that the ears delivered has been worked through."""
+        self._recogniser.catch_up()
+
+    @property
+    def pid(self) -> int | None:
+        """Id of the recogniser's process; None while there is none."""
+        return self._recogniser.pid
+
+    def close(self) -> None:
+        """End the process."""
+        with self._lock:
+            listener, self._listener = self._listener, None
+        if listener is not None:
+            listener.close()
+        self._recogniser.close()
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _update(self) -> None:
+        runs = self._wanted and not self._paused
+        if runs == self.runs:
+            return
+        if runs:
+            self._memory.reset_event(WORD, NO_WORD)
+            self._memory.reset_event(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+            self._deaf_until = self._simulation.time + self._on_listen(True)
+            self._listener = self._simulation.sound.ears.listen(NAME, self._hear, wants="16k1", channel="front")
+        else:
+            listener, self._listener = self._listener, None
+            listener.close()
+            self._recogniser.finish()
+            self._on_listen(False)
+        self._memory.raise_event(RUNNING, runs)
+        self._memory.raise_event(ACTIVE, runs)
+        self._memory.raise_event(STATUS, "ListenOn" if runs else "ListenOff")
+
+    def _hear(self, block: MicrophoneBlock) -> None:
+        if block.time >= self._deaf_until:
+            self._recogniser.hear(block.time, block.samples[:, 0])
+
+    def _on_event(self, event: SpeechChange | Recognised) -> None:
+        if isinstance(event, Recognised):
+            self._recognised(event)
+        elif event.present != self._speech:
+            self._speech = event.present
+            self._memory.raise_event(SPEECH, event.present)
+            if self.runs:
+                self._memory.raise_event(STATUS, "SpeechDetected" if event.present else "EndOfProcess")
+                if not event.present:
+                    self._memory.raise_event(STATUS, "ListenOn")
+
+    def _recognised(self, event: Recognised) -> None:
+        if not self.runs:
+            return
+        found = [h for h in event.hypotheses if self._accepts(h)]
+        if not found:
+            self._memory.reset_event(WORD, NO_WORD)
+            self._memory.reset_event(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+            return
+        words: list[Any] = [item for h in found for item in (h.phrase, h.confidence)]
+        with_grammar: list[Any] = [item for h in found for item in (h.phrase, h.confidence, h.grammar)]
+        log.info("heard: %s (%.2f)", found[0].phrase, found[0].confidence)
+        self._memory.insert(LAST_WORD, words)
+        self._memory.raise_event(WORD, words)
+        self._memory.raise_event(WORD_AND_GRAMMAR, with_grammar)
+
+
+def listening_of(grammars: Any, parameters: Mapping[str, float]) -> Listening:
+    """What to listen for, from grammars and the values of the engine's parameters."""
+    return Listening(tuple(grammars), int(parameters["NbHypotheses"]), parameters["Sensitivity"])

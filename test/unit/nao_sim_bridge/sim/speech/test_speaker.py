@@ -1,0 +1,212 @@
+"""The mouth: one text after the other, events at their simulated times, silence at once."""
+
+from __future__ import annotations
+
+import logging
+import threading
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.sim.errors import SimulationStopped
+from nao_sim_bridge.sim.speech.clips import Style
+from nao_sim_bridge.sim.speech.sentences import sentences
+from nao_sim_bridge.sim.speech.speaker import Speaker
+from nao_sim_bridge.sim.speech.speech import SpeechError
+from nao_sim_bridge.sim.speech.studio import Studio
+from nao_sim_bridge.sim.speech.tags import Cue, Gate
+from nao_sim_bridge.sim.speech.voices import Voice, load_voices
+
+NAO = Style(load_voices().voices["naoenu"])
+MISSING = Style(Voice("x", "English", "festival", "x"))
+
+
+class Mouth:
+    """A speaker in a simulation whose time passes as long as somebody speaks."""
+
+    def __init__(self, simulation, engines):
+        self.simulation = simulation
+        self.studio = Studio(engines)
+        self.speaker = Speaker(simulation, self.studio)
+        self.events = []
+        self.speaker.listeners.append(lambda event: self.events.append((simulation.time, event)))
+        self._released = threading.Event()
+        simulation.wake = self._released.set
+
+    def say(self, text, style=NAO):
+        return self.speaker.say(self.studio.read(text, style), style)
+
+    def tick(self):
+        """One tick, for which time waits as a fast run does."""
+        while any(hold() for hold in self.simulation.holds):
+            self._released.wait(0.1)
+            self._released.clear()
+        self.simulation.tick()
+
+    def run(self, seconds):
+        for _ in range(round(seconds / self.simulation.settings.tick_s)):
+            self.tick()
+
+    def until(self, task, limit=60.0):
+        end = self.simulation.time + limit
+        while not task.finished:
+            assert self.simulation.time < end
+            self.tick()
+        return self.simulation.time
+
+    def kinds(self):
+        return [event.kind for _, event in self.events]
+
+    def times(self, kind):
+        return [time for time, event in self.events if event.kind == kind]
+
+    def played(self, since, until):
+        return self.simulation.sound.loudspeakers.played(since, until).samples[:, 0]
+
+
+@pytest.fixture
+def mouth(bench, engines):
+    return Mouth(bench().simulation, engines)
+
+
+def level(samples):
+    return float(np.abs(samples).max()) if len(samples) else 0.0
+
+
+def test_a_text_ends_with_its_sound(mouth):
+    began = mouth.simulation.time
+    task = mouth.say("One two three.")
+    ended = mouth.until(task)
+    (clip,) = [event.value for _, event in mouth.events if event.kind == "sentence"]
+    assert ended - began == pytest.approx(clip.sound.duration, abs=0.02)
+    sound = clip.sound.samples[:-2000, 0]
+    heard = mouth.played(mouth.times("sentence")[0], ended)[: len(sound)]
+    assert np.corrcoef(heard, sound)[0, 1] > 0.99
+
+
+def test_events_come_in_order_and_words_when_they_sound(mouth):
+    task = mouth.say(r"One \mrk=4\ two. Three.")
+    mouth.until(task)
+    assert mouth.kinds() == ["enqueued", "started", "sentence", "word", "bookmark", "word", "sentence", "word", "done"]
+    assert {event.task_id for _, event in mouth.events} == {task.task_id}
+    clips = [(time, event.value) for time, event in mouth.events if event.kind == "sentence"]
+    expected = [time + mark[0] for time, clip in clips for mark in clip.marks]
+    found = [time for time, event in mouth.events if event.kind in ("word", "bookmark")]
+    assert found == pytest.approx(expected, abs=0.015)
+    assert [event.value.position for _, event in mouth.events if event.kind == "word"] == [0, 1, 0]
+
+
+def test_texts_wait_for_their_turn(mouth):
+    tasks = [mouth.say(text) for text in ("One.", "Two.", "Three.")]
+    ends = [mouth.until(task) for task in tasks]
+    assert mouth.times("started")[1:] == pytest.approx(ends[:2], abs=0.02)
+    texts = [event.value.text for _, event in mouth.events if event.kind == "sentence"]
+    assert texts == ["One.", "Two.", "Three."]
+
+
+def test_a_kill_is_silence_at_once_and_the_next_text_begins(mouth):
+    first, second = mouth.say("This is a text that takes a while."), mouth.say("Two.")
+    mouth.run(1.0)
+    killed = mouth.simulation.time
+    first.kill()
+    assert first.finished and first.killed
+    mouth.run(0.02)
+    assert mouth.times("stopped") == [killed]
+    assert mouth.times("started")[1] - killed < 0.02
+    mouth.until(second)
+    assert level(mouth.played(killed - 0.3, killed)) > 0.05
+    assert mouth.kinds()[-1] == "done"
+
+
+def test_everything_can_be_stopped_those_that_wait_too(mouth):
+    tasks = [mouth.say(text) for text in ("This is a text that takes a while.", "Two.", "Three.")]
+    mouth.run(1.0)
+    stopped = mouth.simulation.time
+    mouth.speaker.stop_all()
+    mouth.run(1.0)
+    assert all(task.killed for task in tasks) and not mouth.speaker.speaking
+    assert level(mouth.played(stopped + 0.02, stopped + 1.0)) == 0.0
+    assert mouth.times("started") == mouth.times("started")[:1]
+
+
+def test_a_reset_silences_the_robot(mouth):
+    tasks = [mouth.say("This is a text that takes a while."), mouth.say("Two.")]
+    mouth.run(0.5)
+    mouth.simulation.reset()
+    assert all(task.killed for task in tasks)
+    mouth.run(0.1)
+    mouth.until(mouth.say("Three."))
+    assert mouth.kinds()[-1] == "done"
+
+
+@pytest.mark.parametrize("text", ["", "   ", "..."])
+def test_nothing_to_say_takes_no_time(mouth, text):
+    assert mouth.until(mouth.say(text)) - mouth.simulation.time < 0.05
+    assert mouth.kinds()[0] == "enqueued" and mouth.kinds()[-1] == "done"
+
+
+def test_what_cannot_be_said_is_an_error_and_the_next_text_is_said(mouth, caplog):
+    broken, fine = mouth.say("One.", MISSING), mouth.say("Two.")
+    mouth.until(fine)
+    assert isinstance(broken.error, SpeechError) and "festival" in str(broken.error)
+    assert "thrown" in mouth.kinds() and mouth.kinds()[-1] == "done" and "cannot speak" in caplog.text
+
+
+def test_at_a_gate_the_voice_waits(mouth):
+    opened = mouth.simulation.task_ids.make("gate")
+    reached = []
+
+    def wait():
+        reached.append(mouth.simulation.time)
+        return opened
+
+    read = mouth.studio.tags.read
+    items = sentences([*read("One"), Gate(wait), *read("two."), Cue(lambda: reached.append("cue"))])
+    task = mouth.speaker.say(items, NAO)
+    mouth.run(3.0)
+    assert len(reached) == 1 and not task.finished
+    opened.finish()
+    mouth.until(task)
+    assert reached[1] == "cue"
+
+
+def test_a_long_text_begins_at_once_and_is_made_a_little_ahead_only(mouth):
+    text = "This is one of many sentences. " * 300
+    task = mouth.say(text)
+    assert len(mouth.speaker._talks[0].orders) == 2
+    mouth.run(0.1)
+    assert mouth.times("started")
+    mouth.run(5.0)
+    assert mouth.kinds().count("sentence") in (3, 4)
+    task.kill()
+
+
+def test_what_is_said_is_in_the_log(mouth, caplog):
+    caplog.set_level(logging.INFO, logger="nao_sim.speech")
+    mouth.until(mouth.say("Hello there."))
+    assert "says: Hello there." in caplog.text
+
+
+def test_volume_is_that_of_the_loudspeakers(mouth):
+    levels = []
+    for volume in (1.0, 0.25):
+        style = Style(NAO.voice, volume=volume)
+        began = mouth.simulation.time
+        levels.append(level(mouth.played(began, mouth.until(mouth.say("Away.", style)))))
+    assert levels[1] == pytest.approx(0.25 * levels[0], rel=0.01)
+
+
+def test_two_runs_are_equal_sample_by_sample(bench, engines):
+    heard = []
+    for _ in range(2):
+        mouth = Mouth(bench().simulation, engines)
+        mouth.say("First. Second!")
+        ended = mouth.until(mouth.say("And then the third."))
+        heard.append((ended, mouth.played(0.0, ended)))
+    assert heard[0][0] == heard[1][0] and np.array_equal(heard[0][1], heard[1][1])
+
+
+def test_whoever_waits_when_the_simulation_ends_gets_an_error(mouth):
+    task = mouth.say("This is never said.")
+    mouth.speaker.close()
+    assert isinstance(task.error, SimulationStopped)
