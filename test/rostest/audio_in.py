@@ -40,6 +40,8 @@ SPEED_OF_SOUND = 343.0
 BEARINGS = [0, 45, 90, 135, 180, -135, -90, -45]
 EXTRACTORS = ("ALSpeechRecognition", "ALSoundDetection", "ALSoundLocalization")
 WAIT = Duration(1000)
+# s that a robot which has begun to listen needs before it hears.
+LISTENS_AFTER = 1.0
 
 
 def f(function, **fields):
@@ -73,10 +75,12 @@ class AudioIn(unittest.TestCase):
         return run.result if state == GoalStatus.SUCCEEDED else run
 
     def begin(self, *functions, module):
-        """Send a goal and wait until the robot listens for it."""
+        """Send a goal and wait until the robot hears for it."""
         run = send(self.ears, NaoAudioInGoal(list(functions)))
         subscribers = self.robot.module(module).getSubscribersInfo
         wait_until(subscribers, 20.0, f"a subscriber of {module}")
+        # Its bip is not heard, and it has to learn how loud the background is.
+        self.robot.advance(LISTENS_AFTER)
         return run
 
     def speak(self, *functions):
@@ -131,6 +135,7 @@ class AudioIn(unittest.TestCase):
         recogniser.subscribe("another program")
         try:
             self.assertEqual(self.play(f("listen", vocabulary=["yes"], timeout=1.0)).words, [])
+            self.robot.advance(LISTENS_AFTER)
             self.speak(say("green"))
             wait_until(
                 lambda: self.robot.value("WordRecognized")[:1] == ["green"], 20.0, "the word of the other program"
@@ -140,6 +145,7 @@ class AudioIn(unittest.TestCase):
 
     def test_a_recognition_goes_on_after_its_goal_until_it_is_stopped(self):
         self.play(f("startRecognition", vocabulary=["hello", "goodbye"]))
+        self.robot.advance(LISTENS_AFTER)
         self.speak(say("goodbye"))
         wait_until(lambda: self.robot.value("WordRecognized")[:1] == ["goodbye"], 20.0, "the word")
         self.play(f("stopRecognition"))

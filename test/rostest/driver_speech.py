@@ -36,6 +36,7 @@ class DriverSpeech(unittest.TestCase):
         cls.sentences = []
         cls.subscriber = cls.robot.module("ALMemory").subscriber("ALTextToSpeech/CurrentSentence")
         cls.subscriber.signal.connect(lambda text: cls.sentences.append(text) if text else None)
+        rospy.wait_for_message("speech", String, LIMIT)  # nao_walker is online: the last that others have to say
         cls.topic = rospy.Publisher("speech", String, queue_size=100)
         wait_until(lambda: cls.topic.get_num_connections() == 1, LIMIT, "the one subscriber of speech")
         cls.settings = Client("nao_speech", timeout=LIMIT)

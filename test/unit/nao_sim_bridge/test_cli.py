@@ -29,6 +29,12 @@ def test_every_option_reaches_the_server():
     assert chosen == ServerOptions(expected, "0.0.0.0", 0, 2.5, True, True, Path("my/files"))
 
 
+def test_what_is_played_can_go_to_a_file_and_to_the_sound_card():
+    assert (options().sound_file, options().sound_card) == ("", False)
+    chosen = options("--sound-file", "all.wav", "--sound-card")
+    assert (chosen.sound_file, chosen.sound_card) == ("all.wav", True)
+
+
 def test_the_friction_of_the_world_can_be_asked_for():
     assert options("--friction", "world").scene == options().scene
 

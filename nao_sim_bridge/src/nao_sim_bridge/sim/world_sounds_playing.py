@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from typing import Sequence
 
+from nao_sim_bridge.sim.errors import SimulationError
 from nao_sim_bridge.sim.rotations import Vector3, from_roll_pitch_yaw, rotate
 from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.snapshot import Snapshot
 from nao_sim_bridge.sim.sound.samples import Sound
 from nao_sim_bridge.sim.sound.sources import SoundSource
-from nao_sim_bridge.sim.world import World
+from nao_sim_bridge.sim.world import World, WorldError
 from nao_sim_bridge.sim.world_sounds import WorldSound
 from nao_sim_bridge.sim.world_sounds_made import Speak, make_sound
 
@@ -27,13 +28,13 @@ class WorldSounds:
         speak: Says texts.
 
     Raises:
-        SimulationError: A file cannot be read, or a text cannot be said.
+        WorldError: A file cannot be read, or a text cannot be said.
     """
 
     def __init__(self, simulation: Simulation, world: World, speak: Speak) -> None:
         self._simulation = simulation
         self._world = world
-        self._made = [(sound, make_sound(sound, speak)) for sound in world.sounds]
+        self._made = [(sound, _made(sound, speak, world)) for sound in world.sounds]
         self._due: list[tuple[float, WorldSound, Sound]] = []
         self._riding: list[WorldSound] = []
         self._next = math.inf
@@ -82,6 +83,13 @@ class WorldSounds:
         sources.add(SoundSource(sound.name, place, made, sound.level_db, sound.loop or endless))
         if sound.on in snapshot.objects:
             self._riding.append(sound)
+
+
+def _made(sound: WorldSound, speak: Speak, world: World) -> Sound:
+    try:
+        return make_sound(sound, speak)
+    except SimulationError as error:
+        raise WorldError(f"world {world.name}: sound {sound.name!r}", str(error)) from error
 
 
 def _sum(first: Sequence[float], second: Sequence[float]) -> Vector3:

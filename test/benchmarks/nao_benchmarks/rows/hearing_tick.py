@@ -19,7 +19,7 @@ class HearingTick(Row):
     subject = "tick while speaking with open ears"
     against = "the same in silence"
     unit = "us"
-    bound = at_most(1.15)
+    bound = at_most(1.2)
 
     def measure(self, stack: Stack) -> Figures:
         """Measure in a process of its own."""

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pybullet
 import pytest
+import yaml
 
 from nao_sim_bridge.sim.sound.files import write_sound
 from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
@@ -165,8 +167,6 @@ def playing(bench, tmp_path):
     """A simulation of a world with these sounds, which have begun."""
 
     def make(*sounds):
-        import yaml
-
         path = tmp_path / "world.yaml"
         path.write_text(yaml.safe_dump({"floor": {"friction": 1.0}, "objects": [BALL, TABLE], "sounds": list(sounds)}))
         one = bench(world=str(path))
@@ -205,8 +205,6 @@ def test_a_reset_begins_again(playing):
 
 def test_a_sound_rides_on_what_moves(playing):
     one = playing({"name": "bell", "on": "ball", "tone": 500, "position": [0, 0, 0.1]})
-    import pybullet
-
     physics = one.simulation._physics
     pybullet.resetBaseVelocity(physics.objects["ball"], (1.0, 0.0, 0.0), physicsClientId=physics.client)
     one.run(0.5)
@@ -219,6 +217,16 @@ def test_a_sound_rides_on_what_moves(playing):
 def test_a_sound_stands_on_what_does_not_move_and_is_turned_with_it(playing):
     one = playing({"name": "radio", "on": "table", "tone": 500, "position": [0.1, 0, 0.2]})
     assert one.simulation.sound.sources.get("radio").place == pytest.approx((1.0, -0.9, 0.4), abs=1e-6)
+
+
+def test_what_cannot_be_made_names_its_sound(bench, tmp_path):
+    (tmp_path / "noise.wav").write_text("this is no sound")
+    (tmp_path / "world.yaml").write_text(
+        "floor: {friction: 1}\nsounds:\n- {name: radio, file: noise.wav, position: [1, 0, 1]}\n"
+    )
+    path = str(tmp_path / "world.yaml")
+    with pytest.raises(WorldError, match="world world: sound 'radio': .*cannot be read"):
+        WorldSounds(bench(world=path).simulation, load_world(path), spoken)
 
 
 def test_it_is_heard_as_loud_as_it_should_be(playing):

@@ -74,8 +74,10 @@ class AnimatedTalk:
 
         def finish(_: Task) -> None:
             mouth.listeners.remove(self._hear)
+            if speech.error is not None:  # it cannot be said, or the simulation has ended
+                whole.finish(error=speech.error)
             moves = animator.stop_all() if self._began else []
-            _after(moves, lambda: whole.finish(error=speech.error))
+            _after(moves, whole.finish)
 
         whole = simulation.task_ids.make("say", on_kill=stop)
         mouth.listeners.append(self._hear)

@@ -60,8 +60,10 @@ class Engines:
 
     def missing(self, engine: str, voice: str) -> str | None:
         """Why a voice cannot speak, None when it can."""
-        with self._lock:
-            found = self._engines()
+        found = self._found  # what is installed stays so: nobody waits here for a text that is being spoken
+        if found is None:
+            with self._lock:
+                found = self._engines()
         if engine not in found:
             return f"unknown engine {engine!r}, there are {listed(sorted(found))}"
         voices = found[engine]

@@ -16,7 +16,11 @@ from nao_sim_bridge.sim.tasks import Task
 
 log = logging.getLogger("nao_sim.speech")
 
-TAG = re.compile(r"\\([A-Za-z]+)(?:=([^\\]*))?\\")
+# A tag is closed by a backslash; one with a value whose closing is forgotten ends with the value.
+TAG = re.compile(
+    r"""\\(?P<name>[A-Za-z]+)(?:=\s*(?P<value>"[^"\\]*"|[^\\\s]*)(?:\s+(?!\\[A-Za-z]+[=\\]))?)?\\"""
+    r"""|\\(?P<open>[A-Za-z]+)=(?P<rest>[^\\\s]+)(?=\s|$)"""
+)
 PLAIN = Prosody()
 LONGEST_PAUSE = 65.535
 LAST_BOOKMARK = 65535
@@ -111,7 +115,7 @@ class _Reading:
         for tag in TAG.finditer(text):
             yield from self._speak(text[place : tag.start()])
             place = tag.end()
-            name, value = tag.group(1).lower(), tag.group(2)
+            name, value = (tag["name"] or tag["open"]).lower(), tag["value"] or tag["rest"]
             act = ACTIONS.get(name)
             if act is None:
                 self._reader.leave_out(name, "the engines here cannot follow it")

@@ -38,6 +38,9 @@ def test_text_without_tags_is_one_piece(read):
         (r"\style=joyful\ ", Prosody(1.05, 1.12)),
         (r"\rspd=200\\vct=150\ ", Prosody(2.0, 1.5)),
         (r"\RSPD=200\ ", Prosody(speed=2.0)),
+        (r"\rspd= 200 \ ", Prosody(speed=2.0)),
+        (r"\rspd=200 ", Prosody(speed=2.0)),
+        (r"\rspd=200 \vct=150\ ", Prosody(2.0, 1.5)),
     ],
 )
 def test_a_tag_changes_what_comes_behind_it(read, warnings, tag, expected):
@@ -86,6 +89,7 @@ def test_phonetic_text_is_not_spoken(read, warnings):
         r"\rspd=1000\very \vct=abc\good",
         r"\mrk=70000\very \pau=-5\good",
         r"very \audio=/usr/share/a.wav\good",
+        r'very \audio="/usr/my share/a.wav"\good',
         r"very \ good",
         "very\\ good\\",
     ],
