@@ -99,7 +99,9 @@ class Room:
 
     def place(self, name: str, samples: np.ndarray, place, level_db: float, loop: bool = False) -> None:
         """Have samples (frames,) at 48000 Hz sound at a place of the world, so loud at 1 m."""
-        soundfile.write(str(recording(f"{name}.wav")), samples, 48000)
+        path = recording(f"{name}.wav")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        soundfile.write(str(path), samples, 48000)
         self._simulation.addSound(name, f"{name}.wav", place, level_db, loop)
 
     def remove(self, name: str) -> None:

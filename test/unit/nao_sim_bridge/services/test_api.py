@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.services.api import COMMON, FILE, Overload, module_methods, qi_type
+from nao_sim_bridge.services.api import COMMON, EXTRACTOR, FILE, Overload, module_methods, qi_type
 from nao_sim_bridge.sim.config import read_json
 from nao_sim_bridge.sim.errors import ConfigError
 
@@ -68,6 +68,13 @@ def test_usage_shows_every_way_to_call_a_method():
         "void fadeRGB(string name, string colorName, float duration)",
         "void fadeRGB(string name, int rgb, float duration)",
     ]
+
+
+def test_extractors_have_the_methods_of_all_extractors():
+    shared = set(module_methods(EXTRACTOR))
+    assert {"subscribe", "unsubscribe", "getSubscribersInfo"} <= shared
+    assert shared <= set(module_methods("ALSoundLocalization"))
+    assert not shared <= set(module_methods("ALMotion"))
 
 
 def test_an_unknown_module_is_refused():

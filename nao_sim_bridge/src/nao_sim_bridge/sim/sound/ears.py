@@ -76,7 +76,8 @@ class Listener:
     def close(self) -> None:
         """Hear nothing any more; one that is `exact` gets the rest up to now first. Not in the simulation thread then.
 
-        When it returns, no callback runs, unless it is called from one.
+        When it returns, no callback runs, unless it is called from one; so it must not be called in a thread that a
+        callback waits for.
         """
         self._ears.remove(self)
 

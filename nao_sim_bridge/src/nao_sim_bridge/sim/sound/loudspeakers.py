@@ -114,7 +114,8 @@ class Loudspeakers:
             start: Where in the sound to begin, s.
             loop: Again and again, until it is stopped.
             marks: (seconds, callback), called in the simulation thread when playing passes that place.
-            after: Begin at the very frame at which this one ends, so that they follow without a gap.
+            after: Begin at the very frame at which this one will end as things are, so that they follow without a gap;
+                now when that is over, paused or a loop.
         """
         begin = after.end_frame if after is not None else None
         if sound.channels > 2:
