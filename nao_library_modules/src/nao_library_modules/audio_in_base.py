@@ -16,8 +16,8 @@ from .audio_in_heard import Heard
 from .event_relay import EventRelay
 from .interrupt import Interrupt
 from .memory_functions import MEMORY
-from .motion_walk_end import wait_for_call
 from .robot import CLEAN_UP_LIMIT
+from .robot_task import wait_for_call
 
 log = logging.getLogger(__name__)
 

@@ -13,16 +13,14 @@ from naoqi.errors import CallCanceled, NaoError
 from .audio import NaoAudio
 from .audio_out_voices import SPEECH
 from .interrupt import Interrupt
-from .motion_walk_end import wait_for_call
-from .robot import CANCEL_LIMIT, QUICK_ANSWER
+from .robot import QUICK_ANSWER
+from .robot_task import end_call, wait_for_call
 
 log = logging.getLogger(__name__)
 
 PLAYER, ANIMATED = "ALAudioPlayer", "ALAnimatedSpeech"
 # Modules that have no `stopAll`, and the one whose it is.
 SILENCED_BY = {ANIMATED: SPEECH}
-CANCEL_PATIENCE = 0.1
-"""s that a cancelled call has to end by itself, as it does on a robot that knows cancellation."""
 FALSE_START = 0.05
 """s that a sound in the background has to fail, when it cannot begin: then the function fails."""
 
@@ -164,17 +162,8 @@ class Sounds(NaoAudio):
 
     def _end(self, sounding: Sounding) -> None:
         """Cancel the call and see it end; on a robot whose calls go on, everything of the module is silenced."""
-        call = sounding.call
-        call.cancel()
-        if call.wait(CANCEL_PATIENCE):
-            return
-        try:
-            self.call_now(self.robot.proxy(SILENCED_BY.get(sounding.module, sounding.module)), "stopAll")
-        except NaoError as error:
-            log.warning("what was interrupted may sound on: %s", error)
-            return
-        if not call.wait(CANCEL_LIMIT):
-            log.warning("what was interrupted sounds on: the robot did not end it within %g s", CANCEL_LIMIT)
+        module = SILENCED_BY.get(sounding.module, sounding.module)
+        end_call(sounding.call, lambda: self.call_now(self.robot.proxy(module), "stopAll"))
 
 
 def _tell_failure(call: Any) -> None:

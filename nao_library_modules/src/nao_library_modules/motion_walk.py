@@ -30,8 +30,9 @@ from .motion_walk_checks import (
     step_speeds,
     steps,
 )
-from .motion_walk_end import WalkFailure, wait_for_call
+from .motion_walk_end import WalkFailure
 from .places import Place
+from .robot_task import wait_for_call
 
 log = logging.getLogger(__name__)
 

@@ -1,11 +1,8 @@
-"""How a walk ends before time: what the robot says about it, and waiting until it stands."""
+"""How a walk ends before time: what the robot says about it."""
 
 from __future__ import annotations
 
-import threading
 from typing import Any
-
-from .interrupt import Interrupt
 
 
 class WalkFailure:
@@ -30,21 +27,3 @@ class WalkFailure:
     def cause(self) -> str:
         """What the robot said last; empty if nothing since `forget`."""
         return self._cause
-
-
-def wait_for_call(call: Any, interrupt: Interrupt, limit: float | None = None) -> bool:
-    """Wait until a call is over or an interrupt comes; the call goes on in any case.
-
-    Args:
-        call: What `proxy.call_async` returned.
-        interrupt: Ends the wait.
-        limit: s; None waits as long as it takes: the proxy layer fails calls to a lost robot.
-
-    Returns:
-        Whether the call is over.
-    """
-    news = threading.Event()
-    call.add_done_callback(lambda _: news.set())
-    with interrupt.waking(news.set):
-        news.wait(limit)
-    return call.done()

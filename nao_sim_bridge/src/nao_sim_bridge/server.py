@@ -84,6 +84,7 @@ class SimulatorServer:
         broker: The libqi side.
         pictures: Drawings of the robot.
         files: Where clients may have files written to and read from.
+        speech: The robot's voice.
         sounds: Sounds of the world.
         ended: Set when a client shut the robot down or the simulation failed.
     """
@@ -98,7 +99,7 @@ class SimulatorServer:
         self.pictures = Pictures(self.simulation, self.runner)
         self.files = ClientFiles(options.record_dir, [sounds_directory()])
         self._audio = AudioModules(self.simulation, self.runner, self.files, self.broker)
-        self._speech = SpeechModules(self.simulation, self.runner, self.memory, self.files, self.broker)
+        self.speech = SpeechModules(self.simulation, self.runner, self.memory, self.files, self.broker)
         self._recognition = RecognitionModule(self.simulation, self.runner, self.memory, self.files)
         self.sounds = WorldSoundsControl(self.simulation, self.runner, self.files)
         self._outlets: list[SoundFile | SoundCard] = []
@@ -110,7 +111,7 @@ class SimulatorServer:
             RuntimeError: The address cannot be had.
             SimulationError: The sound card, the file for sound, or a sound of the world cannot be had.
         """
-        self._speech.begin()
+        self.speech.begin()
         self.sounds.begin()
         self._open_outlets()
         sys.setswitchinterval(SWITCH_INTERVAL)
@@ -140,7 +141,7 @@ class SimulatorServer:
             "ALMotion": motion.parts(self.simulation, self.runner, self.memory),
             "ALRobotPosture": [ALRobotPosture(self.simulation, self.runner, self.memory)],
             **self._audio.modules(),
-            **self._speech.modules(),
+            **self.speech.modules(),
             **self._recognition.modules(),
             sound_detection.NAME: sound_detection.parts(self.simulation, self.memory),
             **{name: sound_localization.parts(name, self.simulation, self.memory) for name in sound_localization.NAMES},
@@ -154,7 +155,7 @@ class SimulatorServer:
         self.sounds.close()
         self.broker.close()
         self.runner.stop()
-        self._speech.close()
+        self.speech.close()
         self._recognition.close()
         self.pictures.close()
         for outlet in self._outlets:

@@ -9,8 +9,8 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ..interrupt import Interrupt
+from ..robot_task import run_task
 from .audio_requests import RecordingRequest
-from .robot_task import run_task
 
 log = logging.getLogger(__name__)
 

@@ -10,7 +10,7 @@ from ..errors import BadGoal, Preempted
 from ..interrupt import Interrupt
 from ..joint_names import MOTION, JointNames
 from ..joint_trajectory import KeyFrames, check_range, expand_names, one_each, read_trajectory
-from .robot_task import run_task
+from ..robot_task import run_task
 
 LIFE = "ALAutonomousLife"
 STIFFEN_TIME = 0.5

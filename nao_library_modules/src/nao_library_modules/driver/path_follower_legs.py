@@ -14,9 +14,9 @@ from naoqi.errors import NaoError, RobotError
 from ..interrupt import Interrupt
 from ..joint_names import MOTION
 from ..places import Place
+from ..robot_task import run_task
 from .joint_controller import QUICK_LIMIT
 from .joint_sensors import MEMORY
-from .robot_task import run_task
 
 LISTENER_LIMIT = 5.0
 """s to wait for somebody who listens to the commands."""

@@ -23,10 +23,10 @@ from ..errors import BadGoal, RobotLost
 from ..health import Report
 from ..interrupt import Interrupt
 from ..joint_names import MOTION
+from ..robot_task import run_task
 from .goal_crowd import GoalCrowd, Outcome
 from .joint_controller import QUICK_LIMIT, STIFFEN_TIME
 from .poses import Pose, UnknownPose, built_in, library, pose_table
-from .robot_task import run_task
 from .trajectory_client import TrajectoryClient
 
 POSTURE = "ALRobotPosture"

@@ -15,7 +15,7 @@ from ..errors import Preempted, RobotLost
 from ..event_relay import EventRelay
 from ..health import Level, Report
 from ..interrupt import Interrupt
-from .robot_task import end_call
+from ..robot_task import end_call
 from .speech_settings import SpeechSettings
 from .speech_voice import ANSWER_LIMIT, SPEECH, BorrowedVoice
 

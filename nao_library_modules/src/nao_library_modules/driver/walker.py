@@ -15,9 +15,9 @@ from ..clock import WallClock
 from ..errors import Preempted
 from ..interrupt import Interrupt
 from ..joint_names import MOTION
+from ..robot_task import run_task
 from .gait_config import GaitConfig
 from .joint_controller import QUICK_LIMIT
-from .robot_task import run_task
 from .walk_commands import Step, Target, Velocity
 from .walk_orders import Command, Order, OrderBox, Overtaken, Stop, WalkEnded
 from .walk_pace import WalkPace

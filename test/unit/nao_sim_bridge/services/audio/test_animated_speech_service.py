@@ -188,7 +188,7 @@ def test_a_stop_is_silence_at_once_and_the_arms_go_back(robot, speech):
     robot.advance(1.2)
     assert np.abs(np.array(robot.now.commands) - before).max() > 0.3
     cancel(robot, future)
-    assert not robot.server._speech.speaker.speaking
+    assert not robot.server.speech.speaker.speaking
     robot.advance(2.0)
     assert np.abs(np.array(robot.now.commands) - before).max() < 1e-6
 

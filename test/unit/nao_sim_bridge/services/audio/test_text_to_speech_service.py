@@ -158,7 +158,7 @@ def test_a_stop_is_silence_at_once(robot, tts, until, way):
     else:
         tts.call(way, *([number] if way == "stop" else []))
     give_up = time.monotonic() + robot.patience
-    while robot.server._speech.speaker.speaking and time.monotonic() < give_up:
+    while robot.server.speech.speaker.speaking and time.monotonic() < give_up:
         robot.settled()
     robot.advance(1.0)
     assert np.abs(played(robot, 0.97)).max() == 0.0

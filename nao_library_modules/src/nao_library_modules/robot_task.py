@@ -9,8 +9,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..interrupt import Interrupt
-from ..robot import CANCEL_LIMIT, QUICK_ANSWER
+from .interrupt import Interrupt
+from .robot import CANCEL_LIMIT, QUICK_ANSWER
 
 log = logging.getLogger(__name__)
 
@@ -35,7 +35,7 @@ def run_task(call: Any, interrupt: Interrupt, stop: Callable[[], None]) -> Any:
         Preempted: Or whatever reason the interrupt has.
     """
     if not call.wait(QUICK_ANSWER):  # quicker than to set up the wait for both
-        _wait(call, interrupt)
+        wait_for_call(call, interrupt)
     if not call.done():
         end_call(call, stop)
         interrupt.check()
@@ -56,8 +56,19 @@ def end_call(call: Any, stop: Callable[[], None]) -> None:
         log.warning("what was interrupted goes on: the robot did not end it within %g s", CANCEL_LIMIT)
 
 
-def _wait(call: Any, interrupt: Interrupt) -> None:
+def wait_for_call(call: Any, interrupt: Interrupt, limit: float | None = None) -> bool:
+    """Wait until a call is over or an interrupt comes; the call goes on in any case.
+
+    Args:
+        call: What `proxy.call_async` returned.
+        interrupt: Ends the wait.
+        limit: s; None waits as long as it takes: the proxy layer fails calls to a lost robot.
+
+    Returns:
+        Whether the call is over.
+    """
     news = threading.Event()
     call.add_done_callback(lambda _: news.set())
     with interrupt.waking(news.set):
-        news.wait()  # no limit: the proxy layer fails calls to a lost robot
+        news.wait(limit)
+    return call.done()

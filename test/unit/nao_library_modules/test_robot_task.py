@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from nao_library_modules.driver.robot_task import run_task
 from nao_library_modules.errors import Preempted, RobotLost
 from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.robot_task import run_task
 from naoqi.errors import RobotError
 
 
