@@ -394,6 +394,26 @@ def make_call():
 
 
 @pytest.fixture
+def in_thread():
+    """Runs a function in a thread; gives the thread, and a list that its value or error goes to."""
+
+    def start(function, *arguments):
+        outcome = []
+
+        def run():
+            try:
+                outcome.append(function(*arguments))
+            except Exception as error:
+                outcome.append(error)
+
+        thread = threading.Thread(target=run, daemon=True)
+        thread.start()
+        return thread, outcome
+
+    return start
+
+
+@pytest.fixture
 def lights(robot, edge):
     from nao_library_modules.lights import NaoLights
 

@@ -97,26 +97,6 @@ def robot(proxy):
 
 
 @pytest.fixture
-def in_thread():
-    """Runs a function in a thread; gives the thread, and a list that its value or error goes to."""
-
-    def start(function, *arguments):
-        outcome = []
-
-        def run():
-            try:
-                outcome.append(function(*arguments))
-            except Exception as error:
-                outcome.append(error)
-
-        thread = threading.Thread(target=run, daemon=True)
-        thread.start()
-        return thread, outcome
-
-    return start
-
-
-@pytest.fixture
 def eventually():
     """Waits for a condition that another thread brings about."""
 
