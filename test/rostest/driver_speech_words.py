@@ -10,9 +10,15 @@ import rostest
 from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from dynamic_reconfigure.client import Client
+from std_msgs.msg import String
 from std_srvs.srv import Empty
 
-from nao_library_actions.msg import SetSpeechVocabularyAction, SetSpeechVocabularyGoal
+from nao_library_actions.msg import (
+    SetSpeechVocabularyAction,
+    SetSpeechVocabularyGoal,
+    SpeechWithFeedbackAction,
+    SpeechWithFeedbackGoal,
+)
 from nao_library_msgs.msg import WordRecognized
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
@@ -32,9 +38,19 @@ class DriverSpeechWords(unittest.TestCase):
         cls.settings = Client("nao_speech", timeout=LIMIT)
         cls.vocabulary = SimpleActionClient("speech_vocabulary_action", SetSpeechVocabularyAction)
         assert cls.vocabulary.wait_for_server(rospy.Duration(LIMIT)), "speech_vocabulary_action"
+        cls.wait_for_silence()
         cls.settings.update_configuration({"vocabulary": "yes"})
         wait_until(lambda: cls.call("start_recognition") == "", LIMIT, "nao_speech and the robot")
         cls.call("stop_recognition")
+
+    @staticmethod
+    def wait_for_silence():
+        """Until the robot has said that nao_walker is online: it would be heard in between."""
+        rospy.wait_for_message("speech", String, LIMIT)
+        speech = SimpleActionClient("speech_action", SpeechWithFeedbackAction)
+        assert speech.wait_for_server(rospy.Duration(LIMIT)), "speech_action"
+        ready, succeeded = SpeechWithFeedbackGoal("ready"), GoalStatus.SUCCEEDED
+        wait_until(lambda: send(speech, ready).wait(LIMIT).state == succeeded, LIMIT, "nao_speech and the robot")
 
     @staticmethod
     def call(name):

@@ -8,7 +8,7 @@ from typing import Dict, List, Sequence, Tuple
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from nao_library_modules.dialogue_record import PERSON, ROBOT, Turn
+from nao_library_modules.dialogue_record import DOES, HEARS, PERSON, ROBOT, SAYS, Turn
 
 MOST_CHANNELS = 4
 MICROPHONES = ("left", "right", "front", "rear")
@@ -16,6 +16,8 @@ MICROPHONES = ("left", "right", "front", "rear")
 PAPER, GRID, INK = (255, 255, 255), (226, 226, 230), (60, 60, 66)
 WAVE = (35, 95, 180)
 LINES = {ROBOT: (35, 95, 180), PERSON: (205, 85, 20)}
+# Lines below the time axis, from above.
+LANES = [f"{who} {what}" for who in (PERSON, ROBOT) for what in (HEARS, SAYS, DOES)]
 FILLS = {ROBOT: (205, 222, 245), PERSON: (252, 222, 200)}
 # Quiet to loud in the spectrogram: share of the range, and color.
 SHADES = ((0.0, PAPER), (0.35, (200, 215, 240)), (0.6, (90, 130, 200)), (0.8, (190, 60, 110)), (1.0, (70, 10, 50)))
@@ -26,7 +28,7 @@ PANEL = WIDTH - LEFT - RIGHT
 # Of letters, pixels.
 SIZE = 15
 # The spectrogram: length of a look, s; highest frequency, Hz; between the lowest and the highest level, dB.
-WINDOW_S, HIGHEST, RANGE_DB = 0.025, 8000.0, 60.0
+WINDOW_S, HIGHEST, RANGE_DB = 0.025, 8000.0, 70.0
 # Looks that are worked on at once.
 CHUNK = 2048
 # Marks of the time axis, s: the first of these distances that leaves room between them.
@@ -99,7 +101,7 @@ def _lanes(turns: Sequence[Turn]) -> Dict[str, List[Turn]]:
     lanes: Dict[str, List[Turn]] = {}
     for turn in sorted(turns, key=lambda turn: turn.began):
         lanes.setdefault(f"{turn.who} {turn.what}", []).append(turn)
-    return dict(sorted(lanes.items()))
+    return {label: lanes[label] for label in LANES if label in lanes}
 
 
 def _draw_waves(pen: ImageDraw.ImageDraw, samples: np.ndarray, height: int) -> None:
