@@ -45,7 +45,7 @@ docs: build ## Write the tables of README.md anew from the code
 	@scripts/ros-env python3 scripts/readme_tables.py
 
 pictures: setup ## Draw the pictures of README.md anew
-	@PYTHONPATH=nao_sim_bridge/src .venv/bin/python scripts/readme_pictures.py
+	@PYTHONPATH=nao_sim_bridge/src:nao_library_modules/src .venv/bin/python scripts/readme_pictures.py
 
 clean: ## Remove the workspace, the virtual environment and what the demonstration left
 	rm -rf .ws .venv demo_output

@@ -6,9 +6,9 @@ It does over libqi what the example dialogue.py does with goals, so that drawing
 from __future__ import annotations
 
 import math
-import threading
+import queue
 from pathlib import Path
-from typing import Any
+from typing import Any, Callable
 
 import qi
 
@@ -17,7 +17,8 @@ from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene
 
 CALL, QUESTION, REPLY, THANKS = "Hello, robot!", "Shall we play?", "Yes!", "Great!"
-WORDS = ["yes", "no", "maybe", "later"]
+WORDS, EXPECTED = ["yes", "no", "maybe", "later"], "yes"
+SUBSCRIBER = "picture"
 # Where the person's mouth is, in world, m.
 PLACE = [1.0, 0.4, 0.6]
 VOICE = "rms"
@@ -26,7 +27,7 @@ FRONT, RATE = [0, 0, 1, 0], 16000
 LOCATED, RECOGNISED = "ALSoundLocalization/SoundLocated", "WordRecognized"
 # From readiness to the first word of a person, and after the last turn, s.
 REACTION, END = 0.8, 0.5
-SURE = 0.5
+SURE = 0.3
 NOD = ([0.3, -0.2, 0.3, 0.0], [0.4, 0.8, 1.2, 1.6])
 LIMIT = 30.0
 
@@ -46,7 +47,7 @@ class Dialogue:
         # Slow, for between calls time goes on; but faster than real, for then it waits until a voice is synthesised.
         self._server = SimulatorServer(ServerOptions(Scene(), port=0, speed=2.0, record_dir=folder))
         self._session = qi.Session()
-        self._began = 0.0
+        self._began = self._heard_at = 0.0
 
     def record(self, name: str) -> None:
         """Have the dialogue, and write what the front microphones hear to a file."""
@@ -59,7 +60,7 @@ class Dialogue:
             recorder.startMicrophonesRecording(name, "wav", RATE, FRONT)
             self._began = self._server.runner.snapshot.time
             self._talk()
-            self._pass(END)
+            self._server.runner.advance(END).result(LIMIT)
             recorder.stopMicrophonesRecording()
         finally:
             self._session.close()
@@ -67,53 +68,47 @@ class Dialogue:
 
     def _talk(self) -> None:
         motion, speech = self._session.service("ALMotion"), self._session.service("ALTextToSpeech")
-        located, _ = self._hear("ALSoundLocalization", LOCATED, CALL, lambda value: value[1][2] >= SURE)
-        azimuth = located[1][0]
-        self._turn(ROBOT, HEARS, f"a voice at {math.degrees(azimuth):.0f}°", located[1][2])
+        sounds = self._call("ALSoundLocalization", LOCATED, CALL, lambda value: value[1][2] > SURE)
+        azimuth, _, sure, _ = sounds[1]
+        self._hears(f"a voice at {math.degrees(azimuth):.0f}°", sure)
         self._during(DOES, "turns its head", lambda: motion.angleInterpolation("HeadYaw", azimuth, 0.8, True))
         self._during(SAYS, QUESTION, lambda: speech.say(QUESTION))
-        (word, confidence, *_), _ = self._hear("ALSpeechRecognition", RECOGNISED, REPLY, lambda value: value[0] != "")
-        self._turn(ROBOT, HEARS, word, confidence)
+        word, sure, *_ = self._call("ALSpeechRecognition", RECOGNISED, REPLY, lambda value: value[0] != "")
+        self._hears(word, sure)
+        if word != EXPECTED:
+            raise SystemExit(f"the robot took {REPLY!r} for {word!r}")
         self._during(SAYS, THANKS, lambda: speech.say(THANKS))
         self._during(DOES, "nods", lambda: motion.angleInterpolation("HeadPitch", *NOD, True))
 
-    def _hear(self, module: str, event: str, text: str, good: Any) -> tuple[Any, float]:
-        """Subscribe a module, have the person speak, and wait for an event; its value and when it came, s."""
-        heard, values = threading.Event(), []
+    def _call(self, module: str, event: str, text: str, good: Callable[[Any], bool]) -> Any:
+        """Have a module listen and the person say something; the first event with a value that is good."""
+        heard: queue.Queue[tuple[float, Any]] = queue.Queue()
 
         def take(value: Any) -> None:
-            if good(value) and not heard.is_set():
-                values.append((value, self._now()))
-                heard.set()
+            if good(value):
+                heard.put((self._now(), value))
 
-        subscriber = self._session.service("ALMemory").subscriber(event)
-        link = subscriber.signal.connect(take)
-        listener = self._session.service(module)
-        listener.subscribe("picture")
-        self._pass(REACTION)
-        began = self._now()
-        self._session.service("NaoSimulation").personSays(text, PLACE, VOICE, 0.0)
-        self._turn_between(PERSON, SAYS, text, began)
-        if not heard.wait(LIMIT):
-            raise SystemExit(f"the robot did not hear {text!r}")
-        listener.unsubscribe("picture")
-        subscriber.signal.disconnect(link)
-        self._last = values[0][1]
-        return values[0]
+        signal = self._session.service("ALMemory").subscriber(event).signal
+        link, listener = signal.connect(take), self._session.service(module)
+        listener.subscribe(SUBSCRIBER)
+        self._server.runner.advance(REACTION).result(LIMIT)
+        says = self._session.service("NaoSimulation").personSays
+        self._during(SAYS, text, lambda: says(text, PLACE, VOICE, 0.0), PERSON)
+        try:
+            self._heard_at, value = heard.get(timeout=LIMIT)
+        except queue.Empty:
+            raise SystemExit(f"the robot did not hear {text!r}") from None
+        listener.unsubscribe(SUBSCRIBER)
+        signal.disconnect(link)
+        return value
 
-    def _during(self, what: str, text: str, action: Any) -> None:
+    def _hears(self, text: str, sure: float) -> None:
+        self.turns.append(Turn(ROBOT, HEARS, text, self._heard_at, self._heard_at, sure))
+
+    def _during(self, what: str, text: str, action: Callable[[], Any], who: str = ROBOT) -> None:
         began = self._now()
         action()
-        self._turn_between(ROBOT, what, text, began)
-
-    def _turn(self, who: str, what: str, text: str, confidence: float) -> None:
-        self.turns.append(Turn(who, what, text, self._last, self._last, confidence))
-
-    def _turn_between(self, who: str, what: str, text: str, began: float) -> None:
         self.turns.append(Turn(who, what, text, began, self._now()))
-
-    def _pass(self, seconds: float) -> None:
-        self._server.runner.advance(seconds).result(LIMIT)
 
     def _now(self) -> float:
         return self._server.runner.snapshot.time - self._began

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the pictures of README.md anew: the simulated robot standing, sitting, lying, waving, and in the lab.
 
-And what it leaves behind when it walks: its footprints.
+And what it leaves behind when it walks: its footprints; and what its microphones hear of a dialogue.
 """
 
 from __future__ import annotations
@@ -10,16 +10,20 @@ import argparse
 import math
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import qi
+from readme_dialogue import Dialogue
 
+from nao_library_modules import dialogue_record
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "images"
-PLOT_WALK = ROOT / "nao_library_modules" / "examples" / "plot_walk.py"
+EXAMPLES = ROOT / "nao_library_modules" / "examples"
+PLOT_WALK, PLOT_SOUND = EXAMPLES / "plot_walk.py", EXAMPLES / "plot_sound.py"
 VIEW, SIZE = "three_quarter", 320
 ROOM_SIZE = (640, 400)
 POSTURES = {"standing": "Stand", "sitting": "Sit", "lying": "LyingBelly"}
@@ -95,6 +99,17 @@ def draw_walk(folder: Path) -> None:
         server.stop()
 
 
+def draw_dialogue(folder: Path) -> None:
+    """Let a robot talk with a person and draw what it hears, as the example does it."""
+    with tempfile.TemporaryDirectory() as kept:
+        sound, words = Path(kept) / "dialogue.wav", Path(kept) / "dialogue.json"
+        dialogue = Dialogue(Path(kept))
+        dialogue.record(sound.name)
+        dialogue_record.save(dialogue.turns, words)
+        command = [sys.executable, str(PLOT_SOUND), str(sound), "--words", str(words)]
+        subprocess.run([*command, "--output", str(folder / "dialogue.png")], check=True, timeout=LIMIT)
+
+
 def main() -> int:
     """Draw."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -103,6 +118,7 @@ def main() -> int:
     folder.mkdir(parents=True, exist_ok=True)
     draw(folder)
     draw_walk(folder)
+    draw_dialogue(folder)
     return 0
 
 

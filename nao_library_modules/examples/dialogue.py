@@ -210,13 +210,15 @@ def main() -> int:
     parser.add_argument("--record", metavar="NAME", help="record the front microphones to this file of the robot")
     parser.add_argument("--log", type=Path, metavar="FILE", help="write who said and heard what, and when (JSON)")
     options = parser.parse_args(rospy.myargv()[1:])
-    rospy.init_node("dialogue", anonymous=True)
+    rospy.init_node("dialogue", anonymous=True, disable_signals=True)  # Ctrl-C leaves time to end the recording
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
     try:
         return talk(Servers(), options)
     except (RuntimeError, OSError) as error:
         print(error)
         return 1
+    except KeyboardInterrupt:
+        return 130
 
 
 def talk(servers: Servers, options: argparse.Namespace) -> int:
@@ -242,10 +244,10 @@ def talk(servers: Servers, options: argparse.Namespace) -> int:
         dialogue.gesture(joint, angle)
         return 0
     finally:
-        if options.record:
-            servers.play("nao_audio_in", actions.NaoAudioInGoal([AudioInFunction(function="stopRecording")]))
         if options.log:
             save(notes.turns, options.log)
+        if options.record:
+            servers.play("nao_audio_in", actions.NaoAudioInGoal([AudioInFunction(function="stopRecording")]))
 
 
 if __name__ == "__main__":

@@ -74,10 +74,7 @@ class Check:
         self._bench.listen_for(phrases)
         for noise in NOISES:
             shares = self._shares(phrases, noise, lambda heard: heard.is_right(heard.said), True)
-            bound = LEAST_RIGHT[noise] if bounded else 0.0
-            yield _line(
-                f"{name}, {noise}", shares, f"at least {100.0 * bound:.0f}" if bounded else "", lambda t: t >= bound
-            )
+            yield _line(f"{name}, {noise}", shares, least=LEAST_RIGHT[noise] if bounded else 0.0)
 
     def second(self) -> Iterator[Line]:
         """Phrases of the other vocabulary."""
@@ -90,7 +87,7 @@ class Check:
             for noise in NOISES:
                 shares = self._shares(self._bench.phrases[kind], noise, lambda heard: bool(heard.found), False)
                 label = f"{kind.replace('_', ' ')}, {noise}: false"
-                yield _line(label, shares, f"at most {100.0 * MOST_FALSE:.0f}", lambda t: t <= MOST_FALSE)
+                yield _line(label, shares, most=MOST_FALSE)
 
     def spotting(self) -> Iterator[Line]:
         """Word spotting."""
@@ -105,7 +102,7 @@ class Check:
         for kind in ("other_words", "other_sentences"):
             shares = self._shares(self._bench.phrases[kind], "clean", lambda heard: bool(heard.found), False)
             label = f"spotting, {kind.replace('_', ' ')}: false"
-            yield _line(label, shares, f"at most {100.0 * MOST_FALSE:.0f}", lambda t: t <= MOST_FALSE)
+            yield _line(label, shares, most=MOST_FALSE)
 
     def quiet(self) -> Iterator[Line]:
         """What is no speech at all: number of phrases recognised, in hundredths."""
@@ -131,9 +128,10 @@ class Check:
         return shares
 
 
-def _line(what: str, shares: Sequence[float], bound: str = "", keeps: Callable[[float], bool] = lambda _: True) -> Line:
+def _line(what: str, shares: Sequence[float], least: float = 0.0, most: float = 1.0) -> Line:
     total = sum(shares) / len(shares)
-    return Line(what, shares, total, bound, keeps(total))
+    bound = f"at least {100.0 * least:.0f}" if least else f"at most {100.0 * most:.0f}" if most < 1.0 else ""
+    return Line(what, shares, total, bound, least <= total <= most)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

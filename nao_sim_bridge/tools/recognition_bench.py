@@ -66,7 +66,7 @@ class Bench:
         self._ear.listen(Listening((vocabulary("bench", phrases, spotting),)))
 
     def say(self, text: str, voice: str, noise: str, seed: int) -> Heard:
-        """What is recognised when a voice says a text in the noise of a room and, unless "clean", 20 dB below itself."""
+        """What is recognised of a text in the noise of a room and, unless "clean", in noise 20 dB below the voice."""
         speech = self._voice(text, voice)
         before, after = round(BEFORE_S * RATE), round(AFTER_S * RATE)
         sound = np.pad(speech, (before, after))

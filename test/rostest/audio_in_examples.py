@@ -4,6 +4,7 @@
 import signal
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -13,10 +14,11 @@ import rospy
 import rostest
 import soundfile
 
+from nao_library_modules import dialogue_record
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from sound_fixture import Room, bursts, recording  # noqa: E402
+from sound_fixture import Room, bursts, level, recording  # noqa: E402
 
 EXAMPLES = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples"
 HEAD_YAW = "Device/SubDeviceList/HeadYaw/Position/Sensor/Value"
@@ -94,6 +96,25 @@ class AudioInExamples(unittest.TestCase):
 
     def test_a_dialogue_with_a_person_who_says_no(self):
         self.assertIn("robot: What a pity.", self.dialogue_with("no"))
+
+    def test_a_dialogue_that_needs_nobody_and_what_is_kept_of_it(self):
+        recording("dialogue.wav").unlink(missing_ok=True)
+        with tempfile.TemporaryDirectory() as folder:
+            log = Path(folder) / "dialogue.json"
+            self.start("dialogue.py", "--person", "yes", "--record", "dialogue.wav", "--log", str(log))
+            output = self.finish()
+            turns = dialogue_record.load(log)
+        self.assertRegex(output, "heard: a voice at (1[5-9]|2[0-9])°")
+        self.assertAlmostEqual(self.robot.value(HEAD_YAW), np.arctan2(0.4, 1.0), delta=0.15)
+        self.assertIn("yes", [turn.text for turn in turns if turn.what == dialogue_record.HEARS])
+        sound, rate = soundfile.read(str(recording("dialogue.wav")))
+        self.assertEqual(rate, 16000)
+        self.assertAlmostEqual(len(sound) / rate, turns[-1].ended, delta=1.0)
+        spoken = [turn for turn in turns if turn.what == dialogue_record.SAYS]
+        self.assertEqual({turn.who for turn in spoken}, {dialogue_record.ROBOT, dialogue_record.PERSON})
+        silent = level(sound[: int(0.3 * rate)])
+        for turn in spoken:
+            self.assertGreater(level(sound[int(turn.began * rate) : int(turn.ended * rate)]), 3.0 * silent, turn)
 
     def test_a_dialogue_with_nobody(self):
         self.start("dialogue.py", "--timeout", "2", "--times", "2")

@@ -59,6 +59,7 @@ def clients(monkeypatch):
     monkeypatch.setattr("actionlib.SimpleActionClient", made.client)
     monkeypatch.setattr("rospy.init_node", lambda *args, **options: None)
     monkeypatch.setattr("rospy.sleep", lambda duration: None)
+    monkeypatch.setattr("rospy.get_time", lambda: 100.0)
     monkeypatch.setattr("rospy.on_shutdown", lambda action: None)
     monkeypatch.setattr("rospy.myargv", lambda: ["example.py"])
     return made

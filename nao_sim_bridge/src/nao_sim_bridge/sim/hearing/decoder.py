@@ -18,6 +18,7 @@ from nao_sim_bridge.sim.hearing.network import OTHER, Arc, Network, build
 from nao_sim_bridge.sim.hearing.noise_reduction import FRAME, noise_spectrum, reduce_noise
 from nao_sim_bridge.sim.hearing.pronunciation import Pronouncer
 from nao_sim_bridge.sim.hearing.settings import RecognitionSettings
+from nao_sim_bridge.sim.hearing.speech_likeness import likeness
 from nao_sim_bridge.sim.hearing.voice_activity import Utterance
 
 PHONES = (
@@ -81,7 +82,10 @@ class Decoder:
         """
         if not self._network.tokens:
             return []
-        sound = self._prepared(utterance)
+        speech = self._cleaned(utterance)
+        if not self._is_like_speech(speech):
+            return []
+        sound = self._leveled(speech)
         best = self._search(sound)
         if best is None:
             return []
@@ -89,13 +93,21 @@ class Decoder:
         paths = [best, *self._others(sound, best, most - 1)]
         return self._hypotheses(paths, sounds_score)[:most]
 
-    def _prepared(self, utterance: Utterance) -> bytes:
-        """The utterance with less noise and at the level that the acoustic model is used to."""
-        reduction, gain = self._settings.noise_reduction, self._settings.gain
-        speech = utterance.samples
-        if len(utterance.background) >= FRAME:
-            noise = noise_spectrum(utterance.background)
-            speech = reduce_noise(speech, noise, reduction.least_gain, reduction.smoothing)
+    def _cleaned(self, utterance: Utterance) -> np.ndarray:
+        """The utterance with less noise."""
+        reduction = self._settings.noise_reduction
+        if len(utterance.background) < FRAME:
+            return utterance.samples
+        noise = noise_spectrum(utterance.background)
+        return reduce_noise(utterance.samples, noise, reduction.least_gain, reduction.smoothing)
+
+    def _is_like_speech(self, speech: np.ndarray) -> bool:
+        wanted, found = self._settings.speech_likeness, likeness(speech)
+        return found.tone <= wanted.most_tone and found.change >= wanted.least_change
+
+    def _leveled(self, speech: np.ndarray) -> bytes:
+        """Speech at the level that the acoustic model is used to, as the decoder takes it."""
+        gain = self._settings.gain
         wanted = 10.0 ** (gain.level_db / 20.0) / max(_loud_level(speech), 1e-9)
         factor = min(wanted, 10.0 ** (gain.most_db / 20.0), 0.99 / max(float(np.max(np.abs(speech))), 1e-9))
         return np.round(speech * factor * 32767.0).astype("<i2").tobytes()

@@ -91,13 +91,9 @@ def vocabulary(name: str, phrases: Iterable[str], word_spotting: bool = False) -
     Raises:
         BadValue: A phrase has no word.
     """
-    parts: list[Node] = []
-    for phrase in dict.fromkeys(phrases):
-        entry = words(phrase)
-        if word_spotting:
-            # Written as the robot does it: with other speech around, whether there was some or not.
-            spotted = Words(entry.spoken, f"{OTHER_SPEECH} {phrase} {OTHER_SPEECH}")
-            parts.append(Sequence((Anything(written=False), spotted, Anything(written=False))))
-        else:
-            parts.append(entry)
-    return Grammar(name, Choice(tuple(parts)))
+    entries = [words(phrase) for phrase in dict.fromkeys(phrases)]
+    if not word_spotting:
+        return Grammar(name, Choice(tuple(entries)))
+    # Written as the robot does it: with other speech around, whether there was some or not.
+    spotted = [Words(e.spoken, f"{OTHER_SPEECH} {e.heard} {OTHER_SPEECH}") for e in entries]
+    return Grammar(name, Sequence((Anything(written=False), Choice(tuple(spotted)), Anything(written=False))))

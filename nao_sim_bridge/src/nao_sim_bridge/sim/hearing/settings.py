@@ -70,6 +70,14 @@ class OtherSpeechSettings:
 
 
 @dataclass(frozen=True)
+class SpeechLikenessSettings:
+    """What is no speech: more of a single tone than `most_tone`, or less change of the spectrum than `least_change`."""
+
+    most_tone: float
+    least_change: float
+
+
+@dataclass(frozen=True)
 class RecognitionSettings:
     """All of the file."""
 
@@ -79,6 +87,7 @@ class RecognitionSettings:
     gain: GainSettings
     confidence: ConfidenceSettings
     other_speech: OtherSpeechSettings
+    speech_likeness: SpeechLikenessSettings
 
 
 SECTIONS = {
@@ -87,6 +96,7 @@ SECTIONS = {
     "gain": GainSettings,
     "confidence": ConfidenceSettings,
     "other_speech": OtherSpeechSettings,
+    "speech_likeness": SpeechLikenessSettings,
 }
 
 

@@ -1,0 +1,44 @@
+"""Real speech of small programs, as a microphone 1 m away would hear it, 16 kHz."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from nao_sim_bridge.sim.sound.samples import Sound
+from nao_sim_bridge.sim.speech.engines import Engines
+from nao_sim_bridge.sim.speech.speech import Utterance
+
+RATE = 16000
+BLOCK = 2720
+LEVEL = 10.0 ** (-39.0 / 20.0)
+ROOM = 10.0 ** (-74.0 / 20.0)
+
+
+@lru_cache(maxsize=None)
+def spoken(text, voice="slt"):
+    """(n,) samples of a text as flite says it, with the level of a person 1 m away."""
+    engines = Engines()
+    try:
+        speech = engines.synthesise(Utterance("flite", voice, text))
+    finally:
+        engines.close()
+    samples = Sound(np.asarray(speech.samples), speech.rate).at_rate(RATE).mono().samples[:, 0]
+    loud = np.abs(samples) > 0.1 * np.abs(samples).max()
+    return samples * (LEVEL / np.sqrt(np.mean(samples[loud] ** 2)))
+
+
+def in_a_room(*sounds, pause=1.1, noise=ROOM, seed=1):
+    """Sounds one after the other with pauses around them, in white noise; int16."""
+    parts = [np.zeros(round(pause * RATE))]
+    for sound in sounds:
+        parts += [sound, np.zeros(round(pause * RATE))]
+    stream = np.concatenate(parts)
+    stream = stream + noise * np.random.default_rng(seed).standard_normal(len(stream))
+    return np.round(np.clip(stream, -1.0, 1.0) * 32767.0).astype(np.int16)
+
+
+def blocks(stream):
+    """(time in s, samples) of each whole block."""
+    return [(i / RATE, stream[i : i + BLOCK]) for i in range(0, len(stream) - BLOCK + 1, BLOCK)]

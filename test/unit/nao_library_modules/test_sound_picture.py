@@ -1,0 +1,200 @@
+"""Records of dialogues, and the picture of a sound."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+from PIL import Image
+
+from nao_library_modules.dialogue_record import (
+    DOES,
+    HEARS,
+    PERSON,
+    ROBOT,
+    SAYS,
+    DialogueRecordError,
+    Turn,
+    load,
+    save,
+)
+from nao_library_modules.sound_picture import (
+    FILLS,
+    GAP,
+    LANE_HEIGHT,
+    LEAST_WAVE_HEIGHT,
+    LEFT,
+    PANEL,
+    TOP,
+    WAVE,
+    WAVE_HEIGHT,
+    WIDTH,
+    draw,
+    spectrogram,
+)
+
+PACKAGE = Path(__file__).parents[3] / "nao_library_modules"
+RATE = 16000
+TURNS = [
+    Turn(ROBOT, SAYS, "Shall we play?", 0.5, 1.0),
+    Turn(PERSON, SAYS, "Yes!", 1.5, 2.0),
+    Turn(ROBOT, HEARS, "yes", 2.5, 2.5, 0.91),
+    Turn(ROBOT, DOES, "nods", 3.0, 3.5),
+]
+
+
+def tone(frequency, begin, end, seconds=4.0, rate=RATE):
+    """A tone of half of full scale between two times."""
+    times = np.arange(int(seconds * rate)) / rate
+    return np.where((times >= begin) & (times < end), 0.5 * np.sin(2.0 * np.pi * frequency * times), 0.0)
+
+
+def darkest(picture):
+    """Column and row of the middle of what is darkest, as shares of the picture."""
+    shade = np.asarray(picture.convert("L")).astype(float)
+    rows, columns = np.nonzero(shade <= shade.min() + 20.0)
+    return columns.mean() / picture.size[0], rows.mean() / picture.size[1]
+
+
+def colored(picture, color):
+    """Columns and rows of the pixels of a color."""
+    rows, columns = np.nonzero((np.asarray(picture) == color).all(axis=-1))
+    return columns, rows
+
+
+@pytest.mark.parametrize("rate", [RATE, 48000])
+@pytest.mark.parametrize("frequency, begin, end", [(1000.0, 1.0, 2.0), (6000.0, 3.0, 4.0)])
+def test_a_tone_is_where_its_time_and_its_frequency_are(rate, frequency, begin, end):
+    sound = tone(frequency, begin, end, rate=rate)[:, np.newaxis]
+    column, row = darkest(spectrogram(sound, rate, (400, 200)))
+    assert column == pytest.approx((begin + end) / 2.0 / 4.0, abs=0.02)
+    assert row == pytest.approx(1.0 - frequency / 8000.0, abs=0.02)
+
+
+def test_channels_that_cancel_each_other_are_seen():
+    sound = tone(2000.0, 0.0, 4.0)
+    both = spectrogram(np.stack([sound, -sound], axis=1), RATE, (100, 100))
+    assert np.array_equal(np.asarray(both), np.asarray(spectrogram(sound[:, np.newaxis], RATE, (100, 100))))
+
+
+def test_the_waveform_is_as_high_as_it_is_loud():
+    sound = tone(500.0, 1.0, 2.0) + 0.2 * tone(500.0, 3.0, 4.0)
+    columns, rows = colored(draw(sound, RATE), WAVE)
+    heights = {x: np.ptp(rows[columns == x]) for x in (LEFT + PANEL * share // 8 for share in (1, 3, 7))}
+    silent, loud, soft = heights.values()
+    assert (silent, loud) == (0, pytest.approx(WAVE_HEIGHT, abs=3))
+    assert soft == pytest.approx(0.2 * loud, abs=3)
+    assert rows.min() >= TOP
+
+
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_each_channel_has_its_waveform(channels):
+    sound = np.stack([tone(500.0, channel, channel + 1.0) for channel in range(channels)], axis=1)
+    columns, rows = colored(draw(sound, RATE), WAVE)
+    edges = [TOP + channel * (max(LEAST_WAVE_HEIGHT, WAVE_HEIGHT // channels) + GAP) for channel in range(channels + 1)]
+    for channel in range(channels):
+        there = rows[columns == LEFT + PANEL * (2 * channel + 1) // 8]
+        pixels, _ = np.histogram(there, edges)
+        assert np.argmax(pixels) == channel and pixels[channel] > 40
+        assert sum(pixels) == pixels[channel] + channels - 1  # of the others their zero lines
+
+
+def test_words_stand_below_the_time_at_which_they_were_said():
+    sound = tone(500.0, 0.0, 4.0)
+    picture, bare = draw(sound, RATE, TURNS), draw(sound, RATE)
+    assert picture.size[1] - bare.size[1] == 4 * LANE_HEIGHT
+    columns, rows = colored(picture, FILLS[PERSON])
+    edges = [(x - LEFT) / PANEL * 4.0 for x in (columns.min(), columns.max())]
+    assert edges == pytest.approx([1.5, 2.0], abs=0.02)
+    assert rows.min() > bare.size[1] - TOP
+    columns, _ = colored(picture, FILLS[ROBOT])
+    edges = [(x - LEFT) / PANEL * 4.0 for x in (columns.min(), columns.max())]
+    assert edges == pytest.approx([0.5, 3.5], abs=0.02)
+
+
+def test_words_from_after_the_recording_are_left_out():
+    late = [Turn(PERSON, SAYS, "Yes!", 4.5, 5.0)]
+    columns, _ = colored(draw(tone(500.0, 0.0, 4.0), RATE, late), FILLS[PERSON])
+    assert len(columns) == 0
+
+
+@pytest.mark.parametrize("shape", [(0,), (0, 2), (100, 5), (100, 0)])
+def test_what_cannot_be_drawn_is_refused(shape):
+    with pytest.raises(ValueError, match="1 to 4 channels"):
+        draw(np.zeros(shape), RATE)
+
+
+@pytest.mark.parametrize("frames", [1, 7, 300])
+def test_silence_and_clicks_are_drawn(frames):
+    assert draw(np.zeros(frames), RATE).size == draw(np.ones(frames), RATE).size
+
+
+def test_a_record_comes_back_as_it_was(tmp_path):
+    save(TURNS, tmp_path / "a.json")
+    assert load(tmp_path / "a.json") == TURNS
+
+
+@pytest.mark.parametrize(
+    "change, told",
+    [
+        ({"who": "cat"}, "'cat' 'says'"),
+        ({"what": "thinks"}, "'robot' 'thinks'"),
+        ({"ended": 0.0}, "from 0.5 s to 0.0 s"),
+        ({"began": float("nan")}, "from nan s"),
+        ({"began": "soon"}, "soon"),
+    ],
+)
+def test_a_turn_that_cannot_be_is_refused(tmp_path, change, told):
+    path = tmp_path / "a.json"
+    save(TURNS, path)
+    content = json.loads(path.read_text())
+    content["turns"][0].update(change)
+    path.write_text(json.dumps(content))
+    with pytest.raises(DialogueRecordError, match=f"a.json: has a turn that is wrong: .*{told}"):
+        load(path)
+
+
+@pytest.mark.parametrize("text, told", [("{", "cannot be read"), ("[]", "is no record"), ('{"format": "x"}', "is no")])
+def test_a_file_that_is_no_record_is_refused(tmp_path, text, told):
+    path = tmp_path / "a.json"
+    path.write_text(text)
+    with pytest.raises(DialogueRecordError, match=f"a.json: {told}"):
+        load(path)
+
+
+def run(*options):
+    command = [sys.executable, str(PACKAGE / "examples" / "plot_sound.py"), *map(str, options)]
+    environment = {**os.environ, "PYTHONPATH": str(PACKAGE / "src")}
+    return subprocess.run(command, env=environment, timeout=60.0, capture_output=True, text=True)
+
+
+def test_the_example_draws_a_file_with_words(tmp_path):
+    sound, words, output = (tmp_path / name for name in ("a.wav", "a.json", "a.png"))
+    soundfile.write(str(sound), np.stack([tone(500.0, 1.0, 2.0)] * 4, axis=1), RATE)
+    save(TURNS, words)
+    done = run(sound, "--words", words, "--output", output)
+    assert done.returncode == 0, done.stdout + done.stderr
+    with Image.open(output) as picture:
+        assert picture.size[0] == WIDTH
+    assert output.stat().st_size < 150_000
+
+
+def test_the_example_tells_what_is_wrong(tmp_path):
+    sound, output = tmp_path / "a.wav", tmp_path / "a.png"
+    soundfile.write(str(sound), np.zeros((100, 1)), RATE)
+    (tmp_path / "no.wav").write_text("nothing")
+    missing = tmp_path / "missing.json"
+    for options, told in (
+        ([tmp_path / "none.wav"], "none.wav"),
+        ([tmp_path / "no.wav"], "no.wav"),
+        ([sound, "--words", missing], "missing.json: cannot be read"),
+    ):
+        done = run(*options, "--output", output)
+        assert (done.returncode, done.stderr) == (1, "") and told in done.stdout
+    assert not output.exists()
