@@ -12,7 +12,7 @@ from typing import Any, Callable
 
 import qi
 
-from nao_library_modules.dialogue_record import DOES, HEARS, PERSON, ROBOT, SAYS, Turn
+from nao_library_modules.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, Turn
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene
 
@@ -35,19 +35,20 @@ LIMIT = 30.0
 class Dialogue:
     """A dialogue in a simulator, with its recording.
 
-    Attributes:
-        turns: What has been said, heard and done, in s from the beginning of the recording.
-
     Args:
         folder: Where the recording goes.
     """
 
     def __init__(self, folder: Path) -> None:
-        self.turns: list[Turn] = []
         # Slow, for between calls time goes on; but faster than real, for then it waits until a voice is synthesised.
         self._server = SimulatorServer(ServerOptions(Scene(), port=0, speed=2.0, record_dir=folder))
         self._session = qi.Session()
-        self._began = self._heard_at = 0.0
+        self._notes = Notes(self._time)
+
+    @property
+    def turns(self) -> list[Turn]:
+        """What has been said, heard and done, in s from the beginning of the recording."""
+        return self._notes.turns
 
     def record(self, name: str) -> None:
         """Have the dialogue, and write what the front microphones hear to a file."""
@@ -58,7 +59,7 @@ class Dialogue:
             self._session.service("ALSpeechRecognition").setVocabulary(WORDS, False)
             recorder = self._session.service("ALAudioRecorder")
             recorder.startMicrophonesRecording(name, "wav", RATE, FRONT)
-            self._began = self._server.runner.snapshot.time
+            self._notes = Notes(self._time)
             self._talk()
             self._server.runner.advance(END).result(LIMIT)
             recorder.stopMicrophonesRecording()
@@ -68,25 +69,25 @@ class Dialogue:
 
     def _talk(self) -> None:
         motion, speech = self._session.service("ALMotion"), self._session.service("ALTextToSpeech")
-        sounds = self._call("ALSoundLocalization", LOCATED, CALL, lambda value: value[1][2] > SURE)
+        when, sounds = self._call("ALSoundLocalization", LOCATED, CALL, lambda value: value[1][2] > SURE)
         azimuth, _, sure, _ = sounds[1]
-        self._hears(f"a voice at {math.degrees(azimuth):.0f}°", sure)
+        self._notes.heard(f"a voice at {math.degrees(azimuth):.0f}°", when, sure)
         self._during(DOES, "turns its head", lambda: motion.angleInterpolation("HeadYaw", azimuth, 0.8, True))
         self._during(SAYS, QUESTION, lambda: speech.say(QUESTION))
-        word, sure, *_ = self._call("ALSpeechRecognition", RECOGNISED, REPLY, lambda value: value[0] != "")
-        self._hears(word, sure)
+        when, (word, sure, *_) = self._call("ALSpeechRecognition", RECOGNISED, REPLY, lambda value: value[0] != "")
+        self._notes.heard(word, when, sure)
         if word != EXPECTED:
             raise SystemExit(f"the robot took {REPLY!r} for {word!r}")
         self._during(SAYS, THANKS, lambda: speech.say(THANKS))
         self._during(DOES, "nods", lambda: motion.angleInterpolation("HeadPitch", *NOD, True))
 
-    def _call(self, module: str, event: str, text: str, good: Callable[[Any], bool]) -> Any:
-        """Have a module listen and the person say something; the first event with a value that is good."""
+    def _call(self, module: str, event: str, text: str, good: Callable[[Any], bool]) -> tuple[float, Any]:
+        """Have a module listen and the person say something; the first event with a good value: time and value."""
         heard: queue.Queue[tuple[float, Any]] = queue.Queue()
 
         def take(value: Any) -> None:
             if good(value):
-                heard.put((self._now(), value))
+                heard.put((self._notes.now(), value))
 
         signal = self._session.service("ALMemory").subscriber(event).signal
         link, listener = signal.connect(take), self._session.service(module)
@@ -95,20 +96,17 @@ class Dialogue:
         says = self._session.service("NaoSimulation").personSays
         self._during(SAYS, text, lambda: says(text, PLACE, VOICE, 0.0), PERSON)
         try:
-            self._heard_at, value = heard.get(timeout=LIMIT)
+            first = heard.get(timeout=LIMIT)
         except queue.Empty:
             raise SystemExit(f"the robot did not hear {text!r}") from None
         listener.unsubscribe(SUBSCRIBER)
         signal.disconnect(link)
-        return value
-
-    def _hears(self, text: str, sure: float) -> None:
-        self.turns.append(Turn(ROBOT, HEARS, text, self._heard_at, self._heard_at, sure))
+        return first
 
     def _during(self, what: str, text: str, action: Callable[[], Any], who: str = ROBOT) -> None:
-        began = self._now()
+        began = self._notes.now()
         action()
-        self.turns.append(Turn(who, what, text, began, self._now()))
+        self._notes.did(who, what, text, began)
 
-    def _now(self) -> float:
-        return self._server.runner.snapshot.time - self._began
+    def _time(self) -> float:
+        return self._server.runner.snapshot.time

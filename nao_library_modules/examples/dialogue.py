@@ -23,9 +23,9 @@ from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point
 
 import nao_library_actions.msg as actions
-from nao_library_modules.dialogue_record import DOES, HEARS, PERSON, ROBOT, SAYS, Turn, save
+from nao_library_modules.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, save
 from nao_library_msgs.msg import AudioInFunction, AudioOutFunction, MotionFunction
-from nao_library_msgs.srv import PersonSays
+from nao_library_msgs.srv import AdvanceTime, PersonSays
 
 LIMIT = rospy.Duration(60)
 ANSWERS = {
@@ -53,68 +53,70 @@ class Servers:
             if not client.wait_for_server(LIMIT):
                 raise RuntimeError(f"there is no server {name}: start one with roslaunch nao_library nao_sim.launch")
 
-    def play(self, name: str, goal: Any, meanwhile: Callable[[], None] | None = None) -> Any:
+    def play(
+        self,
+        name: str,
+        goal: Any,
+        meanwhile: Callable[[Callable[[], bool]], None] | None = None,
+        at_end: Callable[[], None] = lambda: None,
+    ) -> Any:
         """Play a goal to its end; its result.
 
         Args:
             name: Name of the server.
             goal: What to do.
-            meanwhile: What is done once the robot listens.
+            meanwhile: What is done once the robot listens for words or the goal for sounds is sent; it is given a
+                function that tells whether the goal is over, and may take longer than it.
+            at_end: What is done when the goal ends.
         """
         client = self._clients[name]
         if meanwhile is None:
             client.send_goal_and_wait(goal, LIMIT)
+            at_end()
         else:
-            self._play_with(client, goal, meanwhile)
+            self._play_with(client, goal, meanwhile, at_end)
         if client.get_state() != GoalStatus.SUCCEEDED:
             raise RuntimeError(client.get_goal_status_text() or f"no result of {name}")
         return client.get_result()
 
-    def _play_with(self, client: Any, goal: Any, meanwhile: Callable[[], None]) -> None:
-        moment = threading.Event()
+    def _play_with(self, client: Any, goal: Any, meanwhile: Callable[..., None], at_end: Callable[[], None]) -> None:
+        listens, over = threading.Event(), threading.Event()
+        if goal.functions[0].function != "listen":
+            listens.set()  # only the recogniser tells when it is ready
 
         def follow(feedback: Any) -> None:
-            if feedback.status == "ListenOn" or feedback.function == "localizeSound":
-                moment.set()
+            if feedback.status == "ListenOn":
+                listens.set()
 
-        client.send_goal(goal, done_cb=lambda *_: moment.set(), feedback_cb=follow)
+        def end(*_: Any) -> None:
+            try:
+                at_end()
+            finally:
+                over.set()
+                listens.set()
+
+        client.send_goal(goal, done_cb=end, feedback_cb=follow)
         try:
-            if moment.wait(LIMIT.to_sec()) and client.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE):
-                meanwhile()
-        except Exception:
-            client.cancel_goal()
-            raise
-        if not client.wait_for_result(LIMIT):
-            client.cancel_goal()
-
-
-class Notes:
-    """What happens in a dialogue, in ROS time from now on."""
-
-    def __init__(self) -> None:
-        """Begin."""
-        self.turns: list[Turn] = []
-        self._began = rospy.get_time()
-
-    def now(self) -> float:
-        """Time since the beginning, s."""
-        return rospy.get_time() - self._began
-
-    def add(self, who: str, what: str, text: str, began: float, confidence: float | None = None) -> None:
-        """Note, and tell, what has just ended and began at a time, s."""
-        turn = Turn(who, what, text, began, self.now(), confidence)
-        print(f"heard: {turn.title}" if what == HEARS else f"{who}: {text}" if what == SAYS else f"{who} {text}")
-        self.turns.append(turn)
+            if listens.wait(LIMIT.to_sec()) and not over.is_set():
+                meanwhile(over.is_set)
+            over.wait(LIMIT.to_sec())
+        finally:
+            if not over.is_set():
+                client.cancel_goal()
 
 
 class Person:
-    """Somebody in the simulated world, at a place (x, y, z) in it, m."""
+    """Somebody in the simulated world.
 
-    def __init__(self, place: list[float], notes: Notes) -> None:
+    Args:
+        place: Where the mouth is, x, y, z in world, m.
+    """
+
+    def __init__(self, place: list[float]) -> None:
         """Find the world."""
         self._place = Point(*place)
-        self._notes = notes
         self._says = rospy.ServiceProxy("nao_sim/person_says", PersonSays)
+        self._advance = rospy.ServiceProxy("nao_sim/advance", AdvanceTime)
         try:
             self._says.wait_for_service(5.0)
         except rospy.ROSException as error:
@@ -123,17 +125,15 @@ class Person:
                 "answer the robot yourself"
             ) from error
 
+    def time(self) -> float:
+        """Simulated time, s, as in recordings; ROS time is another at speed 1 when the simulator falls behind."""
+        return self._advance(rospy.Duration(0)).now.to_sec()
+
     def say(self, text: str) -> None:
-        """Say something, after a moment."""
-        rospy.sleep(REACTION)
-        began = self._notes.now()
-        try:
-            answer = self._says(text, self._place, VOICE, 0.0)
-        except rospy.ServiceException as error:
-            raise RuntimeError(f"the person cannot speak: {error}") from error
+        """Say something."""
+        answer = self._says(text, self._place, VOICE, 0.0)
         if not answer.success:
             raise RuntimeError(f"the person cannot speak: {answer.message}")
-        self._notes.add(PERSON, SAYS, text, began)
 
 
 class Dialogue:
@@ -151,26 +151,27 @@ class Dialogue:
         """Say something."""
         began = self._notes.now()
         self._servers.play("nao_audio_out", actions.NaoAudioOutGoal([AudioOutFunction(function="say", str_param=text)]))
-        self._notes.add(ROBOT, SAYS, text, began)
+        self._notes.did(ROBOT, SAYS, text, began)
 
     def turn_to_call(self) -> None:
         """Wait for a voice and turn the head there."""
-        sounds = self._listen(CALL, function="localizeSound", confidence=0.3).sounds
-        if not sounds:
+        heard, when = self._listen(self._call, function="localizeSound", confidence=0.3)
+        if not heard.sounds:
             print("nobody calls")
             return
-        self._yaw = max(-FARTHEST, min(FARTHEST, sounds[0].base_azimuth))
-        text = f"a voice at {math.degrees(sounds[0].base_azimuth):.0f}°"
-        self._notes.add(ROBOT, HEARS, text, self._notes.now(), sounds[0].confidence)
+        azimuth = heard.sounds[0].base_azimuth
+        self._notes.heard(f"a voice at {math.degrees(azimuth):.0f}°", when, heard.sounds[0].confidence)
+        self._yaw = max(-FARTHEST, min(FARTHEST, azimuth))
         self._move("turns its head", "HeadYaw", [self._yaw], [0.8])
 
     def ask(self, question: str, answer: str | None) -> str:
         """Ask, and listen; what was heard, empty if nothing was."""
         self.say(question)
-        heard = self._listen(answer, function="listen", vocabulary=list(ANSWERS), confidence=0.3)
+        say = lambda _: self._person_says(str(answer))  # noqa: E731
+        heard, when = self._listen(say, function="listen", vocabulary=list(ANSWERS), confidence=0.3)
         if not heard.words:
             return ""
-        self._notes.add(ROBOT, HEARS, heard.words[0], self._notes.now(), heard.confidences[0])
+        self._notes.heard(heard.words[0], when, heard.confidences[0])
         return heard.words[0]
 
     def gesture(self, joint: str, angle: float) -> None:
@@ -180,16 +181,30 @@ class Dialogue:
         text = "shakes its head" if joint == "HeadYaw" else "nods"
         self._move(text, joint, angles, [0.4, 0.8, 1.2, 1.6])
 
-    def _listen(self, text: str | None, **fields: Any) -> Any:
+    def _listen(self, meanwhile: Callable[..., None], **fields: Any) -> tuple[Any, float]:
+        """What is heard, and when that was known, s; if there is a person, of what that does meanwhile."""
         goal = actions.NaoAudioInGoal([AudioInFunction(timeout=self._timeout, **fields)])
-        person = self._person
-        return self._servers.play("nao_audio_in", goal, person and (lambda: person.say(text)))
+        ends: list[float] = []
+        at_end = lambda: ends.append(self._notes.now())  # noqa: E731
+        result = self._servers.play("nao_audio_in", goal, meanwhile if self._person else None, at_end)
+        return result, ends[0]
+
+    def _call(self, is_over: Callable[[], bool]) -> None:
+        """Call until the robot notices, as people do."""
+        while not is_over():
+            self._person_says(CALL)
+
+    def _person_says(self, text: str) -> None:
+        rospy.sleep(REACTION)
+        began = self._notes.now()
+        self._person.say(text)
+        self._notes.did(PERSON, SAYS, text, began)
 
     def _move(self, text: str, joint: str, angles: list[float], times: list[float]) -> None:
         began = self._notes.now()
         turn = MotionFunction(function="angleInterpolation", names=[joint], stiffness=1.0, angles=angles, times=times)
         self._servers.play("NaoMotion", actions.NaoMotionGoal([turn]))
-        self._notes.add(ROBOT, DOES, text, began)
+        self._notes.did(ROBOT, DOES, text, began)
 
 
 def main() -> int:
@@ -214,7 +229,7 @@ def main() -> int:
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
     try:
         return talk(Servers(), options)
-    except (RuntimeError, OSError) as error:
+    except (RuntimeError, OSError, rospy.ServiceException, rospy.ROSException) as error:
         print(error)
         return 1
     except KeyboardInterrupt:
@@ -223,12 +238,12 @@ def main() -> int:
 
 def talk(servers: Servers, options: argparse.Namespace) -> int:
     """Have the dialogue, and keep of it what is wanted; the exit status."""
+    person = Person(options.place) if options.person else None
     if options.record:
         start = AudioInFunction(function="startRecording", str_param=options.record)
         servers.play("nao_audio_in", actions.NaoAudioInGoal([start]))
-    notes = Notes()
+    notes = Notes(person.time if person else rospy.get_time)
     try:
-        person = Person(options.place, notes) if options.person else None
         dialogue = Dialogue(servers, notes, person, options.timeout)
         if person:
             dialogue.turn_to_call()

@@ -36,15 +36,22 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=5.0, help="how long (default: 5)")
     parser.add_argument("--all", action="store_true", help="all four microphones, not the front ones only")
     options = parser.parse_args(rospy.myargv()[1:])
-    rospy.init_node("record_sound", anonymous=True)
+    rospy.init_node("record_sound", anonymous=True, disable_signals=True)  # Ctrl-C leaves time to end the recording
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
     ears = actionlib.SimpleActionClient("nao_audio_in", NaoAudioInAction)
     if not ears.wait_for_server(LIMIT):
         print("there is no server nao_audio_in: start one with roslaunch nao_library nao_sim.launch")
         return 1
-    rospy.on_shutdown(lambda: ears.get_state() == GoalStatus.ACTIVE and ears.cancel_goal())
-    goal = NaoAudioInGoal(chain(options.name, options.seconds, options.all))
-    state = ears.send_goal_and_wait(goal, rospy.Duration.from_sec(options.seconds) + LIMIT)
+    ears.send_goal(NaoAudioInGoal(chain(options.name, options.seconds, options.all)))
+    try:
+        ended = ears.wait_for_result(rospy.Duration.from_sec(options.seconds) + LIMIT)
+    except KeyboardInterrupt:
+        ended = False
+    if not ended:
+        # Whatever this side knows of the goal: the robot may record already. The result comes when the file is closed.
+        ears.cancel_goal()
+        ears.wait_for_result(LIMIT)
+    state = ears.get_state()
     print(f"{options.name}: {GoalStatus.to_string(state).lower()} {ears.get_goal_status_text()}".rstrip())
     result = ears.get_result()
     for name, energy in zip(result.microphones, result.energies) if result else ():

@@ -6,7 +6,7 @@ import json
 import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, List, Sequence
+from typing import Any, Callable, List, Sequence
 
 FORMAT = "nao_library dialogue 1"
 ROBOT, PERSON = "robot", "person"
@@ -52,6 +52,40 @@ class Turn:
     def title(self) -> str:
         """The text, with the confidence if there is one."""
         return self.text if self.confidence is None else f"{self.text} ({self.confidence:.2f})"
+
+
+class Notes:
+    """What happens in a dialogue, in s from now on.
+
+    Attributes:
+        turns: All of it.
+
+    Args:
+        clock: Tells the time, s.
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        """Begin."""
+        self.turns: list[Turn] = []
+        self._clock = clock
+        self._began = clock()
+
+    def now(self) -> float:
+        """Time since the beginning, s."""
+        return self._clock() - self._began
+
+    def did(self, who: str, what: str, text: str, began: float) -> None:
+        """Note, and tell, what has just ended and began at a time, s."""
+        self._add(Turn(who, what, text, began, self.now()))
+
+    def heard(self, text: str, when: float, confidence: float) -> None:
+        """Note, and tell, what the robot heard at a time, s."""
+        self._add(Turn(ROBOT, HEARS, text, when, when, confidence))
+
+    def _add(self, turn: Turn) -> None:
+        self.turns.append(turn)
+        before = {SAYS: f"{turn.who}: ", HEARS: "heard: ", DOES: f"{turn.who} "}[turn.what]
+        print(f"{before}{turn.title}")
 
 
 def save(turns: Sequence[Turn], path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import posixpath
 from pathlib import Path
 from typing import Sequence
@@ -9,6 +10,8 @@ from typing import Sequence
 DEFAULT_RECORD_DIR = Path("~/.ros/nao_recordings")
 # Where a real robot keeps the files of its users. Scripts that were written for one name it in full.
 ROBOT_HOME = "/home/nao"
+# Longest part of a path, and longest path, in bytes; no file system here has longer ones.
+LONGEST_PART, LONGEST_PATH = 255, 4000
 
 
 class OutsideRecordDir(ValueError):
@@ -17,6 +20,10 @@ class OutsideRecordDir(ValueError):
 
 class NoSuchFile(ValueError):
     """A file that a client names and that is not there."""
+
+
+class UnusableName(ValueError):
+    """A file name that cannot be that of a file, or of one that can be written."""
 
 
 class ClientFiles:
@@ -40,8 +47,12 @@ class ClientFiles:
 
         Raises:
             OutsideRecordDir: The name leads out of the folder.
+            UnusableName: It is too long, or something else than a file is there.
         """
-        return inside(self.folder, relative_to_home(name))
+        path = inside(self.folder, relative_to_home(name))
+        if path.exists() and not path.is_file():
+            raise UnusableName(f"{name!r} is there and no file")
+        return path
 
     def to_read(self, name: str) -> Path:
         """Path of a file that is there.
@@ -49,6 +60,7 @@ class ClientFiles:
         Raises:
             OutsideRecordDir: The name leads out of the folder.
             NoSuchFile: There is no such file.
+            UnusableName: It is too long.
         """
         relative = relative_to_home(name)
         found = [path for path in (_inside(folder, relative) for folder in (self.folder, *self.shipped)) if path]
@@ -74,16 +86,22 @@ def inside(folder: Path, name: str) -> Path:
 
     Raises:
         OutsideRecordDir: The name is absolute, empty, or leads out of the folder, also through a link.
+        UnusableName: It is too long, or a folder on the way cannot be made.
     """
     path = _inside(folder, name)
     if path is None:
         raise _outside(folder, name)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UnusableName(f"the folder of {name!r} cannot be made: {error.strerror}") from error
     return path
 
 
 def _inside(folder: Path, name: str) -> Path | None:
     """Path of `name` inside `folder`, None when it leads out of it."""
+    if len(os.fsencode(name)) > LONGEST_PATH or any(len(os.fsencode(p)) > LONGEST_PART for p in name.split("/")):
+        raise UnusableName(f"file {name[:40]!r}... is too long a name: at most {LONGEST_PART} bytes a part are allowed")
     if not name or "\0" in name or Path(name).is_absolute():
         return None
     root = folder.resolve()

@@ -12,7 +12,7 @@ from typing import Any, Sequence
 from nao_sim_bridge.broker import Broker
 from nao_sim_bridge.paths import sounds_directory
 from nao_sim_bridge.pictures import Pictures
-from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR, ClientFiles, OutsideRecordDir
+from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR, ClientFiles
 from nao_sim_bridge.services import motion
 from nao_sim_bridge.services.arguments import number, numbers
 from nao_sim_bridge.services.audio import sound_detection, sound_localization
@@ -167,7 +167,7 @@ class SimulatorServer:
         if self.options.sound_file:
             try:
                 path = self.files.to_write(self.options.sound_file)
-            except OutsideRecordDir as error:
+            except ValueError as error:
                 raise BadValue("sound file", self.options.sound_file, f"a name inside {self.files.folder}") from error
             self._outlets.append(SoundFile(self.simulation, path))
         if self.options.sound_card:

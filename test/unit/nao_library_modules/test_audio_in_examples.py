@@ -33,11 +33,18 @@ class FakeClients:
         self.text = ""
         self.answers = {}
         self.played = []
+        self.interrupted = False
+        self.canceled = []
 
     def client(self, name, action):
         def play(goal, timeout=None):
             self.played += [(name, function) for function in goal.functions]
             return self.state
+
+        def wait(timeout):
+            if self.interrupted and not self.canceled:
+                raise KeyboardInterrupt
+            return True
 
         def result():
             answers = self.answers.get(name, [])
@@ -46,10 +53,12 @@ class FakeClients:
         return SimpleNamespace(
             wait_for_server=lambda limit: self.there,
             send_goal_and_wait=play,
+            send_goal=play,
+            wait_for_result=wait,
             get_state=lambda: self.state,
             get_goal_status_text=lambda: self.text,
             get_result=result,
-            cancel_goal=lambda: None,
+            cancel_goal=lambda: self.canceled.append(name),
         )
 
 
@@ -80,6 +89,14 @@ def test_what_is_recorded_is_a_chain_that_the_server_takes(robot, edge):
         assert server.end == "succeeded", server.text
         assert (server.result.files[0].rate, server.result.files[0].duration) == (rate, 2.0)
         assert len(server.result.energies) == 4 and ears.idle()
+
+
+@pytest.mark.parametrize("state", [GoalStatus.PENDING, GoalStatus.ACTIVE])
+def test_ctrl_c_ends_a_recording_whatever_is_known_of_its_goal(clients, monkeypatch, capsys, state):
+    monkeypatch.setattr("rospy.myargv", lambda: ["record_sound.py", "a.wav"])
+    clients.interrupted, clients.state = True, state
+    assert load("record_sound").main() == 1
+    assert clients.canceled == ["nao_audio_in"]
 
 
 @pytest.mark.parametrize("azimuth, elevation", [(0.0, 0.0), (1.2, 0.3), (-2.5, -0.2)])

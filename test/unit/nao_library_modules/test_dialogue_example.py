@@ -24,19 +24,26 @@ class FakeWorld:
         self.happened = []
         self.hears = ["", "yes"]  # one a question
         self.silent = False
+        self.missed = 0  # so many first words are not heard, and the robot goes on listening
         self.person_is_there = True
         self.refused = ""
         self.now = 100.0
         self.options = []
+        self.listener = None
         monkeypatch.setattr("actionlib.SimpleActionClient", lambda name, action: FakeClient(self, name))
-        monkeypatch.setattr("rospy.ServiceProxy", lambda name, service: self if name == "nao_sim/person_says" else None)
+        services = {"nao_sim/person_says": self, "nao_sim/advance": self.advance}
+        monkeypatch.setattr("rospy.ServiceProxy", lambda name, service: services[name])
         monkeypatch.setattr("rospy.init_node", lambda *args, **options: None)
         monkeypatch.setattr("rospy.sleep", self.sleep)
-        monkeypatch.setattr("rospy.get_time", lambda: self.now)
+        monkeypatch.setattr("rospy.get_time", lambda: 5000.0 + 2.0 * self.now)  # the simulator is slower than ROS time
         monkeypatch.setattr("rospy.myargv", lambda: ["dialogue.py", *self.options])
 
     def sleep(self, duration):
         self.now += duration.to_sec() if isinstance(duration, rospy.Duration) else duration
+
+    def advance(self, duration):
+        assert duration.to_sec() == 0.0
+        return SimpleNamespace(now=rospy.Time.from_sec(self.now))
 
     def wait_for_service(self, limit):
         if not self.person_is_there:
@@ -46,7 +53,11 @@ class FakeWorld:
         if self.refused:
             return SimpleNamespace(success=False, message=self.refused)
         self.happened.append(("person", text, (place.x, place.y, place.z)))
-        self.now += 0.5
+        self.now += 0.25
+        self.missed -= 1
+        if self.missed < 0:
+            self.listener.end()
+        self.now += 0.25
         return SimpleNamespace(success=True, message="")
 
     def answer(self, function):
@@ -73,18 +84,16 @@ class FakeClient:
     def send_goal_and_wait(self, goal, limit):
         self._begin(goal)
         self.world.now += 1.0
-        self._end()
+        self.done = lambda: None
+        self.end()
 
     def send_goal(self, goal, done_cb, feedback_cb):
         self._begin(goal)
         name = self.function.function
         status = ["", "Idle", "ListenOn"] if name == "listen" else [""]
         told = [SimpleNamespace(function=name, status=each) for each in status]
+        self.done = done_cb
         threading.Thread(target=lambda: [feedback_cb(each) for each in told], daemon=True).start()
-
-    def wait_for_result(self, limit):
-        self._end()
-        return True
 
     def cancel_goal(self):
         self.state = GoalStatus.PREEMPTED
@@ -102,9 +111,11 @@ class FakeClient:
     def _begin(self, goal):
         self.state, (self.function,) = GoalStatus.ACTIVE, goal.functions
         self.world.happened.append((self.name, self.function.function, self.function))
+        self.world.listener = self
 
-    def _end(self):
+    def end(self):
         self.result, self.state = self.world.answer(self.function), GoalStatus.SUCCEEDED
+        self.done()
 
 
 @pytest.fixture
@@ -153,6 +164,13 @@ def test_a_robot_that_hears_no_call_asks_all_the_same(world, capsys):
     assert len(world.functions("NaoMotion")) == 1  # the nod
 
 
+def test_a_person_calls_until_the_robot_notices(world):
+    world.missed, world.hears = 2, ["yes"]
+    assert run(world, "--person", "yes") == 0
+    assert world.functions("person") == ["Hello, robot!"] * 3 + ["yes"]
+    assert world.functions("nao_audio_in") == ["localizeSound", "listen"]
+
+
 def test_the_log_tells_who_said_and_heard_what_when(world, tmp_path):
     path = tmp_path / "a.json"
     world.hears = ["yes"]
@@ -170,7 +188,9 @@ def test_the_log_tells_who_said_and_heard_what_when(world, tmp_path):
     ]
     # A person takes 0.8 s before words of 0.5 s, the robot 1 s for everything; counted from the recording's begin.
     times = [(turn.began, turn.ended) for turn in turns]
-    assert times[0] == pytest.approx((0.8, 1.3)) and times[4] == pytest.approx((4.1, 4.6))
+    # What is heard is known in the middle of it.
+    assert times[:2] == [pytest.approx((0.8, 1.3)), pytest.approx((1.05, 1.05))]
+    assert times[4:6] == [pytest.approx((4.1, 4.6)), pytest.approx((4.35, 4.35))]
     assert world.functions("nao_audio_in")[0] == "startRecording" and world.happened[-1][1] == "stopRecording"
     assert world.happened[0][2].str_param == "a.wav"
 
@@ -181,13 +201,12 @@ def test_without_a_person_nothing_is_asked_of_a_simulator(world):
     assert world.functions("person") == [] and "localizeSound" not in world.functions("nao_audio_in")
 
 
-def test_a_person_on_a_robot_is_refused_and_the_recording_ends(world, capsys, tmp_path):
+def test_a_person_on_a_robot_is_refused_before_anything_begins(world, capsys):
     world.person_is_there = False
-    assert run(world, "--person", "yes", "--record", "a.wav", "--log", str(tmp_path / "a.json")) == 1
+    assert run(world, "--person", "yes", "--record", "a.wav") == 1
     output = capsys.readouterr().out
     assert "there is no simulator" in output and "leave out --person" in output
-    assert world.functions("nao_audio_in") == ["startRecording", "stopRecording"]
-    assert load_turns(tmp_path / "a.json") == []
+    assert world.happened == []
 
 
 def test_a_person_who_cannot_speak_ends_the_dialogue_and_the_listening(world, capsys):
@@ -195,3 +214,10 @@ def test_a_person_who_cannot_speak_ends_the_dialogue_and_the_listening(world, ca
     assert run(world, "--person", "yes") == 1
     assert "the person cannot speak: there is no voice rms" in capsys.readouterr().out
     assert world.functions("nao_audio_in") == ["localizeSound", "cancel"]
+
+
+def test_a_dialogue_that_breaks_off_leaves_a_log_and_no_recording_that_runs(world, tmp_path):
+    world.refused = "there is no voice rms"
+    assert run(world, "--person", "yes", "--record", "a.wav", "--log", str(tmp_path / "a.json")) == 1
+    assert world.functions("nao_audio_in") == ["startRecording", "localizeSound", "cancel", "stopRecording"]
+    assert load_turns(tmp_path / "a.json") == []

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
-from nao_sim_bridge.record_dir import ClientFiles, NoSuchFile, OutsideRecordDir, inside
+from nao_sim_bridge.record_dir import ClientFiles, NoSuchFile, OutsideRecordDir, UnusableName, inside
 
 
 @pytest.mark.parametrize("name", ["a.wav", "day/one/a.wav", "day/../a.wav", "..a.wav"])
@@ -79,6 +81,24 @@ def test_a_file_that_is_not_there_is_named(files):
         files.to_read("two.wav")
     with pytest.raises(NoSuchFile, match="'day' is a folder, not a file"):
         files.to_read("day")
+
+
+@pytest.mark.parametrize("name", ["n" * 300 + ".wav", "day/" + "é" * 200 + "/a.wav", "abc/" * 2000 + "a.wav"])
+def test_a_name_that_no_file_can_have_is_refused_shortly(files, name):
+    for way in (files.to_read, files.to_write):
+        with pytest.raises(UnusableName, match="too long a name") as refused:
+            way(name)
+        assert len(str(refused.value)) < 200
+
+
+def test_only_files_are_written_to(files, tmp_path):
+    with pytest.raises(UnusableName, match="'day' is there and no file"):
+        files.to_write("day")
+    with pytest.raises(UnusableName, match="folder of 'both.wav/a.wav' cannot be made"):
+        files.to_write("both.wav/a.wav")
+    os.mkfifo(tmp_path / "records/pipe.wav")  # opened for writing it would block
+    with pytest.raises(UnusableName, match="'pipe.wav' is there and no file"):
+        files.to_write("pipe.wav")
 
 
 def test_files_are_written_to_the_recordings_only(files, tmp_path):

@@ -24,6 +24,8 @@ log = logging.getLogger("nao_sim.services")
 
 # Every libqi object has these by itself.
 NATIVE = frozenset({"isStatsEnabled", "clearStats", "isTraceEnabled"})
+# Characters of an error text; what is between its ends is left out when somebody sent a book as a name.
+LONGEST_ERROR = 1200
 
 
 def make_service(module: str, parts: Sequence[Any], broker: Any) -> Any:
@@ -100,7 +102,7 @@ def _settle(promise: Any, cancelled: threading.Event, label: str, done: Task) ->
     # Not a closure that names itself: such a cycle would keep the promise until the next garbage collection, and a
     # promise with a value that is still there when the interpreter ends makes libqi abort the process.
     if done.error is not None:
-        promise.setError(f"{label} {done.error}")
+        promise.setError(_shortened(f"{label} {done.error}"))
     elif isinstance(done.value, Task):
         done.value.add_done_callback(partial(_settle, promise, cancelled, label))
     elif done.killed and cancelled.is_set():
@@ -140,4 +142,9 @@ def _failed(text: str) -> Any:
 def _text(module: str, method: str, error: Exception) -> str:
     if not isinstance(error, (RuntimeError, ValueError, TypeError, KeyError)):
         log.error("%s::%s failed", module, method, exc_info=error)
-    return f"{module}::{method} {error}"
+    return _shortened(f"{module}::{method} {error}")
+
+
+def _shortened(text: str) -> str:
+    half = LONGEST_ERROR // 2
+    return text if len(text) <= LONGEST_ERROR else f"{text[:half]} ... {text[-half:]}"

@@ -163,6 +163,19 @@ def test_an_error_arrives_as_its_text_with_module_and_method(proxy):
     assert str(caught.value).strip() == "ALMotion::getLimits name is 'Hed', allowed is a joint"
 
 
+def test_an_error_about_a_book_is_short(proxy, motion, patience):
+    with pytest.raises(RuntimeError) as caught:
+        proxy.getLimits("Head " * 20000)
+    assert str(caught.value).startswith("ALMotion::getLimits name is 'Head Head")
+    assert str(caught.value).strip().endswith("allowed is a joint")
+    future = proxy.wakeUp(_async=True)
+    proxy.ping()
+    motion.tasks[0].finish(error=BadValue("name", "Head " * 20000, "a joint"))
+    with pytest.raises(RuntimeError, match="allowed is a joint") as failed:
+        future.value(round(patience * 1000))
+    assert len(str(caught.value)) < 1300 and len(str(failed.value)) < 1300
+
+
 def test_a_defect_is_logged_with_its_place_and_answered(proxy, caplog):
     with caplog.at_level(logging.ERROR, "nao_sim.services"), pytest.raises(RuntimeError, match="getCOM a defect"):
         proxy.getCOM("Body", 0, True)

@@ -68,6 +68,7 @@ class Background:
 
         def cancel(asked: Task) -> None:
             cancelled.set()
+            asked.killed = asked.killed or not asked.finished
             asked.finish()
 
         def wanted() -> bool:

@@ -28,6 +28,8 @@ PHONES = (
 SCORE_UNIT = 1.0 / 1024.0
 # Mark of a further pronunciation of a token.
 FURTHER = re.compile(r"\(\d+\)$")
+# Power to which the decoder raises the chances of words.
+LANGUAGE_WEIGHT = 6.5
 PHRASES, SOUNDS = "phrases", "sounds"
 # Further hypotheses are looked for in this many ways at most.
 MOST_SEARCHES = 12
@@ -103,7 +105,7 @@ class Decoder:
 
     def _is_like_speech(self, speech: np.ndarray) -> bool:
         wanted, found = self._settings.speech_likeness, likeness(speech)
-        return found.tone <= wanted.most_tone and found.change >= wanted.least_change
+        return wanted.least_tone <= found.tone <= wanted.most_tone and found.change >= wanted.least_change
 
     def _leveled(self, speech: np.ndarray) -> bytes:
         """Speech at the level that the acoustic model is used to, as the decoder takes it."""
@@ -175,14 +177,20 @@ class Decoder:
     def _hypotheses(self, paths: Iterable[Way], sounds_score: float) -> list[Hypothesis]:
         settings = self._settings.confidence
         listed: dict[Tuple[str, str], Hypothesis] = {}
+        surest = 1.0
+        charge = -math.log(self._settings.other_speech.weight) * LANGUAGE_WEIGHT
         for path in paths:
-            evidence = (path.score - sounds_score) / (path.frames + settings.more_frames)
+            # What other speech was charged says nothing about how well the words fit.
+            score = path.score + charge * sum(token.startswith(OTHER) for token in path.tokens)
+            evidence = (score - sounds_score) / (path.frames + settings.more_frames)
             confidence = 1.0 / (1.0 + math.exp(-settings.slope * (evidence - settings.middle)))
             said = [self._network.tokens[t] for t in path.tokens]
             phrase = _phrase([token.heard for token in said])
             grammar = next((token.grammar for token in said if token.grammar), "")
             if grammar and confidence >= settings.least:
-                listed.setdefault((phrase, grammar), Hypothesis(phrase, confidence, grammar))
+                # A way that is less likely as a whole is no surer, however few sounds it has.
+                surest = min(surest, confidence)
+                listed.setdefault((phrase, grammar), Hypothesis(phrase, surest, grammar))
         return list(listed.values())
 
 

@@ -71,8 +71,9 @@ class OtherSpeechSettings:
 
 @dataclass(frozen=True)
 class SpeechLikenessSettings:
-    """What is no speech: more of a single tone than `most_tone`, or less change of the spectrum than `least_change`."""
+    """What is no speech: a share of a single tone out of bounds, or less change of the spectrum than `least_change`."""
 
+    least_tone: float
     most_tone: float
     least_change: float
 

@@ -76,3 +76,17 @@ def test_work_learns_that_nobody_wants_it_any_more(patience, way):
     task.result(patience)
     background.in_turn(lambda _: None, "after it").result(patience)
     assert seen == [True, False]
+
+
+@pytest.mark.parametrize("in_turn", [True, False])
+def test_work_that_is_cancelled_counts_as_killed_and_only_then(patience, in_turn):
+    background, may_end = Background(), threading.Event()
+    way = background.in_turn if in_turn else background.beside
+    task = way(lambda _: may_end.wait(patience), "work")
+    task.request_kill()
+    task.result(patience)
+    may_end.set()
+    done = way(lambda _: 1, "work")
+    assert done.result(patience) == 1
+    done.request_kill()
+    assert task.killed and not done.killed
