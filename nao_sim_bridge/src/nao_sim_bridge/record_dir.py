@@ -51,7 +51,7 @@ class ClientFiles:
         """
         path = inside(self.folder, relative_to_home(name))
         if path.exists() and not path.is_file():
-            raise UnusableName(f"{name!r} is there and no file")
+            raise UnusableName(f"{name!r} cannot be written: {'Is a directory' if path.is_dir() else 'it is no file'}")
         return path
 
     def to_read(self, name: str) -> Path:

@@ -92,12 +92,12 @@ def test_a_name_that_no_file_can_have_is_refused_shortly(files, name):
 
 
 def test_only_files_are_written_to(files, tmp_path):
-    with pytest.raises(UnusableName, match="'day' is there and no file"):
+    with pytest.raises(UnusableName, match="'day' cannot be written: Is a directory"):
         files.to_write("day")
     with pytest.raises(UnusableName, match="folder of 'both.wav/a.wav' cannot be made"):
         files.to_write("both.wav/a.wav")
     os.mkfifo(tmp_path / "records/pipe.wav")  # opened for writing it would block
-    with pytest.raises(UnusableName, match="'pipe.wav' is there and no file"):
+    with pytest.raises(UnusableName, match="'pipe.wav' cannot be written: it is no file"):
         files.to_write("pipe.wav")
 
 

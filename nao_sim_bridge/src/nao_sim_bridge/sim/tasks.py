@@ -58,6 +58,8 @@ class Task:
             self._result, self._error = result, error
             self._finished.set()
             callbacks, self._callbacks = self._callbacks, []
+            # Its owner mostly keeps the task, too: such a cycle would keep long sounds in memory for a while.
+            self._on_kill = None
         for callback in callbacks:
             callback(self)
         return True
@@ -80,8 +82,9 @@ class Task:
             if self._finished.is_set():
                 return False
             self.killed = True
-        if self._on_kill is not None:
-            self._on_kill(self)
+            on_kill = self._on_kill
+        if on_kill is not None:
+            on_kill(self)
         self.finish()
         return True
 

@@ -54,6 +54,7 @@ class ALTextToSpeech:
         self._events = events
         self._runner = runner
         self._files = files
+        self._stops = 0
 
     # --- speaking -------------------------------------------------------------------------------------------------
 
@@ -74,14 +75,18 @@ class ALTextToSpeech:
         style = self._settings.style()
         items = self._studio.read(text, style)
         path = self._files.to_write(PLAYED_FILE)
+        stops = self._stops
 
-        def play() -> Task:
+        def play() -> Task | None:
             self._write(text, style, path)
+            if self._stops != stops:
+                return None  # stopAll was meant for this text, too
             return self._runner.execute(lambda: self._speaker.say(items, style, "sayToFileAndPlay"), "sayToFileAndPlay")
 
         return self._studio.in_background(play, "sayToFileAndPlay")
 
     def stopAll(self) -> Task:
+        self._stops += 1
         return self._runner.execute(self._speaker.stop_all, "stopAll")
 
     # --- the voice ------------------------------------------------------------------------------------------------

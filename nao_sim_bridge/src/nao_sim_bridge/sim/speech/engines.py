@@ -23,6 +23,8 @@ START_TIMEOUT = 30.0
 """s; it is there within a fraction of one, but a busy machine may need long to start an interpreter."""
 ANSWER_TIMEOUT = 30.0
 STOP_TIMEOUT = 2.0
+CLOSING = 1.0
+"""s; at the end, a process that still speaks after this is ended by force."""
 # What is less than this, as part of full scale, is a pause.
 QUIET = 0.003
 SOURCES = Path(__file__).resolve().parents[3]
@@ -102,9 +104,16 @@ class Engines:
 
     def close(self) -> None:
         """End the process; a later text would start it again."""
-        with self._lock:
+        if not self._lock.acquire(timeout=CLOSING):
+            process = self._process  # it speaks, or hangs, and nobody waits for that
+            if process is not None:
+                process.kill()
+            self._lock.acquire()
+        try:
             if self._process is not None:
                 self._drop()
+        finally:
+            self._lock.release()
 
     # --- inside, under the lock -----------------------------------------------------------------------------------
 

@@ -220,6 +220,7 @@ class Speaker:
         self._forget_orders(talk)
         if talk.until is not None:
             talk.until.kill()
+        talk.until = talk.playing = None  # they keep the talk, and it would keep them
         self._tell(talk, STOPPED)
 
     def _next_order(self) -> Pending | None:

@@ -67,8 +67,8 @@ def _speak(pipe: Connection, engine: Any, request: list) -> None:
 def _answer(pipe: Connection, engine: Any, request: list) -> None:
     try:
         rate, sound, words = engine.synthesise(*request)
-    except (ValueError, OSError) as error:
-        pipe.send(("error", str(error)))
+    except Exception as error:  # whatever it is: who asked waits for an answer
+        pipe.send(("error", str(error) or repr(error)))
     else:
         pipe.send(("speech", (rate, words)))
         pipe.send_bytes(sound)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import threading
 import time
 
 import numpy as np
 import pytest
 import soundfile
+
+from nao_sim_bridge.services.audio.text_to_speech import ALTextToSpeech
 
 LONG = "This is a text that takes a while, and nobody hears its end."
 EVENTS = ["TextStarted", "TextDone", "TextInterrupted", "CurrentWord", "PositionOfCurrentWord", "CurrentSentence"]
@@ -236,6 +239,22 @@ def test_a_file_can_be_heard_as_well(robot, tts, until):
     robot.answer(future)
     assert np.abs(played(robot, 1.0)).max() > 0.05
     assert (robot.server.files.folder / "sayToFileAndPlay.wav").exists()
+
+
+def test_stop_all_also_stops_a_text_whose_file_is_being_written(robot, tts, monkeypatch):
+    written, may_go_on = threading.Event(), threading.Event()
+
+    def write(*_):
+        written.set()
+        assert may_go_on.wait(robot.patience)
+
+    monkeypatch.setattr(ALTextToSpeech, "_write", write)
+    future = robot.post("ALTextToSpeech", "sayToFileAndPlay", "Never heard.")
+    assert written.wait(robot.patience)
+    robot.answer(robot.post("ALTextToSpeech", "stopAll"))
+    may_go_on.set()
+    robot.answer(future)
+    assert not robot.server.speech.speaker.speaking
 
 
 # --- the voice --------------------------------------------------------------------------------------------------------

@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
@@ -220,3 +223,18 @@ def test_what_was_played_never_changes_afterwards(room):
         known.append(one.loudspeakers.played(one.time - 0.1, one.time).samples.copy())
         change()
     assert one.loudspeakers.played(0.0, one.time).samples == pytest.approx(np.concatenate(known), abs=1e-6)
+
+
+@pytest.mark.parametrize("killed", [False, True])
+def test_a_sound_of_long_ago_leaves_memory_without_help_of_the_collector(room, killed):
+    one = room()
+    playing = weakref.ref(one.loudspeakers.play(sine(500.0, 0.2), "say"))
+    one.run(0.1)
+    if killed:
+        playing().stop()
+    gc.disable()
+    try:
+        one.run(63.0)
+        assert playing() is None
+    finally:
+        gc.enable()

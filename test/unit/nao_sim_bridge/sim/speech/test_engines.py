@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
+from multiprocessing import Pipe
+from time import monotonic
 
 import numpy as np
 import pytest
 
+from nao_sim_bridge.sim.speech import worker
 from nao_sim_bridge.sim.speech.engines import Engines
 from nao_sim_bridge.sim.speech.speech import SpeechError, Utterance
 from nao_sim_bridge.sim.speech.voices import load_voices
@@ -139,3 +143,45 @@ def test_the_process_ends_with_its_engines(own):
     engines.close()
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
+
+
+def test_a_process_that_hangs_does_not_hold_up_the_end(own):
+    engines = own()
+    engines.synthesise(Utterance(*ENGLISH, "One."))
+    pid, errors = engines.pid, []
+
+    def speak():
+        try:
+            engines.synthesise(Utterance(*ENGLISH, "Two."))
+        except SpeechError as error:
+            errors.append(str(error))
+
+    os.kill(pid, signal.SIGSTOP)
+    speaking = threading.Thread(target=speak)
+    speaking.start()
+    begin = monotonic()
+    while not engines._lock.locked() and monotonic() < begin + 10.0:
+        speaking.join(0.01)
+    engines.close()
+    speaking.join(10.0)
+    assert monotonic() - begin < 10.0
+    assert errors == ["the speech process ended with status -9 while it spoke 'Two.'"]
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+
+
+class Defect:
+    """An engine with a defect."""
+
+    def prepare(self, voice):
+        """Nothing to prepare."""
+
+    def synthesise(self, *_):
+        raise TypeError("a defect")
+
+
+def test_a_defect_of_an_engine_is_answered():
+    here, there = Pipe()
+    worker._speak(there, Defect(), ["slt", "One.", 1.0])
+    assert here.poll(10.0)
+    assert here.recv() == ("error", "a defect")
