@@ -65,6 +65,16 @@ class Bench:
         """Phrases to recognise from now on."""
         self._ear.listen(Listening((vocabulary("bench", phrases, spotting),)))
 
+    def talk(self, texts: Iterable[str], voice: str, seconds: float, pause: float = 0.7) -> np.ndarray:
+        """(n,) samples of somebody who says one thing after the other, in the noise of a room; times in s."""
+        frames = round(seconds * RATE)
+        sound = np.zeros(round(BEFORE_S * RATE))
+        for text in texts:
+            if len(sound) >= frames:
+                break
+            sound = np.concatenate([sound, self._voice(text, voice), np.zeros(round(pause * RATE))])
+        return sound[:frames] + coloured("white", len(sound[:frames]), 7, ROOM_DB)
+
     def say(self, text: str, voice: str, noise: str, seed: int) -> Heard:
         """What is recognised of a text in the noise of a room and, unless "clean", in noise 20 dB below the voice."""
         speech = self._voice(text, voice)
@@ -120,7 +130,7 @@ def _coloured(kind: str, frames: int, seed: int) -> np.ndarray:
 
 
 def not_speech(seconds: float) -> dict[str, np.ndarray]:
-    """Sounds that are no speech, by name: (n,) samples of 16 kHz, in the noise of a room."""
+    """Sounds that go on and are no speech, by name: (n,) samples of 16 kHz, in the noise of a room."""
     frames = round(seconds * RATE)
     times = np.arange(frames) / RATE
     sounds = {"silence": np.zeros(frames)}
@@ -142,3 +152,37 @@ def not_speech(seconds: float) -> dict[str, np.ndarray]:
     sounds["clicks"] = np.convolve(clicks, np.exp(-np.arange(160) / 20.0), "same")
     room = coloured("white", frames, 5, ROOM_DB)
     return {name: sound + room for name, sound in sounds.items()}
+
+
+def sudden(number: int) -> dict[str, np.ndarray]:
+    """Sudden noises, by kind: so many of each, all different, 0.2 to 2 s long, 1.5 s apart, in the noise of a room.
+
+    Returns:
+        (n,) samples of 16 kHz.
+    """
+    made = {}
+    for number_of_kind, kind in enumerate(("white", "pink", "brown", "speech-shaped", "slams")):
+        parts = [np.zeros(2 * RATE)]
+        for seed in range(number):
+            parts += [_burst(kind, np.random.default_rng([seed, number_of_kind])), np.zeros(round(1.5 * RATE))]
+        sound = np.concatenate(parts)
+        made[kind] = sound + coloured("white", len(sound), 6, ROOM_DB)
+    return made
+
+
+def _burst(kind: str, random: np.random.Generator) -> np.ndarray:
+    frames = round(random.uniform(0.2, 2.0) * RATE)
+    noise = random.standard_normal(frames)
+    spectrum, frequencies = np.fft.rfft(noise), np.fft.rfftfreq(frames, 1.0 / RATE)
+    if kind == "speech-shaped":  # level to 500 Hz, then 9 dB an octave down, in the rhythm of syllables
+        spectrum *= np.minimum(1.0, (500.0 / np.maximum(frequencies, 1.0)) ** 1.5) * (frequencies > 100.0)
+    else:
+        power = {"white": 0.0, "pink": 0.5, "brown": 1.0, "slams": 0.7}[kind]
+        spectrum /= np.maximum(frequencies, 20.0) ** power
+    wave = np.fft.irfft(spectrum, frames)
+    times = np.arange(frames) / RATE
+    if kind == "speech-shaped":
+        wave *= 1.0 + 0.9 * np.sin(2.0 * np.pi * random.uniform(3.0, 6.0) * times)
+    if kind == "slams":  # a bang that dies away, and rattles
+        wave *= np.exp(-times / random.uniform(0.03, 0.15)) + 0.3 * np.exp(-np.abs(times - 0.15) / 0.02)
+    return wave * 10.0 ** ((SPEECH_DB + random.uniform(-10.0, 10.0)) / 20.0) / np.sqrt(np.mean(wave**2))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import tempfile
 from dataclasses import dataclass
@@ -12,9 +11,11 @@ from typing import Iterable, Sequence, Tuple
 import numpy as np
 import pocketsphinx
 
+from nao_sim_bridge.sim.hearing.everyday_speech import EverydaySpeech, Piece, log_score, pieces
+from nao_sim_bridge.sim.hearing.evidence import Evidence, evidence
 from nao_sim_bridge.sim.hearing.grammar import OTHER_SPEECH, Grammar
 from nao_sim_bridge.sim.hearing.listening import Hypothesis
-from nao_sim_bridge.sim.hearing.network import OTHER, Arc, Network, build
+from nao_sim_bridge.sim.hearing.network import OTHER, Arc, Network, build, spoken_word
 from nao_sim_bridge.sim.hearing.noise_reduction import FRAME, noise_spectrum, reduce_noise
 from nao_sim_bridge.sim.hearing.pronunciation import Pronouncer
 from nao_sim_bridge.sim.hearing.settings import RecognitionSettings
@@ -24,12 +25,8 @@ from nao_sim_bridge.sim.hearing.voice_activity import Utterance
 PHONES = (
     "AA AE AH AO AW AY B CH D DH EH ER EY F G HH IH IY JH K L M N NG OW OY P R S SH T TH UH UW V W Y Z ZH"
 ).split()
-# The decoder's scores are logarithms divided by this.
-SCORE_UNIT = 1.0 / 1024.0
-# Mark of a further pronunciation of a token.
-FURTHER = re.compile(r"\(\d+\)$")
-# Power to which the decoder raises the chances of words.
-LANGUAGE_WEIGHT = 6.5
+# Number of a further pronunciation of a token.
+FURTHER = re.compile(r"\((\d+)\)$")
 PHRASES, SOUNDS = "phrases", "sounds"
 # Further hypotheses are looked for in this many ways at most.
 MOST_SEARCHES = 12
@@ -37,11 +34,30 @@ MOST_SEARCHES = 12
 
 @dataclass(frozen=True)
 class Way:
-    """One way through the network: the tokens said, its score and the frames of speech in it."""
+    """One way through the network.
+
+    Attributes:
+        tokens: What was said, other speech as well.
+        score: Of the whole utterance.
+        pieces: From the first to the last word of its phrases, with the silence between them.
+    """
 
     tokens: Tuple[str, ...]
     score: float
-    frames: int
+    pieces: Tuple[Piece, ...]
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What an utterance may be other than a phrase.
+
+    Attributes:
+        everyday: Everyday words.
+        sounds: Single sounds.
+    """
+
+    everyday: Sequence[Piece]
+    sounds: Sequence[Piece]
 
 
 class Decoder:
@@ -51,18 +67,26 @@ class Decoder:
         grammars: What may be said; with none, nothing is ever recognised.
         pronouncer: Knows how words are said.
         settings: Noise reduction, gain, confidence.
+        everyday: Knows what else may have been said.
 
     Raises:
         NoPronunciation: A word cannot be said.
         BadValue: The grammars are too large.
     """
 
-    def __init__(self, grammars: Iterable[Grammar], pronouncer: Pronouncer, settings: RecognitionSettings) -> None:
+    def __init__(
+        self,
+        grammars: Iterable[Grammar],
+        pronouncer: Pronouncer,
+        settings: RecognitionSettings,
+        everyday: EverydaySpeech,
+    ) -> None:
         self._settings = settings
+        self._everyday = everyday
         self._network: Network = build(grammars, pronouncer.phones, PHONES)
         if self._network.tokens:  # an empty network cannot be searched
             self._engine = self._new_engine()
-            self._set_arcs(self._network.arcs)
+            self._spots = any(map(_is_other, self._network.tokens))
 
     def _new_engine(self) -> pocketsphinx.Decoder:
         pocketsphinx.set_loglevel("FATAL")
@@ -88,12 +112,37 @@ class Decoder:
         if not self._is_like_speech(speech):
             return []
         sound = self._leveled(speech)
-        best = self._search(sound)
-        if best is None:
-            return []
-        sounds_score = self._sounds_score(sound)
-        paths = [best, *self._others(sound, best, most - 1)]
-        return self._hypotheses(paths, sounds_score)[:most]
+        heard = Heard(
+            self._everyday.heard(sound),
+            pieces(self._engine, lambda sound: [sound]) if self._run(SOUNDS, sound) else [],
+        )
+        found = self._whole(sound, heard, most)
+        if self._spots:
+            found += self._inside(sound, heard, most)
+        best: dict[Tuple[str, str], Hypothesis] = {}
+        for hypothesis in sorted(found, key=lambda h: -h.confidence):
+            best.setdefault((hypothesis.phrase, hypothesis.grammar), hypothesis)
+        return list(best.values())[:most]
+
+    def _whole(self, sound: bytes, heard: Heard, most: int) -> list[Hypothesis]:
+        """Phrases that are all of the utterance."""
+        arcs = [arc for arc in self._network.arcs if not _is_other(arc.token)]
+        settings, surest, found = self._settings.confidence, 1.0, []
+        for way in self._ways(sound, arcs, most):
+            confidence = self._evidence(way, heard, inside=False).confidence(settings)
+            # What is less likely as a whole is no surer, however it is written.
+            surest = min(surest, confidence)
+            found += self._hypothesis(way, surest, settings.least)
+        return found
+
+    def _inside(self, sound: bytes, heard: Heard, most: int) -> list[Hypothesis]:
+        """Phrases with other speech around; how likely they are as a whole depends on that as well."""
+        settings, found = self._settings.spotting, []
+        # Other speech that is like a phrase may hide one that was said.
+        for way in self._ways(sound, self._network.arcs, max(most, self._settings.other_speech.tries)):
+            confidence = self._evidence(way, heard, inside=True).confidence(settings)
+            found += self._hypothesis(way, confidence, settings.least)
+        return found
 
     def _cleaned(self, utterance: Utterance) -> np.ndarray:
         """The utterance with less noise."""
@@ -105,7 +154,8 @@ class Decoder:
 
     def _is_like_speech(self, speech: np.ndarray) -> bool:
         wanted, found = self._settings.speech_likeness, likeness(speech)
-        return wanted.least_tone <= found.tone <= wanted.most_tone and found.change >= wanted.least_change
+        voiced = found.voice >= wanted.least_voice
+        return voiced and found.tone <= wanted.most_tone and found.change >= wanted.least_change
 
     def _leveled(self, speech: np.ndarray) -> bytes:
         """Speech at the level that the acoustic model is used to, as the decoder takes it."""
@@ -124,44 +174,52 @@ class Decoder:
         network = self._network
         self._engine.add_fsg(PHRASES, self._engine.create_fsg(PHRASES, network.start, network.end, table))
 
-    def _search(self, sound: bytes) -> Way | None:
-        """The best way through the network; None when there is none."""
+    def _search(self, sound: bytes, arcs: Sequence[Arc]) -> Way | None:
+        """The best way along some of the arcs; None when there is none."""
+        if all(arc.token is None for arc in arcs):  # that cannot be searched
+            return None
+        self._set_arcs(arcs)
         if not self._run(PHRASES, sound):
             return None
-        said = [(FURTHER.sub("", s.word), s) for s in self._engine.seg()]
-        said = [(token, segment) for token, segment in said if token in self._network.tokens]
+        found = pieces(self._engine, self._phones)
+        words = [i for i, piece in enumerate(found) if piece.word in self._network.tokens]
+        said = [i for i in words if not _is_other(found[i].word)]
         if not said:
             return None
-        frames = said[-1][1].end_frame - said[0][1].start_frame + 1
-        return Way(tuple(token for token, _ in said), self._score(), frames)
+        tokens = tuple(found[i].word for i in words)
+        return Way(tokens, self._score(), tuple(found[said[0] : said[-1] + 1]))
 
-    def _others(self, sound: bytes, best: Way, most: int) -> list[Way]:
-        """Further ways, best first: each leaves out one of the words of the best one."""
+    def _phones(self, name: str) -> Sequence[str]:
+        """Of a token as the decoder names it."""
+        further = FURTHER.search(name)
+        token = self._network.tokens.get(FURTHER.sub("", name))
+        return token.phones[int(further.group(1)) - 1 if further else 0].split() if token else ()
+
+    def _ways(self, sound: bytes, arcs: Sequence[Arc], most: int) -> list[Way]:
+        """Ways along some of the arcs, best first: each further one leaves out something said in a better one."""
+        path = self._search(sound, arcs)
         found: dict[Tuple[str, ...], Way] = {}
-        path = best
-        arcs = list(self._network.arcs)
         searches = 0
-        while most > len(found) and searches < MOST_SEARCHES:
+        while path is not None:
+            found.setdefault(path.tokens, path)
+            if len(found) >= most or searches >= MOST_SEARCHES:
+                break
             ways = []
-            for token in dict.fromkeys(t for t in path.tokens if not t.startswith(OTHER)):
+            for token in [t for t in dict.fromkeys(path.tokens) if self._begins(t)][: MOST_SEARCHES - searches]:
                 searches += 1
                 left = [arc for arc in arcs if arc.token != token]
-                self._set_arcs(left)
-                other = self._search(sound)
+                other = self._search(sound, left)
                 if other is not None:
                     ways.append((other.score, left, other))
-                if searches >= MOST_SEARCHES:
-                    break
             if not ways:
                 break
             _, arcs, path = max(ways, key=lambda way: way[0])
-            found.setdefault(path.tokens, path)
-        self._set_arcs(self._network.arcs)
-        return sorted(found.values(), key=lambda p: -p.score)
+        first, *others = list(found.values()) or [None]
+        return [first, *sorted(others, key=lambda way: -way.score)] if first is not None else []
 
-    def _sounds_score(self, sound: bytes) -> float:
-        """Score of the best sequence of sounds, of whatever language."""
-        return self._score() if self._run(SOUNDS, sound) else 0.0
+    def _begins(self, token: str) -> bool:
+        """Whether words begin with this: without it, the rest of them cannot be said."""
+        return bool(self._network.tokens[token].heard) and not _is_other(token)
 
     def _run(self, search: str, sound: bytes) -> bool:
         engine = self._engine
@@ -172,26 +230,19 @@ class Decoder:
         return engine.hyp() is not None
 
     def _score(self) -> float:
-        return math.log(max(self._engine.hyp().best_score, 1e-300)) / SCORE_UNIT
+        return log_score(self._engine.hyp().best_score)
 
-    def _hypotheses(self, paths: Iterable[Way], sounds_score: float) -> list[Hypothesis]:
-        settings = self._settings.confidence
-        listed: dict[Tuple[str, str], Hypothesis] = {}
-        surest = 1.0
-        charge = -math.log(self._settings.other_speech.weight) * LANGUAGE_WEIGHT
-        for path in paths:
-            # What other speech was charged says nothing about how well the words fit.
-            score = path.score + charge * sum(token.startswith(OTHER) for token in path.tokens)
-            evidence = (score - sounds_score) / (path.frames + settings.more_frames)
-            confidence = 1.0 / (1.0 + math.exp(-settings.slope * (evidence - settings.middle)))
-            said = [self._network.tokens[t] for t in path.tokens]
-            phrase = _phrase([token.heard for token in said])
-            grammar = next((token.grammar for token in said if token.grammar), "")
-            if grammar and confidence >= settings.least:
-                # A way that is less likely as a whole is no surer, however few sounds it has.
-                surest = min(surest, confidence)
-                listed.setdefault((phrase, grammar), Hypothesis(phrase, surest, grammar))
-        return list(listed.values())
+    def _evidence(self, way: Way, heard: Heard, inside: bool) -> Evidence:
+        spoken = [spoken_word(piece.word) for piece in way.pieces if piece.phones]
+        return evidence(way.pieces, spoken, heard.everyday, heard.sounds, inside)
+
+    def _hypothesis(self, way: Way, confidence: float, least: float) -> list[Hypothesis]:
+        """The phrase of a way; none when it is not sure enough."""
+        said = [self._network.tokens[token] for token in way.tokens]
+        grammar = next((token.grammar for token in said if token.grammar), "")
+        if not grammar or confidence < least:
+            return []
+        return [Hypothesis(_phrase(token.heard for token in said), confidence, grammar)]
 
 
 def _phrase(parts: Iterable[str]) -> str:
@@ -203,8 +254,12 @@ def _phrase(parts: Iterable[str]) -> str:
     return " ".join(told)
 
 
+def _is_other(token: str | None) -> bool:
+    return token is not None and token.startswith(OTHER)
+
+
 def _chance(token: str, unlikely: float) -> float:
-    return unlikely if token.startswith(OTHER) else 1.0
+    return unlikely if _is_other(token) else 1.0
 
 
 def _dictionary(network: Network) -> str:

@@ -86,7 +86,8 @@ def vocabulary(name: str, phrases: Iterable[str], word_spotting: bool = False) -
     Args:
         name: Of the grammar.
         phrases: As a client writes them; each is heard as written.
-        word_spotting: Find them inside of longer speech too; then "<...> phrase <...>" is heard.
+        word_spotting: Find them inside of longer speech too; then "<...> phrase <...>" is heard. Words of two or three
+            sounds ("no", "two") are often missed there, so that they are not found in all that sounds like them.
 
     Raises:
         BadValue: A phrase has no word.

@@ -20,7 +20,7 @@ class Arc:
     Attributes:
         start: State.
         end: State.
-        token: Name in `Network.phones` of what is said on the way; None for nothing.
+        token: Name in `Network.tokens` of what is said on the way; None for nothing.
     """
 
     start: int
@@ -53,10 +53,6 @@ class Network:
     start: int = 0
     end: int = 1
 
-    def without(self, token: str) -> list[Arc]:
-        """The arcs but those of one token."""
-        return [arc for arc in self.arcs if arc.token != token]
-
 
 def build(
     grammars: Iterable[g.Grammar], pronounce: Callable[[str], Sequence[str]], other_phones: Sequence[str]
@@ -76,6 +72,11 @@ def build(
         builder.grammar = grammar.name
         builder.add(grammar.root, builder.network.start, builder.network.end)
     return builder.network
+
+
+def spoken_word(token: str) -> str:
+    """The word that a token of phrases stands for."""
+    return token.rpartition("-")[0]
 
 
 class _Builder:

@@ -11,6 +11,8 @@ from typing import Sequence
 from nao_sim_bridge.sim.errors import SimulationError
 
 TIMEOUT = 10.0
+# Letters of a word; the decoder has no room for the phones of one that is much longer.
+LONGEST_WORD = 64
 # What espeak-ng writes for American English, longest first where one begins another; two phones where it needs them.
 IPA_PHONES = {
     "tʃ": "CH", "dʒ": "JH", "eɪ": "EY", "aɪ": "AY", "ɔɪ": "OY", "aʊ": "AW", "oʊ": "OW", "əʊ": "OW", "oːɹ": "AO R",
@@ -77,6 +79,8 @@ def read_by_rules(word: str) -> str:
     Raises:
         NoPronunciation: It is not written in Latin letters, or espeak-ng is missing or does not know how.
     """
+    if len(word) > LONGEST_WORD:
+        raise NoPronunciation(f"{word[:20]}...", f"it is longer than {LONGEST_WORD} letters")
     strange = [letter for letter in word if letter != "'" and not LATIN.match(unicodedata.name(letter, ""))]
     if strange:
         raise NoPronunciation(word, f"{strange[0]!r} is no Latin letter")

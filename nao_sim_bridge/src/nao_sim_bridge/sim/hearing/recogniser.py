@@ -22,6 +22,8 @@ MODULE = "nao_sim_bridge.sim.hearing.worker"
 START_TIMEOUT = 60.0
 """s; a busy machine may need long to start an interpreter and to read the dictionary."""
 ANSWER_TIMEOUT = 60.0
+CLOSING = 1.0
+"""s; at the end, a process that is still busy after this is ended by force."""
 MOST_WAITING = 60.0
 """s of sound that may wait; what comes then is left out: time did not wait for the recogniser."""
 # What error texts call the requests.
@@ -128,8 +130,13 @@ class Recogniser:
             self._closed = True
             thread = self._thread
         self._jobs.put(None)
-        if thread is not None and thread is not threading.current_thread():
-            thread.join()
+        if thread is None or thread is threading.current_thread():
+            return
+        thread.join(CLOSING)
+        process = self._process
+        if thread.is_alive() and process is not None:  # it works on something, or hangs, and nobody waits for that
+            process.process.kill()
+            thread.join(CLOSING)
 
     def _put(self, job: _Job) -> None:
         with self._lock:
@@ -167,7 +174,7 @@ class Recogniser:
         except RecogniserError as error:
             if job.done is not None:
                 job.done.set_exception(error)
-            else:
+            elif not self._closed:
                 log.error("speech recognition: %s", error)
         except Exception as error:  # whatever it is, the thread must go on
             log.exception("speech recognition failed")

@@ -54,26 +54,30 @@ class GainSettings:
 
 @dataclass(frozen=True)
 class ConfidenceSettings:
-    """How confidence follows from scores."""
+    """How confidence follows from evidence, and the least that is recognised."""
 
-    more_frames: float
-    middle: float
-    slope: float
+    bias: float
+    difference: float
+    everyday: float
+    sounds: float
+    same: float
+    length: float
     least: float
 
 
 @dataclass(frozen=True)
 class OtherSpeechSettings:
-    """How likely other speech is beside the words of a phrase."""
+    """How likely other speech is beside the words of a phrase, and how many phrases are tried in its place."""
 
     weight: float
+    tries: int
 
 
 @dataclass(frozen=True)
 class SpeechLikenessSettings:
-    """What is no speech: a share of a single tone out of bounds, or less change of the spectrum than `least_change`."""
+    """What is no speech: too little voice, too much of a single tone, or a spectrum that changes too little."""
 
-    least_tone: float
+    least_voice: float
     most_tone: float
     least_change: float
 
@@ -87,6 +91,7 @@ class RecognitionSettings:
     noise_reduction: NoiseReductionSettings
     gain: GainSettings
     confidence: ConfidenceSettings
+    spotting: ConfidenceSettings
     other_speech: OtherSpeechSettings
     speech_likeness: SpeechLikenessSettings
 
@@ -96,6 +101,7 @@ SECTIONS = {
     "noise_reduction": NoiseReductionSettings,
     "gain": GainSettings,
     "confidence": ConfidenceSettings,
+    "spotting": ConfidenceSettings,
     "other_speech": OtherSpeechSettings,
     "speech_likeness": SpeechLikenessSettings,
 }

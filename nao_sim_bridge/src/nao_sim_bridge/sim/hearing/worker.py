@@ -16,6 +16,7 @@ import pocketsphinx
 
 from nao_sim_bridge.sim.child_process import error_text, pipe_to_parent
 from nao_sim_bridge.sim.hearing.decoder import Decoder
+from nao_sim_bridge.sim.hearing.everyday_speech import EverydaySpeech
 from nao_sim_bridge.sim.hearing.listening import Listening, Recognised
 from nao_sim_bridge.sim.hearing.pronunciation import Pronouncer
 from nao_sim_bridge.sim.hearing.settings import load_recognition
@@ -29,6 +30,7 @@ class Ear:
         self._settings = load_recognition()
         self._pronouncer = Pronouncer(Path(pocketsphinx.get_model_path("en-us/cmudict-en-us.dict")))
         self._activity = VoiceActivity(self._settings)
+        self._everyday = EverydaySpeech()
         self._listening = Listening()
         self._decoder = self._decoder_for(self._listening)
 
@@ -56,7 +58,7 @@ class Ear:
         return Recognised(event.start, event.end, tuple(found))
 
     def _decoder_for(self, listening: Listening) -> Decoder:
-        return Decoder(listening.grammars, self._pronouncer, self._settings)
+        return Decoder(listening.grammars, self._pronouncer, self._settings, self._everyday)
 
 
 def main(arguments: Iterable[str]) -> int:

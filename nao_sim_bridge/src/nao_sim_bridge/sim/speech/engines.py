@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import logging
-import os
 import subprocess
-import sys
 import threading
 from dataclasses import replace
-from multiprocessing import Pipe
 from multiprocessing.connection import Connection
-from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 import numpy as np
 
+from nao_sim_bridge.sim.child_process import ChildProcess
 from nao_sim_bridge.sim.speech.speech import Speech, SpeechError, Utterance, Word, listed
 
 log = logging.getLogger("nao_sim.speech")
@@ -27,7 +24,6 @@ CLOSING = 1.0
 """s; at the end, a process that still speaks after this is ended by force."""
 # What is less than this, as part of full scale, is a pause.
 QUIET = 0.003
-SOURCES = Path(__file__).resolve().parents[3]
 # Which Debian package brings an engine.
 PACKAGES = {"flite": "flite", "espeak-ng": "espeak-ng"}
 MODULE = "nao_sim_bridge.sim.speech.worker"
@@ -37,12 +33,12 @@ class Engines:
     """All engines of this machine, in one process. Any thread may ask; one text is spoken at a time.
 
     Attributes:
-        command: What the process is started with, but for the number of its pipe; engines named behind it are left out.
+        lacking: Names of engines that are left out, as if they were not installed.
         answer_timeout: Longest time to wait for a text to be spoken, s.
     """
 
     def __init__(self) -> None:
-        self.command = [sys.executable, "-m", MODULE]
+        self.lacking: Sequence[str] = ()
         self.answer_timeout = ANSWER_TIMEOUT
         self._lock = threading.Lock()
         self._process: subprocess.Popen | None = None
@@ -141,19 +137,8 @@ class Engines:
         return self._pipe.recv()
 
     def _start(self) -> None:
-        """By name, not forked: it must not run the caller's main program again. It ends when its pipe is closed."""
-        here, there = Pipe(duplex=True)
-        paths = [str(SOURCES), os.environ.get("PYTHONPATH", "")]
-        try:
-            self._process = subprocess.Popen(
-                [*self.command[:3], str(there.fileno()), *self.command[3:]],
-                pass_fds=(there.fileno(),),
-                stdin=subprocess.DEVNULL,
-                env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
-            )
-        finally:
-            there.close()
-        self._pipe, self._found = here, None
+        child = ChildProcess(MODULE, self.lacking, "speech process", SpeechError, SpeechError)
+        self._process, self._pipe, self._found = child.process, child.pipe, None
 
     def _drop(self) -> str:
         """Forget the process, which is gone or late; how it ended."""

@@ -15,11 +15,11 @@ tuples (first character, length, start, end), times in s. It ends when the pipe 
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from multiprocessing.connection import Connection
 from typing import Any
 
+from nao_sim_bridge.sim.child_process import pipe_to_parent
 from nao_sim_bridge.sim.speech.espeak import Espeak
 from nao_sim_bridge.sim.speech.flite import Flite
 
@@ -28,9 +28,7 @@ ENGINES = {"flite": Flite, "espeak-ng": Espeak}
 
 def main(arguments: list[str]) -> int:
     """Serve one pipe until it is closed."""
-    pipe = Connection(int(arguments[0]))
-    # Ctrl-C in a terminal goes to all processes; the owner of the pipe decides when this one ends.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    pipe = pipe_to_parent(arguments[0])
     engines: dict[str, Any] = {}
     found: dict[str, Any] = {}
     for name, make in ENGINES.items():

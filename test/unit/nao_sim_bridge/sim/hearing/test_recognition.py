@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import threading
+from time import monotonic
 
 import numpy as np
 import pytest
@@ -78,6 +79,30 @@ def test_several_hypotheses_come_best_first(ear, heard):
 def test_other_speech_is_not_recognised(ear, heard):
     ear.listen(Listening((vocabulary("v", PHRASES),)))
     assert found(heard(in_a_room(spoken("the weather in the mountains is nice today")))) == [[]]
+
+
+def test_one_phrase_has_one_hypothesis(ear, heard):
+    ear.listen(Listening((vocabulary("v", ["good morning"]),), hypotheses=3))
+    assert found(heard(in_a_room(spoken("good morning")))) == [["good morning"]]
+
+
+def test_other_speech_alone_is_no_phrase(ear, heard):
+    contexts = Contexts()
+    contexts.add("any", parse_bnf("#BNF+EM V2.1; !grammar g; !start <s>; <s>: <...>;"))
+    ear.listen(Listening(tuple(contexts.grammars())))
+    assert found(heard(in_a_room(spoken("good morning")))) == [[]]
+
+
+@pytest.mark.parametrize("text", ["good morning", "what is your name"])
+def test_a_word_is_spotted_when_it_is_all_that_is_said(ear, heard, text):
+    ear.listen(Listening((vocabulary("v", ["what is your name", "good morning"], word_spotting=True),)))
+    assert found(heard(in_a_room(spoken(text)))) == [[f"<...> {text} <...>"]]
+
+
+@pytest.mark.parametrize("text", ["she plays the violin every day", "this box is very heavy", "the river is deep"])
+def test_nothing_is_spotted_in_other_speech(ear, heard, text):
+    ear.listen(Listening((vocabulary("v", PHRASES, word_spotting=True),)))
+    assert found(heard(in_a_room(spoken(text, "awb")))) == [[]]
 
 
 def test_a_word_is_spotted_inside_of_longer_speech(ear, heard):
@@ -178,3 +203,23 @@ def test_sound_that_waits_is_lag(recogniser):
         os.kill(recogniser.pid, signal.SIGCONT)
     recogniser.catch_up()
     assert recogniser.lag == 0.0
+
+
+def test_a_process_that_hangs_does_not_hold_up_the_end(recogniser, caplog):
+    recogniser.listen(Listening((vocabulary("v", PHRASES),)))
+    pid = recogniser.pid
+    os.kill(pid, signal.SIGSTOP)
+    for time, samples in blocks(in_a_room())[:3]:
+        recogniser.hear(time, samples)
+    begin = monotonic()
+    recogniser.close()
+    assert monotonic() - begin < 10.0
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+    assert not caplog.records
+
+
+def test_a_word_without_end_is_refused_with_a_reason(recogniser):
+    with pytest.raises(RecogniserRefused, match=r"'aaaaaaaaaaaaaaaaaaaa...': it is longer than 64 letters") as refused:
+        recogniser.listen(Listening((vocabulary("v", ["yes", "a" * 100000]),)))
+    assert len(str(refused.value)) < 200

@@ -97,8 +97,7 @@ def own():
 
     def make(*lacking):
         made.append(Engines())
-        if lacking:
-            made[-1].command = [*made[-1].command, *lacking]
+        made[-1].lacking = lacking
         return made[-1]
 
     yield make
