@@ -20,7 +20,7 @@ def main() -> int:
     rospy.init_node("hello", anonymous=True)
     audio = actionlib.SimpleActionClient("nao_audio_out", NaoAudioOutAction)
     audio.wait_for_server()
-    rospy.on_shutdown(audio.cancel_goal)
+    rospy.on_shutdown(lambda: audio.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE) and audio.cancel_goal())
     hello = AudioOutFunction(function="say", str_param=" ".join(words))
     state = audio.send_goal_and_wait(NaoAudioOutGoal([hello]))
     print(audio.get_goal_status_text() or "said")

@@ -52,12 +52,12 @@ def main() -> int:
     if not audio.wait_for_server(LIMIT):
         print("there is no server nao_audio_out: start one with roslaunch nao_library nao_sim.launch")
         return 1
-    rospy.on_shutdown(audio.cancel_goal)
+    rospy.on_shutdown(lambda: audio.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE) and audio.cancel_goal())
     audio.send_goal(NaoAudioOutGoal(chain(text)), feedback_cb=show)
     audio.wait_for_result()
     state, result = audio.get_state(), audio.get_result()
     print(f"\n{audio.get_goal_status_text()}".rstrip())
-    for file, duration in zip(result.files, result.durations):
+    for file, duration in zip(result.files, result.durations) if result else ():  # none when it was interrupted
         if duration:
             print(f"{file}: {duration:.1f} s")
     return 0 if state == GoalStatus.SUCCEEDED else 1

@@ -28,6 +28,8 @@ class Stack:
         self.ros_port, self.nao_port = free_port(), free_port()
         os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{self.ros_port}"
         self.log = output / "stack.log"
+        if (output / SOUND).exists():
+            (output / SOUND).unlink()  # of the last demonstration; the simulator would not replace it
         command = ["roslaunch", "--port", str(self.ros_port), "nao_library", "nao_sim.launch"]
         command += [f"nao_port:={self.nao_port}", f"record_dir:={output}", f"world:={WORLD}", f"sound_file:={SOUND}"]
         with self.log.open("wb") as log:

@@ -74,6 +74,15 @@ class ClientFiles:
         raise NoSuchFile(f"no file {name!r} in {self.folder}")
 
 
+def unused(path: Path) -> Path:
+    """A path at which there is no file yet: `path` itself, or name-2, name-3, ... beside it."""
+    free, number = path, 1
+    while free.exists():
+        number += 1
+        free = path.with_name(f"{path.stem}-{number}{path.suffix}")
+    return free
+
+
 def relative_to_home(name: str) -> str:
     """A name as clients give it, without a real robot's home in front: the folder for recordings stands for it."""
     if posixpath.normpath(name).startswith(ROBOT_HOME + "/"):

@@ -12,7 +12,7 @@ from typing import Any, Sequence
 from nao_sim_bridge.broker import Broker
 from nao_sim_bridge.paths import sounds_directory
 from nao_sim_bridge.pictures import Pictures
-from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR, ClientFiles
+from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR, ClientFiles, unused
 from nao_sim_bridge.services import motion
 from nao_sim_bridge.services.arguments import number, numbers
 from nao_sim_bridge.services.audio import sound_detection, sound_localization
@@ -169,6 +169,8 @@ class SimulatorServer:
                 path = self.files.to_write(self.options.sound_file)
             except ValueError as error:
                 raise BadValue("sound file", self.options.sound_file, f"a name inside {self.files.folder}") from error
+            path = unused(path)  # what was said last time is not lost
+            log.info("what the loudspeakers play goes to %s", path)
             self._outlets.append(SoundFile(self.simulation, path))
         if self.options.sound_card:
             self._outlets.append(SoundCard(self.simulation))

@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from nao_sim_bridge.record_dir import ClientFiles, NoSuchFile, OutsideRecordDir, UnusableName, inside
+from nao_sim_bridge.record_dir import ClientFiles, NoSuchFile, OutsideRecordDir, UnusableName, inside, unused
 
 
 @pytest.mark.parametrize("name", ["a.wav", "day/one/a.wav", "day/../a.wav", "..a.wav"])
@@ -116,3 +116,11 @@ def test_reading_makes_no_folders(files, tmp_path):
 def test_the_home_of_the_user_may_be_named(monkeypatch, tmp_path):
     monkeypatch.setenv("HOME", str(tmp_path))
     assert ClientFiles("~/records").folder == tmp_path / "records"
+
+
+def test_a_file_that_is_there_keeps_its_name(tmp_path):
+    assert unused(tmp_path / "a.wav") == tmp_path / "a.wav"
+    (tmp_path / "a.wav").touch()
+    assert unused(tmp_path / "a.wav") == tmp_path / "a-2.wav"
+    (tmp_path / "a-2.wav").touch()
+    assert unused(tmp_path / "a.wav") == tmp_path / "a-3.wav"

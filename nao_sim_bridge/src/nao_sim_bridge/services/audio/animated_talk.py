@@ -109,7 +109,7 @@ class AnimatedTalk:
     def _tell_limp(self) -> None:
         if not self._told_limp:
             self._told_limp = True
-            log.info("speaks without gestures: its arms or its head are limp")
+            log.warning("speaks without gestures: arms or head are limp; wakeUp or a stiffness comes first")
 
     # --- instructions ---------------------------------------------------------------------------------------------
 

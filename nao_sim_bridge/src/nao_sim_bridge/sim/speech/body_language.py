@@ -44,7 +44,7 @@ def plan(
     library: AnimationLibrary,
     chance: random.Random,
 ) -> list[PlannedGesture]:
-    """Gestures of a sentence, all over when it is.
+    """Gestures of a sentence, all over when it is; a sentence too short for any has the shortest one, done quickly.
 
     Args:
         duration: Of the sentence, s.
@@ -67,7 +67,19 @@ def plan(
             planned += _filled(begin, start - REST, library, chance)
             planned.append(PlannedGesture(start, animation, min(animation.length, duration - start)))
             begin = planned[-1].end + REST
-    return planned + _filled(begin, duration, library, chance)
+    planned += _filled(begin, duration, library, chance)
+    if planned:
+        return planned
+    of_words = [a for _, word in words for a in library.of_word(word)] if mode == CONTEXTUAL else []
+    return _quick(of_words or library.tagged(library.body_language))
+
+
+def _quick(animations: Sequence[Animation]) -> list[PlannedGesture]:
+    """The shortest one, at once and as quick as it may be; it may go on when the text is over."""
+    if not animations:
+        return []
+    animation = min(animations, key=lambda a: a.length)
+    return [PlannedGesture(0.0, animation, animation.length * QUICKEST)]
 
 
 def _filled(begin: float, end: float, library: AnimationLibrary, chance: random.Random) -> list[PlannedGesture]:
