@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 import soundfile
 
-from nao_sim_bridge.record_dir import ClientFiles
+from nao_sim_bridge.record_dir import ClientFiles, UnusableName
 from nao_sim_bridge.services.audio.microphone_formats import MicrophoneFormat
 from nao_sim_bridge.services.audio.recorder import FilesInUse, Recorder, RecordingOrder, kind_of
-from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.sim.errors import BadValue, SimulationStopped
 
 
@@ -84,7 +83,7 @@ def test_a_stop_without_a_recording_is_no_harm(recorder, patience):
 def test_a_file_that_fails_to_open_can_be_tried_again(world, recorder, tmp_path, patience):
     (tmp_path / "a.wav").mkdir()
     for _ in range(2):
-        with pytest.raises(NaoqiError, match="'a.wav' cannot be written: Is a directory"):
+        with pytest.raises(UnusableName, match="'a.wav' cannot be written: Is a directory"):
             recorder.start(ORDER)
     (tmp_path / "a.wav").rmdir()
     recorder.start(ORDER)
