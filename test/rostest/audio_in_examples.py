@@ -75,7 +75,7 @@ class AudioInExamples(unittest.TestCase):
         recorder = self.robot.module("ALAudioRecorder")
         wait_until(lambda: begins_to_record(recorder), 10.0, "the end of the recording")
         recorder.stopMicrophonesRecording()
-        self.assertGreaterEqual(soundfile.info(str(recording("cut.wav"))).duration, 1.0)
+        self.assertGreater(soundfile.info(str(recording("cut.wav"))).duration, 0.99)  # to a sample or two
 
     def test_the_head_turns_to_a_sound(self):
         self.start("turn_to_sound.py", "--timeout", "30")
