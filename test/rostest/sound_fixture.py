@@ -22,6 +22,12 @@ def recording(name: str) -> Path:
     return Path(rospkg.get_ros_home()) / Path(rospy.get_param("nao_sim/record_dir")).expanduser() / name
 
 
+def newest(name: str) -> Path:
+    """The file that the simulator that runs now writes: the name, or name-2, name-3, ... after earlier ones."""
+    first = recording(name)
+    return max(first.parent.glob(f"{first.stem}*{first.suffix}"), key=lambda path: path.stat().st_mtime_ns)
+
+
 class Loudspeakers:
     """What the simulated robot's loudspeakers played.
 
@@ -35,7 +41,7 @@ class Loudspeakers:
     def played(self, from_s: float, to_s: float) -> tuple[np.ndarray, int]:
         """Samples (frames, 2), 1 is full scale, between two simulated times that are past, s; and their rate, Hz."""
         self._robot.advance(FILE_DELAY)
-        path = recording(SOUND_FILE)
+        path = newest(SOUND_FILE)
         rate = soundfile.info(str(path)).samplerate
         samples, _ = soundfile.read(str(path), start=int(from_s * rate), stop=int(to_s * rate), always_2d=True)
         wanted = int(to_s * rate) - int(from_s * rate)
