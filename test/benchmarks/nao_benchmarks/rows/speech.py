@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import time
-from typing import Callable
 
 from ..errors import BenchmarkError
 from ..row import Figures, Row, at_most
@@ -34,19 +33,10 @@ class Mouth:
         Raises:
             BenchmarkError: If that does not happen.
         """
-        return wait_until(lambda: self.speaks == speaks, since, "speaks" if speaks else "is silent")
-
-
-def wait_until(condition: Callable[[], bool], since: float, what: str) -> float:
-    """Time from `since` (perf_counter) until a condition holds, s.
-
-    Raises:
-        BenchmarkError: If it never does.
-    """
-    while time.perf_counter() - since < LIMIT:
-        if condition():
-            return time.perf_counter() - since
-    raise BenchmarkError(f"not within {LIMIT:g} s: the robot {what}")
+        while time.perf_counter() - since < LIMIT:
+            if self.speaks == speaks:
+                return time.perf_counter() - since
+        raise BenchmarkError(f"the robot was not {'speaking' if speaks else 'silent'} within {LIMIT:g} s")
 
 
 class SpeechStart(Row):
@@ -59,8 +49,7 @@ class SpeechStart(Row):
 
     def measure(self, stack: Stack) -> Figures:
         """Say a new sentence each time; it is cancelled as soon as it has begun."""
-        started, stopped = _say(stack)
-        return _figures(started, stopped)
+        return _figures(_say(stack)[0])
 
 
 class SpeechStop(Row):
@@ -73,21 +62,21 @@ class SpeechStop(Row):
 
     def measure(self, stack: Stack) -> Figures:
         """As SpeechStart; the other half of each round."""
-        started, stopped = _say(stack)
-        return _figures(stopped, started)
+        return _figures(_say(stack)[1])
 
 
 def _say(stack: Stack) -> tuple[Sample, Sample]:
+    """Times from goals to the first sound, and from their cancellations to silence."""
     client = stack.audio_out_client
     from ..goals import say  # not above: it needs the messages of the built workspace
 
     mouth = Mouth(stack)
     started, stopped = [], []
     client.run(say("Hello."))
-    for _ in range(ROUNDS):  # a text that was said before would be at hand
+    for _ in range(ROUNDS):
         mouth.wait(False, time.perf_counter())
         began = time.perf_counter()
-        handle = client.send(say(f"This is sentence number {next(NUMBERS)}."))
+        handle = client.send(say(f"This is sentence number {next(NUMBERS)}."))  # one that was said is at hand
         started.append(mouth.wait(True, began))
         cancelled = time.perf_counter()
         handle.cancel()
@@ -95,8 +84,8 @@ def _say(stack: Stack) -> tuple[Sample, Sample]:
     return Sample(tuple(started)), Sample(tuple(stopped))
 
 
-def _figures(ours: Sample, other: Sample) -> Figures:
-    first, third = ours.quartiles
-    details = {"runs": len(ours.seconds), "first quartile": first * 1e3, "third quartile": third * 1e3}
-    details.update({"longest": max(ours.seconds) * 1e3, "the other half": other.median * 1e3})
-    return Figures(ours.median * 1e3, details=details, note=f"the longest {max(ours.seconds) * 1e3:.0f} ms")
+def _figures(sample: Sample) -> Figures:
+    first, third = (seconds * 1e3 for seconds in sample.quartiles)
+    longest = max(sample.seconds) * 1e3
+    details = {"runs": len(sample.seconds), "first quartile": first, "third quartile": third, "longest": longest}
+    return Figures(sample.median * 1e3, details=details, note=f"the longest {longest:.0f} ms")
