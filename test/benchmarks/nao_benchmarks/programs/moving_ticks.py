@@ -12,24 +12,16 @@ import sys
 from collections.abc import Sequence
 
 from nao_benchmarks.errors import BenchmarkError
+from nao_benchmarks.robots import awake
 from nao_benchmarks.stats import interleave
 
 from nao_sim_bridge.sim.motion.curves import SmoothCurve
-from nao_sim_bridge.sim.simulation import Scene, Simulation
+from nao_sim_bridge.sim.simulation import Simulation
 
-SETTLE_S = 1.0
 # rad; small enough to stand by, and long enough to last.
 SWING = 0.02
 SWING_S = 2.0
 SWINGS = 200
-
-
-def awake() -> Simulation:
-    """A robot that stands stiff."""
-    simulation = Simulation(Scene(posture="Stand"))
-    simulation.robot.joints.set_stiffness(dict.fromkeys(range(len(simulation.model.joints)), 1.0))
-    simulation.run(SETTLE_S)
-    return simulation
 
 
 def keep_moving(simulation: Simulation) -> None:

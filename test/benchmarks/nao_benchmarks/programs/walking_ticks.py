@@ -15,12 +15,12 @@ from typing import Any, Callable
 
 import pybullet
 from nao_benchmarks.errors import BenchmarkError
+from nao_benchmarks.robots import awake
 from nao_benchmarks.stats import interleave
 
-from nao_sim_bridge.sim.simulation import Scene, Simulation
+from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.walk.gait import FeetGait
 
-SETTLE_S = 1.0
 # Until the walk has its speed.
 START_S = 4.0
 # A circle, m/s, m/s, rad/s: it never leaves the level ground near the origin.
@@ -47,14 +47,6 @@ class Stopwatch:
             return self._call(*args, **kwargs)
         finally:
             self.seconds += time.thread_time() - began
-
-
-def awake() -> Simulation:
-    """A robot that stands stiff."""
-    simulation = Simulation(Scene(posture="Stand"))
-    simulation.robot.motion.set_stiffness_now(dict.fromkeys(range(len(simulation.model.joints)), 1.0))
-    simulation.run(SETTLE_S)
-    return simulation
 
 
 def walking() -> Simulation:
