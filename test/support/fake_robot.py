@@ -233,24 +233,35 @@ class FakeMemory:
 
 
 class FakeConnection:
+    """A connection of the proxy layer, in the state that the test says."""
+
+    host, port = "10.0.0.7", 9559
+
     def __init__(self):
         self.state = "connected"
         self.latency = 0.001
         self.last_error = None
         self.generation = 1
+        self.modules = []
         self.listeners = []
 
     def add_listener(self, listener):
         self.listeners.append(listener)
 
     def remove_listener(self, listener):
-        self.listeners.remove(listener)
+        if listener in self.listeners:
+            self.listeners.remove(listener)
+
+    def wait_connected(self, limit):
+        return self.state == "connected"
+
+    def module_names(self):
+        return self.modules
 
     def become(self, state, last_error=None):
         self.state = state
         self.last_error = last_error
-        if state == "connected":
-            self.generation += 1
+        self.generation += state == "connected"
         for listener in list(self.listeners):
             listener(state)
 

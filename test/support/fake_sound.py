@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 from types import SimpleNamespace
 
+from fake_robot import FakeConnection
+
 from naoqi.errors import ConnectionLost, RobotError, RobotUnreachable, UnknownModule
 
 
@@ -149,38 +151,6 @@ class Words:
         self.shows = shows
 
 
-class Connection:
-    """Connection of the proxy layer."""
-
-    host, port = "10.0.0.7", 9559
-
-    def __init__(self):
-        self.state = "connected"
-        self.generation = 1
-        self.last_error = ""
-        self.modules = []
-        self._listeners = []
-
-    def add_listener(self, listener):
-        self._listeners.append(listener)
-
-    def remove_listener(self, listener):
-        if listener in self._listeners:
-            self._listeners.remove(listener)
-
-    def wait_connected(self, limit):
-        return self.state == "connected"
-
-    def module_names(self):
-        return self.modules
-
-    def become(self, state, last_error=""):
-        self.state, self.last_error = state, last_error
-        self.generation += state == "connected"
-        for listener in list(self._listeners):
-            listener(state)
-
-
 class Robot:
     """A robot with the modules of `services`: their methods answer at once, or with a call that the test ends."""
 
@@ -188,7 +158,7 @@ class Robot:
 
     def __init__(self, make_call, **services):
         self._make_call = make_call
-        self.connection = Connection()
+        self.connection = FakeConnection()
         self.services = services
         self.pending = []
 
@@ -230,30 +200,3 @@ class Robot:
             return result
         call.end(result)
         return call
-
-
-class SetClock:
-    """Time that passes when the test says so."""
-
-    def __init__(self):
-        self.time = 0.0
-        self.waits = threading.Semaphore(0)
-        self._wakers = []
-
-    def now(self):
-        return self.time
-
-    def wait(self, duration, interrupt):
-        end, wake = self.time + duration, threading.Event()
-        self._wakers.append(wake)
-        self.waits.release()
-        with interrupt.waking(wake.set):
-            while self.time < end and not interrupt.is_set():
-                assert wake.wait(10.0), "nobody let time pass"
-                wake.clear()
-        return not interrupt.is_set()
-
-    def advance(self, seconds):
-        self.time += seconds
-        for wake in list(self._wakers):
-            wake.set()

@@ -6,6 +6,7 @@ import threading
 
 import fake_sound
 import pytest
+from set_clock import SetClock
 
 from nao_library_modules.driver.audio_player import AudioPlayer
 from nao_library_modules.driver.audio_requests import RecordingRequest
@@ -62,7 +63,7 @@ def robot(make_call):
 
 @pytest.fixture
 def clock():
-    return fake_sound.SetClock()
+    return SetClock()
 
 
 @pytest.fixture

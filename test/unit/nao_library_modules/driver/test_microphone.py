@@ -6,6 +6,7 @@ from array import array
 
 import fake_sound
 import pytest
+from set_clock import SetClock
 
 from nao_library_modules.driver import demand, microphone
 from nao_library_modules.driver.microphone import SILENCE_LIMIT, Microphone
@@ -94,7 +95,7 @@ def broker(robot, monkeypatch):
 
 @pytest.fixture
 def clock():
-    clock = fake_sound.SetClock()
+    clock = SetClock()
     clock.time = 100.0
     return clock
 

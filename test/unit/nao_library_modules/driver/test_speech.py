@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import fake_sound
 import pytest
+from set_clock import SetClock
 
 from nao_library_modules.driver import speech as speech_module
 from nao_library_modules.driver.speech import LONGEST_QUEUE, QUIET_LIMIT, NothingSaid, Speech
@@ -29,7 +30,7 @@ def robot(make_call, voice):
 
 @pytest.fixture
 def clock():
-    return fake_sound.SetClock()
+    return SetClock()
 
 
 @pytest.fixture

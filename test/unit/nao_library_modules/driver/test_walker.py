@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import threading
 from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import fake_walk
 import pytest
+from fake_robot import FakeConnection
+from set_clock import SetClock
 
-from nao_library_modules.clock import WallClock
 from nao_library_modules.driver.walk_commands import Step, Target, Velocity
 from nao_library_modules.driver.walk_orders import Overtaken, Stop, WalkEnded
 from nao_library_modules.driver.walker import Walker
@@ -19,52 +19,6 @@ LIMIT = 5.0
 FORWARD, FASTER, STAND = Velocity(0.5, 0.0, 0.0), Velocity(1.0, 0.0, 0.0), Velocity(0.0, 0.0, 0.0)
 STOP = Stop()
 LOST = RobotUnreachable("nao", 9559, "connection lost")
-
-
-class FakeConnection:
-    def __init__(self):
-        self.state = "connected"
-        self.listeners = []
-
-    def add_listener(self, listener):
-        self.listeners.append(listener)
-
-    def remove_listener(self, listener):
-        self.listeners.remove(listener)
-
-    def become(self, state):
-        self.state = state
-        for listener in list(self.listeners):
-            listener(state)
-
-
-class Clock(WallClock):
-    """Time that the test moves on."""
-
-    def __init__(self):
-        self.time = 100.0
-        self.waiting = threading.Event()
-        self._moved = threading.Condition()
-
-    def now(self):
-        return self.time
-
-    def wait(self, duration, interrupt):
-        end = self.time + duration
-
-        def wake():
-            with self._moved:
-                self._moved.notify_all()
-
-        with interrupt.waking(wake), self._moved:
-            self.waiting.set()
-            self._moved.wait_for(lambda: self.time >= end or interrupt.is_set(), LIMIT)
-        return not interrupt.is_set()
-
-    def advance(self, seconds):
-        with self._moved:
-            self.time += seconds
-            self._moved.notify_all()
 
 
 @pytest.fixture
@@ -109,7 +63,7 @@ def robot(proxy):
 
 @pytest.fixture
 def clock():
-    return Clock()
+    return SetClock()
 
 
 @pytest.fixture
