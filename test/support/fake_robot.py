@@ -180,13 +180,19 @@ class FakeLeds:
 
 
 class FakeSignal:
+    """A signal of ALMemory's subscriber."""
+
     def __init__(self):
         self.links = {}
+        self._count = 0
+
+    def __len__(self):
+        return len(self.links)
 
     def connect(self, callback):
-        link = len(self.links) + 1
-        self.links[link] = callback
-        return link
+        self._count += 1
+        self.links[self._count] = callback
+        return self._count
 
     def disconnect(self, link):
         del self.links[link]

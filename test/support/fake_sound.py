@@ -5,32 +5,9 @@ from __future__ import annotations
 import threading
 from types import SimpleNamespace
 
-from fake_robot import FakeConnection
+from fake_robot import FakeConnection, FakeSignal
 
 from naoqi.errors import ConnectionLost, RobotError, RobotUnreachable, UnknownModule
-
-
-class Signal:
-    """A signal of ALMemory's subscriber."""
-
-    def __init__(self):
-        self._links = {}
-        self._count = 0
-
-    def connect(self, callback):
-        self._count += 1
-        self._links[self._count] = callback
-        return self._count
-
-    def disconnect(self, link):
-        self._links.pop(link, None)
-
-    def __len__(self):
-        return len(self._links)
-
-    def __call__(self, value):
-        for callback in list(self._links.values()):
-            callback(value)
 
 
 class Memory:
@@ -41,7 +18,7 @@ class Memory:
         self.values = {}
 
     def subscriber(self, name):
-        return SimpleNamespace(signal=self.signals.setdefault(name, Signal()))
+        return SimpleNamespace(signal=self.signals.setdefault(name, FakeSignal()))
 
     def raise_event(self, name, value):
         if name in self.signals:
