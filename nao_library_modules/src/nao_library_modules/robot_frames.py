@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 import rospy
 import tf2_ros
 
 from naoqi.errors import NaoError
 
-from .places import Place
+from .places import Place, yaw_of_quaternion
 
 ROBOT = "base_footprint"
 """The frame of the robot: on the floor between its feet, as nao_joint_states publishes it."""
@@ -41,8 +39,8 @@ class RobotFrames:
         except (tf2_ros.TransformException, tf2_ros.InvalidArgumentException) as error:
             raise NaoError(f"the frame {frame} cannot be found from {robot}: {error}") from error
         turn = found.rotation
-        yaw = math.atan2(2.0 * (turn.w * turn.z + turn.x * turn.y), 1.0 - 2.0 * (turn.y**2 + turn.z**2))
-        return Place(found.translation.x, found.translation.y, yaw)
+        yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
+        return Place(found.translation.x, found.translation.y, 0.0 if yaw is None else yaw)
 
 
 def tf_prefix() -> str:

@@ -14,7 +14,7 @@ from naoqi.errors import NaoError, UnknownModule
 
 from ..health import Level, Report
 from .demand import Demand
-from .microphone_blocks import FORMATS, BlockClock, BlockTime, channel_map, read_samples
+from .microphone_blocks import FORMATS, RATES, BlockClock, BlockTime, channel_map, read_samples
 
 log = logging.getLogger(__name__)
 
@@ -111,7 +111,7 @@ class Microphone:
             NaoError: If the robot does not have it.
         """
         if rate not in FORMATS:
-            allowed = " or ".join(f"{each} ({FORMATS[each][1]} channel{'s'[: each > 16000]})" for each in FORMATS)
+            allowed = " or ".join(f"{each} ({channels})" for each, channels in RATES.items())
             raise NaoError(f"frequency is {rate!r}: {allowed}")
         if rate != self._rate:
             self._rate = rate

@@ -25,6 +25,8 @@ ALL_CHANNELS, FRONT_CHANNEL = 0, 3
 """What ALAudioDevice calls the channels."""
 FORMATS = {16000: (FRONT_CHANNEL, 1), 48000: (ALL_CHANNELS, 4)}
 """Rate in Hz -> what ALAudioDevice is asked for, and how many channels that are."""
+RATES = {rate: f"{count} channel{'s' if count > 1 else ''}" for rate, (_, count) in FORMATS.items()}
+"""Rate in Hz -> what comes at it, for people."""
 FRONT = 2
 DRIFT = 1e-4
 """How fast one clock may run away from the other: s a second."""

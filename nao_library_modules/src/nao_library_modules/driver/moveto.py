@@ -13,8 +13,9 @@ from naoqi.errors import NaoError
 
 from ..health import Report
 from ..places import Place
+from ..robot_frames import tf_prefix
 from .moveto_walk import Goal, MoveToWalk
-from .planar_frames import PlanarFrames, read_place, tf_prefix
+from .planar_frames import PlanarFrames, read_place
 
 
 class NaoqiMoveTo:

@@ -11,25 +11,23 @@ from rospy.rostime import is_wallclock
 from nao_library_msgs.msg import AudioSourceLocalization
 from nao_library_msgs.srv import (
     AudioPlayback,
-    AudioPlaybackResponse,
     AudioRecorder,
-    AudioRecorderResponse,
     GetAudioMasterVolume,
     GetAudioMasterVolumeResponse,
     SetAudioMasterVolume,
-    SetAudioMasterVolumeResponse,
 )
 from naoqi.errors import NaoError
 
-from ..errors import Preempted
 from ..health import Report
 from ..interrupt import Interrupt
+from ..robot_frames import tf_prefix
 from ..ros_clock import RosClock
 from .audio_directions import Direction, SoundDirections
 from .audio_player import AudioPlayer
-from .audio_requests import file_on_robot, read_recording, read_volume
-from .planar_frames import tf_prefix
+from .audio_requests import CHANNELS, file_on_robot, read_recording, read_volume
+from .node import name_for_robot, publish
 from .rotation import from_roll_pitch_yaw
+from .services import offer
 from .topic_demand import TopicDemand
 
 TORSO = "torso"
@@ -68,15 +66,14 @@ class NaoAudioServices:
         self._interrupt = Interrupt()
         self._frame = tf_prefix() + TORSO
         self._player = AudioPlayer(robot, RosClock(), self._interrupt)
-        subscriber = "ros" + rospy.get_name().replace("/", "_")
-        self._directions = SoundDirections(robot, subscriber, float(sensitivity), self._publish)
+        self._directions = SoundDirections(robot, name_for_robot(), float(sensitivity), self._publish)
         name = "nao_audio/audio_source_localization"
         self._topic = rospy.Publisher(name, AudioSourceLocalization, queue_size=10)
         self._demand = TopicDemand(self._topic, self._directions.want)
-        _offer("nao_audio/play_file", AudioPlayback, self._play)
-        _offer("nao_audio/record", AudioRecorder, self._record)
-        _offer("nao_audio/master_volume", SetAudioMasterVolume, self._set_volume)
-        _offer("nao_audio/get_master_volume", GetAudioMasterVolume, self._volume)
+        offer("nao_audio/play_file", AudioPlayback, self._play)
+        offer("nao_audio/record", AudioRecorder, self._record)
+        offer("nao_audio/master_volume", SetAudioMasterVolume, self._set_volume)
+        offer("nao_audio/get_master_volume", GetAudioMasterVolume, self._volume)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
@@ -89,19 +86,16 @@ class NaoAudioServices:
 
     # --- services -------------------------------------------------------------------------------------------------
 
-    def _play(self, request: Any) -> AudioPlaybackResponse:
+    def _play(self, request: Any) -> None:
         self._player.play(file_on_robot(request.file_path.data))
-        return AudioPlaybackResponse()
 
-    def _record(self, request: Any) -> AudioRecorderResponse:
-        flags = [getattr(request, f"{side}_channel").data for side in ("left", "right", "front", "rear")]
+    def _record(self, request: Any) -> None:
+        flags = [getattr(request, f"{side}_channel").data for side in CHANNELS]
         file, rate = request.file_path.data, request.samplerate.data
         self._player.record(read_recording(file, request.secs.data, request.audio_type.data, flags, rate))
-        return AudioRecorderResponse()
 
-    def _set_volume(self, request: Any) -> SetAudioMasterVolumeResponse:
+    def _set_volume(self, request: Any) -> None:
         self._player.set_volume(read_volume(request.master_volume.data))
-        return SetAudioMasterVolumeResponse()
 
     def _volume(self, _request: Any) -> GetAudioMasterVolumeResponse:
         response = GetAudioMasterVolumeResponse()
@@ -122,20 +116,4 @@ class NaoAudioServices:
         position.x, position.y, position.z = direction.head_in_torso[:3]
         turned = from_roll_pitch_yaw(*direction.head_in_torso[3:])
         orientation.x, orientation.y, orientation.z, orientation.w = turned
-        try:
-            self._topic.publish(message)
-        except rospy.ROSException as error:  # the topic was closed before the robot was left
-            rospy.logdebug("audio_source_localization: %s", error)
-
-
-def _offer(name: str, kind: type, answer: Callable[[Any], Any]) -> None:
-    def serve(request: Any) -> Any:
-        try:
-            return answer(request)
-        except Preempted as signal:
-            raise rospy.ServiceException("the node ends") from signal
-        except NaoError as error:
-            rospy.logerr("%s: %s", name, error)
-            raise rospy.ServiceException(str(error)) from error
-
-    rospy.Service(name, kind, serve)
+        publish(self._topic, message)

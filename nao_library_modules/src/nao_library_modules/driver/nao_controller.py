@@ -9,7 +9,7 @@ import rospy
 from actionlib import ActionServer
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
-from std_srvs.srv import Empty, EmptyResponse, Trigger, TriggerResponse
+from std_srvs.srv import Empty, Trigger, TriggerResponse
 
 from nao_library_actions.msg import (
     JointAnglesWithSpeedAction,
@@ -25,6 +25,7 @@ from ..health import Report
 from ..interrupt import Interrupt
 from .goal_crowd import GoalCrowd, Outcome
 from .joint_controller import JointController, Reached
+from .services import offer
 
 COMPLAINT_PERIOD = 5.0
 """s between two complaints about messages of one topic that cannot be carried out."""
@@ -68,12 +69,12 @@ class NaoController:
             self._serve("joint_angles_action", JointAnglesWithSpeedAction, self._angles_joints, self._angles),
         ]
         self._life = rospy.Publisher("get_life_state", String, queue_size=1, latch=True)
-        self._offer("body_stiffness/enable", lambda: self._joints.set_body_stiffness(1.0))
-        self._offer("body_stiffness/disable", lambda: self._joints.set_body_stiffness(0.0))
-        self._offer("wakeup", self._joints.wake_up)
-        self._offer("rest", self._joints.rest)
-        self._offer("life/enable", lambda: self._set_life(True))
-        self._offer("life/disable", lambda: self._set_life(False))
+        offer("body_stiffness/enable", Empty, lambda _: self._joints.set_body_stiffness(1.0))
+        offer("body_stiffness/disable", Empty, lambda _: self._joints.set_body_stiffness(0.0))
+        offer("wakeup", Empty, lambda _: self._joints.wake_up())
+        offer("rest", Empty, lambda _: self._joints.rest())
+        offer("life/enable", Empty, lambda _: self._set_life(True))
+        offer("life/disable", Empty, lambda _: self._set_life(False))
         rospy.Service("life/get_state", Trigger, self._on_life_state)
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
@@ -140,17 +141,6 @@ class NaoController:
             self._joints.set_stiffnesses(message.name, message.effort)
         except NaoError as error:
             rospy.logerr_throttle(COMPLAINT_PERIOD, f"joint_stiffness: {error}")
-
-    def _offer(self, name: str, action: Callable[[], None]) -> None:
-        def serve(_request: Any) -> EmptyResponse:
-            try:
-                action()
-            except NaoError as error:
-                rospy.logerr("%s: %s", name, error)
-                raise rospy.ServiceException(str(error)) from error
-            return EmptyResponse()
-
-        rospy.Service(name, Empty, serve)
 
     def _set_life(self, alive: bool) -> None:
         self._joints.set_life(alive)

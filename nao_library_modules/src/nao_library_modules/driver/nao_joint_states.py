@@ -20,6 +20,7 @@ from ..clock import WallClock
 from ..health import Level, Report
 from ..interrupt import Interrupt
 from ..joint_names import JointNames
+from ..robot_frames import tf_prefix
 from ..ros_clock import RosClock
 from . import state_messages as messages
 from .feet import LEG_JOINTS, footprint
@@ -27,7 +28,6 @@ from .joint_sensors import JointSensors, Reading
 from .odometry_offset import OdometryOffset
 from .odometry_services import offer_odometry_services
 from .pacer import Pacer
-from .planar_frames import tf_prefix
 from .slope import SlopeEstimator
 
 log = logging.getLogger(__name__)

@@ -11,16 +11,16 @@ from rospy.rostime import is_wallclock
 from nao_library_msgs.msg import AudioBuffer
 
 from ..health import Report
+from ..robot_frames import tf_prefix
 from ..ros_clock import RosClock
 from .microphone import Block, Microphone
-from .microphone_blocks import FORMATS
-from .planar_frames import tf_prefix
+from .microphone_blocks import FORMATS, RATES
+from .node import name_for_robot, publish
 from .reconfigure import Field, serve
 from .topic_demand import TopicDemand
 
 HEAD = "Head"
 QUEUE = 50
-RATES = {rate: f"{count} channel{'s'[: count > 1]}" for rate, (_, count) in FORMATS.items()}
 
 
 class NaoMicrophone:
@@ -38,11 +38,13 @@ class NaoMicrophone:
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+
+        Raises:
+            NaoError: If a parameter is wrong.
         """
         self._use_ros_time = True
         self._frame = tf_prefix() + str(rospy.get_param("~frame_id", HEAD)).lstrip("/")
-        name = "ros" + rospy.get_name().replace("/", "_")
-        self._microphone = Microphone(robot, name, RosClock(), self._publish)
+        self._microphone = Microphone(robot, name_for_robot(), RosClock(), self._publish)
         fields = (
             Field("frequency", min(FORMATS), "samples a second and channel", min(FORMATS), max(FORMATS), RATES),
             Field("use_ros_time", is_wallclock(), "whether stamps are in ROS time, instead of the robot's own"),
@@ -68,7 +70,4 @@ class NaoMicrophone:
         message = AudioBuffer(frequency=block.rate, channelMap=bytes(block.places), data=block.samples)
         message.header.stamp = rospy.Time.from_sec(block.time.ros if self._use_ros_time else block.time.robot)
         message.header.frame_id = self._frame
-        try:
-            self._audio.publish(message)
-        except rospy.ROSException as error:  # the topic was closed before the robot was left
-            rospy.logdebug("audio_raw: %s", error)
+        publish(self._audio, message)

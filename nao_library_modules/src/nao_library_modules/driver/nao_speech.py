@@ -9,7 +9,7 @@ import rosgraph
 import rospy
 from actionlib import ActionServer
 from std_msgs.msg import String
-from std_srvs.srv import Empty, EmptyResponse
+from std_srvs.srv import Empty
 
 from nao_library_actions.msg import (
     SetSpeechVocabularyAction,
@@ -28,7 +28,9 @@ from ..health import Report
 from ..interrupt import Interrupt
 from ..ros_clock import RosClock
 from .goal_crowd import GoalCrowd, Outcome
-from .reconfigure import Field, serve
+from .node import name_for_robot, publish
+from .reconfigure import Field, serve, update
+from .services import offer
 from .speech import Speech
 from .speech_recognition import Heard, Recognition
 from .speech_settings import (
@@ -95,8 +97,7 @@ class NaoSpeech:
         self._settings = SpeechSettings()
         self._words = rospy.Publisher("word_recognized", WordRecognized, queue_size=10)
         self._speech = Speech(robot, RosClock(), lambda: self._settings)
-        subscriber = "ros" + rospy.get_name().replace("/", "_")
-        self._recognition = Recognition(robot, subscriber, lambda: self._settings, self._publish)
+        self._recognition = Recognition(robot, name_for_robot(), lambda: self._settings, self._publish)
         self._server = serve(PARAMETERS, self._changed)
         self._goals = {
             "speech_action": GoalCrowd(lambda _: VOICE, self._say, with_feedback=True),
@@ -106,9 +107,9 @@ class NaoSpeech:
             ActionServer(name, action, crowd.on_goal, crowd.on_cancel, auto_start=False).start()
         robot.connection.add_listener(self._connection_changed)
         rospy.Subscriber("speech", String, self._on_text, queue_size=100)
-        _offer("stop_recognition", self._recognition.stop)
-        _offer("reconfigure", self._reconfigure)
-        _offer(START, self._recognition.start)
+        offer("stop_recognition", Empty, lambda _: self._recognition.stop())
+        offer("reconfigure", Empty, lambda _: update(self._server, _read_parameters()))
+        offer(START, Empty, lambda _: self._recognition.start())
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
@@ -150,27 +151,13 @@ class NaoSpeech:
     def _set_vocabulary(self, goal: SetSpeechVocabularyGoal, _interrupt: Interrupt) -> Outcome:
         if not goal.words:
             raise BadGoal("words", goal.words, "at least one word", "it is empty")
-        self._update({"vocabulary": join_vocabulary(goal.words)})
+        update(self._server, {"vocabulary": join_vocabulary(goal.words)})
         return Outcome(SetSpeechVocabularyResult(success=True))
 
     def _publish(self, heard: Heard) -> None:
-        try:
-            self._words.publish(WordRecognized(list(heard.words), list(heard.confidences)))
-        except rospy.ROSException as error:  # the topic was closed before the robot was left
-            rospy.logdebug("word_recognized: %s", error)
+        publish(self._words, WordRecognized(list(heard.words), list(heard.confidences)))
 
     # --- parameters -----------------------------------------------------------------------------------------------
-
-    def _reconfigure(self) -> None:
-        self._update(_read_parameters())
-
-    def _update(self, changes: Mapping[str, Any]) -> None:
-        try:
-            self._server.update_configuration(changes)
-        except rospy.ServiceException as error:
-            if isinstance(error.__cause__, NaoError):
-                raise error.__cause__ from None
-            raise NaoError(str(error)) from error
 
     def _changed(self, before: Mapping[str, Any], after: Mapping[str, Any]) -> Mapping[str, Any]:
         """Take new values of the parameters; those of the first time are not tried on the robot."""
@@ -222,18 +209,6 @@ def _read_parameters() -> dict[str, Any]:
 def _complain(text: str, error: Exception) -> None:
     log = rospy.loginfo if isinstance(error, UnknownModule) else rospy.logerr
     log("speech: %r was not said: %s", text, error)
-
-
-def _offer(name: str, action: Callable[[], None]) -> None:
-    def serve_call(_request: Any) -> EmptyResponse:
-        try:
-            action()
-        except NaoError as error:
-            rospy.logerr("%s: %s", name, error)
-            raise rospy.ServiceException(str(error)) from error
-        return EmptyResponse()
-
-    rospy.Service(name, Empty, serve_call)
 
 
 def _node_that_offers(service: str) -> str:

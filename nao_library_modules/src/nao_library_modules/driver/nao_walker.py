@@ -8,19 +8,10 @@ from typing import Any
 import rospy
 from geometry_msgs.msg import Pose2D, Twist
 from std_msgs.msg import String
-from std_srvs.srv import Empty, EmptyResponse
+from std_srvs.srv import Empty
 
 from nao_library_msgs.msg import StepTarget
-from nao_library_msgs.srv import (
-    CmdPoseService,
-    CmdPoseServiceResponse,
-    CmdVelService,
-    CmdVelServiceResponse,
-    SetArmsEnabled,
-    SetArmsEnabledResponse,
-    StepTargetService,
-    StepTargetServiceResponse,
-)
+from nao_library_msgs.srv import CmdPoseService, CmdVelService, SetArmsEnabled, StepTargetService
 from naoqi.errors import NaoError
 
 from ..health import Report
@@ -28,6 +19,7 @@ from ..joint_names import MOTION
 from ..ros_clock import RosClock
 from .gait_config import read_gait_config, read_share
 from .joint_controller import QUICK_LIMIT, JointController
+from .services import offer
 from .walk_commands import Velocity, read_step, read_target, read_velocity
 from .walk_inhibition import WalkInhibition
 from .walk_orders import Command, Order, Overtaken, Stop
@@ -158,26 +150,18 @@ class NaoWalker:
     # --- services -------------------------------------------------------------------------------------------------
 
     def _offer_services(self) -> None:
-        def serve(name: str, kind: type, response: type, action: Callable[[str, Any], Any]) -> None:
-            def answer(request: Any) -> Any:
-                try:
-                    action(_caller(request), request)
-                except NaoError as error:
-                    rospy.logerr("%s: %s", name, error)
-                    raise rospy.ServiceException(str(error)) from error
-                return response()
+        def serve(name: str, kind: type, action: Callable[[str, Any], None]) -> None:
+            offer(name, kind, lambda request: action(_caller(request), request))
 
-            rospy.Service(name, kind, answer)
-
-        serve("cmd_vel_srv", CmdVelService, CmdVelServiceResponse, self._serve_velocity)
-        serve("cmd_pose_srv", CmdPoseService, CmdPoseServiceResponse, self._serve_pose)
-        serve("cmd_step_srv", StepTargetService, StepTargetServiceResponse, self._serve_step)
-        serve("stop_walk_srv", Empty, EmptyResponse, self._serve_stop)
-        serve("inhibit_walk", Empty, EmptyResponse, self._serve_inhibit)
-        serve("uninhibit_walk", Empty, EmptyResponse, self._serve_uninhibit)
-        serve("needs_start_walk_pose_srv", Empty, EmptyResponse, self._serve_walk_pose)
-        serve("read_foot_gait_config_srv", Empty, EmptyResponse, self._serve_gait)
-        serve("enable_arms_walking_srv", SetArmsEnabled, SetArmsEnabledResponse, self._serve_arms)
+        serve("cmd_vel_srv", CmdVelService, self._serve_velocity)
+        serve("cmd_pose_srv", CmdPoseService, self._serve_pose)
+        serve("cmd_step_srv", StepTargetService, self._serve_step)
+        serve("stop_walk_srv", Empty, self._serve_stop)
+        serve("inhibit_walk", Empty, self._serve_inhibit)
+        serve("uninhibit_walk", Empty, self._serve_uninhibit)
+        serve("needs_start_walk_pose_srv", Empty, self._serve_walk_pose)
+        serve("read_foot_gait_config_srv", Empty, self._serve_gait)
+        serve("enable_arms_walking_srv", SetArmsEnabled, self._serve_arms)
 
     def _serve_velocity(self, caller: str, request: Any) -> None:
         _wait(self._order("cmd_vel_srv", caller, self._velocity("cmd_vel_srv", request.twist)))

@@ -1,4 +1,4 @@
-"""What all driver nodes do alike: arguments, robot, diagnostics, spin."""
+"""What all driver nodes do alike: arguments, robot, diagnostics, spin; names and messages."""
 
 from __future__ import annotations
 
@@ -48,3 +48,16 @@ def run_driver(make: Callable[[Robot], Any], name: str, description: str, argv: 
     rospy.on_shutdown(diagnostics.close)
     rospy.spin()
     return 0
+
+
+def name_for_robot() -> str:
+    """Name under which NAOqi knows this node: as a module, and as a subscriber of its modules."""
+    return "ros" + rospy.get_name().replace("/", "_")
+
+
+def publish(publisher: rospy.Publisher, message: Any) -> None:
+    """Publish something that the robot has sent: it may still come when this node has closed its topics."""
+    try:
+        publisher.publish(message)
+    except rospy.ROSException as error:
+        rospy.logdebug("%s: %s", publisher.name, error)

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
 
-import rospy
 from geometry_msgs.msg import Transform
-from std_srvs.srv import Empty, EmptyResponse
+from std_srvs.srv import Empty
 
-from nao_library_msgs.srv import SetTransform, SetTransformResponse
-from naoqi.errors import NaoError
+from nao_library_msgs.srv import SetTransform
 
 from ..errors import BadGoal
 from ..places import Place, yaw_of_quaternion
 from .odometry_offset import OdometryOffset
+from .services import offer
 
 
 def offer_odometry_services(offset: OdometryOffset) -> None:
@@ -24,10 +21,10 @@ def offer_odometry_services(offset: OdometryOffset) -> None:
     Args:
         offset: What they change.
     """
-    _offer("pause_odometry", Empty, EmptyResponse, lambda _: offset.pause())
-    _offer("resume_odometry", Empty, EmptyResponse, lambda _: offset.resume())
-    _offer("odometry_offset", SetTransform, SetTransformResponse, lambda r: offset.move_by(read_transform(r.offset)))
-    _offer("set_odometry_pose", SetTransform, SetTransformResponse, lambda r: offset.set(read_transform(r.offset)))
+    offer("pause_odometry", Empty, lambda _: offset.pause())
+    offer("resume_odometry", Empty, lambda _: offset.resume())
+    offer("odometry_offset", SetTransform, lambda request: offset.move_by(read_transform(request.offset)))
+    offer("set_odometry_pose", SetTransform, lambda request: offset.set(read_transform(request.offset)))
 
 
 def read_transform(transform: Transform) -> Place:
@@ -45,15 +42,3 @@ def read_transform(transform: Transform) -> Place:
         given = (turn.x, turn.y, turn.z, turn.w)
         raise BadGoal("offset.rotation", given, "a rotation; w: 1 and the others 0 turns nothing")
     return Place(move.x, move.y, yaw)
-
-
-def _offer(name: str, kind: type, answer: type, action: Callable[[Any], None]) -> None:
-    def serve(request: Any) -> Any:
-        try:
-            action(request)
-        except NaoError as error:
-            rospy.logerr("%s: %s", name, error)
-            raise rospy.ServiceException(str(error)) from error
-        return answer()
-
-    rospy.Service(name, kind, serve)

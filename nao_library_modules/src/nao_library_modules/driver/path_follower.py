@@ -25,6 +25,7 @@ from ..errors import RobotLost
 from ..health import Report
 from ..interrupt import Interrupt
 from ..places import Place
+from ..robot_frames import tf_prefix
 from ..ros_clock import RosClock
 from .goal_crowd import GoalCrowd, Outcome, Replaced
 from .path_follower_courses import Aim, PathCourse, TargetCourse
@@ -32,7 +33,7 @@ from .path_follower_legs import WalkTopics
 from .path_follower_path import WalkPath
 from .path_follower_settings import Settings
 from .path_follower_walk import lead
-from .planar_frames import PlanarFrames, pose_stamped, read_path, read_place, tf_prefix
+from .planar_frames import PlanarFrames, pose_stamped, read_path, read_place
 
 SHUTDOWN_LIMIT = 4.0
 LEGS = frozenset({"the legs"})

@@ -180,10 +180,3 @@ def pose_stamped(place: Place, frame: str, stamp: rospy.Time) -> PoseStamped:
 def level_quaternion(yaw: float) -> Quaternion:
     """A turn about Z."""
     return Quaternion(*from_roll_pitch_yaw(0.0, 0.0, yaw))
-
-
-def tf_prefix() -> str:
-    """Prefix of the robot's frames, with its slash; empty without the parameter tf_prefix (searched upwards)."""
-    found = rospy.search_param("tf_prefix")
-    prefix = str(rospy.get_param(found)).strip("/") if found else ""
-    return f"{prefix}/" if prefix else ""

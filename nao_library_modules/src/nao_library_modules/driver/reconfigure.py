@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, Union
@@ -15,6 +16,7 @@ from naoqi.errors import NaoError
 Value = Union[bool, int, float, str]
 
 TYPES = {bool: "bool", int: "int", float: "double", str: "str"}
+KINDS = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
 LOWEST: dict[type, Value] = {bool: False, int: -(2**31), float: float("-inf"), str: ""}
 HIGHEST: dict[type, Value] = {bool: True, int: 2**31 - 1, float: float("inf"), str: ""}
 
@@ -76,9 +78,14 @@ def serve(
     Returns:
         The server; `update_configuration` changes values from within the node.
 
+    Raises:
+        NaoError: If a parameter is set to something that it cannot be. The server would change it without a word.
+
     ROS API:
         Service `~set_parameters`, topics `~parameter_descriptions`, `~parameter_updates` (dynamic_reconfigure).
     """
+    for field in fields:
+        _check(field, rospy.get_param(f"~{field.name}", field.default))
     names = [field.name for field in fields]
     last: dict[str, Any] = {}
 
@@ -91,7 +98,46 @@ def serve(
         last.update(values)
         return config
 
-    return Server(description_of(fields), callback)
+    with _own_errors():
+        return Server(description_of(fields), callback)
+
+
+def update(server: Server, changes: Mapping[str, Any]) -> None:
+    """Change parameters from within the node.
+
+    Raises:
+        NaoError: If the change was refused.
+    """
+    with _own_errors():
+        server.update_configuration(changes)
+
+
+@contextmanager
+def _own_errors() -> Iterator[None]:
+    """What the server passes on as an error of a service is the NaoError again that it was."""
+    try:
+        yield
+    except rospy.ServiceException as error:
+        if isinstance(error.__cause__, NaoError):
+            raise error.__cause__ from None
+        raise NaoError(str(error)) from error
+
+
+def _check(field: Field, value: Any) -> None:
+    kind = type(field.default)
+    right = isinstance(value, (int, float) if kind is float else kind) and isinstance(value, bool) == (kind is bool)
+    low = right and field.lowest is not None and value < field.lowest
+    high = right and field.highest is not None and value > field.highest
+    if not right or low or high or (field.choices and value not in field.choices):
+        raise NaoError(f"~{field.name} is {value!r}: {_allowed(field)}")
+
+
+def _allowed(field: Field) -> str:
+    if field.choices:
+        return " or ".join(f"{value} ({meaning})" for value, meaning in field.choices.items())
+    ends = [f"from {field.lowest}"] if field.lowest is not None else []
+    ends += [f"to {field.highest}"] if field.highest is not None else []
+    return " ".join([KINDS[type(field.default)], *ends])
 
 
 def _limit(limit: Value | None, default: Value, limits: Mapping[type, Value]) -> Value:
