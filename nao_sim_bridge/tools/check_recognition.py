@@ -7,8 +7,8 @@ is 1 when a figure misses its bound. Parts can be chosen by name:
 
   words      a vocabulary of 30 words and phrases: each is recognised, and nothing else
   second     two other vocabularies, which nothing was tuned with
-  others     words and sentences that are not in the vocabulary: how many are taken for one of it at all ("any"), and how
-             many with a confidence of 0.4 or more ("from 0.4"), which has the bound
+  others     words and sentences that are not in the vocabulary: how many are taken for one of it at all ("any"), and
+             how many with a confidence of 0.4 or more ("from 0.4"); only the latter have a bound
   spotting   word spotting: phrases alone and inside of sentences, words and sentences without any, a minute of these
   quiet      a minute each of noise, tones, clicks and silence: nothing is recognised
   sudden     noises that begin suddenly, 20 of each kind: none is recognised
@@ -28,7 +28,6 @@ from recognition_bench import VOICES, Bench, Heard, not_speech, sudden
 NOISES = ("clean", "white", "pink")
 LEAST_RIGHT = {"clean": 0.95, "white": 0.80, "pink": 0.80}
 SURE = 0.4
-"""Other words are told with any confidence; those with less than this are for whoever listens to leave out."""
 MOST_FALSE = 0.1
 LEAST_SPOTTED = 0.8
 MOST_IN_A_MINUTE = 1
@@ -102,8 +101,7 @@ class Check:
         phrases = self._bench.phrases[name]
         self._bench.listen_for(phrases)
         for noise in NOISES:
-            heard = self._heard(phrases, noise)
-            shares = self._shares(heard, noise, lambda one: one.is_right(one.said), True)
+            shares = self._shares(phrases, noise, lambda heard: heard.is_right(heard.said), True)
             yield _line(f"{name}, {noise}", shares, least=LEAST_RIGHT[noise])
 
     def second(self) -> Iterator[Line]:
@@ -116,26 +114,22 @@ class Check:
         self._bench.listen_for(self._bench.phrases["vocabulary"])
         for kind in ("other_words", "other_sentences"):
             for noise in NOISES:
-                heard = self._heard(self._bench.phrases[kind], noise)
+                heard = self._heard(self._bench.phrases[kind], noise, _is_found, False)
                 label = f"{kind.replace('_', ' ')}, {noise}:"
-                yield _line(f"{label} any", self._shares(heard, noise, lambda one: bool(one.found), False))
-                sure = self._shares(heard, noise, _taken_for_sure, None)
-                yield _line(f"{label} from {SURE:g}", sure, most=MOST_FALSE)
+                yield _line(f"{label} any", _shares(heard, _is_found))
+                yield _line(f"{label} from {SURE:g}", _shares(heard, _is_sure), most=MOST_FALSE)
 
     def spotting(self) -> Iterator[Line]:
         """Word spotting."""
         phrases, around = self._bench.phrases["vocabulary"], self._bench.phrases["around"]
         self._bench.listen_for(phrases, spotting=True)
-        heard = self._heard(phrases, "clean")
-        alone = self._shares(heard, "clean", lambda h: h.is_right(f"<...> {h.said} <...>"), True)
+        alone = self._shares(phrases, "clean", lambda h: h.is_right(f"<...> {h.said} <...>"), True)
         yield _line("spotting, alone", alone)
         wanted = {around[i % len(around)].format(phrase): f"<...> {phrase} <...>" for i, phrase in enumerate(phrases)}
-        heard = self._heard(list(wanted), "clean")
-        shares = self._shares(heard, "clean", lambda h: h.is_right(wanted[h.said]), True)
+        shares = self._shares(list(wanted), "clean", lambda h: h.is_right(wanted[h.said]), True)
         yield _line("spotting, inside of sentences", shares, least=LEAST_SPOTTED)
         for kind in ("other_words", "other_sentences"):
-            heard = self._heard(self._bench.phrases[kind], "clean")
-            shares = self._shares(heard, "clean", lambda h: bool(h.found), False)
+            shares = self._shares(self._bench.phrases[kind], "clean", _is_found, False)
             label = f"spotting, {kind.replace('_', ' ')}: false"
             yield _line(label, shares, most=MOST_FALSE)
         for voice in self._effort.voices:
@@ -163,34 +157,35 @@ class Check:
             print(f"    {name}: {', '.join(found)}")
         return Line(f"{name}: number", (), len(found) / 100.0, f"at most {most}" if most else "0", len(found) <= most)
 
-    def _heard(self, phrases: Sequence[str], noise: str) -> dict[str, list[Heard]]:
-        """What is recognised of the phrases, by voice."""
+    def _shares(self, phrases: Sequence[str], noise: str, counts: Callable[[Heard], bool], should: bool) -> list[float]:
+        """Share of the phrases that count, for each voice."""
+        return _shares(self._heard(phrases, noise, counts, should), counts)
+
+    def _heard(
+        self, phrases: Sequence[str], noise: str, counts: Callable[[Heard], bool], should: bool
+    ) -> list[list[Heard]]:
+        """What came of the phrases, for each voice; those that count and should not, or the other way, are told."""
         said = list(enumerate(phrases))[:: self._effort.every]
-        return {
-            voice: [self._bench.say(phrase, voice, noise, seed) for seed, phrase in said]
-            for voice in self._effort.voices
-        }
-
-    def _shares(
-        self, heard: Mapping[str, Sequence[Heard]], noise: str, counts: Callable[[Heard], bool], should: bool | None
-    ) -> list[float]:
-        """Share of the phrases that count, for each voice.
-
-        Args:
-            heard: See `_heard`.
-            noise: In which they were said.
-            counts: Whether one counts.
-            should: Whether it should; others are told when that is wanted. None to tell none.
-        """
-        for voice, ones in heard.items() if self._verbose and should is not None else ():
-            for one in ones:
+        result = []
+        for voice in self._effort.voices:
+            result.append([self._bench.say(phrase, voice, noise, seed) for seed, phrase in said])
+            for one in result[-1] if self._verbose else ():
                 if counts(one) != should:
                     found = ", ".join(f"{h.phrase} {h.confidence:.2f}" for h in one.found) or "nothing"
                     print(f"    {voice}, {noise}: {one.said} -> {found}")
-        return [sum(map(counts, ones)) / len(ones) for ones in heard.values()]
+        return result
 
 
-def _taken_for_sure(heard: Heard) -> bool:
+def _shares(heard: Sequence[Sequence[Heard]], counts: Callable[[Heard], bool]) -> list[float]:
+    return [sum(map(counts, ones)) / len(ones) for ones in heard]
+
+
+def _is_found(heard: Heard) -> bool:
+    """Whether a phrase was recognised with any confidence."""
+    return bool(heard.found)
+
+
+def _is_sure(heard: Heard) -> bool:
     """Whether a phrase was recognised with a confidence that counts for something."""
     return any(found.confidence >= SURE for found in heard.found)
 

@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from nao_sim_bridge.sim.hearing.listening import Hypothesis
+
 TOOLS = Path(__file__).resolve().parents[4] / "nao_sim_bridge" / "tools"
 NAMES = ("check_recognition", "recognition_bench")
-ALL_PARTS = {"words": 3, "second": 6, "others": 6, "spotting": 5, "quiet": 30, "sudden": 10}
+ALL_PARTS = {"words": 3, "second": 6, "others": 12, "spotting": 5, "quiet": 30, "sudden": 10}
 # Made alike: one of them is run for all.
 RUN = ("words", "spotting", "quiet")
 
@@ -52,6 +54,36 @@ def test_each_part_gives_its_lines(tool, bench, part):
     lines = list(getattr(tool.Check(bench, False, effort), part)())
     assert len(lines) == ALL_PARTS[part], [line.what for line in lines]
     assert all(line.what in str(line) for line in lines)
+
+
+class FakeBench:
+    """Takes three of four other words for one of the vocabulary, one of them with a confidence that counts."""
+
+    phrases = {"vocabulary": ["yes"], "other_words": ["a", "b", "c", "d"], "other_sentences": ["e"]}
+    confidences = {"a": 0.1, "b": 0.39, "c": 0.4}
+
+    def __init__(self, tool):
+        self._heard = tool.Heard
+        self.said = []
+
+    def listen_for(self, phrases):
+        assert phrases == ["yes"]
+
+    def say(self, phrase, voice, noise, seed):
+        self.said.append((phrase, noise))
+        found = [Hypothesis("yes", self.confidences[phrase], "bench")] if phrase in self.confidences else []
+        return self._heard(phrase, found)
+
+
+def test_other_words_are_told_with_any_confidence_and_only_those_that_count_have_a_bound(tool, capsys):
+    bench = FakeBench(tool)
+    lines = {line.what: line for line in tool.Check(bench, True, tool.Effort(("slt",))).others()}
+    assert len(lines) == ALL_PARTS["others"] and len(bench.said) == len(set(bench.said))
+    found, sure = lines["other words, clean: any"], lines["other words, clean: from 0.4"]
+    assert (found.total, found.bound, found.kept) == (0.75, "", True)
+    assert (sure.total, sure.bound, sure.kept) == (0.25, "at most 10", False)
+    assert lines["other sentences, pink: from 0.4"].kept
+    assert "slt, clean: b -> yes 0.39" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("share, kept", [(0.96, True), (0.94, False)])
