@@ -25,9 +25,13 @@ SOURCES = Path(__file__).resolve().parents[2]
 class ChildProcess:
     """One process that talks in tuples (kind, content); an answer of kind "error" has a text.
 
+    When it has ended by itself or an answer is late, it is ended by force: what it answers later would be taken for the
+    answer to the next request.
+
     Attributes:
         process: The process.
         pipe: This side of the pipe.
+        over: Whether it failed or was ended: nothing can be asked any more.
 
     Args:
         module: Full name of the module that is run; it gets the number of its pipe as the first argument.
@@ -50,6 +54,7 @@ class ChildProcess:
         self._name = name
         self._failed = failed
         self._refused = refused
+        self.over = False
         here, there = Pipe(duplex=True)
         paths = [str(SOURCES), os.environ.get("PYTHONPATH", "")]
         try:
@@ -64,6 +69,22 @@ class ChildProcess:
             there.close()
         self.pipe = here
 
+    def send(self, kind: str, content: Any, what: str) -> None:
+        """Send a request.
+
+        Args:
+            kind: Of the request.
+            content: Of the request.
+            what: What it is about, for error texts; here and below.
+
+        Raises:
+            SimulationError: Of the class `failed`, if it has ended.
+        """
+        try:
+            self.pipe.send((kind, content))
+        except OSError as error:
+            raise self._failure(what) from error
+
     def receive(self, timeout: float, what: str) -> Any:
         """The content of the next answer; an error it reports is raised.
 
@@ -73,20 +94,29 @@ class ChildProcess:
         """
         try:
             if not self.pipe.poll(timeout):
+                self.kill()
                 raise self._failed(f"{what}: no answer of the {self._name} within {timeout:g} s")
             kind, content = self.pipe.recv()
         except (EOFError, OSError) as error:
-            raise self._failed(f"{what}: {self.last_words()}") from error
+            raise self._failure(what) from error
         if kind == "error":
             raise self._refused(f"{what}: {content}")
         return content
 
-    def ask(self, kind: str, content: Any, timeout: float, what: str) -> Any:
-        """Send a request and wait for its answer; see `receive`."""
+    def receive_bytes(self, what: str) -> bytes:
+        """Raw bytes that follow an answer.
+
+        Raises:
+            SimulationError: Of the class `failed`, if it has ended.
+        """
         try:
-            self.pipe.send((kind, content))
-        except OSError as error:
-            raise self._failed(f"{what}: {self.last_words()}") from error
+            return self.pipe.recv_bytes()
+        except (EOFError, OSError) as error:
+            raise self._failure(what) from error
+
+    def ask(self, kind: str, content: Any, timeout: float, what: str) -> Any:
+        """Send a request and wait for its answer; see `send` and `receive`."""
+        self.send(kind, content, what)
         return self.receive(timeout, what)
 
     def last_words(self) -> str:
@@ -98,6 +128,7 @@ class ChildProcess:
 
     def stop(self) -> None:
         """End it: by closing the pipe, and if that does not help, by force."""
+        self.over = True
         self.pipe.close()
         try:
             self.process.wait(STOP_TIMEOUT)
@@ -106,9 +137,16 @@ class ChildProcess:
 
     def kill(self) -> None:
         """End it by force."""
+        self.over = True
         self.pipe.close()
         self.process.kill()
         self.process.wait()
+
+    def _failure(self, what: str) -> SimulationError:
+        """The error for a process that has gone; what may be left of it is ended."""
+        words = self.last_words()
+        self.kill()
+        return self._failed(f"{what}: {words}")
 
 
 # --- in the process -------------------------------------------------------------------------------------------------

@@ -210,9 +210,7 @@ class Recogniser:
             raise
         except RecogniserError:
             self._deaths += 1
-            if self._process is not None:
-                self._process.kill()
-                self._process = None
+            self._process = None
             raise
         self._deaths = 0
         if job.kind == "listen":

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import logging
-import subprocess
 import threading
 from dataclasses import replace
-from multiprocessing.connection import Connection
 from typing import Any, Mapping, Sequence
 
 import numpy as np
@@ -19,7 +17,6 @@ log = logging.getLogger("nao_sim.speech")
 START_TIMEOUT = 30.0
 """s; it is there within a fraction of one, but a busy machine may need long to start an interpreter."""
 ANSWER_TIMEOUT = 30.0
-STOP_TIMEOUT = 2.0
 CLOSING = 1.0
 """s; at the end, a process that still speaks after this is ended by force."""
 # What is less than this, as part of full scale, is a pause.
@@ -41,19 +38,19 @@ class Engines:
         self.lacking: Sequence[str] = ()
         self.answer_timeout = ANSWER_TIMEOUT
         self._lock = threading.Lock()
-        self._process: subprocess.Popen | None = None
-        self._pipe: Connection | None = None
+        self._child: ChildProcess | None = None
         self._found: Mapping[str, Any] | None = None
 
     @property
     def pid(self) -> int | None:
         """Process id of the speech process; None while there is none."""
-        return self._process.pid if self._process is not None else None
+        child = self._child
+        return child.process.pid if child is not None else None
 
     def warm_up(self) -> None:
         """Start the process without waiting for it; else the first text does."""
         with self._lock:
-            if self._process is None:
+            if self._child is None:
                 self._start()
 
     def missing(self, engine: str, voice: str) -> str | None:
@@ -80,17 +77,12 @@ class Engines:
         problem = self.missing(utterance.engine, utterance.voice)
         if problem is not None:
             raise SpeechError(problem)
+        what = f"speaking {utterance.text[:60]!r}"
+        request = (utterance.engine, utterance.voice, utterance.text, utterance.speed)
         with self._lock:
             self._engines()
-            try:
-                self._pipe.send(("synthesise", (utterance.engine, utterance.voice, utterance.text, utterance.speed)))
-                kind, content = self._receive(self.answer_timeout)
-                if kind == "error":
-                    raise SpeechError(content)
-                rate, words = content
-                sound = self._pipe.recv_bytes()
-            except (EOFError, OSError) as error:
-                raise SpeechError(f"{self._drop()} while it spoke {utterance.text[:60]!r}") from error
+            rate, words = self._child.ask("synthesise", request, self.answer_timeout, what)
+            sound = self._child.receive_bytes(what)
         samples = np.frombuffer(sound, dtype=np.int16).astype(np.float32) / 32768.0
         samples.flags.writeable = False
         heard = (Word(*word) for word in words)
@@ -101,13 +93,14 @@ class Engines:
     def close(self) -> None:
         """End the process; a later text would start it again."""
         if not self._lock.acquire(timeout=CLOSING):
-            process = self._process  # it speaks, or hangs, and nobody waits for that
-            if process is not None:
-                process.kill()
+            child = self._child
+            if child is not None:  # it speaks, or hangs, and nobody waits for that
+                child.process.kill()
             self._lock.acquire()
         try:
-            if self._process is not None:
-                self._drop()
+            if self._child is not None:
+                self._child.stop()
+                self._child = self._found = None
         finally:
             self._lock.release()
 
@@ -115,41 +108,20 @@ class Engines:
 
     def _engines(self) -> Mapping[str, Any]:
         """What the running process has found; it is started when it does not run."""
-        if self._process is not None and self._process.poll() is not None:
-            log.error("%s; it is started again", self._drop())
-        if self._process is None:
+        child = self._child
+        if child is not None and (child.over or child.process.poll() is not None):
+            log.error("%s; it is started again", child.last_words())
+            child.kill()
+            self._child = None
+        if self._child is None:
             self._start()
         if self._found is None:
-            try:
-                _, self._found = self._receive(START_TIMEOUT)
-            except (EOFError, OSError) as error:
-                raise SpeechError(f"{self._drop()} while it started") from error
+            self._found = self._child.receive(START_TIMEOUT, "starting")
         return self._found
 
-    def _receive(self, timeout: float) -> Any:
-        """The next answer.
-
-        Raises:
-            OSError: It does not come in time, or the process is gone.
-        """
-        if not self._pipe.poll(timeout):
-            raise OSError("no answer")
-        return self._pipe.recv()
-
     def _start(self) -> None:
-        child = ChildProcess(MODULE, self.lacking, "speech process", SpeechError, SpeechError)
-        self._process, self._pipe, self._found = child.process, child.pipe, None
-
-    def _drop(self) -> str:
-        """Forget the process, which is gone or late; how it ended."""
-        process, self._process, self._found = self._process, None, None
-        self._pipe.close()
-        try:
-            return f"the speech process ended with status {process.wait(STOP_TIMEOUT)}"
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-            return "the speech process did not answer"
+        self._child = ChildProcess(MODULE, self.lacking, "speech process", SpeechError, SpeechError)
+        self._found = None
 
 
 def _without_pause(word: Word, samples: np.ndarray, rate: int) -> Word:

@@ -120,7 +120,7 @@ def test_a_process_that_dies_while_it_speaks_is_an_error_and_the_next_text_is_sp
     assert engines.missing(*ENGLISH) is None
     os.kill(engines.pid, signal.SIGSTOP)
     engines.answer_timeout = 0.05
-    with pytest.raises(SpeechError, match="the speech process did not answer while it spoke 'One.'"):
+    with pytest.raises(SpeechError, match="speaking 'One.': no answer of the speech process within 0.05 s"):
         engines.synthesise(Utterance(*ENGLISH, "One."))
     engines.answer_timeout = 30.0
     assert engines.synthesise(Utterance(*ENGLISH, "Two.")).duration > 0.3
@@ -164,7 +164,7 @@ def test_a_process_that_hangs_does_not_hold_up_the_end(own):
     engines.close()
     speaking.join(10.0)
     assert monotonic() - begin < 10.0
-    assert errors == ["the speech process ended with status -9 while it spoke 'Two.'"]
+    assert errors == ["speaking 'Two.': the speech process ended with status -9"]
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
 
