@@ -5,12 +5,15 @@ from __future__ import annotations
 import difflib
 import json
 from collections.abc import Iterable, Mapping
+from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from nao_sim_bridge.sim.errors import ConfigError
+
+T = TypeVar("T")
 
 
 def read_json(path: Path) -> dict:
@@ -56,6 +59,23 @@ def check_keys(
     if missing:
         raise error(where, f"missing {', '.join(map(repr, missing))}")
     return entry
+
+
+def section(cls: type[T], entry: Any, where: str, optional: Iterable[str] = ()) -> T:
+    """A dataclass from an entry with a key for each of its fields; lists become tuples.
+
+    Args:
+        cls: The dataclass.
+        entry: What the file holds at this place.
+        where: File and path of the entry, for the error text.
+        optional: Keys that may be there and are no fields.
+
+    Raises:
+        ConfigError: As `check_keys`.
+    """
+    names = [field.name for field in fields(cls)]  # type: ignore[arg-type]
+    check_keys(entry, where, names, optional)
+    return cls(**{name: tuple(entry[name]) if isinstance(entry[name], list) else entry[name] for name in names})
 
 
 def vector(value: Any, where: str, size: int = 3, error: type[ConfigError] = ConfigError) -> np.ndarray:

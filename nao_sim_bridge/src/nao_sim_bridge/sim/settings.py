@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any, Mapping, Type, TypeVar
+from typing import Any, Mapping
 
 from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.config import check_keys, read_json
+from nao_sim_bridge.sim.config import check_keys, read_json, section
 
 FILE = "physics.json"
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -64,11 +63,6 @@ class Settings:
         return self.time_step_s * self.steps_per_tick
 
 
-def _section(cls: Type[T], entry: Any, where: str) -> T:
-    names = [f.name for f in fields(cls)]  # type: ignore[arg-type]
-    return cls(**check_keys(entry, where, names))
-
-
 def load_settings() -> Settings:
     """Settings as the file gives them.
 
@@ -79,5 +73,5 @@ def load_settings() -> Settings:
     names = [f.name for f in fields(Settings)]
     check_keys(content, FILE, names, ["_meta"])
     sections = {"motor": MotorSettings, "contact": ContactSettings, "battery": BatterySettings}
-    values = {n: _section(sections[n], content[n], f"{FILE}: {n}") if n in sections else content[n] for n in names}
+    values = {n: section(sections[n], content[n], f"{FILE}: {n}") if n in sections else content[n] for n in names}
     return Settings(**values)

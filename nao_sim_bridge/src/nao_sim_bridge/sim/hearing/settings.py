@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Mapping, Tuple, Type, TypeVar
+from typing import Any, Mapping, Tuple
 
 from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.config import check_keys, read_json
+from nao_sim_bridge.sim.config import check_keys, read_json, section
 
 FILE = "recognition.json"
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -120,11 +119,5 @@ def load_recognition() -> RecognitionSettings:
 def parse_recognition(content: Mapping[str, Any]) -> RecognitionSettings:
     """Settings from the content of the file; see `load_recognition`."""
     check_keys(content, FILE, ["languages", *SECTIONS], ["_note"])
-    sections = {name: _section(content[name], name, kind) for name, kind in SECTIONS.items()}
+    sections = {name: section(kind, content[name], f"{FILE} {name}", ["_note"]) for name, kind in SECTIONS.items()}
     return RecognitionSettings(languages=tuple(content["languages"]), **sections)
-
-
-def _section(entry: Any, name: str, kind: Type[T]) -> T:
-    keys = [field.name for field in fields(kind)]
-    check_keys(entry, f"{FILE} {name}", keys, ["_note"])
-    return kind(**{key: tuple(entry[key]) if isinstance(entry[key], list) else entry[key] for key in keys})
