@@ -1,0 +1,325 @@
+"""CRAM's control constructs: in order, in parallel, whichever ends first, whichever succeeds.
+
+Every construct takes branches and gives an answer. A branch is a function without arguments, or one with its arguments
+bound by `do`:
+
+    top_level(lambda: par(do(open_gripper, "left"), do(open_gripper, "right"), do(move_head, 2.0, 3.0)))
+
+Branches of par, pursue, try_all and partial_order have threads of their own. A branch that is not needed any more is
+evaporated, and the construct waits until it has ended: nothing of a construct runs on when the construct is over.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Union
+
+from ..clock import WallClock
+from .failures import CompositeFailure, PlanError, PlanFailure
+from .flow import Flow, here, set_here, uninterrupted, wait_until
+from .tasks import Task, TaskState, TaskTree, current_task, failed, failure_of
+
+log = logging.getLogger(__name__)
+
+PATIENCE = 5.0
+"""s after which it is told that a branch does not end."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """A function with its arguments, and how the task is called that carries it out."""
+
+    name: str
+    call: Callable[[], Any]
+    facts: Mapping[str, Any] = field(default_factory=dict)
+
+
+Branch = Union[Step, Callable[[], Any]]
+
+
+def do(function: Callable[..., Any], *arguments: Any, name: str = "", **keywords: Any) -> Step:
+    """A branch: a function with its arguments, to be called when its turn comes.
+
+    Args:
+        function: Any function, or a plan.
+        *arguments: Its arguments.
+        name: Of the task; that of the function if there is none.
+        **keywords: Its arguments by name.
+    """
+    told = ", ".join([*map(_shown, arguments), *(f"{key}={_shown(value)}" for key, value in keywords.items())])
+    # A plan makes a task of its own when it is called; the branch is that task already.
+    body = getattr(function, "plan_body", function)
+    return Step(name or name_of(function), lambda: body(*arguments, **keywords), {"arguments": told} if told else {})
+
+
+def name_of(function: Callable[..., Any]) -> str:
+    """How a function is called in the task tree."""
+    name = getattr(function, "__name__", type(function).__name__)
+    return "step" if name == "<lambda>" else name
+
+
+# --- the whole plan ---------------------------------------------------------------------------------------------------
+
+
+def top_level(
+    body: Branch, *, name: str = "", clock: Any = None, observers: Iterable[Callable[[Task], None]] = ()
+) -> Any:
+    """Run a plan, in this thread.
+
+    Args:
+        body: The plan.
+        name: Of its root task.
+        clock: Whose time it has, see `nao_library_modules.clock`; the computer's if there is none.
+        observers: Called with each task of the tree whenever it has changed.
+
+    Returns:
+        What the plan answers.
+
+    Raises:
+        PlanFailure: What the plan failed with, or that somebody evaporated its root.
+        PlanError: This thread runs a plan already.
+    """
+    if here() is not None:
+        raise PlanError("top_level inside of a plan: call the plan, or give it to seq or par")
+    step = _as_step(body)
+    tree = TaskTree(name or step.name, step.call, clock or WallClock())
+    tree.root.facts.update(step.facts)
+    for observer in observers:
+        tree.observers.append(observer)
+        observer(tree.root)
+    set_here(Flow(tree.clock))
+    try:
+        return tree.root.run()
+    finally:
+        set_here(None)
+
+
+def subtask(body: Branch, name: str = "") -> Any:
+    """Run a branch as a task of its own, in this thread; its answer."""
+    return _task(_as_step(body), name=name).run()
+
+
+# --- in order ---------------------------------------------------------------------------------------------------------
+
+
+def seq(*branches: Branch) -> Any:
+    """One after the other; the answer of the last. Fails with the first failure."""
+
+    def body() -> Any:
+        answer = None
+        for branch in branches:
+            answer = subtask(branch)
+        return answer
+
+    return subtask(Step("seq", body))
+
+
+def try_in_order(*branches: Branch) -> Any:
+    """One after the other until one succeeds; its answer.
+
+    Raises:
+        CompositeFailure: All failed.
+    """
+
+    def body() -> Any:
+        failures = []
+        for branch in branches:
+            try:
+                return subtask(branch)
+            except PlanFailure as failure:
+                failures.append(failure)
+        raise CompositeFailure(failures)
+
+    return subtask(Step("try_in_order", body))
+
+
+def try_each_in_order(function: Callable[[Any], Any], items: Iterable[Any]) -> Any:
+    """A function on one item after the other until it succeeds; its answer.
+
+    Raises:
+        CompositeFailure: It failed with all.
+    """
+    return try_in_order(*(do(function, item) for item in items))
+
+
+# --- in parallel ------------------------------------------------------------------------------------------------------
+
+
+def par(*branches: Branch) -> list[Any]:
+    """All at once; the answers of all, in order. Fails with the first failure, and ends the others then."""
+
+    def body() -> list[Any]:
+        return _all_of(_start(map(_as_step, branches)))
+
+    return subtask(Step("par", body))
+
+
+def par_loop(function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
+    """A function on all items at once; see `par`."""
+    return par(*(do(function, item) for item in items))
+
+
+def pursue(*branches: Branch) -> Any:
+    """All at once until the first one is over, which decides: its answer, or its failure. The others are ended."""
+
+    def body() -> Any:
+        with _Started(map(_as_step, branches)) as tasks:
+            wait_until(lambda: any(task.state.over for task in tasks), [task.status for task in tasks])
+            return _first(task for task in tasks if task.state.over).value()
+
+    if not branches:
+        raise PlanError("pursue needs a branch: without one nothing would ever end it")
+    return subtask(Step("pursue", body))
+
+
+def try_all(*branches: Branch) -> Any:
+    """All at once until one succeeds: its answer. The others are ended.
+
+    Raises:
+        CompositeFailure: All failed.
+    """
+
+    def body() -> Any:
+        with _Started(map(_as_step, branches)) as tasks:
+            wait_until(lambda: _succeeded(tasks) or _bug(tasks) or _over(tasks), [task.status for task in tasks])
+            bug = _bug(tasks)
+            if bug:
+                return bug[0].value()
+            winners = _succeeded(tasks)
+            if winners:
+                return _first(winners).value()
+            raise CompositeFailure([failure_of(task) for task in tasks])  # type: ignore[misc]
+
+    return subtask(Step("try_all", body))
+
+
+def partial_order(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]) -> dict[str, Any]:
+    """All at once, but some before others; the answers by name. Fails as `par`.
+
+    Args:
+        branches: By name.
+        order: Pairs (or longer chains) of names: each begins when the one before it has succeeded.
+
+    Raises:
+        PlanError: A name is unknown, or the order goes round in a circle.
+    """
+    before = _predecessors(branches, order)
+
+    def body() -> dict[str, Any]:
+        tasks: dict[str, Task] = {}
+
+        def when_ready(name: str, step: Step) -> Any:
+            waited = [tasks[each] for each in before[name]]
+            wait_until(lambda: len(_succeeded(waited)) == len(waited), [task.status for task in waited])
+            return step.call()
+
+        for name, branch in branches.items():
+            step = _as_step(branch)
+            tasks[name] = _task(Step(name, lambda name=name, step=step: when_ready(name, step), step.facts))
+        started = _Started((), tasks.values())
+        return dict(zip(tasks, _all_of(started)))
+
+    return subtask(Step("partial_order", body))
+
+
+# --- inside -----------------------------------------------------------------------------------------------------------
+
+
+class _Started:
+    """Tasks that run beside each other while a block lasts; at its end what still runs is ended."""
+
+    def __init__(self, steps: Iterable[Step], tasks: Iterable[Task] = ()) -> None:
+        self.tasks = [*tasks, *(_task(step) for step in steps)]
+
+    def __enter__(self) -> list[Task]:
+        try:
+            for task in self.tasks:
+                task.start()
+        except BaseException:
+            self._end()
+            raise
+        return self.tasks
+
+    def __exit__(self, *_: object) -> None:
+        self._end()
+
+    def _end(self) -> None:
+        running = [task for task in self.tasks if not task.state.over]
+        for task in running:
+            task.evaporate("not needed any more")
+        with uninterrupted():
+            for task in self.tasks:
+                while not task.join(PATIENCE):
+                    log.warning("the task %s was evaporated %g s ago and does not end", task.path, PATIENCE)
+
+
+def _start(steps: Iterable[Step]) -> _Started:
+    return _Started(steps)
+
+
+def _all_of(started: _Started) -> list[Any]:
+    """The answers of all, or the first failure."""
+    with started as tasks:
+        statuses = [task.status for task in tasks]
+        wait_until(lambda: any(failed(task) for task in tasks) or _over(tasks), statuses)
+        losers = [task for task in tasks if failed(task)]
+        if losers:
+            _first(losers).value()
+        return [task.value() for task in tasks]
+
+
+def _task(step: Step, name: str = "") -> Task:
+    task = Task(name or step.name, step.call, current_task())
+    task.facts.update(step.facts)
+    return task
+
+
+def _as_step(branch: Branch) -> Step:
+    if isinstance(branch, Step):
+        return branch
+    if not callable(branch):
+        raise PlanError(f"{branch!r} is no branch: give a function, or do(function, arguments...)")
+    return do(branch)
+
+
+def _first(tasks: Iterable[Task]) -> Task:
+    """The one that ended first."""
+    return min(tasks, key=lambda task: task.ending)  # type: ignore[arg-type, return-value]
+
+
+def _succeeded(tasks: Iterable[Task]) -> list[Task]:
+    return [task for task in tasks if task.state is TaskState.SUCCEEDED]
+
+
+def _bug(tasks: Iterable[Task]) -> list[Task]:
+    """Those that ended with something that is no failure of a plan: nobody may try something else then."""
+    return [task for task in tasks if task.failure is not None and not isinstance(task.failure, PlanFailure)]
+
+
+def _over(tasks: Iterable[Task]) -> bool:
+    return all(task.state.over for task in tasks)
+
+
+def _predecessors(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]) -> dict[str, set[str]]:
+    before: dict[str, set[str]] = {name: set() for name in branches}
+    for chain in order:
+        for name in chain:
+            if name not in before:
+                raise PlanError(f"partial_order: no branch {name!r}: there are {', '.join(branches)}")
+        for first, second in zip(chain, chain[1:]):
+            before[second].add(first)
+    open_names = dict(before)
+    while open_names:
+        ready = [name for name, earlier in open_names.items() if not earlier & open_names.keys()]
+        if not ready:
+            raise PlanError(f"partial_order: {', '.join(open_names)} wait for each other")
+        for name in ready:
+            del open_names[name]
+    return before
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}..."

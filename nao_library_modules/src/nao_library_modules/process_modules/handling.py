@@ -1,0 +1,141 @@
+"""Failure handling: what a plan does when something goes wrong, and how often it tries again.
+
+    def again(failure):
+        go_elsewhere()
+        do_retry("navigation")                     # after the third time it goes on below
+        fail(NavigationHighLevelFailure, str(failure))
+
+    with with_retry_counters(navigation=3):
+        with_failure_handling(do(walk_to, table), {NavigationLowLevelFailure: again})
+
+A handler may try again (`retry`, `do_retry`), answer instead of the body (`give`), fail with something else, or simply
+return: then the failure is passed up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, NoReturn, Tuple, Type, Union
+
+from .control import Branch, Step, subtask
+from .failures import PlanError, PlanFailure
+from .tasks import Task, current_task
+
+Kinds = Union[Type[PlanFailure], Tuple[Type[PlanFailure], ...]]
+COUNTERS = "retry counters"
+
+
+class _Retry(BaseException):
+    """A handler has the body run again."""
+
+
+class _Give(BaseException):
+    """A handler answers for the body."""
+
+    def __init__(self, value: Any) -> None:
+        super().__init__()
+        self.value = value
+
+
+def with_failure_handling(body: Branch, handlers: Mapping[Kinds, Callable[[PlanFailure], Any]]) -> Any:
+    """Run a body; on a failure, run the first handler that fits.
+
+    Args:
+        body: A branch, see `control`.
+        handlers: By class of failures, or by a tuple of classes; the first that fits counts.
+
+    Returns:
+        What the body answers, or what a handler gives.
+
+    Raises:
+        PlanFailure: No handler fits or it passes the failure up, or it fails itself.
+    """
+    for kinds in handlers:
+        for kind in kinds if isinstance(kinds, tuple) else (kinds,):
+            if not (isinstance(kind, type) and issubclass(kind, PlanFailure)):
+                raise PlanError(f"with_failure_handling: {kind!r} is no class of PlanFailure")
+
+    def handled() -> Any:
+        while True:
+            try:
+                return subtask(body)
+            except PlanFailure as failure:
+                handler = next((each for kinds, each in handlers.items() if isinstance(failure, kinds)), None)
+                if handler is None:
+                    raise
+                try:
+                    handler(failure)
+                except _Retry:
+                    continue
+                except _Give as given:
+                    return given.value
+                raise
+
+    return subtask(Step("with_failure_handling", handled))
+
+
+def retry() -> NoReturn:
+    """In a handler: run the body again."""
+    raise _Retry
+
+
+def give(value: Any = None) -> NoReturn:
+    """In a handler: answer for the body."""
+    raise _Give(value)
+
+
+@contextmanager
+def with_retry_counters(**counters: int) -> Iterator[None]:
+    """Counters that `do_retry` counts down in this block, by name."""
+    task = current_task()
+    kept = task.scope.get(COUNTERS)
+    task.scope[COUNTERS] = {name: [left, left] for name, left in counters.items()}
+    if kept is not None:
+        task.scope[COUNTERS] = {**kept, **task.scope[COUNTERS]}
+    try:
+        yield
+    finally:
+        if kept is None:
+            del task.scope[COUNTERS]
+        else:
+            task.scope[COUNTERS] = kept
+
+
+def do_retry(counter: str, before: Callable[[], Any] | None = None) -> None:
+    """In a handler: run the body again if the counter allows it, and count it down; else do nothing.
+
+    Args:
+        counter: Name of a counter of `with_retry_counters`.
+        before: What to do before.
+    """
+    entry = _counter(counter)
+    if entry[0] <= 0:
+        return
+    entry[0] -= 1
+    if before is not None:
+        before()
+    retry()
+
+
+def get_counter(counter: str) -> int:
+    """How often `do_retry` will still try."""
+    return _counter(counter)[0]
+
+
+def reset_counter(counter: str) -> None:
+    """Let it try as often as at the beginning."""
+    entry = _counter(counter)
+    entry[0] = entry[1]
+
+
+def _counter(name: str) -> list[int]:
+    known: list[str] = []
+    task: Task | None = current_task()
+    while task is not None:
+        counters = task.scope.get(COUNTERS, {})
+        if name in counters:
+            return counters[name]
+        known += counters
+        task = task.parent
+    raise PlanError(f"no retry counter {name!r}: there are {', '.join(known) or 'none'}; see with_retry_counters")

@@ -1,0 +1,129 @@
+"""What a run of a plan leaves: a tree of what was done, when, and what came of it; as text and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from .tasks import Task
+
+MARKS = {
+    "created": ".",
+    "running": ">",
+    "suspended": "=",
+    "succeeded": "+",
+    "failed": "!",
+    "evaporated": "-",
+}
+LONGEST = 160
+
+
+@dataclass(frozen=True)
+class Record:
+    """One task, as it was when the record was taken.
+
+    Attributes:
+        number: In the order in which tasks were made, from 0.
+        parent: Number of the task that it belongs to; None at the root.
+        name: Of the task.
+        state: created, running, suspended, succeeded, failed or evaporated.
+        created: s since the root was made; `began` and `ended` as well, None until then.
+        result: What it answered, as text; empty for nothing.
+        failure: What went wrong, as text with the class in front; why it was evaporated.
+        facts: What else is known, as text by name.
+    """
+
+    number: int
+    parent: int | None
+    name: str
+    state: str
+    created: float
+    began: float | None
+    ended: float | None
+    result: str
+    failure: str
+    facts: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """All tasks of a tree, parents before their children."""
+
+    records: tuple[Record, ...]
+
+    def children(self, number: int | None) -> list[Record]:
+        """Records whose parent has that number."""
+        return [record for record in self.records if record.parent == number]
+
+    def named(self, name: str) -> list[Record]:
+        """Records of tasks of that name."""
+        return [record for record in self.records if record.name == name]
+
+    def __str__(self) -> str:
+        """The tree for people, a line a task."""
+        return "\n".join(self._lines(None, 0))
+
+    def to_json(self) -> str:
+        """The tree as JSON: {"tasks": [...]}, a record each, see `Record`."""
+        return json.dumps({"tasks": [asdict(record) for record in self.records]}, indent=1)
+
+    @staticmethod
+    def from_json(text: str) -> Trace:
+        """The trace that `to_json` wrote."""
+        return Trace(tuple(Record(**entry) for entry in json.loads(text)["tasks"]))
+
+    def _lines(self, parent: int | None, depth: int) -> Iterator[str]:
+        for record in self.children(parent):
+            yield f"{'  ' * depth}{MARKS[record.state]} {record.name}{_told(record)}"
+            yield from self._lines(record.number, depth + 1)
+
+
+def trace_of(root: Task) -> Trace:
+    """The trace of a tree, from any thread, while it runs or afterwards."""
+    with root.tree.lock:
+        tasks = list(root)
+        return Trace(tuple(record_of(task, root.created) for task in tasks))
+
+
+def record_of(task: Task, start: float = 0.0) -> Record:
+    """The record of one task; times count from `start`, s."""
+    failure = ""
+    if task.failure is not None:
+        failure = f"{type(task.failure).__name__}: {task.failure}"
+    elif task.state.value in ("evaporated", "suspended"):
+        failure = task.reason
+    return Record(
+        number=task.number,
+        parent=task.parent.number if task.parent is not None else None,
+        name=task.name,
+        state=task.state.value,
+        created=round(task.created - start, 6),
+        began=_since(task.began, start),
+        ended=_since(task.ended, start),
+        result=_short(repr(task.result)) if task.result is not None else "",
+        failure=_short(failure),
+        facts={name: _short(fact if isinstance(fact, str) else repr(fact)) for name, fact in task.facts.items()},
+    )
+
+
+def _told(record: Record) -> str:
+    parts = []
+    if "arguments" in record.facts:
+        parts.append(f"({record.facts['arguments']})")
+    if record.began is not None and record.ended is not None:
+        parts.append(f"{record.began:.3f} s + {record.ended - record.began:.3f} s")
+    if record.result:
+        parts.append(f"-> {record.result}")
+    if record.failure:
+        parts.append(record.failure)
+    return "".join(f"  {part}" for part in parts)
+
+
+def _since(time: float | None, start: float) -> float | None:
+    return None if time is None else round(time - start, 6)
+
+
+def _short(text: Any) -> str:
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
