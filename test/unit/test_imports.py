@@ -54,18 +54,24 @@ class Layer:
 
 
 LAYERS = (
-    Layer("naoqi", "nao_library_modules/src/naoqi", frozenset({"qi", "sdk"})),
+    Layer("naoqi", "nao_library_modules/src/naoqi", frozenset({"qi", "sdk", "errors"})),
     Layer("sdk", "nao_library_modules/src", frozenset(), ("naoqi", "nao_library_modules")),
     Layer(
         "modules",
         "nao_library_modules/src/nao_library_modules",
-        frozenset({"naoqi", "definitions", "ros"}),
+        frozenset({"naoqi", "errors", "definitions", "ros"}),
         ("driver", "process_modules"),
     ),
     Layer(
         "driver",
         "nao_library_modules/src/nao_library_modules/driver",
-        frozenset({"naoqi", "definitions", "ros", "modules", "sdk"}),
+        frozenset({"naoqi", "errors", "definitions", "ros", "modules", "sdk"}),
+    ),
+    # Clients: they reach the robot through topics and actions only, and share helpers and the errors with the modules.
+    Layer(
+        "process_modules",
+        "nao_library_modules/src/nao_library_modules/process_modules",
+        frozenset({"errors", "definitions", "ros", "modules"}),
     ),
     Layer("sim", "nao_sim_bridge/src/nao_sim_bridge/sim", frozenset({"pybullet", "sim paths"})),
     Layer("services", "nao_sim_bridge/src/nao_sim_bridge/services", frozenset({"sim", "qi", "sim paths"})),
@@ -76,14 +82,6 @@ LAYERS = (
         ("sim", "services"),
     ),
 )
-# Process modules are clients: they reach the servers through actions only. The rule waits for the first of them.
-LATER = Layer(
-    "process_modules",
-    "nao_library_modules/src/nao_library_modules/process_modules",
-    frozenset({"definitions", "ros"}),
-)
-if (ROOT / LATER.folder).is_dir():
-    LAYERS = (*LAYERS, LATER)
 # Files of the server layer that ROS may be in; the others run without.
 ROS_SIDE = {"ros_node.py", "ros_side.py", "ros_sounds.py", "testing.py"}
 
@@ -110,6 +108,8 @@ def imported(path: Path) -> Iterator[str]:
 def layer_of(module: str) -> str | None:
     """The layer a module belongs to; None for what the rule is not about."""
     root, *inner = module.split(".")
+    if root == "naoqi" and inner[:1] == ["errors"]:
+        return "errors"
     if root in SDK:
         return "sdk"
     if root in OWN_DEFINITIONS:
