@@ -1,0 +1,1 @@
+"""Designators, the rules that resolve them, and the places that they stand for."""

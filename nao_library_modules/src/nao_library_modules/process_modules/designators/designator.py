@@ -1,0 +1,314 @@
+"""Designators: descriptions of actions, motions, places and things, which are turned into numbers when they are needed.
+
+    an(action, type="opening", gripper="left")
+    a(location, near=the(object_, type="table"), distance=0.4)
+    designator({"type": "action", "name": "to open", "side": "left"})     # as a list of keys and values, or as text
+
+A description says what is meant; `reference` works out what it stands for, by rules, and keeps to that answer. When it
+turns out not to work, `next_solution` gives the next designator of the same thing. Designators of the same thing are
+equated: `current_desig` is the newest one, `first_desig` the first.
+"""
+
+from __future__ import annotations
+
+import itertools
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any, Union
+
+import yaml
+
+from ..failures import DesignatorError, PlanError
+
+KINDS = ("action", "motion", "location", "object")
+QUANTIFIERS = ("a", "the", "all")
+Description = Union[Mapping[str, Any], Iterable[Any], str]
+
+
+class Designator:
+    """A description of one kind of thing.
+
+    Designators do not change: copies, merges and next solutions are new ones. Two are the same thing if they were
+    equated (`desig_equal`); `==` is Python's own.
+
+    Attributes:
+        kind: action, motion, location or object.
+        description: Keys and values; values may be designators.
+        quantifier: "a" for any that fits, "the" for the only one, "all" for all of them.
+        parent: The one it was equated to, None at the first of a chain.
+        successor: The one that was equated to it last, None at the newest.
+        timestamp: When it was resolved, s since the epoch; None before.
+
+    Args:
+        kind: See above.
+        description: See above.
+        quantifier: See above.
+        resolve: Gives the solutions, one after the other; those of the rules if there is none.
+    """
+
+    def __init__(
+        self,
+        kind: str,
+        description: Mapping[str, Any],
+        quantifier: str = "a",
+        resolve: Callable[[Designator], Iterable[Any]] | None = None,
+    ) -> None:
+        if kind not in KINDS:
+            raise PlanError(f"a designator of kind {kind!r}: {', '.join(KINDS)}")
+        if quantifier not in QUANTIFIERS:
+            raise PlanError(f"a designator with quantifier {quantifier!r}: {', '.join(QUANTIFIERS)}")
+        self.kind = kind
+        self.description = dict(description)
+        self.quantifier = quantifier
+        self.parent: Designator | None = None
+        self.successor: Designator | None = None
+        self.timestamp: float | None = None
+        self._resolve = resolve
+        self._lock = threading.RLock()
+        self._solutions: Iterator[Any] | None = None
+        self._found: list[Any] = []
+        self._place = 0
+
+    # --- description --------------------------------------------------------------------------------------------------
+
+    def __getitem__(self, key: str) -> Any:
+        """The value of a key.
+
+        Raises:
+            DesignatorError: It has no such key.
+        """
+        if key not in self.description:
+            raise DesignatorError(self, f"no key {key!r}: it has {', '.join(self.description) or 'none'}")
+        return self.description[key]
+
+    def get(self, key: str, default: Any = None) -> Any:
+        """The value of a key, or the default."""
+        return self.description.get(key, default)
+
+    def __contains__(self, key: object) -> bool:
+        return key in self.description
+
+    def copy(self, **changes: Any) -> Designator:
+        """Another one with the same description and some keys changed; None takes a key away. It is not equated."""
+        merged = {**self.description, **changes}
+        kept = {key: value for key, value in merged.items() if value is not None}
+        return type(self)(self.kind, kept, self.quantifier, self._resolve)
+
+    def merge(self, other: Designator) -> Designator:
+        """One that says what both say.
+
+        Raises:
+            DesignatorError: They are of different kinds, or say different things of the same key.
+        """
+        if other.kind != self.kind:
+            raise DesignatorError(self, f"cannot be merged with {other}: the kinds differ")
+        for key in self.description.keys() & other.description.keys():
+            if self.description[key] != other.description[key]:
+                told = f"{self.description[key]!r} and {other.description[key]!r}"
+                raise DesignatorError(self, f"cannot be merged with {other}: {key} is {told}")
+        return self.copy(**other.description)
+
+    # --- solutions ----------------------------------------------------------------------------------------------------
+
+    def reference(self) -> Any:
+        """What it stands for: the first solution, and always the same from then on.
+
+        Raises:
+            DesignatorError: There is none.
+        """
+        with self._lock:
+            if not self._has(self._place):
+                tried = f" after {len(self._found)}" if self._found else ""
+                raise DesignatorError(self, f"no solution{tried}")
+            if self.timestamp is None:
+                self.timestamp = time.time()
+            return self._found[self._place]
+
+    def next_solution(self) -> Designator | None:
+        """A designator of the same thing whose reference is the next solution; None if there is none."""
+        with self._lock:
+            if not self._has(self._place + 1):
+                return None
+            following = self.copy()
+            following._solutions, following._found = self._solutions, self._found
+            following._lock, following._place = self._lock, self._place + 1
+            following.reference()
+        equate(self, following)
+        return following
+
+    def solutions(self) -> Iterator[Any]:
+        """All solutions from this one on, worked out one after the other."""
+        for place in itertools.count(self._place):
+            with self._lock:
+                if not self._has(place):
+                    return
+                found = self._found[place]
+            yield found
+
+    @property
+    def resolved(self) -> bool:
+        """Whether `reference` has been asked."""
+        return self.timestamp is not None
+
+    def _has(self, place: int) -> bool:
+        if self._solutions is None:
+            self._solutions = iter(self._resolve(self) if self._resolve is not None else _by_rules(self))
+        while len(self._found) <= place:
+            try:
+                self._found.append(next(self._solutions))
+            except StopIteration:
+                return False
+            except DesignatorError:
+                self._solutions = None  # who asks again gets the same answer, or a better one
+                raise
+        return True
+
+    # --- text ---------------------------------------------------------------------------------------------------------
+
+    def __str__(self) -> str:
+        inside = ", ".join(f"{key}={_shown(value)}" for key, value in self.description.items())
+        return f"{self.quantifier} {self.kind} ({inside})"
+
+    __repr__ = __str__
+
+
+# --- making them ------------------------------------------------------------------------------------------------------
+
+action, motion, location, object_ = KINDS
+
+
+def a(kind: str, **description: Any) -> Designator:
+    """Any thing that fits: `a(location, near=...)`."""
+    return Designator(kind, description)
+
+
+def an(kind: str, **description: Any) -> Designator:
+    """As `a`: `an(action, type="opening", gripper="left")`."""
+    return Designator(kind, description)
+
+
+def the(kind: str, **description: Any) -> Designator:
+    """The only thing that fits: `the(object_, type="ball", colour="red")`."""
+    return Designator(kind, description, "the")
+
+
+def all_(kind: str, **description: Any) -> Designator:
+    """All things that fit."""
+    return Designator(kind, description, "all")
+
+
+def designator(description: Description, kind: str = "") -> Designator:
+    """A designator from a mapping, a list of pairs, or text in YAML.
+
+    The kind is that of the argument, else the value of the key `type` where that is a kind, else an action: so both
+    `{type: action, name: to open, side: left}` and `{type: opening, gripper: left}` are actions. Mappings inside that
+    name a kind, `{location: {...}}` or `{type: location, ...}`, are designators as well.
+
+    Raises:
+        PlanError: It is none of these.
+    """
+    content = _mapping(description)
+    if not kind and content.get("type") in KINDS:
+        kind = content.pop("type")
+    return Designator(kind or action, {key: _nested(value) for key, value in content.items()})
+
+
+def _mapping(description: Description) -> dict[str, Any]:
+    content: Any = description
+    if isinstance(description, str):
+        try:
+            content = yaml.safe_load(description)
+        except yaml.YAMLError as error:
+            raise PlanError(f"designator: {description!r} is no YAML: {error}") from error
+    try:
+        content = dict(content)
+    except (TypeError, ValueError):
+        content = None
+    if not content or not all(isinstance(key, str) for key in content):
+        raise PlanError(f"designator: {description!r} has no keys and values, as {{type: action, name: to open}} has")
+    return content
+
+
+def _nested(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        if len(value) == 1:
+            key, inner = next(iter(value.items()))
+            if key in KINDS and isinstance(inner, Mapping):
+                return designator(inner, key)
+        if value.get("type") in KINDS:
+            return designator(value)
+        return {key: _nested(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_nested(inner) for inner in value]
+    return value
+
+
+# --- chains -----------------------------------------------------------------------------------------------------------
+
+_chains = threading.Lock()
+
+
+def equate(parent: Designator, successor: Designator) -> Designator:
+    """Say that two designators are of the same thing, and that the second one is the newer; the second.
+
+    Raises:
+        DesignatorError: They are of different kinds.
+    """
+    if parent.kind != successor.kind:
+        raise DesignatorError(successor, f"cannot be equated to {parent}: the kinds differ")
+    with _chains:
+        if _first(parent) is _first(successor):
+            return successor
+        newest, oldest = _newest(parent), _first(successor)
+        newest.successor, oldest.parent = oldest, newest
+    return successor
+
+
+def current_desig(desig: Designator) -> Designator:
+    """The newest designator of the same thing."""
+    with _chains:
+        return _newest(desig)
+
+
+def first_desig(desig: Designator) -> Designator:
+    """The first designator of the same thing."""
+    with _chains:
+        return _first(desig)
+
+
+def newest_effective_designator(desig: Designator) -> Designator | None:
+    """The newest designator of the same thing that has been resolved; None if none has."""
+    with _chains:
+        each: Designator | None = _newest(desig)
+        while each is not None and not each.resolved:
+            each = each.parent
+        return each
+
+
+def desig_equal(one: Designator, other: Designator) -> bool:
+    """Whether two designators were equated."""
+    with _chains:
+        return _first(one) is _first(other)
+
+
+def _first(desig: Designator) -> Designator:
+    while desig.parent is not None:
+        desig = desig.parent
+    return desig
+
+
+def _newest(desig: Designator) -> Designator:
+    while desig.successor is not None:
+        desig = desig.successor
+    return desig
+
+
+def _by_rules(desig: Designator) -> Iterable[Any]:
+    from .rules import RULES  # rules are about designators
+
+    return RULES.solutions(desig)
+
+
+def _shown(value: Any) -> str:
+    return f"({value})" if isinstance(value, Designator) else repr(value)

@@ -1,0 +1,118 @@
+"""What the values of a designator's keys have to be for a rule to fit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any
+
+from .designator import Designator
+
+
+class Mismatch(Exception):  # noqa: N818  caught by the matcher
+    """A value is not what a pattern wants; the text says what that would be."""
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Something that a value is compared with.
+
+    Attributes:
+        wanted: What it wants, in words.
+        take: Gives the value that the rule gets; raises Mismatch.
+        default: Value of a key that is not there; a key without one has to be there.
+        exact: How much it says: rules that say more are tried first.
+    """
+
+    wanted: str
+    take: Callable[[Any], Any]
+    default: Any = ...
+    exact: int = 1
+
+    def or_else(self, default: Any) -> Pattern:
+        """The same, for a key that may be left out."""
+        return Pattern(f"{self.wanted}, or nothing for {default!r}", self.take, default, self.exact)
+
+
+def anything() -> Pattern:
+    """Any value."""
+    return Pattern("anything", lambda value: value, exact=0)
+
+
+def text() -> Pattern:
+    """A text that is not empty."""
+
+    def take(value: Any) -> str:
+        if not isinstance(value, str) or not value.strip():
+            raise Mismatch
+        return value
+
+    return Pattern("a text", take)
+
+
+def number(lowest: float = -math.inf, highest: float = math.inf, unit: str = "") -> Pattern:
+    """A finite number in a range."""
+    ends = ""
+    if math.isfinite(lowest) or math.isfinite(highest):
+        ends = f" from {lowest:g} to {highest:g}"
+
+    def take(value: Any) -> float:
+        if not isinstance(value, Real) or isinstance(value, bool) or not math.isfinite(value):
+            raise Mismatch
+        if not lowest <= float(value) <= highest:
+            raise Mismatch
+        return float(value)
+
+    return Pattern(f"a number{ends}{' ' + unit if unit else ''}", take)
+
+
+def numbers(count: int, unit: str = "") -> Pattern:
+    """So many finite numbers; also as a mapping of x, y and z."""
+
+    def take(value: Any) -> tuple[float, ...]:
+        if isinstance(value, Mapping):
+            value = [value[axis] for axis in "xyz" if axis in value]
+        try:
+            listed = tuple(float(each) for each in value)
+        except (TypeError, ValueError):
+            raise Mismatch from None
+        if len(listed) != count or not all(map(math.isfinite, listed)):
+            raise Mismatch
+        return listed
+
+    return Pattern(f"{count} numbers{' in ' + unit if unit else ''}", take)
+
+
+def one_of(*values: Any) -> Pattern:
+    """One of some values; texts in any case, with - and _ for spaces."""
+
+    def take(value: Any) -> Any:
+        for each in values:
+            if value == each or (isinstance(value, str) and isinstance(each, str) and plain(value) == plain(each)):
+                return each
+        raise Mismatch
+
+    return Pattern(" or ".join(map(repr, values)), take, exact=2 if len(values) == 1 else 1)
+
+
+def described(kind: str) -> Pattern:
+    """A designator of a kind."""
+
+    def take(value: Any) -> Designator:
+        if not isinstance(value, Designator) or value.kind != kind:
+            raise Mismatch
+        return value
+
+    return Pattern(f"a designator of a{'n' if kind[0] in 'ao' else ''} {kind}", take)
+
+
+def as_pattern(value: Any) -> Pattern:
+    """A pattern; a plain value is one of itself."""
+    return value if isinstance(value, Pattern) else one_of(value)
+
+
+def plain(words: str) -> str:
+    """Words as they are compared: "To_Open" and "to open" are alike."""
+    return " ".join(words.replace("_", " ").replace("-", " ").lower().split())

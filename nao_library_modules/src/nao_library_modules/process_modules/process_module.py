@@ -1,0 +1,322 @@
+"""Process modules: autonomous threads that do what designators describe, one thing at a time or several at once.
+
+A module is a class with `execute(command)`, which carries out one solution of a designator. It is plan code: it waits
+with `wait_until`, and is ended at these points when what it does is not wanted any more. Plans reach modules by
+`pm_execute`, and mostly by `perform`, which finds the module itself.
+"""
+
+from __future__ import annotations
+
+import enum
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from ..clock import WallClock
+from .control import Step, do, subtask, top_level
+from .designators.designator import Designator
+from .designators.rules import Command
+from .failures import PlanFailure, ProcessModuleNotRunning, ProcessModuleRunning, TaskEvaporatedFailure
+from .flow import here, retry_after_suspension, uninterrupted, wait_until
+from .fluents import Fluent
+from .tasks import Task
+
+log = logging.getLogger(__name__)
+
+END_PATIENCE = 10.0
+"""s that a module has to put things right after a cancel, before that is told."""
+
+
+class ModuleState(enum.Enum):
+    """What a module is doing."""
+
+    OFFLINE = "offline"
+    WAITING = "waiting"
+    RUNNING = "running"
+    FAILED = "failed"
+
+
+class Request:
+    """A designator that a module carries out, and what came of it.
+
+    Attributes:
+        command: The solution of the designator.
+        designator: It; None when a command was given.
+        over: A fluent, true at the end.
+        result: What `execute` answered.
+        failure: What it raised.
+        caller: Path of the task that asked.
+    """
+
+    def __init__(self, command: Command, designator: Designator | None, caller: str) -> None:
+        self.command = command
+        self.designator = designator
+        self.caller = caller
+        self.over = Fluent("request is over", False)
+        self.result: Any = None
+        self.failure: BaseException | None = None
+        self.cancelled = False
+        self.root: Task | None = None
+
+
+class ProcessModule:
+    """A module that does one thing at a time; what else is asked waits for its turn.
+
+    Attributes:
+        name: That commands and `pm_execute` know it by.
+        status: A fluent with its `ModuleState`. FAILED until the next thing begins.
+        input: A fluent with the request that runs.
+        result: A fluent with the last request that is over.
+        asynchronous: Whether it does several things at once.
+        clock: Whose time its waits have; set before it runs.
+        observers: Called with each task of what it does whenever that has changed.
+    """
+
+    name = ""
+    asynchronous = False
+
+    def __init__(self, name: str = "") -> None:
+        self.name = name or self.name or type(self).__name__
+        self.status = Fluent(f"status of {self.name}", ModuleState.OFFLINE)
+        self.input = Fluent(f"input of {self.name}")
+        self.result = Fluent(f"result of {self.name}")
+        self.clock: Any = WallClock()
+        self.observers: list[Callable[[Task], None]] = []
+        self._lock = threading.Lock()
+        self._waiting: deque[Request] = deque()
+        self._running: list[Request] = []
+        self._work = threading.Event()
+        self._ending = False
+        self._thread: threading.Thread | None = None
+
+    # --- what a module is made of -------------------------------------------------------------------------------------
+
+    def execute(self, command: Command) -> Any:
+        """Carry out a command, in a thread of the module; what it answers goes to the caller.
+
+        Raises:
+            PlanFailure: It cannot be done.
+        """
+        raise NotImplementedError
+
+    def on_started(self) -> None:
+        """Called in the module's thread when it begins to run."""
+
+    def on_stopped(self) -> None:
+        """Called in the module's thread when it has ended."""
+
+    def resources(self, command: Command) -> frozenset[str]:
+        """What a command needs for itself, as "left arm"; in an asynchronous module those that need the same take turns."""
+        return frozenset()
+
+    # --- running ------------------------------------------------------------------------------------------------------
+
+    @property
+    def state(self) -> ModuleState:
+        """What it is doing."""
+        return self.status.value
+
+    def start(self) -> ProcessModule:
+        """Run `pm_run` in a thread of its own; see `stop`.
+
+        Raises:
+            ProcessModuleRunning: It runs already.
+        """
+        with self._lock:
+            if self._thread is not None:
+                raise ProcessModuleRunning(f"the process module {self.name} runs already")
+            self._ending = False
+            self._thread = threading.Thread(target=self.run, name=f"process module {self.name}", daemon=True)
+        self._thread.start()
+        return self
+
+    def stop(self) -> None:
+        """End it: what it does is cancelled, what waits fails. Waits for the end.
+
+        Raises:
+            ProcessModuleNotRunning: It does not run.
+        """
+        with self._lock:
+            thread = self._thread
+            if thread is None:
+                raise ProcessModuleNotRunning(f"the process module {self.name} does not run")
+            self._ending = True
+        self.cancel()
+        self._work.set()
+        thread.join()
+        with self._lock:
+            self._thread = None
+
+    def run(self) -> None:
+        """The event loop, in the thread that calls; it ends with `stop`."""
+        self.on_started()
+        self.status.value = ModuleState.WAITING
+        workers: list[threading.Thread] = []
+        try:
+            while not self._ending:
+                self._work.wait()
+                self._work.clear()
+                for request in self._due():
+                    workers = [worker for worker in workers if worker.is_alive()]
+                    workers.append(self._begin(request))
+        finally:
+            for worker in workers:
+                worker.join()
+            self._refuse_all()
+            self.status.value = ModuleState.OFFLINE
+            self.on_stopped()
+
+    def submit(self, request: Request) -> None:
+        """Have a request carried out when its turn comes."""
+        with self._lock:
+            if self._thread is not None and not self._ending:
+                self._waiting.append(request)
+                self._work.set()
+                return
+        request.failure = ProcessModuleNotRunning(f"the process module {self.name} does not run")
+        request.over.value = True
+
+    def cancel(self, request: Request | None = None) -> None:
+        """Cancel a request, or all of them; returns at once, `request.over` tells when it has ended."""
+        with self._lock:
+            chosen = [request] if request is not None else [*self._running, *self._waiting]
+            dropped = [each for each in chosen if each in self._waiting]
+            for each in dropped:
+                self._waiting.remove(each)
+            for each in chosen:
+                each.cancelled = True
+            roots = [each.root for each in chosen if each.root is not None]
+        for root in roots:
+            root.evaporate("cancelled")
+        for each in dropped:
+            each.failure = TaskEvaporatedFailure(f"{self.name}: {each.command}", "cancelled before it began")
+            each.over.value = True
+
+    # --- inside -------------------------------------------------------------------------------------------------------
+
+    def _due(self) -> list[Request]:
+        """Requests whose turn it is."""
+        with self._lock:
+            if not self.asynchronous:
+                due = [self._waiting.popleft()] if self._waiting and not self._running else []
+            else:
+                taken: set[str] = set().union(*(self.resources(each.command) for each in self._running))
+                due = []
+                for each in tuple(self._waiting):
+                    needs = self.resources(each.command)
+                    if not needs & taken:
+                        self._waiting.remove(each)
+                        due.append(each)
+                    taken |= needs  # nobody overtakes who needs the same
+            self._running += due
+            return due
+
+    def _begin(self, request: Request) -> threading.Thread:
+        self.input.value = request
+        self.status.value = ModuleState.RUNNING
+        worker = threading.Thread(target=self._carry_out, args=(request,), name=f"{self.name} works", daemon=True)
+        worker.start()
+        return worker
+
+    def _carry_out(self, request: Request) -> None:
+        def see(task: Task) -> None:
+            if request.root is None and task.parent is None:
+                request.root = task
+                if request.cancelled:
+                    task.evaporate("cancelled")
+
+        step = do(self.execute, request.command, name=str(request.command))
+        try:
+            request.result = top_level(step, clock=self.clock, observers=[see, *self.observers])
+        except BaseException as error:
+            request.failure = error
+            if not isinstance(error, PlanFailure):
+                log.exception("the process module %s: %s", self.name, request.command)
+        finally:
+            self._ended(request)
+
+    def _ended(self, request: Request) -> None:
+        with self._lock:
+            self._running.remove(request)
+            idle = not self._running
+        failed = request.failure is not None and not request.cancelled
+        if idle:
+            self.status.value = ModuleState.FAILED if failed else ModuleState.WAITING
+        self.result.value = request
+        request.over.value = True
+        self._work.set()
+
+    def _refuse_all(self) -> None:
+        with self._lock:
+            left, self._waiting = list(self._waiting), deque()
+        for request in left:
+            request.failure = ProcessModuleNotRunning(f"the process module {self.name} was stopped")
+            request.over.value = True
+
+
+class AsynchronousProcessModule(ProcessModule):
+    """A module that does several things at once, as far as they do not need the same; see `resources`."""
+
+    asynchronous = True
+
+
+def pm_run(module: ProcessModule) -> None:
+    """Run the event loop of a module in this thread, until `stop`. `with_process_modules_running` is easier."""
+    with module._lock:
+        if module._thread is not None:
+            raise ProcessModuleRunning(f"the process module {module.name} runs already")
+        module._ending = False
+        module._thread = threading.current_thread()
+    try:
+        module.run()
+    finally:
+        with module._lock:
+            module._thread = None
+
+
+def pm_status(module: ProcessModule) -> ModuleState:
+    """What a module is doing."""
+    return module.state
+
+
+def pm_cancel(module: ProcessModule) -> None:
+    """Cancel what a module does, and what waits for it."""
+    module.cancel()
+
+
+def execute_on(module: ProcessModule, command: Command, designator: Designator | None = None) -> Any:
+    """Have a module carry out a command, in a plan: waits until that is over.
+
+    An offline module is waited for, with a warning. When the calling task is ended, the command is cancelled and seen
+    to end first; a suspension cancels it, and it is sent again when the task is woken.
+
+    Returns:
+        What the module answered.
+
+    Raises:
+        PlanFailure: What the module failed with.
+    """
+
+    def once() -> Any:
+        if module.state is ModuleState.OFFLINE:
+            log.warning("the process module %s is offline: %s waits for it", module.name, command)
+            wait_until(lambda: module.state is not ModuleState.OFFLINE, [module.status])
+        flow = here()
+        caller = flow.tasks[-1].path if flow is not None and flow.tasks else ""
+        request = Request(command, designator, caller)
+        module.submit(request)
+        try:
+            wait_until(lambda: request.over.value, [request.over])
+        finally:
+            if not request.over.value:
+                module.cancel(request)
+                with uninterrupted():
+                    while not wait_until(lambda: request.over.value, [request.over], END_PATIENCE):
+                        log.warning("%s was cancelled %g s ago and does not end", command, END_PATIENCE)
+        if request.failure is not None:
+            raise request.failure
+        return request.result
+
+    return subtask(Step(str(command), lambda: retry_after_suspension(once)))
