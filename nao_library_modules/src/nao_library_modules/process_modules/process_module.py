@@ -108,7 +108,7 @@ class ProcessModule:
         """Called in the module's thread when it has ended."""
 
     def resources(self, command: Command) -> frozenset[str]:
-        """What a command needs for itself, as "left arm"; in an asynchronous module those that need the same take turns."""
+        """What a command needs for itself, as "left arm"; commands of an asynchronous module take turns."""
         return frozenset()
 
     # --- running ------------------------------------------------------------------------------------------------------

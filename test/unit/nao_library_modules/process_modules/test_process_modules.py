@@ -222,7 +222,7 @@ def test_an_offline_module_is_waited_for_with_a_warning(beside, hands):
 def test_a_module_that_is_stopped_fails_who_waits_for_it(beside, hands):
     module = OneHand(hands)
     with with_process_modules_running(module):
-        plan = beside(lambda: par(do(perform, to("wait")), do(perform, to("quick"))))
+        plan = beside(do(perform, to("wait")))
         top_level(lambda: wait_for(hands.begun.eq(("wait",))))
     with pytest.raises(TaskEvaporatedFailure):
         plan.ended()
