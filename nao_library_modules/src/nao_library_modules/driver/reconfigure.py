@@ -65,7 +65,9 @@ def description_of(fields: Sequence[Field]) -> Any:
 
 
 def serve(
-    fields: Sequence[Field], changed: Callable[[Mapping[str, Any], Mapping[str, Any]], Mapping[str, Any]]
+    fields: Sequence[Field],
+    changed: Callable[[Mapping[str, Any], Mapping[str, Any]], Mapping[str, Any]],
+    part: str = "",
 ) -> Server:
     """Offer parameters of this node for changes.
 
@@ -74,6 +76,8 @@ def serve(
         changed: Called with the values before and after each change, at once with an empty mapping before; gives the
             values that hold from then on. Called in the thread of the service. A NaoError refuses the change: who
             asked for it gets its text.
+        part: Part of the node that the parameters belong to, where it has several: it comes before their names. With a
+            slash before it, the full name of something else that they belong to, such as a topic.
 
     Returns:
         The server; `update_configuration` changes values from within the node.
@@ -82,10 +86,13 @@ def serve(
         NaoError: If a parameter is set to something that it cannot be. The server would change it without a word.
 
     ROS API:
-        Service `~set_parameters`, topics `~parameter_descriptions`, `~parameter_updates` (dynamic_reconfigure).
+        Service `~set_parameters`, topics `~parameter_descriptions`, `~parameter_updates` (dynamic_reconfigure); with
+        a part `~PART/set_parameters` and so on.
     """
+    prefix = "" if part.startswith("/") else "~"
     for field in fields:
-        _check(field, rospy.get_param(f"~{field.name}", field.default))
+        name = f"{prefix}{part}/{field.name}" if part else f"{prefix}{field.name}"
+        _check(name, field, rospy.get_param(name, field.default))
     names = [field.name for field in fields]
     last: dict[str, Any] = {}
 
@@ -93,13 +100,15 @@ def serve(
         try:
             values = changed(dict(last), {name: config[name] for name in names})
         except NaoError as error:
+            if last:  # the client of dynamic_reconfigure keeps the text of the error to itself
+                rospy.logwarn("%s is refused: %s", rospy.resolve_name(f"{prefix}{part}"), error)
             raise rospy.ServiceException(str(error)) from error
         config.update(values)
         last.update(values)
         return config
 
     with _own_errors():
-        return Server(description_of(fields), callback)
+        return Server(description_of(fields), callback, *([part] if part else []))
 
 
 def update(server: Server, changes: Mapping[str, Any]) -> None:
@@ -123,13 +132,13 @@ def _own_errors() -> Iterator[None]:
         raise NaoError(str(error)) from error
 
 
-def _check(field: Field, value: Any) -> None:
+def _check(name: str, field: Field, value: Any) -> None:
     kind = type(field.default)
     right = isinstance(value, (int, float) if kind is float else kind) and isinstance(value, bool) == (kind is bool)
     low = right and field.lowest is not None and value < field.lowest
     high = right and field.highest is not None and value > field.highest
     if not right or low or high or (field.choices and value not in field.choices):
-        raise NaoError(f"~{field.name} is {value!r}: {_allowed(field)}")
+        raise NaoError(f"{name} is {value!r}: {_allowed(field)}")
 
 
 def _allowed(field: Field) -> str:

@@ -1,0 +1,140 @@
+"""What can be set of a camera: the parameters of the node, and what they are at the robot. No ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import vision_definitions as vision
+from naoqi.errors import NaoError
+
+from .camera_formats import BOTTOM, CAMERAS, COLOR_SPACES, RESOLUTIONS, TOP
+from .camera_stream import StreamSettings
+from .reconfigure import Field
+
+LEAST_RATE, MOST_RATE = 1.0, 30.0
+OFF_OR_AUTO = {0: "off: the fixed value", 1: "the camera chooses"}
+ALGORITHMS = {0: "average", 1: "weighted average", 2: "for highlights", 3: "for lowlights"}
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """A parameter of the picture that the camera itself has; it holds for all who use the camera.
+
+    Attributes:
+        id: NAOqi's number.
+        field: What the node offers. The limits are the widest that a camera of a NAO has: each has some of its own.
+        automatic: Name of the parameter that must be 0 for this one to count.
+    """
+
+    id: int
+    field: Field
+    automatic: str = ""
+
+
+TUNINGS = {
+    tuning.field.name: tuning
+    for tuning in (
+        # The automatic ones come first: the camera takes a fixed value only while it does not choose itself.
+        Tuning(
+            vision.kCameraAutoExpositionID,
+            Field("auto_exposition", 1, "whether the camera chooses exposure and gain", 0, 1, OFF_OR_AUTO),
+        ),
+        Tuning(
+            vision.kCameraAutoWhiteBalanceID,
+            Field("auto_white_balance", 1, "whether the camera chooses the white balance", 0, 1, OFF_OR_AUTO),
+        ),
+        Tuning(
+            vision.kCameraExposureAlgorithmID,
+            Field("auto_exposure_algo", 1, "how the camera chooses the exposure (V4, V5)", 0, 3, ALGORITHMS),
+        ),
+        Tuning(
+            vision.kCameraExposureID,
+            Field("exposure", 32, "time of exposure in steps of the camera; ends auto_exposition", 0, 65535),
+            "auto_exposition",
+        ),
+        Tuning(
+            vision.kCameraGainID, Field("gain", 16, "amplification; ends auto_exposition", 0, 1023), "auto_exposition"
+        ),
+        Tuning(vision.kCameraBrightnessID, Field("brightness", 0, "brightness", -255, 255)),
+        Tuning(vision.kCameraContrastID, Field("contrast", 32, "contrast", 0, 255)),
+        Tuning(vision.kCameraSaturationID, Field("saturation", 64, "how strong colours are", 0, 255)),
+        Tuning(vision.kCameraHueID, Field("hue", 0, "turn of the colours, degrees", -180, 180)),
+        Tuning(vision.kCameraSharpnessID, Field("sharpness", 4, "sharpness of edges", -7, 9)),
+        Tuning(
+            vision.kCameraWhiteBalanceID,
+            Field("white_balance", -50, "white balance (V4, V5); ends auto_white_balance", -120, 6500),
+            "auto_white_balance",
+        ),
+    )
+}
+"""Name of a parameter, as naoqi_camera has it -> what it is at the robot."""
+
+
+def fields_of(resolution: int, frame_rate: float, use_ros_time: bool, camera: int, alone: bool) -> tuple[Field, ...]:
+    """The parameters of one camera, under the names of naoqi_camera.
+
+    Args:
+        resolution: Default.
+        frame_rate: Default, pictures a second.
+        use_ros_time: Default.
+        camera: NAOqi's number of the camera.
+        alone: Whether the node serves this camera only, and can change over to the other.
+    """
+    source = (Field("source", camera, "camera", TOP, BOTTOM, CAMERAS),) if alone else ()
+    return (
+        *source,
+        Field("resolution", resolution, "size of the pictures", min(RESOLUTIONS), max(RESOLUTIONS), RESOLUTIONS),
+        Field("frame_rate", frame_rate, "pictures a second", LEAST_RATE, MOST_RATE),
+        Field(
+            "color_space",
+            vision.kBGRColorSpace,
+            "colour space, which gives the encoding",
+            min(COLOR_SPACES),
+            max(COLOR_SPACES),
+            COLOR_SPACES,
+        ),
+        Field("camera_info_url", "", "calibration: file:// or package://; empty: the one that was set, or computed"),
+        Field("use_ros_time", use_ros_time, "whether stamps are in ROS time, instead of the robot's own"),
+        *(tuning.field for tuning in TUNINGS.values()),
+    )
+
+
+def stream_settings(config: Mapping[str, Any], camera: int) -> StreamSettings:
+    """What to ask the robot for.
+
+    Args:
+        config: Values of the parameters.
+        camera: NAOqi's number of the camera, unless the values have a `source`.
+
+    Raises:
+        NaoError: If a number stands for nothing.
+    """
+    for name, known in (("resolution", RESOLUTIONS), ("color_space", COLOR_SPACES), ("source", CAMERAS)):
+        if name in config and config[name] not in known:
+            listed = ", ".join(f"{number} ({text})" for number, text in sorted(known.items()))
+            raise NaoError(f"{name} is {config[name]!r}: one of {listed}")
+    rate = round(config["frame_rate"])
+    return StreamSettings(config.get("source", camera), config["resolution"], config["color_space"], rate)
+
+
+def settled(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, Any]:
+    """Values that go together: who sets a fixed value does not want the camera to choose it.
+
+    Args:
+        before: Values so far; empty at the start.
+        after: What somebody asks for.
+    """
+    values = {**after, "frame_rate": float(round(after["frame_rate"]))}
+    for name, tuning in TUNINGS.items():
+        automatic = tuning.automatic
+        changed = automatic and before and after[name] != before[name]
+        if changed and after[automatic] == before[automatic]:
+            values[automatic] = 0
+    return values
+
+
+def changed_tunings(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, int]:
+    """Name -> value of those parameters of the picture that are not as before."""
+    return {name: after[name] for name in TUNINGS if after[name] != before[name]}

@@ -1,0 +1,341 @@
+"""The pictures of one camera of the robot, fetched while somebody wants them. No ROS."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from naoqi.errors import NaoError, RobotError, RobotUnreachable
+
+from ..errors import Preempted
+from ..health import Level, Report
+from ..interrupt import Interrupt
+from ..robot import wait_for_calls
+from .camera_formats import CAMERA_NAMES, RESOLUTIONS, SPACES, Picture, read_picture
+from .camera_rate import RateMeter
+from .demand import Demand
+from .image_clock import ImageClock
+
+log = logging.getLogger(__name__)
+
+DEVICE = "ALVideoDevice"
+ANSWER_LIMIT = 5.0
+SILENCE_LIMIT = 3.0
+"""s without a picture, of the robot's time and of ours, after which the robot is asked anew."""
+BEGIN_LIMIT = 15.0
+"""The same before the first picture: a camera, or a simulator's renderer, may have to start."""
+FAILURE_PAUSE = 0.5
+"""s after which a stream that failed begins again."""
+CLOSE_LIMIT = 2.0
+SLOW = 0.8
+"""Share of the rate that was asked for below which the pictures are reported as too few."""
+
+
+@dataclass(frozen=True)
+class StreamSettings:
+    """What a subscriber of ALVideoDevice asks for.
+
+    Attributes:
+        camera: NAOqi's number of the camera.
+        resolution: NAOqi's number of the size.
+        color_space: NAOqi's number.
+        frame_rate: Pictures a second.
+    """
+
+    camera: int
+    resolution: int
+    color_space: int
+    frame_rate: int
+
+    @property
+    def period(self) -> float:
+        """Time between two pictures, s."""
+        return 1.0 / self.frame_rate
+
+
+CHANGES = {
+    "resolution": "setResolution",
+    "color_space": "setColorSpace",
+    "frame_rate": "setFrameRate",
+}
+"""What of the settings can be changed while pictures come, and by which method."""
+
+
+@dataclass(frozen=True, eq=False)
+class Subscription:
+    """One subscription at the robot; its interrupt ends whatever waits for its pictures."""
+
+    handle: str
+    interrupt: Interrupt = field(default_factory=Interrupt)
+
+
+class CameraStream:
+    """Asks the robot for one picture after the other, at the robot's own pace, while they are wanted.
+
+    Three threads: that of the demand subscribes and unsubscribes, that of the pictures waits for them and hands them
+    on, and any may change the settings. `_changing` keeps changes and subscriptions apart and is held during calls;
+    `_news` guards the subscription and is not.
+    """
+
+    def __init__(
+        self,
+        robot: Any,
+        name: str,
+        settings: StreamSettings,
+        clock: Any,
+        sink: Callable[[Picture, float], None],
+        prepare: Callable[[], None] = lambda: None,
+        wall_time: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Begin without pictures; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            name: Name under which the robot knows the subscriber.
+            settings: What to ask for.
+            clock: ROS time: `now()`.
+            sink: Gets each picture and the ROS time at which it was taken, in s, in the thread of the pictures.
+            prepare: Called before each subscription, in the thread of the demand. May make calls.
+            wall_time: Time of this computer, s.
+        """
+        self._robot = robot
+        self._name = name
+        self._settings = settings
+        self._clock = clock
+        self._sink = sink
+        self._prepare = prepare
+        self._wall_time = wall_time
+        self._changing = threading.Lock()
+        self._news = threading.Condition()
+        self._subscription: Subscription | None = None
+        self._closed = False
+        self._times = ImageClock()
+        self._rate = RateMeter()
+        self._last = (0.0, 0.0)
+        self._shows = False
+        self._problem = ""
+        self._demand = Demand(robot, f"pictures for {name}", self._begin, self._end, self._is_alive)
+        self._thread = threading.Thread(target=self._run, name=f"pictures {name}", daemon=True)
+        self._thread.start()
+
+    @property
+    def settings(self) -> StreamSettings:
+        """What is asked for."""
+        return self._settings
+
+    @property
+    def running(self) -> bool:
+        """Whether the robot sends pictures."""
+        return self._demand.running
+
+    def want(self, wanted: bool) -> None:
+        """Have pictures, or not, from now on."""
+        self._demand.want(wanted)
+
+    def change(self, settings: StreamSettings) -> None:
+        """Ask for something else. Pictures go on to come meanwhile, but for another camera.
+
+        Raises:
+            NaoError: If the robot refuses, or cannot be asked; then it is as before.
+        """
+        with self._changing:
+            before, subscription = self._settings, self._subscription
+            if subscription is None or not self._demand.running or settings.camera != before.camera:
+                self._settings = settings
+                if settings.camera != before.camera:
+                    self._demand.restart()
+                return
+            try:
+                self._send(subscription.handle, before, settings)
+            except NaoError:
+                self._restore(subscription.handle, settings, before)
+                raise
+            self._settings = settings
+
+    def report(self) -> Report:
+        """Whether pictures come, and how many."""
+        settings, rate = self._settings, self._rate.rate
+        values = {
+            "camera": CAMERA_NAMES[settings.camera],
+            "size": RESOLUTIONS[settings.resolution],
+            "colour space": SPACES[settings.color_space][0],
+            "rate asked for (1/s)": str(settings.frame_rate),
+            "rate reached (1/s)": "" if rate is None else f"{rate:.1f}",
+            "pictures": str(self._rate.count),
+            "missed pictures": str(self._rate.missed),
+            "last error": self._demand.problem or self._problem,
+        }
+        if not self._demand.wanted:
+            return Report(Level.OK, "nobody looks", values)
+        if not self._demand.running or self._problem:
+            problem = self._demand.problem or self._problem or "the robot is not connected"
+            return Report(Level.ERROR, f"no pictures: {problem}", values)
+        if rate is not None and rate < SLOW * settings.frame_rate:
+            return Report(Level.WARN, f"only {rate:.1f} of {settings.frame_rate} pictures a second", values)
+        return Report(Level.OK, "pictures come", values)
+
+    def close(self) -> None:
+        """Look no more; the robot is told."""
+        self._demand.close(CLOSE_LIMIT)
+        with self._news:
+            self._closed = True
+            self._news.notify_all()
+        self._forget()
+        self._thread.join(CLOSE_LIMIT)
+
+    # --- in the thread of the demand ------------------------------------------------------------------------------
+
+    def _begin(self) -> None:
+        self._forget()  # that of a connection that was lost
+        self._prepare()  # without the lock: who changes the settings holds others
+        with self._changing:
+            handle = self._subscribe(self._settings)
+            self._rate.restart()
+            self._note_life()
+            self._shows = False
+            with self._news:
+                self._subscription = Subscription(handle)
+                self._news.notify_all()
+
+    def _end(self) -> None:
+        subscription = self._forget()
+        if subscription is None:
+            return
+        try:
+            self._ask("unsubscribe", subscription.handle)
+        except RobotError as error:  # the robot has forgotten it
+            log.debug("%s: %s", self._name, error)
+
+    def _forget(self) -> Subscription | None:
+        with self._news:
+            subscription, self._subscription = self._subscription, None
+        if subscription is not None:
+            subscription.interrupt.stop()
+        return subscription
+
+    def _subscribe(self, wanted: StreamSettings) -> str:
+        """The handle of a new subscription.
+
+        Raises:
+            NaoError: If there is none to be had.
+        """
+        arguments = (self._name, wanted.camera, wanted.resolution, wanted.color_space, wanted.frame_rate)
+        try:
+            handle = self._ask("subscribeCamera", *arguments)
+        except RobotUnreachable:
+            raise
+        except NaoError as error:
+            handle, refused = "", error
+        else:
+            refused = NaoError(f"the robot does not accept {self._name} as a subscriber of its cameras")
+        if handle:
+            return handle
+        # A node that was killed leaves its subscriptions behind, and a name may have a few only.
+        if not self._end_leftovers():
+            raise refused
+        handle = self._ask("subscribeCamera", *arguments)
+        if not handle:
+            raise refused
+        return handle
+
+    def _end_leftovers(self) -> int:
+        leftovers = [each for each in self._ask("getSubscribers") if each.rpartition("_")[0] == self._name]
+        for handle in leftovers:
+            self._ask("unsubscribe", handle)
+        return len(leftovers)
+
+    def _is_alive(self) -> bool:
+        """Whether pictures come. On a simulation that stands still, none are due."""
+        wall, ros = self._last
+        quiet = min(self._wall_time() - wall, self._clock.now() - ros)
+        limit = (SILENCE_LIMIT if self._shows else BEGIN_LIMIT) + self._settings.period
+        if quiet < limit or self._subscription is None:
+            return True
+        self._fail_once("no picture has come for some time")
+        return False
+
+    # --- calls ----------------------------------------------------------------------------------------------------
+
+    def _ask(self, method: str, *arguments: Any) -> Any:
+        return self._robot.proxy(DEVICE).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+
+    def _send(self, handle: str, before: StreamSettings, after: StreamSettings) -> None:
+        """Tell the robot what is new.
+
+        Raises:
+            NaoError: If it refuses.
+        """
+        for name, method in CHANGES.items():
+            value = getattr(after, name)
+            if value != getattr(before, name) and self._ask(method, handle, value) is False:
+                raise NaoError(f"the robot refuses the {name} {value} for its {CAMERA_NAMES[after.camera]}")
+
+    def _restore(self, handle: str, tried: StreamSettings, before: StreamSettings) -> None:
+        try:
+            self._send(handle, tried, before)
+        except NaoError as error:  # what went wrong first is what is told
+            log.debug("%s: %s", self._name, error)
+            self._demand.restart()
+
+    # --- in the thread of the pictures ----------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        subscription: Subscription | None = None
+        while True:
+            with self._news:
+                former = subscription
+                self._news.wait_for(lambda former=former: self._closed or self._subscription not in (None, former))
+                subscription = self._subscription
+            if self._closed or subscription is None:
+                return
+            try:
+                self._times.restart()
+                self._look(subscription)
+            except Preempted:
+                continue
+            except NaoError as error:
+                if not isinstance(error, RobotUnreachable):  # a lost connection is told elsewhere
+                    self._fail_once(str(error))
+            except Exception as error:  # a mistake in here must not leave a node that lives and shows nothing
+                log.exception("%s failed", self._name)
+                self._problem = f"unexpected error: {error!r}"
+            if not subscription.interrupt.wait(FAILURE_PAUSE):
+                self._demand.restart()
+
+    def _look(self, subscription: Subscription) -> None:
+        """Hand on pictures until something goes wrong.
+
+        Raises:
+            NaoError: What went wrong.
+            Preempted: When the subscription ends.
+        """
+        device, last = self._robot.proxy(DEVICE), None
+        while True:
+            call = device.call_async("getImageRemote", subscription.handle)
+            (image,) = wait_for_calls([call], subscription.interrupt)
+            picture = read_picture(image, self._settings.camera)
+            period = self._settings.period
+            if picture.time == last:  # a robot that does not wait for the next one gives the same again
+                subscription.interrupt.wait(0.5 * period)
+                subscription.interrupt.check()
+                continue
+            last = picture.time
+            self._note_life()
+            self._shows = True
+            self._rate.note(last, period)
+            if self._problem:
+                self._problem = ""
+                log.info("%s: pictures come again", self._name)
+            self._sink(picture, self._times.take(last, self._last[1]))
+
+    def _note_life(self) -> None:
+        self._last = (self._wall_time(), self._clock.now())
+
+    def _fail_once(self, problem: str) -> None:
+        if problem != self._problem:
+            log.warning("%s: %s", self._name, problem)
+        self._problem = problem

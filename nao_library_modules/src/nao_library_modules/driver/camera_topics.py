@@ -1,0 +1,228 @@
+"""The topics, parameters and service of one camera."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+import rospkg
+import rospy
+from rospy.rostime import is_wallclock
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from sensor_msgs.srv import SetCameraInfo, SetCameraInfoResponse
+from std_msgs.msg import Header
+
+from naoqi.errors import NaoError, RobotUnreachable
+
+from ..health import Report
+from ..robot_frames import tf_prefix
+from ..ros_clock import RosClock
+from .camera_formats import CAMERA_NAMES, CAMERAS, SIZES, Picture
+from .camera_info_files import camera_name
+from .camera_infos import CameraInfos
+from .camera_settings import TUNINGS, changed_tunings, fields_of, settled, stream_settings
+from .camera_stream import ANSWER_LIMIT, DEVICE, CameraStream
+from .camera_tuning import CameraTuning
+from .image_compression import FORMATS, JPEG, compress
+from .image_messages import from_info, header_of, to_compressed, to_image, to_info
+from .node import name_for_robot, publish
+from .reconfigure import Field, serve, update
+from .topic_demand import TopicDemand
+
+QUEUE = 2
+"""Pictures that wait for a subscriber that is slow; the oldest is dropped."""
+QVGA = 1
+RATE = 15.0
+COMPRESSION = (
+    Field("format", JPEG, "format of the files", choices=FORMATS),
+    Field("jpeg_quality", 80, "quality of JPEG in percent", 1, 100),
+    Field("png_level", 3, "effort to make PNG small", 1, 9),
+)
+WARN_PERIOD = 10.0
+
+
+class CameraTopics:
+    """Publishes what one camera sees while somebody looks; otherwise the robot sends nothing.
+
+    See `nao_camera.NaoCamera` for names. Pictures are published in a thread of the camera; parameters change in those
+    of their services.
+    """
+
+    def __init__(self, robot: Any, camera: int, folder: str, part: str, alone: bool) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            camera: NAOqi's number of the camera.
+            folder: What comes before the names of the topics, with its slash.
+            part: What comes before the names of the parameters; empty if nothing does.
+            alone: Whether the node serves this camera only, and can change over to the other.
+
+        Raises:
+            NaoError: If a parameter is wrong.
+        """
+        self._robot = robot
+        self._camera = camera
+        self._frames = {each: _frame(each) for each in CAMERAS}
+        self._infos = {each: CameraInfos(_camera_name(each), _package_folder) for each in CAMERAS}
+        self._config: Mapping[str, Any] = {}
+        self._compression: Mapping[str, Any] = {}
+        self._url = ""
+        self._shown: dict[str, int] = {}  # parameters of the picture as the robot has them, as far as that is known
+        self._lock = threading.Lock()
+        self._listens: dict[str, bool] = {}
+        prefix = f"~{part}/" if part else "~"
+        # The defaults are those of the camera. A node that was started again finds all parameters set: these too.
+        given = {name: rospy.get_param(prefix + name, tuning.field.default) for name, tuning in TUNINGS.items()}
+        given = {name: value for name, value in given.items() if value != TUNINGS[name].field.default}
+        fields = fields_of(QVGA, RATE, is_wallclock(), camera, alone)
+        defaults = {field.name: field.default for field in fields}
+        subscriber = f"{name_for_robot()}_{part}" if part else name_for_robot()
+        self._tuning = CameraTuning(self._ask, {})
+        stream = stream_settings(defaults, camera)
+        self._stream = CameraStream(robot, subscriber, stream, RosClock(), self._show, self._prepare)
+        self._server = serve(fields, self._changed, part)
+        self._tuning.choose(camera, given, connected=False)
+        compressed = f"{folder}image_raw/compressed"
+        self._compression_server = serve(COMPRESSION, self._compress_as, rospy.resolve_name(compressed))
+        self._image = self._offer(f"{folder}image_raw", Image)
+        self._info = self._offer(f"{folder}camera_info", CameraInfo)
+        self._compressed = self._offer(compressed, CompressedImage)
+        publishers = {"image": self._image, "info": self._info, "compressed": self._compressed}
+        self._demands = [TopicDemand(each, partial(self._on_listeners, name)) for name, each in publishers.items()]
+        rospy.Service(f"{folder}set_camera_info", SetCameraInfo, self._set_camera_info)
+
+    @property
+    def camera(self) -> int:
+        """NAOqi's number of the camera that is looked through."""
+        return self._stream.settings.camera
+
+    def report(self) -> Report:
+        """Whether pictures come, and what they are."""
+        report = self._stream.report()
+        return Report(report.level, report.message, {**report.values, "calibration": self._calibration_source()})
+
+    def close(self) -> None:
+        """Look no more."""
+        self._stream.close()
+
+    def _offer(self, name: str, kind: type) -> rospy.Publisher:
+        return rospy.Publisher(name, kind, queue_size=QUEUE)
+
+    def _on_listeners(self, name: str, listens: bool) -> None:
+        with self._lock:
+            self._listens[name] = listens
+            self._stream.want(any(self._listens.values()))
+
+    # --- pictures -------------------------------------------------------------------------------------------------
+
+    def _show(self, picture: Picture, ros_time: float) -> None:
+        """Publish a picture, and what belongs to it; called in the thread of the pictures."""
+        time = ros_time if self._config["use_ros_time"] else picture.time
+        header = header_of(time, self._frames[picture.camera])
+        if self._image.get_num_connections():
+            publish(self._image, to_image(picture, header))
+        if self._info.get_num_connections():
+            calibration = self._infos[picture.camera].of(picture.width, picture.height)
+            publish(self._info, to_info(calibration, picture, header))
+        if self._compressed.get_num_connections():
+            self._show_compressed(picture, header)
+
+    def _show_compressed(self, picture: Picture, header: Header) -> None:
+        try:
+            kind, file = compress(picture, **self._compression)
+        except NaoError as error:
+            rospy.logwarn_throttle(WARN_PERIOD, f"{self._compressed.name}: {error}")
+        else:
+            publish(self._compressed, to_compressed(kind, file, header))
+
+    # --- the robot ------------------------------------------------------------------------------------------------
+
+    def _ask(self, method: str, *arguments: Any) -> Any:
+        return self._robot.proxy(DEVICE).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+
+    def _prepare(self) -> None:
+        """Have robot and parameters say the same; called in the thread of the demand, before pictures come.
+
+        Raises:
+            RobotUnreachable: If the robot is gone.
+        """
+        camera = self.camera
+        try:
+            fov = self._ask("getHorizontalFOV", camera), self._ask("getVerticalFOV", camera)
+            self._infos[camera].set_fov(*fov)
+        except RobotUnreachable:
+            raise
+        except NaoError as error:
+            rospy.logwarn("the robot does not tell what its %s covers: %s", CAMERA_NAMES[camera], error)
+        self._tuning.set_again(camera)
+        shown = self._tuning.read(camera)
+        self._shown.update(shown)
+        update(self._server, shown)
+
+    # --- parameters -----------------------------------------------------------------------------------------------
+
+    def _changed(self, before: Mapping[str, Any], after: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Take new values; called in the thread of the service, and once at the start."""
+        changed = changed_tunings(before, after) if before else {}
+        if changed and all(self._shown.get(name) == value for name, value in changed.items()):
+            changed = {}  # what the robot has said
+        else:
+            after = settled(before, after)
+            changed = changed_tunings(before, after) if before else {}
+        stream, former = stream_settings(after, self._camera), self._stream.settings
+        url = after["camera_info_url"] or rospy.get_param(f"~calibration_file_{CAMERAS[stream.camera]}", "")
+        if not before or url != self._url or stream.camera != former.camera:
+            self._infos[stream.camera].set_url(url)
+        self._stream.change(stream)
+        if changed:
+            connected = self._robot.connection.state == "connected"
+            try:
+                self._tuning.choose(stream.camera, changed, connected)
+            except NaoError:
+                self._stream.change(former)
+                raise
+            if connected:
+                self._shown.update(changed)
+        self._url, self._config = url, after
+        return after
+
+    def _compress_as(self, _before: Mapping[str, Any], after: Mapping[str, Any]) -> Mapping[str, Any]:
+        if after["format"] not in FORMATS:
+            raise NaoError(f"format is {after['format']!r}: {' or '.join(FORMATS)}")
+        names = {"format": "kind", "jpeg_quality": "jpeg_quality", "png_level": "png_level"}
+        self._compression = {names[name]: value for name, value in after.items()}
+        return after
+
+    # --- calibration ----------------------------------------------------------------------------------------------
+
+    def _set_camera_info(self, request: Any) -> SetCameraInfoResponse:
+        try:
+            path = self._infos[self.camera].set(from_info(request.camera_info))
+        except NaoError as error:
+            rospy.logerr("set_camera_info: %s", error)
+            return SetCameraInfoResponse(False, str(error))
+        return SetCameraInfoResponse(True, f"kept in {path}")
+
+    def _calibration_source(self) -> str:
+        return self._infos[self.camera].source(*SIZES[self._stream.settings.resolution])
+
+
+def _frame(camera: int) -> str:
+    """Name of the optical frame of a camera."""
+    given = rospy.get_param(f"~camera_{CAMERAS[camera]}_frame", f"{CAMERA_NAMES[camera]}_optical_frame")
+    return tf_prefix() + str(given).lstrip("/")
+
+
+def _camera_name(camera: int) -> str:
+    """Name of a camera in calibration files; the namespace of the robot tells several apart."""
+    return camera_name(f"{rospy.get_namespace()}nao_camera_{CAMERAS[camera]}")
+
+
+def _package_folder(package: str) -> str:
+    try:
+        return rospkg.RosPack().get_path(package)
+    except rospkg.ResourceNotFound as error:
+        raise NaoError(f"there is no package {package}") from error

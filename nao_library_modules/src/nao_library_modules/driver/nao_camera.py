@@ -1,0 +1,75 @@
+"""The node nao_camera: what the robot's cameras see, as topics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+
+from naoqi.errors import NaoError
+
+from ..health import Report
+from .camera_formats import CAMERAS, TOP
+from .camera_topics import CameraTopics
+
+ALONE = ("camera_switch", "source")
+"""Parameters whose presence tells that the node is to serve one camera."""
+
+
+class NaoCamera:
+    """Publishes the pictures of both cameras, each while somebody looks.
+
+    ROS API (relative names, the same with `bottom` for `top`):
+        Publishes `nao_robot/camera/top/image_raw` (sensor_msgs/Image), `nao_robot/camera/top/camera_info`
+        (sensor_msgs/CameraInfo, with the stamps of the pictures), `nao_robot/camera/top/image_raw/compressed`
+        (sensor_msgs/CompressedImage). Frame `CameraTop_optical_frame` (z ahead, x right, y down), after `tf_prefix`.
+        Service `nao_robot/camera/top/set_camera_info` (sensor_msgs/SetCameraInfo).
+        Parameters, also by dynamic_reconfigure of `~top`: `~top/resolution` (NAOqi's number, 1: 320x240),
+        `~top/frame_rate` (15), `~top/color_space` (NAOqi's number, 13: bgr8), `~top/camera_info_url`,
+        `~top/use_ros_time` (true: stamps in ROS time; false: stamps of the robot's own clock. Default true; false on
+        simulated time, which is the clock of the simulated robot), and those of the picture, which belong to the
+        robot's camera and are left as they are until somebody sets them: `~top/auto_exposition`, `auto_exposure_algo`,
+        `exposure`, `gain`, `brightness`, `contrast`, `saturation`, `hue`, `sharpness`, `auto_white_balance`,
+        `white_balance`. `nao_robot/camera/top/image_raw/compressed/format` (jpeg or png), `jpeg_quality`, `png_level`,
+        as image_transport has them. `~camera_top_frame`, `~camera_bottom_frame`: other names of the frames.
+        `~calibration_file_top`, `~calibration_file_bottom`: URLs where there is no camera_info_url.
+        Calibration: that of camera_info_url; without one, that of ROS_HOME/camera_info/NAME.yaml, where
+        set_camera_info puts it (NAME is nao_camera_top, with the namespace before it); without that, computed from
+        the field of view. One for another size is scaled; NAME_320x240.yaml is for that size only.
+        With `~camera_switch` or `~source` (0 top, 1 bottom) the node serves that camera alone, as `image_raw`,
+        `camera_info`, `image_raw/compressed`, `set_camera_info`, with parameters without `top/`; `~source` can be
+        changed while it runs.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+
+        Raises:
+            NaoError: If a parameter is wrong.
+        """
+        self._cameras: dict[str, CameraTopics] = {}
+        alone = next((name for name in reversed(ALONE) if rospy.has_param(f"~{name}")), None)
+        if alone is None:
+            for camera, name in CAMERAS.items():
+                self._cameras[name] = CameraTopics(robot, camera, f"nao_robot/camera/{name}/", name, alone=False)
+            return
+        camera = rospy.get_param(f"~{alone}", TOP)
+        if isinstance(camera, bool) or camera not in CAMERAS:
+            listed = " or ".join(f"{number} ({name})" for number, name in CAMERAS.items())
+            raise NaoError(f"~{alone} is {camera!r}: {listed}")
+        self._cameras["alone"] = CameraTopics(robot, camera, "", "", alone=True)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        if "alone" in self._cameras:
+            return {"camera": self._cameras["alone"].report}
+        return {f"camera {name}": camera.report for name, camera in self._cameras.items()}
+
+    def close(self) -> None:
+        """Look no more."""
+        for camera in self._cameras.values():
+            camera.close()

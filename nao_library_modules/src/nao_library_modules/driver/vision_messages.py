@@ -1,0 +1,56 @@
+"""What the robot has seen, as messages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from geometry_msgs.msg import Point, Pose, Quaternion
+from std_msgs.msg import Float32, Header, Int32
+
+from nao_library_msgs.msg import FaceDetected, LandmarkDetected, MovementDetected
+
+from .camera_formats import CAMERA_NAMES
+from .rotation import from_roll_pitch_yaw
+from .vision_values import Face, Landmark, Movement, View
+
+
+def to_face(face: Face, view: View, header: Header) -> FaceDetected:
+    """A face; points that the robot does not tell are 0."""
+    message = FaceDetected(header=header)
+    message.face_id.data, message.score_reco.data, message.face_label.data = face.number, face.score, face.label
+    message.shape_alpha.data, message.shape_beta.data = face.shape.alpha, face.shape.beta
+    message.shape_sizeX.data, message.shape_sizeY.data = face.shape.width, face.shape.height
+    for name, (x, y) in face.points.items():
+        getattr(message, f"{name}_x").data, getattr(message, f"{name}_y").data = x, y
+    message.camera_0_pose, message.camera_1_pose = _pose(view.in_torso), _pose(view.in_robot)
+    message.camera_id.data = view.camera
+    return message
+
+
+def to_landmarks(marks: Sequence[Landmark], view: View, header: Header) -> LandmarkDetected:
+    """Marks that were seen in one picture."""
+    message = LandmarkDetected(header=header)
+    message.mark_ids = [Int32(mark.number) for mark in marks]
+    message.shape_alpha = [Float32(mark.shape.alpha) for mark in marks]
+    message.shape_beta = [Float32(mark.shape.beta) for mark in marks]
+    message.shape_sizex = [Float32(mark.shape.width) for mark in marks]
+    message.shape_sizey = [Float32(mark.shape.height) for mark in marks]
+    message.camera_local_pose, message.camera_world_pose = _pose(view.in_torso), _pose(view.in_robot)
+    message.camera_name.data = CAMERA_NAMES[view.camera]
+    return message
+
+
+def to_movement(movement: Movement, header: Header) -> MovementDetected:
+    """What moved; angles are x and y of the points, z is 0."""
+    return MovementDetected(
+        header=header,
+        gravity_center=Point(*movement.centre, 0.0),
+        mean_velocity=Point(*movement.velocity, 0.0),
+        points_poses=[Point(*each, 0.0) for each in movement.points],
+        points_speeds=[Point(*each, 0.0) for each in movement.velocities],
+    )
+
+
+def _pose(position6d: Sequence[float]) -> Pose:
+    """A pose from x, y, z in m, roll, pitch, yaw in rad."""
+    return Pose(Point(*position6d[:3]), Quaternion(*from_roll_pitch_yaw(*position6d[3:])))
