@@ -1,176 +1,32 @@
-"""What the groups of hearing functions share: subscriptions that end, waiting for events, feedback."""
+"""What the groups of hearing functions share: what was heard, feedback, names, and the use of NAOqi's extractors."""
 
 from __future__ import annotations
 
-import logging
-import re
-import socket
-from collections import deque
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from typing import Any
+from collections.abc import Callable, Sequence
 
-from naoqi.errors import NaoError
-
+from . import extractor_use
 from .audio_in_heard import Heard
-from .event_relay import EventRelay
-from .interrupt import Interrupt
-from .memory_functions import MEMORY
-from .robot import CLEAN_UP_LIMIT
-from .robot_task import wait_for_call
-
-log = logging.getLogger(__name__)
+from .extractor_use import Events as Events
+from .extractor_use import ExtractorUse
 
 DEFAULT_TIMEOUT = 10.0
 """s that functions wait for something to be heard, where a message leaves it to us."""
 
 
-class Events:
-    """Events of the robot's memory for one function that waits for them.
-
-    Told from threads of libqi, asked from the one that executes goals.
-    """
-
-    def __init__(self, clock: Any, interrupt: Interrupt) -> None:
-        """Nothing has happened yet.
-
-        Args:
-            clock: Time of waits.
-            interrupt: Ends them.
-        """
-        self._clock = clock
-        self._interrupt = interrupt
-        self._news = Interrupt()
-        self._events: deque[tuple[str, Any]] = deque()
-
-    def tell(self, name: str, value: Any) -> None:
-        """Take an event."""
-        self._events.append((name, value))
-        self._news.trigger()
-
-    def until(self, end: float) -> Iterator[tuple[str, Any]]:
-        """Events as they come.
-
-        Args:
-            end: ROS time of the end, s.
-
-        Raises:
-            Preempted: Or whatever reason the interrupt has.
-        """
-        while True:
-            self._interrupt.check()
-            while self._events:
-                yield self._events.popleft()
-                self._interrupt.check()
-            remaining = end - self._clock.now()
-            if remaining <= 0.0:
-                return
-            self._news.clear()
-            if self._events:
-                continue  # it came before `clear`
-            with self._interrupt.waking(self._news.trigger):
-                self._clock.wait(remaining, self._news)
-
-
-class AudioInBase:
+class AudioInBase(ExtractorUse):
     """To be mixed into NaoBasic.
 
     Attributes:
         heard: What the chain heard so far; new for each goal.
-        subscriber: What NAOqi knows this server by: of each robot's listeners no two have the same name.
     """
 
-    robot: Any  # Robot
-    interrupt: Interrupt
-    clock: Any  # WallClock or RosClock
-    call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts
-    call_now: Callable[..., Any]  # of NaoBasic: a call that it does not
-    wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
     heard: Heard
-    subscriber: str
     tell: Callable[..., None]  # of NaoAudioInput: feedback
-
-    def begin(self, module: str, method: str, args: Sequence[Any], undo: str, *undo_args: Any) -> None:
-        """Call a method that begins something which has to be ended.
-
-        Preemption does not end the call in the middle: only when it is over it is known whether there is something
-        to end. A call that takes too long for that is undone when it is over.
-
-        Args:
-            module: NAOqi module.
-            method: Its method.
-            args: Arguments of it.
-            undo: The method that ends what it begins.
-            undo_args: Arguments of that.
-
-        Raises:
-            NaoError: If the call fails; then nothing has begun.
-            Preempted: If that came first, and the call took too long to wait for its end.
-        """
-        self.interrupt.check()
-        proxy = self.robot.proxy(module)
-        call = proxy.call_async(method, *args)
-        if not wait_for_call(call, self.interrupt) and not call.wait(CLEAN_UP_LIMIT):
-            call.add_done_callback(lambda _: proxy.call_async(undo, *undo_args))
-            self.interrupt.check()
-        call.result(timeout=0)
-
-    @contextmanager
-    def ended_by(self, action: Callable[[], Any], what: str) -> Iterator[None]:
-        """Do something at the end of a block, however it ends.
-
-        Args:
-            action: What to do; an error in it counts where there is no other.
-            what: What goes on if that fails, for the log.
-        """
-        try:
-            yield
-        except BaseException:
-            try:
-                action()
-            except NaoError as error:
-                log.warning("%s: %s", what, error)
-            raise
-        else:
-            action()
-
-    @contextmanager
-    def subscribed(self, module: str, purpose: str) -> Iterator[None]:
-        """Have an extractor work during a block."""
-        self.subscribe(module, purpose)
-        with self.ended_by(lambda: self.unsubscribe(module, purpose), f"{module} may go on for nobody"):
-            self.interrupt.check()
-            yield
-
-    def subscribe(self, module: str, purpose: str) -> None:
-        """Have an extractor work until `unsubscribe`."""
-        name = self.subscriber_for(purpose)
-        self.begin(module, "subscribe", [name], "unsubscribe", name)
-
-    def unsubscribe(self, module: str, purpose: str) -> None:
-        """End a subscription; preemption does not interrupt this."""
-        self.call_now(self.robot.proxy(module), "unsubscribe", self.subscriber_for(purpose))
-
-    def subscriber_for(self, purpose: str) -> str:
-        """Name of a subscription: two of one server must not end each other."""
-        return f"{self.subscriber}_{purpose}"
-
-    @contextmanager
-    def events_of(self, *names: str) -> Iterator[Events]:
-        """Have events of the robot's memory told during a block."""
-        events = Events(self.clock, self.interrupt)
-        relay = EventRelay(lambda: self.robot.proxy(MEMORY), events.tell)
-        try:
-            for name in names:
-                relay.subscribe(name)
-            yield events
-        finally:
-            relay.close()
 
 
 def subscriber_name(namespace: str) -> str:
     """A name for the server's subscriptions that no other server has: of this computer, in this namespace."""
-    return re.sub(r"\W+", "_", f"nao_audio_in_{socket.gethostname()}{namespace}").strip("_")
+    return extractor_use.subscriber_name("nao_audio_in", namespace)
 
 
 def timeout_of(timeout: float) -> float:

@@ -107,7 +107,7 @@ class RecognitionFunctions(RecogniserAccess):
                 self.idly("setVocabulary", phrases, word_spotting)
             if recognition.told:
                 self.events.subscribe(WORDS)
-            self.subscribe(RECOGNITION, "recognition")
+            self.start_extractor(RECOGNITION, "recognition")
         except BaseException:
             with suppress(NaoError):  # the error that ended it is the one to tell
                 self._put_back(recognition)
@@ -120,7 +120,7 @@ class RecognitionFunctions(RecogniserAccess):
         if recognition is None:
             return
         with self.ended_by(lambda: self._put_back(recognition), "another vocabulary may be lost"):
-            self.unsubscribe(RECOGNITION, "recognition")
+            self.stop_extractor(RECOGNITION, "recognition")
 
     @checked_by(check_vocabulary)
     def set_vocabulary(self, vocabulary: Sequence[str], word_spotting: bool) -> None:

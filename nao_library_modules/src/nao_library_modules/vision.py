@@ -1,0 +1,155 @@
+"""The module for vision: streams, recordings, pictures, settings of the cameras, and what the robot recognises."""
+
+from __future__ import annotations
+
+import re
+import socket
+from collections.abc import Sequence
+from typing import Any
+
+from nao_library_actions.msg import NaoVisionAction
+
+from .answers import Outcome
+from .nao_basic import NaoBasic
+from .vision_detect import TYPED, DetectionFunctions
+from .vision_faces import FaceFunctions
+from .vision_files import DEFAULT_RECORD_DIR, VisionFiles
+from .vision_results import Seen
+from .vision_settings import SettingFunctions
+from .vision_streaming import StreamingFunctions
+from .vision_taken import Taken
+from .vision_takes import PictureFunctions
+from .vision_threads import VisionThreads
+from .vision_track import TrackingFunctions
+
+PARAMETERS = {
+    "record_dir": DEFAULT_RECORD_DIR,
+    "camera_top": "nao_robot/camera/top/image_raw",
+    "camera_bottom": "nao_robot/camera/bottom/image_raw",
+    "camera_top_node": "nao_camera/top",
+    "camera_bottom_node": "nao_camera/bottom",
+}
+"""Private parameters of the node -> default."""
+
+
+class NaoVision(
+    NaoBasic,
+    StreamingFunctions,
+    PictureFunctions,
+    SettingFunctions,
+    FaceFunctions,
+    TrackingFunctions,
+    DetectionFunctions,
+):
+    """Vision goals: streams, recordings and pictures of any camera, and what NAOqi recognises in those of the robot.
+
+    Streams and recordings are their user's: they have names that the user gave them, go on when the goal that began
+    them is over or preempted, each in a thread of its own, and end when they are stopped, or complete with the server.
+    Everything else ends with its function.
+
+    Frames come from ROS topics, so any camera with a driver for ROS can stand in for the robot's. Files are on the
+    computer that runs this server, in `record_dir`; not on the robot.
+
+    Attributes:
+        active_camera: The camera of functions that name none: top or bottom.
+        seen: What the chain has recognised so far.
+        taken: What the chain has taken so far.
+        subscriber: What NAOqi knows this server by.
+        frame_prefix: Prefix of the robot's frames, with its slash; may be empty.
+
+    ROS API:
+        Action `NaoVision` (nao_library_actions/NaoVisionAction) and what NaoBasic offers. Subscribes to the cameras
+        (sensor_msgs/Image or CompressedImage), only while frames are wanted. Publishes the streams. Calls
+        `set_parameters` (dynamic_reconfigure) of the cameras' nodes.
+    """
+
+    typed_answers = TYPED | {"takePicture", "takePictures", "stopRecording", "listThreads"}
+
+    def __init__(
+        self,
+        ip: str,
+        port: int,
+        record_dir: str = PARAMETERS["record_dir"],
+        camera_top: str = PARAMETERS["camera_top"],
+        camera_bottom: str = PARAMETERS["camera_bottom"],
+        camera_top_node: str = PARAMETERS["camera_top_node"],
+        camera_bottom_node: str = PARAMETERS["camera_bottom_node"],
+        topics: Any = None,
+        **options: Any,
+    ) -> None:
+        """Start the server.
+
+        Args:
+            ip: Address of the robot.
+            port: Port of its NAOqi.
+            record_dir: Folder for pictures and videos; "~" stands for the home of the user.
+            camera_top: Topic of the pictures of the camera that goals call top.
+            camera_bottom: Topic of those of the one that they call bottom.
+            camera_top_node: Where the node of the first takes dynamic_reconfigure.
+            camera_bottom_node: Where that of the second does.
+            topics: Topics and settings of cameras, where not those of this process's node.
+            options: As NaoBasic takes them.
+        """
+        if topics is None:
+            from .vision_topics import VisionTopics
+
+            topics = VisionTopics()
+        super().__init__(ip, port, **options)
+        self.topics = topics
+        self.files = VisionFiles(record_dir)
+        self.threads = VisionThreads()
+        self.camera_topics = {"top": camera_top, "bottom": camera_bottom}
+        self.camera_servers = {"top": camera_top_node, "bottom": camera_bottom_node}
+        self.active_camera = "top"
+        self.seen = Seen()
+        self.taken = Taken()
+        self.subscriber = re.sub(r"\W+", "_", f"NaoVision_{socket.gethostname()}{self._edge.namespace}").strip("_")
+        self.frame_prefix = self._edge.frame_prefix()
+        self._progress = (0, "", 0)
+        self._took_over = False
+        for functions in (
+            self.streaming_functions(),
+            self.picture_functions(),
+            self.setting_functions(),
+            self.detection_functions(),
+            self.face_functions(),
+            self.tracking_functions(),
+        ):
+            self.function_table.update(functions)
+        self.serve("NaoVision", NaoVisionAction)
+
+    # The life of a goal
+
+    def begin_chain(self) -> None:
+        """Forget what the last chain saw and took."""
+        self.seen = Seen()
+        self.taken = Taken()
+        if not self._took_over and self.robot.connection.state == "connected":
+            self._took_over = self.end_leftover_detections()
+
+    def tell(self, status: str, objects: Sequence[Any] = (), done: int = 0) -> None:
+        """Publish what is seen meanwhile. Called from the thread that executes goals.
+
+        Args:
+            status: What the robot is doing.
+            objects: SeenObject messages.
+            done: How many pictures were taken.
+        """
+        index, function, count = self._progress
+        self.server.publish_feedback(self._feedback_type(index, function, count, status, done, list(objects)))
+
+    def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
+        """Add what was seen and taken."""
+        super().fill_result(result, outcomes)
+        self.seen.fill(result)
+        self.taken.fill(result)
+
+    def shut_down(self) -> None:
+        """As NaoBasic does; streams and recordings end first, so that files are complete whatever else takes long."""
+        self.interrupt.stop()
+        self.threads.close()
+        super().shut_down()
+
+    def _tell_progress(self, position: int, function: str, count: int) -> None:
+        self._progress = (position - 1, function, count)
+        super()._tell_progress(position, function, count)

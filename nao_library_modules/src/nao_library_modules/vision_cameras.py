@@ -1,0 +1,123 @@
+"""The robot's cameras as goals name them: cameras, resolutions and parameters. Pure."""
+
+from __future__ import annotations
+
+import re
+
+from .errors import BadGoal
+from .suggestion import did_you_mean
+
+CAMERAS = {"top": 0, "bottom": 1}
+"""Name -> NAOqi's number."""
+OPTICAL_FRAMES = {"top": "CameraTop_optical_frame", "bottom": "CameraBottom_optical_frame"}
+RESOLUTIONS = {
+    "QQQQVGA": (8, 40, 30),
+    "QQQVGA": (7, 80, 60),
+    "QQVGA": (0, 160, 120),
+    "QVGA": (1, 320, 240),
+    "VGA": (2, 640, 480),
+    "4VGA": (3, 1280, 960),
+    "16VGA": (4, 2560, 1920),
+}
+"""Name -> NAOqi's number, width, height."""
+FRAME_RATES = (1, 30)
+"""Frames a second, the least and the most."""
+
+PARAMETERS = {
+    "Brightness": 0,
+    "Contrast": 1,
+    "Saturation": 2,
+    "Hue": 3,
+    "RedChroma": 4,
+    "BlueChroma": 5,
+    "Gain": 6,
+    "HFlip": 7,
+    "VFlip": 8,
+    "AutoExposition": 11,
+    "AutoWhiteBalance": 12,
+    "AutoGain": 13,
+    "Exposure": 17,
+    "ExposureCorrection": 21,
+    "ExposureAlgorithm": 22,
+    "Sharpness": 24,
+    "WhiteBalance": 33,
+    "BacklightCompensation": 34,
+    "KeepAlive": 35,
+    "Temperature": 38,
+    "AverageLuminance": 39,
+    "AutoFocus": 40,
+    "Focus": 43,
+}
+"""A camera's parameter, by NAOqi's name without kCamera and ID -> NAOqi's number. Not every camera has all of them:
+that the robot knows, which also takes other numbers."""
+MOST_PARAMETERS = 64
+_SPELLINGS = {name.lower(): number for name, number in PARAMETERS.items()}
+_SPELLINGS.update(exposition=17, autoexposure=11)
+_OTHERWISE = {"14": "setResolution", "15": "setFrameRate", "18": "setActiveCamera", "19": "setAllParametersToDefault"}
+_OTHERWISE.update(resolution="setResolution", framerate="setFrameRate", select="setActiveCamera")
+_OTHERWISE.update(setdefaultparams="setAllParametersToDefault")
+
+
+def camera_name(text: str, active: str) -> str:
+    """Name of a camera.
+
+    Args:
+        text: As a goal has it: name, NAOqi's number, or empty.
+        active: What empty stands for.
+
+    Raises:
+        BadGoal: If there is no such camera.
+    """
+    bare = text.strip().lower()
+    if not bare:
+        return active
+    for name, number in CAMERAS.items():
+        if bare in (name, str(number)):
+            return name
+    problem = f"{text!r} is no camera{did_you_mean(bare, CAMERAS)}"
+    raise BadGoal("camera", text, "top or 0, bottom or 1, empty: the active one", problem=problem)
+
+
+def resolution_name(text: str) -> str:
+    """Name of a resolution, without the k: VGA.
+
+    Args:
+        text: As a goal has it: name, NAOqi's number, or 640x480.
+
+    Raises:
+        BadGoal: If there is no such resolution.
+    """
+    bare = re.sub(r"\s", "", text).lower()
+    for name, (number, width, height) in RESOLUTIONS.items():
+        if bare in (name.lower(), f"k{name.lower()}", f"{width}x{height}", str(number)):
+            return name
+    known = ", ".join(f"{name} (or {number}, {w}x{h})" for name, (number, w, h) in RESOLUTIONS.items())
+    problem = f"{text!r} is no resolution{did_you_mean(bare, [*RESOLUTIONS])}"
+    raise BadGoal("resolution", text, f"one of {known}", problem=problem)
+
+
+def resolution_of(number: int) -> str:
+    """Name of a resolution by NAOqi's number; the number itself where it has none here."""
+    return next((name for name, (own, *_) in RESOLUTIONS.items() if own == number), str(number))
+
+
+def parameter_number(text: str) -> int:
+    """NAOqi's number of a camera's parameter.
+
+    Args:
+        text: As a goal has it: brightness, kCameraBrightnessID, 0.
+
+    Raises:
+        BadGoal: If there is no such parameter, or other functions are for it.
+    """
+    bare = re.sub(r"^k?camera_?|_?id$", "", text.strip(), flags=re.IGNORECASE).replace("_", "").lower()
+    if bare in _OTHERWISE:
+        problem = f"{text!r} is no parameter of the picture"
+        raise BadGoal("str_param", text, f"{_OTHERWISE[bare]} and its like are for that", problem=problem)
+    if bare.isdigit() and int(bare) < MOST_PARAMETERS:
+        return int(bare)
+    if bare not in _SPELLINGS:
+        problem = f"{text!r} is no parameter of a camera{did_you_mean(bare, PARAMETERS)}"
+        allowed = f"one of {', '.join(PARAMETERS)}, also by NAOqi's name or number"
+        raise BadGoal("str_param", text, allowed, problem=problem)
+    return _SPELLINGS[bare]

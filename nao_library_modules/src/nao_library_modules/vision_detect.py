@@ -1,0 +1,90 @@
+"""Functions that see things: the ball, landmarks, codes, and what moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from .function_chain import checked_by
+from .vision_detect_base import DETECTORS, DetectionBase, InUse, Wanted, timeout_of
+from .vision_detect_checks import camera_index, check_detection, check_landmarks, check_movement, require_mark
+from .vision_detect_events import BALL, CODE, LANDMARK, MOVEMENT
+from .vision_detect_space import merged
+
+TYPED: frozenset[str] = frozenset()
+"""Functions here whose answers stay out of memList: none, the names of what was seen are for both."""
+
+
+class DetectionFunctions(DetectionBase):
+    """Detections. Parameters are fields of VisionFunction. Nothing seen in time is an answer, too."""
+
+    def detection_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "detectBall": self.detect_ball,
+            "detectLandmarks": self.detect_landmarks,
+            "readBarcodes": self.read_barcodes,
+            "detectMovement": self.detect_movement,
+        }
+
+    @checked_by(check_detection)
+    def detect_ball(self, camera: str, timeout: float, confidence: float, count: int, size: float) -> list[str]:
+        """See a red ball."""
+        return self.detect(Wanted(BALL, "", confidence, size, camera_index(camera)), timeout, count)
+
+    @checked_by(check_landmarks)
+    def detect_landmarks(
+        self, str_param: str, camera: str, timeout: float, confidence: float, count: int, size: float
+    ) -> list[str]:
+        """See landmarks; answers their numbers."""
+        wanted = Wanted(LANDMARK, require_mark(str_param), confidence, size, camera_index(camera))
+        return self.detect(wanted, timeout, count)
+
+    @checked_by(check_detection)
+    def read_barcodes(
+        self, str_param: str, camera: str, timeout: float, confidence: float, count: int, size: float
+    ) -> list[str]:
+        """Read barcodes and QR codes; answers what they say."""
+        return self.detect(Wanted(CODE, str_param, confidence, size, camera_index(camera)), timeout, count)
+
+    @checked_by(check_movement)
+    def detect_movement(
+        self, camera: str, timeout: float, confidence: float, count: int, sensitivity: float
+    ) -> list[str]:
+        """See what moves."""
+        wanted = Wanted(MOVEMENT, "", confidence, 0.0, camera_index(camera))
+        if sensitivity <= 0.0:
+            return self.detect(wanted, timeout, count)
+        module = DETECTORS[MOVEMENT].module
+        proxy = self.robot.proxy(module)
+        before = float(self.call(proxy, "getColorSensitivity"))
+        others = self.others_of(module)
+        if others:
+            raise InUse(module, others, f"has the sensitivity {before:g}")
+        self.begin(module, "setColorSensitivity", [float(sensitivity)], "setColorSensitivity", before)
+        with self.ended_by(
+            lambda: self.call_now(proxy, "setColorSensitivity", before), f"{module} keeps its sensitivity"
+        ):
+            return self.detect(wanted, timeout, count)
+
+    def detect(self, wanted: Wanted, timeout: float, count: int) -> list[str]:
+        """Look until something was seen often enough, or the time is over.
+
+        Args:
+            wanted: What counts.
+            timeout: s; 0 for the default.
+            count: In how many pictures something is to be seen; 0 for one.
+
+        Returns:
+            What the things that were seen are called.
+        """
+        pictures = []
+        self.tell_seen("looking")
+        with self.watching(wanted) as watch:
+            for sightings in watch.until(self.clock.now() + timeout_of(timeout)):
+                pictures.append(sightings)
+                self.tell_seen("looking", sightings)
+                if len(pictures) >= max(count, 1):
+                    break
+        # Nobody can tell which movement of one picture is which of the next.
+        return self.note(merged(pictures[-1:] if wanted.kind == MOVEMENT else pictures))

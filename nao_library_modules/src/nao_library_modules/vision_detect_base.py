@@ -1,0 +1,300 @@
+"""What the groups of seeing functions share: having the robot's extractors look, and placing what they see."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any
+
+from naoqi.errors import NaoError, UnknownMethod
+
+from .extractor_use import Events, ExtractorUse
+from .memory_functions import MEMORY
+from .motion_facts import MOTION
+from .vision_cameras import CAMERAS, RESOLUTIONS
+from .vision_detect_events import (
+    BALL,
+    CAMERA_FRAMES,
+    CODE,
+    FACE,
+    LANDMARK,
+    MOVEMENT,
+    NOTHING,
+    Lens,
+    Look,
+    Pose,
+    Region,
+    Sight,
+    ball_look,
+    code_sights,
+    face_look,
+    landmark_look,
+    movement_look,
+)
+from .vision_detect_space import DEFAULT_SIZES, Sighting, located, ros_time
+from .vision_results import Seen, seen_messages
+
+log = logging.getLogger(__name__)
+
+VIDEO = "ALVideoDevice"
+MOVEMENT_KEY = "MovementDetection/MovementInfo"
+DEFAULT_TIMEOUT = 10.0
+"""s that functions wait for something to be seen, where a message leaves it to us."""
+TORSO, ROBOT = 0, 2
+"""NAOqi's FRAME_TORSO and FRAME_ROBOT."""
+
+
+@dataclass(frozen=True)
+class Detector:
+    """One of the robot's extractors.
+
+    Attributes:
+        module: Its NAOqi module.
+        event: The event that it raises.
+        read: What its event says; None where more is needed than its value.
+    """
+
+    module: str
+    event: str
+    read: Callable[[Any], Look] | None = None
+
+
+DETECTORS = {
+    BALL: Detector("ALRedBallDetection", "redBallDetected", ball_look),
+    FACE: Detector("ALFaceDetection", "FaceDetected", face_look),
+    LANDMARK: Detector("ALLandMarkDetection", "LandmarkDetected", landmark_look),
+    CODE: Detector("ALBarcodeReader", "BarcodeReader/BarcodeDetected"),
+    MOVEMENT: Detector("ALMovementDetection", "MovementDetection/MovementDetected"),
+}
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a function looks for.
+
+    Attributes:
+        kind: ball, face, landmark, code or movement.
+        name: Only the thing of this name; empty for all.
+        confidence: 0..1, with less it does not count; a face with less is somebody unknown.
+        size: m, its real size; 0 for the usual one.
+        camera: Index of the camera; None for the active one.
+    """
+
+    kind: str
+    name: str = ""
+    confidence: float = 0.0
+    size: float = 0.0
+    camera: int | None = None
+
+    def picks(self, sight: Sight) -> Sight | None:
+        """A sight as it counts; None if it does not."""
+        if sight.kind == FACE and sight.confidence < self.confidence:
+            sight = _unnamed(sight)
+        elif sight.confidence < self.confidence:
+            return None
+        return None if self.name and sight.name != self.name else sight
+
+
+class Watch:
+    """An extractor that works for a function, as long as that needs it."""
+
+    def __init__(self, base: DetectionBase, wanted: Wanted, events: Events, camera: int) -> None:
+        """Begin.
+
+        Args:
+            base: Reaches the robot.
+            wanted: What counts.
+            events: Those of the extractor.
+            camera: Index of the camera that it looks through.
+        """
+        self._base = base
+        self._wanted = wanted
+        self._events = events
+        self._camera = camera
+
+    def until(self, end: float) -> Iterator[list[Sighting]]:
+        """What pictures show, as they come: one list for each picture with something that counts.
+
+        Args:
+            end: ROS time of the end, s.
+
+        Raises:
+            Preempted: Or whatever reason the interrupt has.
+            NaoError: If the robot cannot be asked.
+        """
+        for _, value in self._events.until(end):
+            sightings = self._base.placed(self._wanted, self._camera, value)
+            if sightings:
+                yield sightings
+
+
+class DetectionBase(ExtractorUse):
+    """To be mixed into NaoBasic.
+
+    Attributes:
+        seen: What the chain saw so far; new for each goal.
+        frame_prefix: Prefix of the robot's frames, with its slash; may be empty.
+        active_camera: The camera that functions use where a message names none: top or bottom.
+    """
+
+    seen: Seen
+    frame_prefix: str
+    active_camera: str
+    tell: Callable[..., None]  # of NaoVision: feedback
+    _lenses: dict[tuple[int, int], Lens] | None = None
+
+    @contextmanager
+    def watching(self, wanted: Wanted) -> Iterator[Watch]:
+        """Have an extractor look during a block."""
+        detector = DETECTORS[wanted.kind]
+        with self._camera(detector.module, wanted.camera) as camera, self.events_of(detector.event) as events:
+            with self.subscribed(detector.module, wanted.kind):
+                yield Watch(self, wanted, events, camera)
+
+    def note(self, sightings: Sequence[Sighting]) -> list[str]:
+        """Put what was seen into the result; answers what it is called, one text each."""
+        self.seen.objects += seen_messages(sightings, self.frame_prefix)
+        return [sighting.label for sighting in sightings]
+
+    def tell_seen(self, status: str, sightings: Sequence[Sighting] = ()) -> None:
+        """Publish what is seen now."""
+        self.tell(status, seen_messages(sightings, self.frame_prefix))
+
+    def placed(self, wanted: Wanted, camera: int, value: Any) -> list[Sighting]:
+        """What counts of an event, and where it is.
+
+        Args:
+            wanted: What counts.
+            camera: Index of the camera that the extractor looks through; what others see does not count.
+            value: Of the event.
+        """
+        try:
+            look = self._look(wanted.kind, camera, value)
+        except ValueError as error:
+            log.warning("%s", error)
+            return []
+        if look.camera != camera or look.in_robot is None or look.in_torso is None:
+            return []
+        lens, now = self._lens(camera), self.clock.now()
+        size = wanted.size or DEFAULT_SIZES.get(wanted.kind, 0.0)
+        found = []
+        for sight in filter(None, map(wanted.picks, look.sights)):
+            region = sight.region or self._region(camera, sight)
+            time = ros_time(look.time, now)
+            found.append(located(sight, camera, time, region, lens, size, look.in_torso, look.in_robot))
+        return found
+
+    def others_of(self, module: str) -> list[str]:
+        """Who else has an extractor work."""
+        subscribers = self.call(self.robot.proxy(module), "getSubscribersInfo")
+        return [name for name, *_ in subscribers if not name.startswith(self.subscriber_for(""))]
+
+    def end_leftover_detections(self) -> bool:
+        """End what a server of this name could not end, for it was killed; tells whether the robot was asked."""
+        for detector in DETECTORS.values():
+            try:
+                proxy = self.robot.proxy(detector.module)
+                for name, *_ in self.call_now(proxy, "getSubscribersInfo"):
+                    if name.startswith(self.subscriber_for("")):
+                        self.call_now(proxy, "unsubscribe", name)
+            except NaoError as error:
+                log.debug("%s may work for nobody: %s", detector.module, error)
+        return self.robot.connection.state == "connected"
+
+    def _look(self, kind: str, camera: int, value: Any) -> Look:
+        read = DETECTORS[kind].read
+        if read is not None:
+            return read(value)
+        if kind == MOVEMENT:
+            return movement_look(self.call(self.robot.proxy(MEMORY), "getData", MOVEMENT_KEY))
+        if not value:
+            return NOTHING
+        resolution = int(self.call(self.robot.proxy(DETECTORS[CODE].module), "getResolution"))
+        sights = code_sights(value, *_size(resolution), self._lens(camera))
+        return Look(None, camera, self._camera_pose(camera, TORSO), self._camera_pose(camera, ROBOT), sights)
+
+    def _camera_pose(self, camera: int, frame: int) -> Pose:
+        position = self.call(self.robot.proxy(MOTION), "getPosition", CAMERA_FRAMES[camera], frame, True)
+        x, y, z, wx, wy, wz = map(float, position)
+        return x, y, z, wx, wy, wz
+
+    def _lens(self, camera: int) -> Lens:
+        if self._lenses is None:
+            self._lenses = {}
+        key = (self.robot.connection.generation, camera)  # behind a new connection is another robot perhaps
+        if key not in self._lenses:
+            proxy = self.robot.proxy(VIDEO)
+            methods = ("getHorizontalFOV", "getVerticalFOV")
+            self._lenses[key] = Lens(*(float(self.call(proxy, method, camera)) for method in methods))
+        return self._lenses[key]
+
+    def _region(self, camera: int, sight: Sight) -> Region:
+        """Where a sight is in the picture, as the robot itself has it: angles of others are not all geometry's."""
+        angles = [sight.alpha, sight.beta, sight.size_x, sight.size_y]
+        numbers = self.call(self.robot.proxy(VIDEO), "getImageInfoFromAngularInfo", camera, angles)
+        return Region(*map(float, numbers))
+
+    @contextmanager
+    def _camera(self, module: str, wanted: int | None) -> Iterator[int]:
+        """Have an extractor look through a camera during a block; who had it look through another gets that back."""
+        owner = module
+        try:
+            now = int(self.call(self.robot.proxy(module), "getActiveCamera"))
+        except UnknownMethod:  # it looks through the robot's active camera
+            owner = VIDEO
+            now = int(self.call(self.robot.proxy(VIDEO), "getActiveCamera"))
+        camera = CAMERAS[self.active_camera] if wanted is None else wanted
+        if camera == now:
+            yield now
+            return
+        others = self.others_of(module)
+        if others:
+            if wanted is None:
+                yield now
+                return
+            raise InUse(module, others, f"looks through {CAMERA_FRAMES[now]}")
+        if self.begin(owner, "setActiveCamera", [camera], "setActiveCamera", now) is False:
+            raise NaoError(f"{owner} cannot look through {CAMERA_FRAMES[camera]}")
+        proxy = self.robot.proxy(owner)
+        with self.ended_by(lambda: self.call_now(proxy, "setActiveCamera", now), f"{owner} keeps its camera"):
+            yield camera
+
+
+class InUse(NaoError):
+    """An extractor works for others, and what a function needs would disturb them.
+
+    Attributes:
+        module: NAOqi module.
+        others: Who it works for.
+    """
+
+    def __init__(self, module: str, others: Sequence[str], how: str) -> None:
+        """Compose the text.
+
+        Args:
+            module: NAOqi module.
+            others: Who it works for.
+            how: What it does for them that would have to change.
+        """
+        super().__init__(f"{module} {how} for {', '.join(others)}: it cannot be changed while they need it")
+        self.module = module
+        self.others = list(others)
+
+
+def timeout_of(timeout: float) -> float:
+    """How long a function waits, s."""
+    return timeout or DEFAULT_TIMEOUT
+
+
+def _unnamed(sight: Sight) -> Sight:
+
+    return replace(sight, name="")
+
+
+def _size(resolution: int) -> tuple[int, int]:
+    for number, width, height in RESOLUTIONS.values():
+        if number == resolution:
+            return width, height
+    raise ValueError(f"no resolution {resolution} is known")

@@ -1,0 +1,266 @@
+"""What the events of the robot's vision say, in angles of the camera. Pure.
+
+Angles are NAOqi's: alpha is positive to the left of the camera's axis, beta positive below it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Tuple
+
+BALL, FACE, LANDMARK, CODE, MOVEMENT = "ball", "face", "landmark", "code", "movement"
+
+CAMERA_FRAMES = ("CameraTop", "CameraBottom")
+"""In the order of NAOqi's numbers."""
+
+Pose = Tuple[float, float, float, float, float, float]
+"""NAOqi's Position6D: m and rad about X, Y, Z, Z turned about last."""
+
+
+class Lens(NamedTuple):
+    """Field of view of a camera, rad: horizontal and vertical."""
+
+    width: float
+    height: float
+
+
+class Region(NamedTuple):
+    """Part of a picture, in shares of its width and height: centre from the upper left corner, extent."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Sight:
+    """Something in a picture.
+
+    Attributes:
+        kind: ball, face, landmark, code or movement.
+        name: Whose face, the number of a landmark, the text of a code; empty if it has none or nobody knows.
+        key: What it is recognised by in the next picture.
+        confidence: 0..1.
+        alpha: rad, its centre.
+        beta: rad, its centre.
+        size_x: rad, its whole width.
+        size_y: rad, its whole height.
+        heading: rad, how it is turned in the picture, anticlockwise.
+        region: Where it is in the picture, if the robot tells that itself.
+    """
+
+    kind: str
+    name: str
+    key: str
+    confidence: float
+    alpha: float
+    beta: float
+    size_x: float
+    size_y: float
+    heading: float = 0.0
+    region: Region | None = None
+
+
+@dataclass(frozen=True)
+class Look:
+    """What an event says about a picture.
+
+    Attributes:
+        time: Robot's time of the picture, s; None if it is not told.
+        camera: Index of the camera; None if it is not told.
+        in_torso: Where the camera was in the torso frame; None if it is not told.
+        in_robot: Where it was in NAOqi's FRAME_ROBOT; None if it is not told.
+        sights: What is in it.
+    """
+
+    time: float | None
+    camera: int | None
+    in_torso: Pose | None
+    in_robot: Pose | None
+    sights: tuple[Sight, ...]
+
+
+NOTHING = Look(None, None, None, None, ())
+
+
+def ball_look(value: Any) -> Look:
+    """A picture with a ball, from redBallDetected.
+
+    Args:
+        value: [[s, us], [alpha, beta, radius, radius], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
+
+    Raises:
+        ValueError: If the value is something else.
+    """
+    return _read(value, "red ball", _ball)
+
+
+def landmark_look(value: Any) -> Look:
+    """A picture with landmarks, from LandmarkDetected.
+
+    Args:
+        value: [[s, us], [[[1, alpha, beta, width, height, heading], [number]], ...], camera in the torso, camera in
+            FRAME_ROBOT, camera]; rad.
+
+    Raises:
+        ValueError: If the value is something else.
+    """
+    return _read(value, "landmarks", _landmarks)
+
+
+def face_look(value: Any) -> Look:
+    """A picture with faces, from FaceDetected.
+
+    Who was recognised for some time already and has no name in this picture keeps it, if the face is the only one.
+
+    Args:
+        value: [[s, us], [[[0, alpha, beta, width, height], [id, score, name, ...]], ..., recognised for some time],
+            camera in the torso, camera in FRAME_ROBOT, camera]; rad.
+
+    Raises:
+        ValueError: If the value is something else.
+    """
+    return _read(value, "faces", _faces)
+
+
+def movement_look(value: Any) -> Look:
+    """A picture with movements, from the key MovementDetection/MovementInfo.
+
+    Args:
+        value: [[s, us], [[[alpha, beta], [left, top, width, height], share of the pixels, ...], ...], camera in the
+            torso, camera in FRAME_ROBOT, camera]; rad.
+
+    Raises:
+        ValueError: If the value is something else.
+    """
+    return _read(value, "movements", _movements)
+
+
+def code_sights(value: Any, width: int, height: int, lens: Lens) -> tuple[Sight, ...]:
+    """Codes, from BarcodeReader/BarcodeDetected.
+
+    Args:
+        value: [[text, [[x, y], [x, y], [x, y], [x, y]]], ...]: corners in pixels, around the code from its upper left.
+        width: Of the picture, pixels.
+        height: Of the picture, pixels.
+        lens: Field of view of the camera.
+
+    Raises:
+        ValueError: If the value is something else.
+    """
+    try:
+        return tuple(
+            _code(text, [_finite(corner) for corner in corners], (width, height), lens) for text, corners, *_ in value
+        )
+    except (TypeError, ValueError, IndexError) as error:
+        raise ValueError(f"no codes that were read: {value!r}") from error
+
+
+def _read(value: Any, what: str, read: Any) -> Look:
+    if not value:
+        return NOTHING
+    try:
+        (seconds, microseconds), content, in_torso, in_robot, camera, *_ = value
+        return Look(
+            float(seconds) + 1e-6 * float(microseconds),
+            _camera(camera),
+            _pose(in_torso),
+            _pose(in_robot),
+            tuple(read(content)),
+        )
+    except (TypeError, ValueError, IndexError) as error:
+        raise ValueError(f"no {what} that were detected: {value!r}") from error
+
+
+def _camera(camera: Any) -> int:
+    index = CAMERA_FRAMES.index(camera) if isinstance(camera, str) else int(camera)
+    if not 0 <= index < len(CAMERA_FRAMES):
+        raise ValueError(f"no camera {camera!r}")
+    return index
+
+
+def _pose(values: Sequence[float]) -> Pose:
+    x, y, z, wx, wy, wz = _finite(values)
+    return x, y, z, wx, wy, wz
+
+
+def _finite(values: Sequence[Any]) -> list[float]:
+    numbers = [float(value) for value in values]
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError(f"{numbers} are not finite")
+    return numbers
+
+
+def _ball(content: Any) -> list[Sight]:
+    alpha, beta, radius_x, radius_y = _finite(content)
+    return [Sight(BALL, "", BALL, 1.0, alpha, beta, 2.0 * radius_x, 2.0 * radius_y)]
+
+
+def _landmarks(content: Any) -> list[Sight]:
+    sights = []
+    for shape, (number, *_) in content:
+        _, alpha, beta, width, height, *heading = _finite(shape)
+        turn = heading[0] if heading else 0.0
+        name = str(int(number))
+        sights.append(Sight(LANDMARK, name, name, 1.0, alpha, beta, width, height, turn))
+    return sights
+
+
+def _faces(content: Any) -> list[Sight]:
+    shapes = [entry for entry in content if len(entry) == 2 and isinstance(entry[0], (list, tuple))]
+    known = _recognised(content[-1]) if content and len(shapes) < len(content) else []
+    numbers = [int(extra[0]) for _, extra in shapes]
+    sights = []
+    for place, (shape, extra) in enumerate(shapes):
+        _, alpha, beta, width, height, *_ = _finite(shape)
+        score, name = float(extra[1]), str(extra[2])
+        if not name and len(shapes) == len(known) == 1:
+            name = known[0]
+        # Numbers tell faces apart from picture to picture, unless the robot gives all the same.
+        key = f"#{numbers[place]}" if numbers.count(numbers[place]) == 1 else name or f"face {place}"
+        sights.append(Sight(FACE, name, key, min(max(score, 0.0), 1.0), alpha, beta, width, height))
+    return sights
+
+
+def _recognised(entry: Any) -> list[str]:
+    """Names in TimeFilteredRecoInfo: [2, [name]] or [3, [name, ...]]; there are none in [] and [4]."""
+    if len(entry) == 2 and entry[0] in (2, 3):
+        return [str(name) for name in entry[1]]
+    return []
+
+
+def _movements(content: Any) -> list[Sight]:
+    sights = []
+    for place, (centre, region, share, *_) in enumerate(content):
+        alpha, beta = _finite(centre)
+        *_, width, height = _finite(region)
+        confidence = min(max(float(share), 0.0), 1.0)
+        sights.append(Sight(MOVEMENT, "", f"{place}", confidence, alpha, beta, abs(width), abs(height)))
+    return sights
+
+
+def _code(text: Any, corners: list[list[float]], picture: tuple[int, int], lens: Lens) -> Sight:
+    if not isinstance(text, str) or len(corners) != 4 or any(len(corner) != 2 for corner in corners):
+        raise ValueError(f"{text!r} with {len(corners)} corners is no code")
+    xs, ys = [x / picture[0] for x, _ in corners], [y / picture[1] for _, y in corners]
+    region = Region((max(xs) + min(xs)) / 2.0, (max(ys) + min(ys)) / 2.0, max(xs) - min(xs), max(ys) - min(ys))
+    # In units of the focal length: X right, Y down.
+    across, down = 2.0 * math.tan(lens.width / 2.0), 2.0 * math.tan(lens.height / 2.0)
+    plane = [((x - 0.5) * across, (y - 0.5) * down) for x, y in zip(xs, ys)]
+    upper = (plane[1][0] - plane[0][0], plane[1][1] - plane[0][1])
+    sides = [math.dist(plane[a], plane[b]) for a, b in ((0, 1), (3, 2), (0, 3), (1, 2))]
+    return Sight(
+        CODE,
+        text,
+        text,
+        1.0,
+        math.atan((0.5 - region.x) * across),
+        math.atan((region.y - 0.5) * down),
+        2.0 * math.atan((sides[0] + sides[1]) / 4.0),
+        2.0 * math.atan((sides[2] + sides[3]) / 4.0),
+        math.atan2(-upper[1], upper[0]),
+        region,
+    )

@@ -1,0 +1,184 @@
+"""Where in space is what a camera sees: from the place in the picture, the camera's pose, and the real size. Pure.
+
+Camera frames are NAOqi's here: X along the axis, Y left, Z up. Optical frames have X right, Y down, Z along the axis.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+from typing import Tuple
+
+from .audio_in_events import turned
+from .vision_detect_events import BALL, CODE, FACE, LANDMARK, Lens, Pose, Region, Sight
+
+Vector = Tuple[float, float, float]
+
+DEFAULT_SIZES = {BALL: 0.03, LANDMARK: 0.092, FACE: 0.16}
+"""m: a ball's radius, the diameter of a landmark's disc, the width of a head; of the rest it is not known."""
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """Something that was seen, and where it is.
+
+    Attributes:
+        sight: What is in the picture.
+        camera: Index of the camera.
+        time: ROS time of the picture, s.
+        region: Where it is in the picture.
+        distance: m, from the camera to its centre; None if its size is not known.
+        in_camera: m, in the camera's frame; 1 m away without a distance.
+        in_torso: m, in the torso frame.
+        in_robot: m, in NAOqi's FRAME_ROBOT.
+        camera_in_robot: m, where the camera was in FRAME_ROBOT.
+        looks: In how many pictures it was seen.
+    """
+
+    sight: Sight
+    camera: int
+    time: float
+    region: Region
+    distance: float | None
+    in_camera: Vector
+    in_torso: Vector
+    in_robot: Vector
+    camera_in_robot: Vector
+    looks: int = 1
+
+    @property
+    def label(self) -> str:
+        """What it is called: its name, else its kind."""
+        return self.sight.name or self.sight.kind
+
+    @property
+    def in_optical(self) -> Vector:
+        """Where it is in the camera's optical frame, m."""
+        x, y, z = self.in_camera
+        return -y, -z, x
+
+
+def located(
+    sight: Sight, camera: int, time: float, region: Region, lens: Lens, size: float, in_torso: Pose, in_robot: Pose
+) -> Sighting:
+    """Find where in space a sight is.
+
+    Args:
+        sight: What is seen.
+        camera: Index of the camera.
+        time: ROS time of the picture, s.
+        region: Where it is in the picture.
+        lens: The camera's field of view.
+        size: Real size, m: a ball's radius, else its width; 0 if it is not known.
+        in_torso: The camera's pose in the torso frame.
+        in_robot: The camera's pose in FRAME_ROBOT.
+    """
+    across, down = 2.0 * math.tan(lens.width / 2.0), 2.0 * math.tan(lens.height / 2.0)
+    ray = (1.0, (0.5 - region.x) * across, (0.5 - region.y) * down)
+    stretch = math.hypot(*ray)
+    # In units of the focal length.
+    width, height = region.width * across, region.height * down
+    distance = None
+    if size > 0.0 and sight.size_x > 0.0 and sight.size_y > 0.0:
+        if sight.kind == BALL:  # its size is the angle in which it is seen, wherever in the picture
+            distance = size / math.sin((sight.size_x + sight.size_y) / 4.0)
+        else:
+            distance = stretch * size / _seen_width(sight, width, height)
+    scale = (1.0 if distance is None else distance) / stretch
+    place = (ray[0] * scale, ray[1] * scale, ray[2] * scale)
+    return Sighting(
+        sight,
+        camera,
+        time,
+        region,
+        distance,
+        place,
+        moved(place, in_torso),
+        moved(place, in_robot),
+        (in_robot[0], in_robot[1], in_robot[2]),
+    )
+
+
+def _seen_width(sight: Sight, width: float, height: float) -> float:
+    if sight.kind == LANDMARK:
+        return max(width, height)  # a disc that is seen from the side is narrower one way only
+    if sight.kind == CODE:
+        return 2.0 * math.tan(sight.size_x / 2.0)  # it may be turned in the picture: its region is larger
+    return width
+
+
+def moved(point: Vector, pose: Pose) -> Vector:
+    """A point of a frame, in the frame that its pose is in; m."""
+    x, y, z = turned(point, pose[3:])
+    return x + pose[0], y + pose[1], z + pose[2]
+
+
+def ros_time(robot_time: float | None, now: float) -> float:
+    """ROS time of a picture, s.
+
+    The robot's clock counts if it goes with ROS time, as it does in simulated time and where clocks are synchronised.
+    A clock that is far off says nothing: then it is now.
+
+    Args:
+        robot_time: s; None if it is not known.
+        now: ROS time, s.
+    """
+    if robot_time is None or not 0.0 <= now - robot_time <= CLOCKS_AGREE:
+        return now
+    return robot_time
+
+
+CLOCKS_AGREE = 5.0
+"""s that a picture may be old; more is another clock."""
+
+
+def merged(pictures: Sequence[Sequence[Sighting]]) -> list[Sighting]:
+    """What several pictures show, each thing once: the median of all numbers, the name that it had most often.
+
+    Args:
+        pictures: What each shows, the oldest first.
+
+    Returns:
+        In the order in which they were seen first; time is that of the last picture.
+    """
+    things: dict[tuple[str, str], list[Sighting]] = {}
+    for picture in pictures:
+        for sighting in picture:
+            things.setdefault((sighting.sight.kind, sighting.sight.key), []).append(sighting)
+    return [_middle(sightings) for sightings in things.values()]
+
+
+def _middle(sightings: list[Sighting]) -> Sighting:
+    last = sightings[-1]
+    if len(sightings) == 1:
+        return last
+    names = Counter(s.sight.name for s in sightings if s.sight.name)
+    name = names.most_common(1)[0][0] if names else ""
+    numbers = ("confidence", "alpha", "beta", "size_x", "size_y", "heading")
+    sight = replace(
+        last.sight, name=name, **{field: median(getattr(s.sight, field) for s in sightings) for field in numbers}
+    )
+    distances = [s.distance for s in sightings if s.distance is not None]
+    return replace(
+        last,
+        sight=sight,
+        region=Region(*_medians([s.region for s in sightings])),
+        distance=median(distances) if distances else None,
+        in_camera=_vector([s.in_camera for s in sightings]),
+        in_torso=_vector([s.in_torso for s in sightings]),
+        in_robot=_vector([s.in_robot for s in sightings]),
+        camera_in_robot=_vector([s.camera_in_robot for s in sightings]),
+        looks=len(sightings),
+    )
+
+
+def _medians(rows: Sequence[Sequence[float]]) -> list[float]:
+    return [median(column) for column in zip(*rows)]
+
+
+def _vector(points: Sequence[Vector]) -> Vector:
+    x, y, z = _medians(points)
+    return x, y, z

@@ -1,0 +1,96 @@
+"""Functions that see faces, and learn whose they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from .function_chain import checked_by
+from .suggestion import did_you_mean
+from .vision_detect import DetectionFunctions
+from .vision_detect_base import DETECTORS, Wanted, timeout_of
+from .vision_detect_checks import camera_index, check_detection, check_learning, check_name, require_name
+from .vision_detect_events import FACE
+
+FACES = DETECTORS[FACE].module
+
+
+class FaceFunctions(DetectionFunctions):
+    """Faces. Parameters are fields of VisionFunction. What is learnt the robot keeps."""
+
+    def face_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "detectFaces": self.detect_faces,
+            "learnFace": self.learn_face,
+            "reLearnFace": self.relearn_face,
+            "forgetFace": self.forget_face,
+            "forgetPerson": self.forget_face,
+            "forgetAllFaces": self.forget_all_faces,
+            "clearDatabase": self.forget_all_faces,
+            "listFaces": self.list_faces,
+            "getLearnedFaces": self.list_faces,
+            "getLearnedFacesList": self.list_faces,
+        }
+
+    @checked_by(check_detection)
+    def detect_faces(
+        self, str_param: str, camera: str, timeout: float, confidence: float, count: int, size: float
+    ) -> list[str]:
+        """See faces; answers whose they are, "face" for each that nobody knows."""
+        wanted = Wanted(FACE, str_param.strip(), confidence, size, camera_index(camera))
+        return self.detect(wanted, timeout, count)
+
+    @checked_by(check_learning)
+    def learn_face(self, str_param: str, camera: str, timeout: float) -> list[bool]:
+        """Learn the face that is in view under a name; answers whether there was one, alone, that could be learnt."""
+        name = require_name(str_param)
+        if name in self.list_faces():
+            raise NaoError(f"the face of {name!r} is learnt already: reLearnFace adds to it, forgetFace forgets it")
+        return self._learn("learnFace", name, camera, timeout)
+
+    @checked_by(check_learning)
+    def relearn_face(self, str_param: str, camera: str, timeout: float) -> list[bool]:
+        """Add the face that is in view to what is known of a person; answers as learnFace does."""
+        name = require_name(str_param)
+        self._require_known(name)
+        return self._learn("reLearnFace", name, camera, timeout)
+
+    @checked_by(check_name)
+    def forget_face(self, str_param: str) -> None:
+        """Forget a person's face."""
+        name = require_name(str_param)
+        self._require_known(name)
+        if not self.call(self.robot.proxy(FACES), "forgetPerson", name):
+            raise NaoError(f"{FACES} did not forget the face of {name!r}")
+
+    def forget_all_faces(self) -> None:
+        """Forget all faces."""
+        if not self.call(self.robot.proxy(FACES), "clearDatabase"):
+            raise NaoError(f"{FACES} did not forget the faces")
+
+    def list_faces(self) -> list[str]:
+        """Whose faces are learnt."""
+        return [str(name) for name in self.call(self.robot.proxy(FACES), "getLearnedFacesList")]
+
+    def _require_known(self, name: str) -> None:
+        known = self.list_faces()
+        if name not in known:
+            learnt = f"learnt are {', '.join(known)}" if known else "none is learnt"
+            raise NaoError(f"no face of {name!r} is learnt{did_you_mean(name, known)}: {learnt}")
+
+    def _learn(self, method: str, name: str, camera: str, timeout: float) -> list[bool]:
+        proxy = self.robot.proxy(FACES)
+        self.tell_seen("looking")
+        with self.watching(Wanted(FACE, camera=camera_index(camera))) as watch:
+            for sightings in watch.until(self.clock.now() + timeout_of(timeout)):
+                self.tell_seen("looking", sightings)
+                # Of several the robot could not tell which is meant.
+                if len(sightings) == 1 and self.call(proxy, method, name):
+                    (face,) = sightings
+                    self.note([replace(face, sight=replace(face.sight, name=name))])
+                    return [True]
+        return [False]

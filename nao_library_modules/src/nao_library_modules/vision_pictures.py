@@ -1,0 +1,190 @@
+"""Pictures of camera messages as arrays, their size, and their form in a file. No ROS: messages are only read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import cv2
+import numpy as np
+
+from naoqi.errors import NaoError
+
+DEFAULT_QUALITY = 95
+PICTURE_TYPES = ("png", "jpg", "bmp", "tiff", "webp")
+LARGEST = 8192
+"""Pixels of a side; no camera has more."""
+
+Picture = np.ndarray
+"""(height, width, 3) uint8, blue, green, red; or (height, width) uint16 where a camera is grey and that fine."""
+
+
+class BadPicture(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """A message holds no picture that can be read.
+
+    Attributes:
+        encoding: What the message says it holds.
+    """
+
+    def __init__(self, encoding: str, problem: str) -> None:
+        """Compose the text.
+
+        Args:
+            encoding: What the message says it holds.
+            problem: What is wrong.
+        """
+        super().__init__(f"a picture of encoding {encoding!r} cannot be read: {problem}")
+        self.encoding = encoding
+
+
+def _as_is(rows: np.ndarray) -> Picture:
+    return rows
+
+
+def _converted(code: int) -> Callable[[np.ndarray], Picture]:
+    return lambda rows: cv2.cvtColor(rows, code)
+
+
+# Encoding of sensor_msgs/Image -> bytes a pixel, layers (0: none of their own), and how it becomes a picture.
+ENCODINGS: dict[str, tuple[int, int, Callable[[np.ndarray], Picture]]] = {
+    "bgr8": (3, 3, _as_is),
+    "rgb8": (3, 3, _converted(cv2.COLOR_RGB2BGR)),
+    "bgra8": (4, 4, _converted(cv2.COLOR_BGRA2BGR)),
+    "rgba8": (4, 4, _converted(cv2.COLOR_RGBA2BGR)),
+    "mono8": (1, 0, _converted(cv2.COLOR_GRAY2BGR)),
+    "mono16": (2, 0, _as_is),
+    "yuv422": (2, 2, _converted(cv2.COLOR_YUV2BGR_UYVY)),
+    "yuv422_yuy2": (2, 2, _converted(cv2.COLOR_YUV2BGR_YUY2)),
+    # OpenCV names the pattern by its second row, ROS by the first.
+    "bayer_rggb8": (1, 0, _converted(cv2.COLOR_BayerBG2BGR)),
+    "bayer_bggr8": (1, 0, _converted(cv2.COLOR_BayerRG2BGR)),
+    "bayer_gbrg8": (1, 0, _converted(cv2.COLOR_BayerGR2BGR)),
+    "bayer_grbg8": (1, 0, _converted(cv2.COLOR_BayerGB2BGR)),
+}
+ENCODINGS.update({
+    "8UC3": ENCODINGS["bgr8"],
+    "8UC4": ENCODINGS["bgra8"],
+    "8UC1": ENCODINGS["mono8"],
+    "16UC1": ENCODINGS["mono16"],
+    "uyvy": ENCODINGS["yuv422"],
+    "yuyv": ENCODINGS["yuv422_yuy2"],
+})  # fmt: skip
+
+
+def is_compressed(message: Any) -> bool:
+    """Whether a message is a sensor_msgs/CompressedImage."""
+    return hasattr(message, "format")
+
+
+def encoding_of(message: Any) -> str:
+    """What a message says its pixels are: bgr8, ...; or how it is compressed: jpeg, png, ..."""
+    if not is_compressed(message):
+        return message.encoding
+    return message.format.split(";")[-1].replace("compressed", " ").split()[0] if message.format.strip() else "jpeg"
+
+
+def picture_of(message: Any) -> Picture:
+    """The picture of a camera's message.
+
+    Args:
+        message: sensor_msgs/Image or sensor_msgs/CompressedImage.
+
+    Raises:
+        BadPicture: If it holds none that can be read.
+    """
+    if is_compressed(message):
+        return _decompressed(message)
+    if message.encoding not in ENCODINGS:
+        raise BadPicture(message.encoding, f"known are {', '.join(ENCODINGS)}")
+    width, height, step = message.width, message.height, message.step
+    if not (0 < width <= LARGEST and 0 < height <= LARGEST):
+        raise BadPicture(message.encoding, f"it is {width}x{height} pixels; up to {LARGEST} a side are allowed")
+    size, layers, convert = ENCODINGS[message.encoding]
+    step = step or width * size
+    if step < width * size or len(message.data) < step * height:
+        there = f"{len(message.data)} bytes in rows of {step}"
+        raise BadPicture(message.encoding, f"{width}x{height} pixels need {width * size * height}, there are {there}")
+    if layers == 2 and width % 2:
+        raise BadPicture(message.encoding, f"{width} pixels a row are no pairs")
+    rows = np.frombuffer(message.data, np.uint8, step * height).reshape(height, step)[:, : width * size]
+    if size == 2 and not layers:
+        fine = np.ascontiguousarray(rows).view(">u2" if message.is_bigendian else "<u2")
+        return fine.astype(np.uint16)
+    if layers:
+        rows = np.ascontiguousarray(rows).reshape(height, width, layers)
+    return convert(rows)
+
+
+def _decompressed(message: Any) -> Picture:
+    data = np.frombuffer(message.data, np.uint8)
+    try:
+        picture = cv2.imdecode(data, cv2.IMREAD_COLOR) if len(data) else None
+    except cv2.error as error:
+        raise BadPicture(encoding_of(message), str(error)) from error
+    if picture is None:
+        raise BadPicture(encoding_of(message), f"its {len(data)} bytes are no compressed picture")
+    return picture
+
+
+def visible(picture: Picture) -> Picture:
+    """A picture with three layers of 8 bits, as videos and most files have them."""
+    if picture.dtype == np.uint16:
+        picture = (picture >> 8).astype(np.uint8)
+    return picture if picture.ndim == 3 else cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR)
+
+
+def wanted_size(size: tuple[int, int], width: int, height: int) -> tuple[int, int]:
+    """Size of a picture that was asked for.
+
+    Args:
+        size: Its own, (width, height) in pixels.
+        width: Pixels; 0: in proportion to the height, or as it is.
+        height: Pixels, likewise.
+    """
+    own_width, own_height = size
+    if not width and not height:
+        return size
+    return (
+        width or max(1, round(height * own_width / own_height)),
+        height or max(1, round(width * own_height / own_width)),
+    )
+
+
+def scaled(picture: Picture, width: int, height: int) -> Picture:
+    """A picture in another size, as `wanted_size` has it."""
+    size = (picture.shape[1], picture.shape[0])
+    wanted = wanted_size(size, width, height)
+    if wanted == size:
+        return picture
+    shrinks = wanted[0] * wanted[1] < size[0] * size[1]
+    return cv2.resize(picture, wanted, interpolation=cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR)
+
+
+def fitted(picture: Picture, width: int, height: int) -> Picture:
+    """A picture in another size, nothing stretched: what is left over is black."""
+    own_height, own_width = picture.shape[:2]
+    if (own_width, own_height) == (width, height):
+        return picture
+    share = min(width / own_width, height / own_height)
+    inner = scaled(picture, max(1, round(own_width * share)), max(1, round(own_height * share)))
+    left, top = (width - inner.shape[1]) // 2, (height - inner.shape[0]) // 2
+    frame = np.zeros((height, width, *picture.shape[2:]), picture.dtype)
+    frame[top : top + inner.shape[0], left : left + inner.shape[1]] = inner
+    return frame
+
+
+def encoded(picture: Picture, file_type: str, quality: int = 0) -> bytes:
+    """A picture as a file holds it.
+
+    Args:
+        picture: See `Picture`; 16 bits are kept where the type can.
+        file_type: One of PICTURE_TYPES.
+        quality: 1..100, of jpg and webp; 0: the default.
+    """
+    if file_type not in ("png", "tiff"):
+        picture = visible(picture)
+    parameters = {"jpg": [cv2.IMWRITE_JPEG_QUALITY], "webp": [cv2.IMWRITE_WEBP_QUALITY]}.get(file_type, [])
+    if parameters:
+        parameters = [*parameters, quality or DEFAULT_QUALITY]
+    _, data = cv2.imencode(f".{file_type}", picture, parameters)
+    return data.tobytes()

@@ -1,0 +1,103 @@
+"""A stream: frames of one topic on another, in another size or rate."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sensor_msgs.msg import CompressedImage, Image
+
+from nao_library_msgs.msg import VisionThread
+
+from .vision_pictures import encoded, encoding_of, is_compressed, picture_of, scaled, visible, wanted_size
+from .vision_thread import Frame, FrameThread
+
+COMPRESSED = "/compressed"
+"""Topics whose name ends so have pictures as JPEG, as image_transport's do."""
+
+
+class Stream(FrameThread):
+    """Passes frames on to a topic.
+
+    Frames whose form does not change are passed on as they came. Those that do are worked on only while somebody
+    listens.
+
+    Attributes:
+        topic_out: Where they go.
+    """
+
+    kind = "stream"
+
+    def __init__(
+        self, ident: str, topic: str, rate: float, topics: Any, clock: Any, topic_out: str, width: int, height: int
+    ) -> None:
+        """Make it ready.
+
+        Args:
+            ident: The user's name for it.
+            topic: Where frames come from.
+            rate: Frames a second at most; 0: all.
+            topics: Gives subscriptions and publishers.
+            clock: ROS time.
+            topic_out: Where they go; as JPEG if its name ends in /compressed.
+            width: Pixels, as `vision_pictures.wanted_size` takes it.
+            height: Pixels, likewise.
+        """
+        super().__init__(ident, topic, rate, topics, clock)
+        self.topic_out = topic_out
+        self._wanted = (width, height)
+        self._compress = topic_out.endswith(COMPRESSED)
+        self._publisher: Any = None
+
+    def _begin(self) -> None:
+        self._publisher = self._topics.publisher(self.topic_out, CompressedImage if self._compress else Image)
+
+    def _handle(self, frame: Frame) -> tuple[int, int] | None:
+        message = frame.message
+        if self._as_it_came(message):
+            self._publisher.publish(message)
+            return (0, 0) if is_compressed(message) else (message.width, message.height)
+        if not self._publisher.is_heard():
+            return self._size if is_compressed(message) else wanted_size((message.width, message.height), *self._wanted)
+        picture = scaled(picture_of(message), *self._wanted)
+        self._publisher.publish(self._message(message, picture))
+        return picture.shape[1], picture.shape[0]
+
+    def _as_it_came(self, message: Any) -> bool:
+        if is_compressed(message) != self._compress:
+            return False
+        if self._compress:
+            return self._wanted == (0, 0)
+        size = (message.width, message.height)
+        return 0 in size or wanted_size(size, *self._wanted) == size
+
+    def _message(self, message: Any, picture: Any) -> Any:
+        if self._compress:
+            original = "bgr8" if is_compressed(message) else message.encoding
+            return CompressedImage(
+                header=message.header, format=f"{original}; jpeg compressed bgr8", data=encoded(picture, "jpg")
+            )
+        if picture.ndim == 3 and encoding_of(message) == "mono8":
+            picture = picture[:, :, 0].copy()
+        encoding = {2: "mono8", 3: "bgr8"}[picture.ndim]
+        if encoding == "mono8" and picture.dtype.itemsize == 2:
+            encoding = "mono16"
+        if encoding == "bgr8":
+            picture = visible(picture)
+        height, width = picture.shape[:2]
+        return Image(
+            header=message.header,
+            height=height,
+            width=width,
+            encoding=encoding,
+            is_bigendian=0,
+            step=picture.nbytes // height,
+            data=picture.tobytes(),
+        )
+
+    def _end(self) -> None:
+        if self._publisher is not None:
+            self._publisher.close()
+            self._publisher = None
+
+    def _fill(self, report: VisionThread) -> None:
+        report.topic_out = self.topic_out

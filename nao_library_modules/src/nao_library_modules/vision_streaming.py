@@ -1,0 +1,156 @@
+"""Functions that begin and end streams and recordings, which outlive the goals that began them."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Any
+
+from .errors import BadGoal
+from .function_chain import checked_by
+from .vision_base import VisionBase
+from .vision_checks import (
+    check_delete,
+    check_list,
+    check_new_recording,
+    check_new_stream,
+    check_start,
+    check_start_recording,
+    check_stop,
+    check_stop_recording,
+    check_subscribe,
+    check_unsubscribe,
+    topic_out_of,
+)
+from .vision_recorder import Recording, VideoWish
+from .vision_stream import Stream
+from .vision_threads import AnyThread
+from .vision_video import VIDEO_TYPES, codec_name
+
+log = logging.getLogger(__name__)
+
+
+class StreamingFunctions(VisionBase):
+    """Streams and recordings. Parameters are fields of VisionFunction."""
+
+    def streaming_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "subscribe": self.subscribe,
+            "unsubscribe": self.unsubscribe,
+            "startRecording": self.start_recording,
+            "stopRecording": self.stop_recording,
+            "createStream": self.create_stream,
+            "createRecording": self.create_recording,
+            "startThread": self.start_thread,
+            "stopThread": self.stop_thread,
+            "deleteThread": self.delete_thread,
+            "listThreads": self.list_threads,
+        }
+
+    @checked_by(check_subscribe)
+    def subscribe(
+        self, id: str, camera: str, topic: str, topic_out: str, rate: float, width: int, height: int
+    ) -> list[str]:
+        """Begin a stream, which goes on until it is stopped; answers its topic."""
+        answer = self.create_stream(id, camera, topic, topic_out, rate, width, height)
+        self.start_thread(id)
+        return answer
+
+    @checked_by(check_new_stream)
+    def create_stream(
+        self, id: str, camera: str, topic: str, topic_out: str, rate: float, width: int, height: int
+    ) -> list[str]:
+        """Make a stream ready; startThread begins it. Answers its topic."""
+        target = self.topics.resolved(topic_out_of(id, topic_out))
+        source = self.source(camera, topic)
+        if source == target:  # the active camera may be another one than at the check
+            raise BadGoal("topic_out", topic_out, "another topic", problem="frames come from there")
+        self.threads.add(Stream(id.strip(), source, rate, self.topics, self.clock, target, width, height))
+        return [target]
+
+    @checked_by(check_unsubscribe)
+    def unsubscribe(self, id: str) -> None:
+        """Stop a stream; it can be started again."""
+        self._stop(self.threads.get(id.strip()))
+
+    @checked_by(check_start_recording)
+    def start_recording(
+        self,
+        id: str,
+        str_param: str,
+        camera: str,
+        topic: str,
+        rate: float,
+        width: int,
+        height: int,
+        file_type: str,
+        codec: str,
+        overwrite: bool,
+    ) -> list[str]:
+        """Begin a recording, which goes on until it is stopped; answers its file."""
+        self.create_recording(id, str_param, camera, topic, rate, width, height, file_type, codec, overwrite)
+        return self.start_thread(id)
+
+    @checked_by(check_new_recording)
+    def create_recording(
+        self,
+        id: str,
+        str_param: str,
+        camera: str,
+        topic: str,
+        rate: float,
+        width: int,
+        height: int,
+        file_type: str,
+        codec: str,
+        overwrite: bool,
+    ) -> None:
+        """Make a recording ready; startThread begins it."""
+        kind = self.files.file_type(str_param, file_type, VIDEO_TYPES)
+        path = self.files.path(str_param, kind) if str_param.strip() else None
+        wish = VideoWish(path, kind, codec_name(codec, kind), width, height, overwrite)
+        source = self.source(camera, topic)
+        self.threads.add(Recording(id.strip(), source, rate, self.topics, self.clock, self.files, wish))
+
+    @checked_by(check_stop_recording)
+    def stop_recording(self, id: str) -> list[Any]:
+        """Stop a recording; answers file, frames and length (s)."""
+        thread = self.threads.get(id.strip())
+        self._stop(thread)
+        video = thread.video
+        return [video.path, video.frames, video.duration]
+
+    @checked_by(check_start)
+    def start_thread(self, id: str) -> list[str]:
+        """Start a stream or recording, also once more: a recording then makes a further file. Answers where it goes."""
+        thread = self.threads.get(id.strip())
+        thread.start()
+        report = thread.report()
+        return [report.path or report.topic_out]
+
+    @checked_by(check_stop)
+    def stop_thread(self, id: str) -> None:
+        """Stop a stream or recording; it can be started again."""
+        self._stop(self.threads.get(id.strip()))
+
+    @checked_by(check_delete)
+    def delete_thread(self, id: str) -> None:
+        """Stop a stream or recording, and forget it; files stay."""
+        thread = self.threads.get(id.strip())
+        if thread.runs:
+            self._stop(thread)
+        self.threads.remove(thread.ident)
+
+    @checked_by(check_list)
+    def list_threads(self, id: str) -> list[str]:
+        """How streams and recordings are, or the one that is named; answers their names."""
+        wanted = id.strip()
+        found = [thread.report() for thread in self.threads.known.values() if wanted in ("", thread.ident)]
+        self.taken.threads += found
+        return [report.id for report in found]
+
+    def _stop(self, thread: AnyThread) -> None:
+        thread.stop()
+        if isinstance(thread, Recording):
+            self.taken.recordings.append(thread.video)

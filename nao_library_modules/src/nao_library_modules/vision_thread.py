@@ -1,0 +1,301 @@
+"""A thread that takes frames of a camera one after the other: what streams and recordings have in common. No ROS."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from dataclasses import dataclass
+from typing import Any
+
+from nao_library_msgs.msg import VisionThread
+from naoqi.errors import NaoError
+
+from .errors import BadGoal
+from .vision_pictures import BadPicture
+from .vision_times import RateLimit, RateMeter
+
+log = logging.getLogger(__name__)
+
+MOST_FRAMES = 30
+"""That wait for their turn; of more the oldest go."""
+MOST_BYTES = 16 << 20
+"""Of pictures that wait; two always may."""
+STALLED_AFTER = 2.0
+"""s of ROS time without a frame."""
+SLOW_CAMERA = 5.0
+"""A camera with few frames a second stalls after so many of its periods."""
+LOOK_EVERY = 1.0
+"""s of wall-clock time between two looks whether frames still come."""
+END_LIMIT = 10.0
+"""s that the frames which wait may take when a thread is stopped."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A message of a camera.
+
+    Attributes:
+        message: sensor_msgs/Image or sensor_msgs/CompressedImage.
+        stamp: When it was taken, s; when it came, if the camera does not say.
+    """
+
+    message: Any
+    stamp: float
+
+
+def frame_of(message: Any, now: float) -> Frame:
+    """A message that came at a ROS time, in s."""
+    return Frame(message, message.header.stamp.to_sec() or now)
+
+
+class FrameThread:
+    """Takes the frames of a topic in a thread of its own, from its start to its stop, as often as it is started.
+
+    Threads: `_arrived` is called by the one that receives messages; the worker calls `_begin_frames` excepted all
+    hooks; the rest belongs to the thread that executes goals. The condition guards everything that they share.
+
+    Attributes:
+        ident: The user's name for it.
+        topic: Where frames come from.
+        kind: stream or recording.
+    """
+
+    kind = ""
+
+    def __init__(self, ident: str, topic: str, rate: float, topics: Any, clock: Any) -> None:
+        """Make it ready; nothing is received yet.
+
+        Args:
+            ident: The user's name for it.
+            topic: Where frames come from.
+            rate: Frames a second at most; 0: all.
+            topics: Gives subscriptions and publishers.
+            clock: ROS time.
+        """
+        self.ident = ident
+        self.topic = topic
+        self._rate = rate
+        self._topics = topics
+        self._clock = clock
+        self._changed = threading.Condition()
+        self._state = "ready"
+        self._worker: threading.Thread | None = None
+        self._subscription: Any = None
+        self._forget()
+
+    # To be filled in
+
+    def _begin(self) -> None:
+        """Open what frames go to. Called before the first one can come.
+
+        Raises:
+            NaoError: If that cannot be; then the thread does not start.
+        """
+
+    def _handle(self, frame: Frame) -> tuple[int, int] | None:
+        """Pass a frame on.
+
+        Returns:
+            Its width and height there; None if it was dropped.
+
+        Raises:
+            BadPicture: If it cannot be read; the next one may.
+            NaoError: If there can be no further one.
+        """
+        raise NotImplementedError
+
+    def _end(self) -> None:
+        """Close what frames went to.
+
+        Raises:
+            NaoError: If that fails.
+        """
+
+    def _fill(self, report: VisionThread) -> None:
+        """Add what only this kind has to tell."""
+
+    # Life
+
+    @property
+    def runs(self) -> bool:
+        """Whether it takes frames."""
+        with self._changed:
+            return self._state == "running"
+
+    def start(self) -> None:
+        """Take frames from now on.
+
+        Raises:
+            NaoError: If it runs already, or cannot.
+        """
+        if self.runs:
+            raise BadGoal(
+                "id", self.ident, "stop it first, or take another name", problem=f"{self.ident!r} runs already"
+            )
+        self._forget()
+        self._begin()
+        with self._changed:
+            self._state = "running"
+            self._began = self._clock.now()
+        self._worker = threading.Thread(target=self._work, name=f"{self.kind} {self.ident}", daemon=True)
+        self._worker.start()
+        try:
+            self._subscription = self._topics.subscribe(self.topic, self._arrived)
+        except NaoError:
+            self._state = "ready"
+            self._finish()
+            raise
+
+    def stop(self) -> None:
+        """Take no frames any more; those that have come are passed on first. No effect if it does not run."""
+        with self._changed:
+            was_running = self._state == "running"
+            if was_running:
+                self._state = "stopped"
+        self._finish()
+
+    def _finish(self) -> None:
+        """Unsubscribe, and wait for the worker's end."""
+        if self._subscription is not None:
+            self._subscription.close()
+            self._subscription = None
+        with self._changed:
+            self._ended = self._ended or self._clock.now()
+            self._changed.notify_all()
+        if self._worker is not None:
+            self._worker.join(END_LIMIT)
+            if self._worker.is_alive():
+                log.warning("%s %r has not ended after %g s", self.kind, self.ident, END_LIMIT)
+            self._worker = None
+
+    def report(self) -> VisionThread:
+        """What there is to tell about it now."""
+        now = self._clock.now()
+        with self._changed:
+            stalled = self._stalled(now)
+            state = self._state
+            if state == "running":
+                state = "stalled" if stalled else "running" if self._arrivals else "waiting"
+            report = VisionThread(
+                id=self.ident,
+                kind=self.kind,
+                state=state,
+                error=self._error,
+                topic=self.topic,
+                frames=self._frames,
+                dropped=self._dropped,
+                frame_rate=0.0 if stalled or self._state != "running" else self._meter.rate,
+                width=self._size[0],
+                height=self._size[1],
+                duration=max(0.0, (self._ended or now) - self._began) if self._began is not None else 0.0,
+            )
+        self._fill(report)
+        return report
+
+    # Frames
+
+    def _forget(self) -> None:
+        """Begin to count anew."""
+        self._queue: deque[Frame] = deque()
+        self._queued_bytes = 0
+        self._limit = RateLimit(self._rate)
+        self._meter = RateMeter()
+        self._arrivals = self._frames = self._dropped = 0
+        self._size = (0, 0)
+        self._error = ""
+        self._began: float | None = None
+        self._ended: float | None = None
+        self._last_arrival = 0.0
+        self._told_stalled = False
+
+    def _arrived(self, message: Any) -> None:
+        """Take a message; called from the thread that receives messages, so it does nothing but queue it."""
+        now = self._clock.now()
+        frame = frame_of(message, now)
+        with self._changed:
+            if self._state != "running":
+                return
+            self._arrivals += 1
+            self._last_arrival = now
+            if not self._limit.passes(frame.stamp):
+                return
+            self._queue.append(frame)
+            self._queued_bytes += len(message.data)
+            while len(self._queue) > MOST_FRAMES or (self._queued_bytes > MOST_BYTES and len(self._queue) > 2):
+                self._queued_bytes -= len(self._queue.popleft().message.data)
+                self._dropped += 1
+            self._changed.notify_all()
+
+    def _next(self) -> Frame | None:
+        """The frame whose turn it is; None when there will be no further one."""
+        while True:
+            with self._changed:
+                if not self._queue and self._state == "running":
+                    self._changed.wait(LOOK_EVERY)
+                if self._queue:
+                    frame = self._queue.popleft()
+                    self._queued_bytes -= len(frame.message.data)
+                    return frame
+                if self._state != "running":
+                    return None
+            self._look_whether_stalled()
+
+    def _work(self) -> None:
+        problem = ""
+        try:
+            for frame in iter(self._next, None):
+                self._pass_on(frame)
+        except NaoError as error:
+            problem = str(error)
+        except Exception as error:
+            log.exception("%s %r", self.kind, self.ident)
+            problem = f"unexpected error: {error!r}"
+        try:
+            self._end()
+        except NaoError as error:
+            problem = problem or str(error)
+        if problem:
+            log.error("%s %r ended: %s", self.kind, self.ident, problem)
+            with self._changed:
+                self._state, self._error = "failed", problem
+                self._ended = self._ended or self._clock.now()
+                self._queue.clear()
+            subscription = self._subscription  # `stop` may close it as well, which does no harm
+            if subscription is not None:
+                subscription.close()
+
+    def _pass_on(self, frame: Frame) -> None:
+        try:
+            size = self._handle(frame)
+        except BadPicture as error:
+            with self._changed:
+                is_new = self._error != str(error)
+                self._error = str(error)
+                self._dropped += 1
+            if is_new:
+                log.error("%s %r: %s", self.kind, self.ident, error)
+            return
+        with self._changed:
+            if size is None:
+                self._dropped += 1
+                return
+            self._error = ""
+            self._size = size
+            self._frames += 1
+            self._meter.count(frame.stamp)
+
+    def _stalled(self, now: float) -> bool:
+        """Whether frames have come and do not come any more; with the condition held."""
+        if not self._arrivals or self._state != "running":
+            return False
+        rate = self._meter.rate
+        return now - self._last_arrival > max(STALLED_AFTER, SLOW_CAMERA / rate if rate else 0.0)
+
+    def _look_whether_stalled(self) -> None:
+        with self._changed:
+            stalled = self._stalled(self._clock.now())
+            is_new = stalled != self._told_stalled
+            self._told_stalled = stalled
+        if is_new and stalled:
+            log.warning("%s %r: no frames come from %s any more", self.kind, self.ident, self.topic)

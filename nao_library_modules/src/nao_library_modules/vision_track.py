@@ -1,0 +1,172 @@
+"""Functions whose eyes follow: the head turns to a ball or a face, and looks for what is out of view."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from .function_chain import checked_by
+from .vision_detect_base import Wanted, Watch, timeout_of
+from .vision_detect_checks import camera_index, check_search, check_tracking, wanted_thing
+from .vision_detect_events import BALL, FACE
+from .vision_detect_space import Sighting, merged
+from .vision_track_head import HeadUse, Neck
+from .vision_track_plan import MIDDLE, off_axis, search_angles, the_one
+
+LOST = 0.7
+"""s without being seen after which it is lost: single pictures may show nothing."""
+GLANCE = 0.5
+"""s that the head rests where it looks for something."""
+SETTLING = 2.0
+"""s that lookFor gives the head to bring what it found into the middle of the picture."""
+SEARCH_TIMEOUT = 20.0
+"""s that lookFor looks, where a message leaves it to us: the whole way round takes about 15."""
+
+
+class TrackingFunctions(HeadUse):
+    """Following with the head. Parameters are fields of VisionFunction.
+
+    Attributes as in DetectionBase. The feedback tells what the robot does: looking (nothing yet), following, lost,
+    searching.
+    """
+
+    def tracking_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {"trackBall": self.track_ball, "trackFace": self.track_face, "lookFor": self.look_for}
+
+    @checked_by(check_tracking)
+    def track_ball(
+        self,
+        camera: str,
+        timeout: float,
+        confidence: float,
+        size: float,
+        duration: float,
+        search: bool,
+        speed: float,
+        revert: bool,
+    ) -> list[float]:
+        """Follow a red ball with the head; answers for how long it was in view, s."""
+        wanted = Wanted(BALL, "", confidence, size, camera_index(camera))
+        return self._track(wanted, timeout, duration, search, speed, revert)
+
+    @checked_by(check_tracking)
+    def track_face(
+        self,
+        str_param: str,
+        camera: str,
+        timeout: float,
+        confidence: float,
+        size: float,
+        duration: float,
+        search: bool,
+        speed: float,
+        revert: bool,
+    ) -> list[float]:
+        """Follow a face with the head, or only that of one person; answers for how long it was in view, s."""
+        wanted = Wanted(FACE, str_param.strip(), confidence, size, camera_index(camera))
+        return self._track(wanted, timeout, duration, search, speed, revert)
+
+    @checked_by(check_search)
+    def look_for(
+        self,
+        str_param: str,
+        camera: str,
+        timeout: float,
+        confidence: float,
+        count: int,
+        size: float,
+        speed: float,
+        revert: bool,
+    ) -> list[str]:
+        """Turn the head until something is in view, look at it, and tell where it is; nothing if it is not found."""
+        kind, name = wanted_thing(str_param)
+        wanted = Wanted(kind, name, confidence, size, camera_index(camera))
+        limit = timeout or SEARCH_TIMEOUT
+        pictures: list[list[Sighting]] = []
+        found: float | None = None
+        with self.head(speed, revert) as neck, self.watching(wanted) as watch:
+            chase = Chase(self, neck, watch, kind, search=True)
+            for sighting, at_limit in chase.sightings(self.clock.now() + limit, limit):
+                now = self.clock.now()
+                found = now if found is None else found
+                if off_axis(sighting) <= MIDDLE or at_limit or now - found > SETTLING:
+                    pictures.append([sighting])
+                    if len(pictures) >= max(count, 1):
+                        break
+        return self.note(merged(pictures))
+
+    def _track(
+        self, wanted: Wanted, timeout: float, duration: float, search: bool, speed: float, revert: bool
+    ) -> list[float]:
+        last: Sighting | None = None
+        in_view = 0.0
+        end = self.clock.now() + duration if duration > 0.0 else math.inf
+        try:
+            with self.head(speed, revert) as neck, self.watching(wanted) as watch:
+                chase = Chase(self, neck, watch, wanted.kind, search)
+                before = -math.inf
+                for sighting, _ in chase.sightings(end, timeout_of(timeout)):
+                    last, now = sighting, self.clock.now()
+                    in_view += now - before if now - before <= LOST else 0.0
+                    before = now
+        finally:  # who preempts it wants to know where it was last
+            if last is not None:
+                self.note([last])
+        return [in_view]
+
+
+class Chase:
+    """Sees something again and again, the head behind it."""
+
+    def __init__(self, base: HeadUse, neck: Neck, watch: Watch, kind: str, search: bool) -> None:
+        """Begin.
+
+        Args:
+            base: Tells what happens.
+            neck: Turns the head.
+            watch: Sees.
+            kind: What is chased.
+            search: Whether the head turns to look for it.
+        """
+        self._base = base
+        self._neck = neck
+        self._watch = watch
+        self._places = search_angles(kind, neck.ranges) if search else None
+        self._last: Sighting | None = None
+
+    def sightings(self, end: float, patience: float) -> Iterator[tuple[Sighting, bool]]:
+        """Each time that it is seen, and whether the head is as far as it can turn.
+
+        Args:
+            end: ROS time of the end, s.
+            patience: s without being seen after which it ends as well.
+        """
+        clock = self._base.clock
+        status = "looking"
+        self._base.tell_seen(status)
+        seen, glance = clock.now(), clock.now() + GLANCE
+        while clock.now() < min(end, seen + patience):
+            sighting = self._next(min(end, seen + patience, glance))
+            if sighting is not None:
+                status, seen = "following", clock.now()
+                at_limit = self._neck.follow(sighting)
+                self._base.tell_seen(status, [sighting])
+                yield sighting, at_limit
+                glance = seen + LOST
+            elif clock.now() >= glance:
+                if status == "following":
+                    status = "lost"
+                    self._base.tell_seen(status)
+                glance = math.inf
+                if self._places is not None:
+                    status = "searching"
+                    self._base.tell_seen(status)
+                    glance = clock.now() + self._neck.search(next(self._places)) + GLANCE
+
+    def _next(self, end: float) -> Sighting | None:
+        for sightings in self._watch.until(end):
+            self._last = the_one(sightings, self._last)
+            return self._last
+        return None

@@ -1,0 +1,93 @@
+"""How the head follows what a camera sees, and where it looks for what it does not. Pure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import cycle
+from typing import Tuple
+
+from .gaze import load_head, look_at
+from .motion_facts import JointLimits
+from .vision_detect_events import BALL, CAMERA_FRAMES
+from .vision_detect_space import Sighting
+
+Angles = Tuple[float, float]
+"""HeadYaw and HeadPitch, rad."""
+
+YAWS = (0.0, 0.8, 1.6, 2.0, -0.8, -1.6, -2.0)
+"""rad: a camera sees 0.98 rad, so that pictures overlap."""
+PITCHES = {BALL: (0.2, 0.45)}
+"""rad, positive downwards: a ball lies on the floor."""
+USUAL_PITCHES = (0.0, -0.4, 0.3)
+REACTION = 0.3
+"""s in which the head is to get to where it should look: less is quicker, more is smoother."""
+LEAST_FRACTION = 0.01
+STILL = math.radians(0.7)
+"""rad off the middle of the picture that the head does not turn for: pictures are not more exact than that."""
+MIDDLE = math.radians(3.0)
+"""rad off the middle of the picture that still is the middle."""
+
+
+def aim(sighting: Sighting) -> Angles:
+    """Head angles that bring what was seen into the middle of the camera's picture, whether the head can or not.
+
+    Raises:
+        ValueError: If it is in the head.
+    """
+    head = load_head()
+    return look_at(head, head.cameras[CAMERA_FRAMES[sighting.camera]], sighting.in_torso)
+
+
+def within(joint: JointLimits, angle: float) -> float:
+    """The angle nearest to another one that a joint can have, rad."""
+    return min(max(angle, joint.lower), joint.upper)
+
+
+def off_axis(sighting: Sighting) -> float:
+    """How far off the camera's axis it was seen, rad."""
+    x, y, z = sighting.in_camera
+    return math.atan2(math.hypot(y, z), x)
+
+
+def fraction(angle: float, ranges: Sequence[JointLimits], most: float) -> float:
+    """Share of the head's top speed to turn by an angle with: the less there is to turn, the slower.
+
+    Args:
+        angle: rad.
+        ranges: Of the joints.
+        most: The share that it may have.
+    """
+    top = min(joint.max_speed for joint in ranges)
+    return min(max(angle / REACTION / top, LEAST_FRACTION), most)
+
+
+def travel_time(start: Angles, end: Angles, ranges: Sequence[JointLimits], share: float) -> float:
+    """How long the head takes from some angles to others with a share of its top speed, s."""
+    return max(abs(b - a) / (joint.max_speed * share) for a, b, joint in zip(start, end, ranges))
+
+
+def search_angles(kind: str, ranges: Sequence[JointLimits]) -> Iterator[Angles]:
+    """Head angles to look for something with, without an end: ahead first, then to the left, then to the right.
+
+    Args:
+        kind: What is looked for.
+        ranges: Of HeadYaw and HeadPitch.
+    """
+    rows = PITCHES.get(kind, USUAL_PITCHES)
+    places = []
+    for column, yaw in enumerate(YAWS):
+        # Down one column and up the next: the head has shorter ways.
+        for pitch in rows if column % 2 == 0 else rows[::-1]:
+            places.append((within(ranges[0], yaw), within(ranges[1], pitch)))
+    return cycle(places)
+
+
+def the_one(sightings: Sequence[Sighting], last: Sighting | None) -> Sighting:
+    """Which of several things is followed: the one that was, else the nearest to where it was, else the largest."""
+    if last is None:
+        return max(sightings, key=lambda s: s.region.width * s.region.height)
+    same = [s for s in sightings if s.sight.key == last.sight.key]
+    if len(same) == 1:
+        return same[0]
+    return min(sightings, key=lambda s: math.dist(s.in_robot, last.in_robot))

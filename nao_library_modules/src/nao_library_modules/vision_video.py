@@ -1,0 +1,238 @@
+"""A video file in which every frame stands at the time at which the camera took it. PyAV; no ROS."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, BinaryIO
+
+import av
+import numpy as np
+
+from naoqi.errors import NaoError
+
+from .vision_pictures import fitted
+from .vision_times import VideoTimes
+
+log = logging.getLogger(__name__)
+# What the encoders have to say of themselves is no matter of the node's log.
+logging.getLogger("libav").setLevel(logging.ERROR)
+
+VIDEO_TYPES = ("mp4", "avi")
+
+
+@dataclass(frozen=True)
+class Codec:
+    """A way to compress a video.
+
+    Attributes:
+        encoder: Its name in FFmpeg.
+        pixels: Format of its pixels.
+        bits: A pixel and frame, roughly; 0: the encoder has a measure of its own.
+        options: Of the encoder.
+        file_types: What it can be put into.
+    """
+
+    encoder: str
+    pixels: str
+    bits: float
+    options: dict[str, str]
+    file_types: tuple[str, ...]
+
+
+# An AVI file has a grid of times, in which H.264 cannot leave places empty.
+CODECS = {
+    "h264": Codec("libx264", "yuv420p", 0.0, {"preset": "ultrafast", "tune": "zerolatency", "crf": "20"}, ("mp4",)),
+    "mpeg4": Codec("mpeg4", "yuv420p", 0.35, {}, ("mp4", "avi")),
+    "mjpeg": Codec("mjpeg", "yuvj420p", 2.0, {"qmin": "2", "qmax": "6"}, ("avi", "mp4")),
+    "ffv1": Codec("ffv1", "bgr0", 0.0, {}, ("avi",)),
+}
+SYNONYMS = {
+    "avc1": "h264", "x264": "h264", "libx264": "h264", "mp4v": "mpeg4", "xvid": "mpeg4", "divx": "mpeg4",
+    "mjpg": "mjpeg",
+}  # fmt: skip
+PREFERRED = {"mp4": ("h264", "mpeg4"), "avi": ("mjpeg",)}
+TICKS = {"mp4": 60000, "avi": 120}
+"""Times a second at which a frame can stand."""
+# Each part of an mp4 file is complete in itself, so that what a lost process wrote can be played.
+CONTAINER_OPTIONS = {"mp4": {"movflags": "frag_keyframe+empty_moov+default_base_moof"}, "avi": {}}
+KEY_FRAMES = 30
+"""Every so many frames one stands for itself."""
+
+
+class VideoTrouble(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """A video cannot be written, for another reason than the file."""
+
+
+def known_codecs(file_type: str) -> list[str]:
+    """Codecs that this computer has for a type of file."""
+    return [name for name, codec in CODECS.items() if file_type in codec.file_types and _has(codec.encoder)]
+
+
+def codec_name(text: str, file_type: str) -> str:
+    """A codec by one of its names; empty: the preferred one that this computer has. It need not be known."""
+    bare = text.strip().lower()
+    if bare:
+        return SYNONYMS.get(bare, bare)
+    known = known_codecs(file_type)
+    return next(name for name in (*PREFERRED[file_type], *known) if name in known)
+
+
+def _has(encoder: str) -> bool:
+    try:
+        av.codec.Codec(encoder, "w")
+    except ValueError:  # PyAV's UnknownCodecError
+        return False
+    return True
+
+
+class _Output:
+    """A file for PyAV, which tells only that a write failed: the error itself is kept here."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self.error: OSError | None = None
+        self.seek, self.tell = file.seek, file.tell
+        self._file = file
+
+    def write(self, data: bytes) -> int:
+        """Write, as files do."""
+        try:
+            return self._file.write(data)
+        except OSError as error:
+            self.error = error
+            raise
+
+
+class VideoFile:
+    """A video that is being written. Used by one thread.
+
+    Attributes:
+        width: Pixels; even, as codecs need it.
+        height: Pixels, likewise.
+        frames: How many are in it.
+        dropped: How many came too early after the one before, or twice.
+        began: Stamp of the first frame, s.
+        duration: s from the first frame to the end of the last one.
+    """
+
+    def __init__(self, file: BinaryIO, file_type: str, codec: str, width: int, height: int) -> None:
+        """Begin.
+
+        Args:
+            file: Where to write; it is closed with the video.
+            file_type: One of VIDEO_TYPES.
+            codec: One of `known_codecs`.
+            width: Pixels of the first picture; an odd one is left out.
+            height: Pixels, likewise.
+
+        Raises:
+            VideoTrouble: If there can be no such video.
+            OSError: Of the file.
+        """
+        self.width, self.height = max(2, width - width % 2), max(2, height - height % 2)
+        self.frames = self.dropped = 0
+        self.began = 0.0
+        self._last = self._period = 0.0
+        self._ticks = TICKS[file_type]
+        self._times = VideoTimes(1.0 / self._ticks)
+        self._file = file
+        self._output = _Output(file)
+        self._held: Any = None  # the latest packet: only the next one tells how long its frame lasts
+        kind = CODECS[codec]
+        try:
+            self._container = av.open(self._output, "w", format=file_type, options=CONTAINER_OPTIONS[file_type])
+            rate = self._ticks if file_type == "avi" else 30
+            stream = self._container.add_stream(kind.encoder, rate=rate, options=dict(kind.options))
+            stream.width, stream.height, stream.pix_fmt = self.width, self.height, kind.pixels
+            context = stream.codec_context
+            context.time_base = Fraction(1, self._ticks)
+            context.thread_count = 1  # there are other recordings, and a robot to simulate
+            context.gop_size = KEY_FRAMES
+            if kind.bits:
+                context.bit_rate = max(400_000, int(kind.bits * 30 * self.width * self.height))
+        except (av.error.FFmpegError, ValueError) as error:
+            self._close_quietly()
+            raise self._trouble(error) from error
+        self._stream: Any = stream
+
+    @property
+    def duration(self) -> float:
+        """Length in s."""
+        return self._last + self._period if self.frames else 0.0
+
+    def write(self, picture: np.ndarray, stamp: float) -> bool:
+        """Add a frame.
+
+        Args:
+            picture: (height, width, 3) uint8, blue, green, red. One of another size than the first is made to fit.
+            stamp: When it was taken, s.
+
+        Returns:
+            Whether it has a place in the video.
+
+        Raises:
+            VideoTrouble: If it cannot be compressed.
+            OSError: Of the file.
+        """
+        time = self._times.place(stamp)
+        if time is None:
+            self.dropped += 1
+            return False
+        if picture.shape[1] - picture.shape[1] % 2 == self.width and picture.shape[0] // 2 * 2 == self.height:
+            picture = picture[: self.height, : self.width]
+        frame = av.VideoFrame.from_ndarray(
+            np.ascontiguousarray(fitted(picture, self.width, self.height)), format="bgr24"
+        )
+        frame.pts = round(time * self._ticks)
+        frame.time_base = Fraction(1, self._ticks)
+        self._encode(frame)
+        if self.frames:
+            self._period = time - self._last
+        else:
+            self.began = stamp
+        self._last = time
+        self.frames += 1
+        return True
+
+    def close(self) -> None:
+        """End the video and the file.
+
+        Raises:
+            VideoTrouble: If its end cannot be written.
+            OSError: Of the file.
+        """
+        try:
+            try:
+                if self.frames:
+                    self._encode(None)
+                    self._held.duration = max(1, round(self._period * self._ticks))
+                    self._container.mux(self._held)
+            finally:
+                self._container.close()
+            self._file.close()  # which may write what was kept back
+        except (av.error.FFmpegError, OSError) as error:
+            raise self._trouble(error) from error
+        finally:
+            self._close_quietly()
+
+    def _encode(self, frame: Any) -> None:
+        try:
+            for packet in self._stream.encode(frame):
+                if self._held is not None:
+                    self._container.mux(self._held)
+                self._held = packet
+        except (av.error.FFmpegError, OSError) as error:
+            raise self._trouble(error) from error
+
+    def _trouble(self, error: Exception) -> Exception:
+        kept = self._output.error
+        if kept is not None:
+            return OSError(kept.errno, kept.strerror)
+        return error if type(error) is OSError else VideoTrouble(f"the video cannot be written: {error}")
+
+    def _close_quietly(self) -> None:
+        try:
+            self._file.close()
+        except OSError:  # the one that was raised before says why
+            log.debug("a file could not be closed")

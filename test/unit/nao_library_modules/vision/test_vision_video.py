@@ -1,0 +1,156 @@
+"""Videos: every frame at its time, sizes that change, files that end too soon. Read back with PyAV and OpenCV."""
+
+from __future__ import annotations
+
+import errno
+import io
+import os
+
+import av
+import cv2
+import numpy as np
+import pytest
+from fake_vision import number_of, numbered
+
+from nao_library_modules import vision_video
+from nao_library_modules.vision_video import VideoFile, codec_name, known_codecs
+
+UNEVEN = [100.0, 100.033, 100.066, 100.5, 100.533, 102.0, 102.1, 102.2]
+
+
+def grey(level, size):
+    return np.full((size[1], size[0], 3), level, np.uint8)
+
+
+def write(path, stamps, kind="mp4", codec="h264", size=(64, 48)):
+    video = VideoFile(path.open("xb"), kind, codec, *size)
+    for number, stamp in enumerate(stamps):
+        video.write(numbered(number) if size == (64, 48) else grey(9, size), stamp)
+    video.close()
+    return video
+
+
+def read(path):
+    """Times in s and numbers of the frames, and the length of the whole in s."""
+    with av.open(str(path)) as container:
+        frames = [
+            (float(f.pts * f.time_base), number_of(f.to_ndarray(format="bgr24"))) for f in container.decode(video=0)
+        ]
+        return [time for time, _ in frames], [number for _, number in frames], container.duration / 1e6
+
+
+EVERY = [(kind, codec) for kind in ("mp4", "avi") for codec in known_codecs(kind)]
+
+
+def test_what_this_computer_can_write():
+    assert {("mp4", "h264"), ("mp4", "mpeg4"), ("avi", "mjpeg"), ("avi", "mpeg4"), ("avi", "ffv1")} <= set(EVERY)
+
+
+@pytest.mark.parametrize("kind, codec", EVERY)
+def test_every_frame_stands_at_its_time(tmp_path, kind, codec):
+    path = tmp_path / f"video.{kind}"
+    video = write(path, UNEVEN, kind, codec)
+    times, numbers, length = read(path)
+    assert numbers == list(range(len(UNEVEN)))
+    slack = {"mp4": 1e-4, "avi": 0.5 / 120 + 1e-4}[kind]  # an AVI has a grid of 1/120 s
+    assert times == pytest.approx([stamp - UNEVEN[0] for stamp in UNEVEN], abs=slack)
+    assert video.duration == pytest.approx(2.3)
+    assert length == pytest.approx(2.3, abs=0.11 if kind == "avi" else 0.01)  # where the last frame lasts one step
+    assert (video.frames, video.dropped, video.began) == (len(UNEVEN), 0, UNEVEN[0])
+
+
+def test_other_programs_find_all_frames(tmp_path):
+    write(tmp_path / "video.mp4", [k / 15.0 for k in range(45)])
+    capture = cv2.VideoCapture(str(tmp_path / "video.mp4"))
+    assert capture.get(cv2.CAP_PROP_FRAME_COUNT) == 45
+    assert capture.get(cv2.CAP_PROP_FPS) == pytest.approx(15.0, abs=0.01)
+    numbers = []
+    while True:
+        there, picture = capture.read()
+        if not there:
+            break
+        numbers.append(number_of(picture))
+    assert numbers == list(range(45))
+
+
+def test_frames_that_come_twice_are_left_out_and_counted(tmp_path):
+    video = write(tmp_path / "video.mp4", [1.0, 1.1, 1.1, 1.05, 1.2])
+    assert (video.frames, video.dropped) == (3, 2)
+    assert read(tmp_path / "video.mp4")[1] == [0, 1, 4]
+
+
+def test_a_camera_that_changes_its_size_is_made_to_fit(tmp_path):
+    path = tmp_path / "video.mp4"
+    video = VideoFile(path.open("xb"), "mp4", "h264", 64, 48)
+    for number, size in enumerate([(64, 48), (128, 96), (32, 24), (64, 64)]):
+        video.write(grey(50 + 50 * number, size), number / 10.0)
+    video.close()
+    with av.open(str(path)) as container:
+        pictures = [f.to_ndarray(format="bgr24") for f in container.decode(video=0)]
+    assert [picture.shape for picture in pictures] == [(48, 64, 3)] * 4
+    assert [picture[:, 16:48].mean() for picture in pictures] == pytest.approx([50, 100, 150, 200], abs=6)
+    assert pictures[3][:, :6].mean() == pytest.approx(0, abs=6)  # black beside what is higher than wide
+
+
+@pytest.mark.parametrize("size, even", [((65, 49), (64, 48)), ((40, 30), (40, 30)), ((1, 1), (2, 2))])
+def test_odd_sizes_lose_a_line(tmp_path, size, even):
+    video = write(tmp_path / "video.mp4", [0.0, 0.1], size=size)
+    assert (video.width, video.height) == even
+    capture = cv2.VideoCapture(str(tmp_path / "video.mp4"))
+    assert [capture.read()[1].shape for _ in range(2)] == [(even[1], even[0], 3)] * 2
+
+
+def test_one_frame_is_a_video(tmp_path):
+    video = write(tmp_path / "video.mp4", [5.0])
+    assert (video.frames, video.duration) == (1, 0.0)
+    assert read(tmp_path / "video.mp4")[0] == [0.0]
+
+
+def test_what_was_written_before_a_process_is_lost_can_be_played(tmp_path):
+    path = tmp_path / "video.mp4"
+    with path.open("xb") as file:
+        video = VideoFile(file, "mp4", "h264", 64, 48)
+        for k in range(100):
+            video.write(numbered(k), k / 10.0)
+        file.flush()
+        (tmp_path / "lost.mp4").write_bytes(path.read_bytes())
+        video.close()
+    assert len(read(tmp_path / "lost.mp4")[0]) == 90  # all but those since the last frame that stands for itself
+
+
+class SmallDisk(io.FileIO):
+    """A file on a disk with little room."""
+
+    room = 20_000
+
+    def write(self, data):
+        if self.tell() + len(data) > self.room:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return super().write(data)
+
+
+@pytest.mark.parametrize("kind, codec", [("mp4", "h264"), ("avi", "mjpeg")])
+def test_a_full_disk_is_an_error_of_the_file(tmp_path, kind, codec):
+    chance = np.random.default_rng(2)
+    file = SmallDisk(str(tmp_path / f"video.{kind}"), "x")
+    video = VideoFile(file, kind, codec, 64, 48)
+    with pytest.raises(OSError, match="No space left") as caught:
+        for k in range(1000):
+            video.write(chance.integers(0, 255, (48, 64, 3), dtype=np.uint8), k / 10.0)
+    assert caught.value.errno == errno.ENOSPC
+    with pytest.raises(OSError, match="No space left"):
+        video.close()
+    assert file.closed
+
+
+def test_codecs_have_several_names():
+    assert [codec_name(name, "mp4") for name in ("", "H264", "X264", "XVID", "mp4v", "nope")] == [
+        "h264", "h264", "h264", "mpeg4", "mpeg4", "nope",
+    ]  # fmt: skip
+    assert codec_name("", "avi") == codec_name("MJPG", "avi") == "mjpeg"
+
+
+def test_without_h264_another_codec_takes_its_place(monkeypatch):
+    monkeypatch.setattr(vision_video, "_has", lambda encoder: encoder != "libx264")
+    assert known_codecs("mp4") == ["mpeg4", "mjpeg"]
+    assert codec_name("", "mp4") == "mpeg4"
