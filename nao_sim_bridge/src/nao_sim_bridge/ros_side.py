@@ -25,6 +25,7 @@ from nao_library_msgs.srv import (
     TakePictureResponse,
 )
 from nao_sim_bridge.ros_sounds import RosSounds
+from nao_sim_bridge.ros_things import RosThings
 from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.snapshot import Snapshot
 
@@ -41,7 +42,7 @@ class RosSide:
         Publishes `ground_truth/odom` (nav_msgs/Odometry): true pose of the torso in world, velocity in torso; 50 Hz of
         simulated time. `/clock` (rosgraph_msgs/Clock) when asked to.
         Services `~advance`, `~push`, `~press`, `~picture` (nao_library_msgs), `~reset`, `~pause`, `~resume`
-        (std_srvs/Empty), `get_truepose` (nao_library_msgs/GetTruepose), and those of `RosSounds`.
+        (std_srvs/Empty), `get_truepose` (nao_library_msgs/GetTruepose), and those of `RosSounds` and `RosThings`.
 
     Args:
         server: The running simulator.
@@ -63,6 +64,7 @@ class RosSide:
             rospy.Service("get_truepose", GetTruepose, self._on_true_pose),
         ]
         self._sounds = RosSounds(server.sounds)
+        self._things = RosThings(server.things)
         self._closing = threading.Event()
         rospy.on_shutdown(self.close)  # topics close next
         self._thread = threading.Thread(target=self._publish, name="ros publisher", daemon=True)

@@ -33,11 +33,14 @@ from nao_sim_bridge.services.nao_simulation import NaoSimulation
 from nao_sim_bridge.services.posture import ALRobotPosture
 from nao_sim_bridge.services.posture_events import PostureEvents
 from nao_sim_bridge.services.system import ALSystem
+from nao_sim_bridge.services.vision import video_device
+from nao_sim_bridge.services.vision.wiring import VisionModules
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Scene, Simulation
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.sound_outlets import SoundCard, SoundFile
+from nao_sim_bridge.things_control import ThingsControl
 from nao_sim_bridge.world_sounds_control import WorldSoundsControl
 
 MAX_PUSH = 60.0
@@ -85,7 +88,9 @@ class SimulatorServer:
         pictures: Drawings of the robot.
         files: Where clients may have files written to and read from.
         speech: The robot's voice.
+        vision: What it recognises in its pictures.
         sounds: Sounds of the world.
+        things: Things of the world.
         ended: Set when a client shut the robot down or the simulation failed.
     """
 
@@ -101,7 +106,10 @@ class SimulatorServer:
         self._audio = AudioModules(self.simulation, self.runner, self.files, self.broker)
         self.speech = SpeechModules(self.simulation, self.runner, self.memory, self.files, self.broker)
         self._recognition = RecognitionModule(self.simulation, self.runner, self.memory, self.files)
+        self._video = video_device.VideoDevice(self.simulation.cameras, self.files)
+        self.vision = VisionModules(self.simulation, self.memory)
         self.sounds = WorldSoundsControl(self.simulation, self.runner, self.files)
+        self.things = ThingsControl(self.simulation, self.runner, self.files)
         self._outlets: list[SoundFile | SoundCard] = []
 
     def start(self) -> None:
@@ -145,6 +153,8 @@ class SimulatorServer:
             **self._recognition.modules(),
             sound_detection.NAME: sound_detection.parts(self.simulation, self.memory),
             **{name: sound_localization.parts(name, self.simulation, self.memory) for name in sound_localization.NAMES},
+            video_device.NAME: self._video.parts(),
+            **self.vision.modules(),
             "ALSystem": [ALSystem(self.memory, self.reset_task, self.ended.set)],
         }
 
@@ -152,6 +162,8 @@ class SimulatorServer:
         """Leave the network and end the simulation."""
         self.ended.set()
         self._audio.close()
+        self.vision.close()
+        self._video.close()
         self.sounds.close()
         self.broker.close()
         self.runner.stop()

@@ -39,8 +39,9 @@ class Extractor:
         events: Names of the events that it raises.
         keys: Names of the keys that it writes and that are no events.
         default: What a subscriber gets that asks for nothing.
+        changed: Called with the subscriptions by name whenever they have changed, before `stop` when nobody is left.
 
-    `start` and `stop` are called in the caller's thread, one at a time and in turn. Neither may call back here.
+    `start`, `stop` and `changed` are called in the caller's thread, one at a time and in turn. None may call back here.
     """
 
     def __init__(
@@ -52,12 +53,14 @@ class Extractor:
         events: Sequence[str] = (),
         keys: Sequence[str] = (),
         default: Subscription = Subscription(),
+        changed: Callable[[Mapping[str, Subscription]], Any] = lambda _: None,
     ) -> None:
         self._start = start
         self._stop = stop
         self._events = tuple(events)
         self._keys = tuple(keys)
         self._default = default
+        self._changed = changed
         self._subscriptions: dict[str, Subscription] = {}
         self._lock = threading.Lock()
         for event in events:
@@ -73,13 +76,14 @@ class Extractor:
         with self._lock:
             if not self._subscriptions:
                 self._start()
-            self._subscriptions[name] = subscription
+            self._set(name, subscription)
 
     def unsubscribe(self, name: str) -> None:
         """Work for `name` no longer."""
         with self._lock:
             self._of(name)
             del self._subscriptions[name]
+            self._changed(dict(self._subscriptions))
             if not self._subscriptions:
                 self._stop()
 
@@ -87,13 +91,13 @@ class Extractor:
         """Change the period of a subscriber, ms."""
         period = _period(period)
         with self._lock:
-            self._subscriptions[name] = Subscription(period, self._of(name).precision)
+            self._set(name, Subscription(period, self._of(name).precision))
 
     def updatePrecision(self, name: str, precision: float) -> None:
         """Change the precision of a subscriber."""
         precision = _precision(precision)
         with self._lock:
-            self._subscriptions[name] = Subscription(self._of(name).period, precision)
+            self._set(name, Subscription(self._of(name).period, precision))
 
     def getCurrentPeriod(self) -> int:
         """The smallest period that somebody asks for, ms; that of the module when nobody does."""
@@ -128,6 +132,10 @@ class Extractor:
     def getOutputNames(self) -> list[str]:
         """Events and keys."""
         return [*self._events, *self._keys]
+
+    def _set(self, name: str, subscription: Subscription) -> None:
+        self._subscriptions[name] = subscription
+        self._changed(dict(self._subscriptions))
 
     def _all(self) -> Mapping[str, Subscription]:
         with self._lock:

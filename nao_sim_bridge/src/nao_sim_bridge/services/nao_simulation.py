@@ -16,7 +16,7 @@ class NaoSimulation:
     """Control of the simulation over libqi; a real robot has no such service.
 
     Args:
-        host: The server: its `runner` and `sounds`, and its methods `push`, `press`, `picture` and `reset_task`.
+        host: The server: its `runner`, `sounds`, `things`, and its methods `push`, `press`, `picture`, `reset_task`.
     """
 
     def __init__(self, host: Any) -> None:
@@ -86,8 +86,31 @@ class NaoSimulation:
 
     @qi.bind(qi.Map(qi.String, qi.List(qi.Float)), [])
     def objectPoses(self) -> dict[str, list[float]]:
-        """True poses of the movable objects of the world, as `torsoPose`."""
+        """True poses of what can be moved, was placed or moved, as `torsoPose`: of centres of mass."""
         return {n: [*p.position, *p.orientation] for n, p in self._runner.snapshot.objects.items()}
+
+    @qi.bind(qi.Void, [qi.String])
+    def placeObject(self, description: str) -> Any:
+        """Place a thing: an entry of a world file in YAML or JSON, such as "{name: m, landmark: 64, position: ...}"."""
+        return _answer("placeObject", lambda: self._host.things.place_described(description))
+
+    @qi.bind(qi.Void, [qi.String, qi.List(qi.Float), qi.List(qi.Float), qi.Float])
+    def moveObject(self, name: str, position: Sequence[float], rpy: Sequence[float], duration: float) -> Any:
+        """Put a thing to `position` [x, y, z] m over the floor in `duration` s; ends when it is there.
+
+        `rpy` is [roll, pitch, yaw] in rad, [] to keep it.
+        """
+        return _answer("moveObject", lambda: self._host.things.move(name, position, rpy, duration))
+
+    @qi.bind(qi.Void, [qi.String])
+    def removeObject(self, name: str) -> Any:
+        """Take a thing away; those of the world file are back after a reset."""
+        return _answer("removeObject", lambda: self._host.things.remove(name))
+
+    @qi.bind(qi.Map(qi.String, qi.List(qi.Float)), [])
+    def objects(self) -> Any:
+        """Where all things are, by name: x, y, z in m over the floor, roll, pitch, yaw in rad, as moveObject has it."""
+        return _answer("objects", self._host.things.places)
 
     @qi.bind(qi.Void, [qi.String, qi.String, qi.List(qi.Float), qi.Float, qi.Bool])
     def addSound(self, name: str, sound: str, position: Sequence[float], level_db: float, loop: bool) -> Any:

@@ -11,8 +11,8 @@ import numpy as np
 from nao_sim_bridge.sim.kinematics import rpy_matrix
 from nao_sim_bridge.sim.shapes import Shape
 
-AROUND, ALONG = 28, 14
-"""Steps of longitude and latitude of round shapes."""
+AROUND = 28
+"""Steps of longitude of round shapes; of latitude they have half as many."""
 PILLOW_EXPONENT = 0.35
 """1 would make the pillow an ellipsoid, 0 a box."""
 
@@ -25,20 +25,22 @@ class Mesh:
         vertices: (n, 3), m.
         normals: (n, 3) unit vectors, outwards.
         faces: (m, 3) vertex indices, counter-clockwise seen from outside.
+        uvs: (n, 2) place of each vertex in a picture, (0, 0) lower left and (1, 1) upper right; None without.
     """
 
     vertices: np.ndarray
     normals: np.ndarray
     faces: np.ndarray
+    uvs: np.ndarray | None = None
 
     def placed(self, shape: Shape) -> Mesh:
         """The same triangles moved to where the shape is in its link."""
         rotation = rpy_matrix(shape.rpy)
-        return Mesh(self.vertices @ rotation.T + shape.xyz, self.normals @ rotation.T, self.faces)
+        return Mesh(self.vertices @ rotation.T + shape.xyz, self.normals @ rotation.T, self.faces, self.uvs)
 
 
 def merged(meshes: list[Mesh]) -> Mesh:
-    """One mesh of several."""
+    """One mesh of several, without places in a picture."""
     starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
     return Mesh(
         np.vstack([mesh.vertices for mesh in meshes]),
@@ -47,28 +49,50 @@ def merged(meshes: list[Mesh]) -> Mesh:
     )
 
 
-def tessellate(shape: Shape) -> Mesh:
-    """Triangles of a shape in its own frame."""
+def tessellate(shape: Shape, around: int = AROUND) -> Mesh:
+    """Triangles of a shape in its own frame, in `around` steps if it is round."""
     size = shape.size
     if shape.kind == "sphere":
-        return superellipsoid((size[0],) * 3, 1.0)
+        return superellipsoid((size[0],) * 3, 1.0, around)
     if shape.kind == "ellipsoid":
-        return superellipsoid(size, 1.0)
+        return superellipsoid(size, 1.0, around)
     if shape.kind == "pillow":
-        return superellipsoid(tuple(edge / 2.0 for edge in size), PILLOW_EXPONENT)
+        return superellipsoid(tuple(edge / 2.0 for edge in size), PILLOW_EXPONENT, around)
     if shape.kind == "box":
         return box(size)
     if shape.kind == "capsule":
-        return capsule(*size)
+        return capsule(*size, around)
     if shape.kind == "cylinder":
-        return ring_sector(0.0, size[0], size[1], 360.0)
-    return ring_sector(*size)
+        return ring_sector(0.0, size[0], size[1], 360.0, around)
+    return ring_sector(*size, around)
 
 
-def superellipsoid(half_axes: tuple[float, ...], exponent: float) -> Mesh:
+def front_and_rest(mesh: Mesh) -> tuple[Mesh, Mesh]:
+    """What a picture covers of a shape, with its places in the picture, and the other triangles.
+
+    Args:
+        mesh: Of the shape in its own frame. The front is what looks along +X: of a box one face, of round shapes half.
+            The picture is projected onto it along -X, upright with Z up; its edges are those of the front.
+    """
+    corners = mesh.vertices[mesh.faces]
+    forward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 0]
+    # All of a side wall is edge-on but for rounding.
+    in_front = forward > 1e-9
+    used = np.unique(mesh.faces[in_front])
+    number = np.zeros(len(mesh.vertices), dtype=int)
+    number[used] = np.arange(len(used))
+    seen = mesh.vertices[used][:, 1:]
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    # Who looks along -X has Y on the right.
+    uvs = (seen - low) / (high - low)
+    front = Mesh(mesh.vertices[used], mesh.normals[used], number[mesh.faces[in_front]], uvs)
+    return front, Mesh(mesh.vertices, mesh.normals, mesh.faces[~in_front])
+
+
+def superellipsoid(half_axes: tuple[float, ...], exponent: float, around: int = AROUND) -> Mesh:
     """An ellipsoid (exponent 1) or, the smaller the exponent, the more of a box."""
-    latitude = np.linspace(-math.pi / 2, math.pi / 2, ALONG + 1)[:, None]
-    longitude = np.linspace(-math.pi, math.pi, AROUND + 1)[None, :]
+    latitude = np.linspace(-math.pi / 2, math.pi / 2, around // 2 + 1)[:, None]
+    longitude = np.linspace(-math.pi, math.pi, around + 1)[None, :]
     axes = np.array(half_axes)
 
     def surface(power: float) -> np.ndarray:
@@ -78,15 +102,15 @@ def superellipsoid(half_axes: tuple[float, ...], exponent: float) -> Mesh:
 
     normals = surface(2.0 - exponent) / axes
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return Mesh(surface(exponent) * axes, normals, _grid_faces(ALONG, AROUND))
+    return Mesh(surface(exponent) * axes, normals, _grid_faces(around // 2, around))
 
 
-def capsule(radius: float, length: float) -> Mesh:
+def capsule(radius: float, length: float, around: int = AROUND) -> Mesh:
     """A cylinder along Z with half spheres at its ends; `length` is that of the straight part."""
-    quarter = np.linspace(0.0, math.pi / 2, ALONG // 2 + 1)
+    quarter = np.linspace(0.0, math.pi / 2, around // 4 + 1)
     # The equator is there twice, pulled apart by the straight part.
     latitude = np.concatenate([-quarter[::-1], quarter])[:, None]
-    longitude = np.linspace(-math.pi, math.pi, AROUND + 1)[None, :]
+    longitude = np.linspace(-math.pi, math.pi, around + 1)[None, :]
     normals = np.stack(
         [
             np.cos(latitude) * np.cos(longitude),
@@ -95,9 +119,9 @@ def capsule(radius: float, length: float) -> Mesh:
         ],
         axis=-1,
     ).reshape(-1, 3)
-    half = np.repeat([-0.5, 0.5], (ALONG // 2 + 1) * (AROUND + 1)) * length
+    half = np.repeat([-0.5, 0.5], (around // 4 + 1) * (around + 1)) * length
     vertices = radius * normals + np.outer(half, (0.0, 0.0, 1.0))
-    return Mesh(vertices, normals, _grid_faces(ALONG + 1, AROUND))
+    return Mesh(vertices, normals, _grid_faces(2 * (around // 4) + 1, around))
 
 
 def box(edges: tuple[float, ...]) -> Mesh:
@@ -115,9 +139,9 @@ def box(edges: tuple[float, ...]) -> Mesh:
     return merged(sides)
 
 
-def ring_sector(inner: float, outer: float, thickness: float, degrees: float) -> Mesh:
+def ring_sector(inner: float, outer: float, thickness: float, degrees: float, around: int = AROUND) -> Mesh:
     """A flat ring about Z, or a piece of it centred on X; with inner radius 0 a disc or cylinder."""
-    steps = max(2, round(AROUND * degrees / 360.0))
+    steps = max(2, round(around * degrees / 360.0))
     angles = np.radians(np.linspace(-degrees / 2.0, degrees / 2.0, steps + 1))
     radial = np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=1)
     up = np.array([0.0, 0.0, thickness / 2.0])

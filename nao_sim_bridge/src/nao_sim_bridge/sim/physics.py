@@ -19,7 +19,7 @@ from nao_sim_bridge.sim.rotations import Vector3
 from nao_sim_bridge.sim.settings import Settings
 from nao_sim_bridge.sim.urdf import physics_urdf
 from nao_sim_bridge.sim.world import FLOOR, World
-from nao_sim_bridge.sim.world_builder import build_world
+from nao_sim_bridge.sim.world_bodies import WorldBodies
 
 # Columns of PyBullet's joint info and contact point tuples.
 JOINT_NAME, LINK_NAME, PARENT_FRAME_POSITION = 1, 12, 14
@@ -31,6 +31,12 @@ REACH = 0.6
 
 class Physics:
     """A world, a free NAO, and gravity.
+
+    Attributes:
+        client: PyBullet's physics client.
+        bodies: The floor and the things of the world.
+        robot: PyBullet's body id of the NAO.
+        links: Link name to PyBullet's index; the torso is -1.
 
     Args:
         model: The robot.
@@ -61,8 +67,7 @@ class Physics:
             deterministicOverlappingPairs=1,
             physicsClientId=self.client,
         )
-        self.objects = build_world(world, self.client, visual=False)
-        self._movable = {name: body for name, body in self.objects.items() if self._mass(body) > 0.0}
+        self.bodies = WorldBodies(world, self.client)
         self.robot = self._load_robot()
         self.links = self._index(LINK_NAME)
         joints = self._index(JOINT_NAME)
@@ -208,13 +213,6 @@ class Physics:
             if c[BODY_B] != self.robot and c[NORMAL_FORCE] > 0.0
         )
 
-    def read_objects(self) -> Mapping[str, Pose]:
-        """Poses of the movable objects of the world."""
-        return {
-            name: Pose(*pybullet.getBasePositionAndOrientation(body, physicsClientId=self.client))
-            for name, body in self._movable.items()
-        }
-
     def link_pose(self, name: str) -> Pose:
         """Pose of a link frame (not of its centre of mass) in world."""
         state = pybullet.getLinkState(
@@ -228,9 +226,6 @@ class Physics:
         return [1.0 if hit[0] == self.robot else hit[2] for hit in hits]
 
     # --- building -------------------------------------------------------------------------------------------------
-
-    def _mass(self, body: int) -> float:
-        return pybullet.getDynamicsInfo(body, -1, physicsClientId=self.client)[0]
 
     def _load_robot(self) -> int:
         descriptor, path = tempfile.mkstemp(suffix=".urdf")
@@ -325,7 +320,7 @@ class Physics:
 
     def _clearance(self) -> float:
         """Height of the lowest point of the body over the floor, m; below 2 m of it."""
-        floor = self.objects[FLOOR]
+        floor = self.bodies.ids[FLOOR]
         points = pybullet.getClosestPoints(self.robot, floor, 2.0, physicsClientId=self.client)
         return min(point[DISTANCE] for point in points)
 

@@ -120,6 +120,11 @@ class SimulatedRobot:
         """What was sensed at the last tick; None before the first one."""
         return self._sensed
 
+    @property
+    def true_positions(self) -> tuple[float, ...]:
+        """(26,) joint angles as they are, not as noisy or late sensors say, rad (hands 0..1)."""
+        return self._measured
+
     def warm_up(self, joint: str, celsius: float) -> None:
         """Put a motor to a temperature, degC, from where it goes on by itself.
 
@@ -206,7 +211,9 @@ class SimulatedRobot:
             sonars=self._sonars.read(self.time, body.pose, self._physics.nearest_hits),
             battery_charge=self._power.charge,
             battery_current=self._power.current,
-            objects=self._physics.read_objects(),
+            objects=self._physics.bodies.read(),
+            placed=self._physics.bodies.placed,
+            gone=self._physics.bodies.gone,
             contacts=contacts,
             link_poses=link_poses,
             fingers=self._fingers,

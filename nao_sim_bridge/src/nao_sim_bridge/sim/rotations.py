@@ -23,6 +23,18 @@ def rotate_back(quaternion: Sequence[float], vector: Sequence[float]) -> Vector3
     return rotate((-x, -y, -z, w), vector)
 
 
+def multiply(first: Sequence[float], second: Sequence[float]) -> Quaternion:
+    """The rotation that turns by `second`, then by `first`."""
+    ax, ay, az, aw = first
+    bx, by, bz, bw = second
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
 def roll_pitch_yaw(quaternion: Sequence[float]) -> Vector3:
     """Roll, pitch and yaw in rad of the orientation."""
     x, y, z, w = quaternion

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Callable
 
+from nao_sim_bridge.sim.cameras.cameras import Cameras
 from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.physics import Physics
 from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.sim.render.client import Renderer
+from nao_sim_bridge.sim.render.scene import RenderState
 from nao_sim_bridge.sim.robot import SimulatedRobot
 from nao_sim_bridge.sim.scene import Scene
 from nao_sim_bridge.sim.settings import Settings, load_settings
@@ -15,6 +19,7 @@ from nao_sim_bridge.sim.snapshot import Snapshot
 from nao_sim_bridge.sim.sound.sound_world import SoundWorld
 from nao_sim_bridge.sim.start_lean import start_pitch
 from nao_sim_bridge.sim.tasks import TaskIds
+from nao_sim_bridge.sim.things import Things
 
 
 class Simulation:
@@ -29,6 +34,8 @@ class Simulation:
         snapshot: What was sensed at the last tick; any thread may read it.
         after_tick: Called with the snapshot at the end of every tick; they stay at a reset.
         sound: What sounds and what is heard; it stays at a reset, which ends everything that plays.
+        cameras: What the robot sees; it stays at a reset.
+        things: What is in the world and may come, move and go; a reset puts it to where the world file says.
         holds: As long as one of them answers True, time that runs faster than the wall clock waits: for work in other
             threads without which a fast run would give other results. Asked in the simulation thread.
         wake: To be called, from any thread, when one of `holds` may answer differently; set by who lets time pass.
@@ -48,7 +55,16 @@ class Simulation:
         self.sound = SoundWorld(
             self.model, self.settings.tick_s, self.task_ids, self.scene.seed, released=lambda: self.wake()
         )
-        self.holds: list[Callable[[], bool]] = [self.sound.ears.holds]
+        self.cameras = Cameras(
+            self.model,
+            self.settings.tick_s,
+            Renderer(self.scene.world, self.scene.version),
+            self.render_state,
+            self.scene.seed,
+            released=lambda: self.wake(),
+        )
+        self.holds: list[Callable[[], bool]] = [self.sound.ears.holds, self.cameras.holds]
+        self.things = Things(self._world, self.task_ids, lambda: self.time, self._look_again)
         self.robot: SimulatedRobot
         self.snapshot: Snapshot
         self.reset()
@@ -76,15 +92,19 @@ class Simulation:
         self.robot = SimulatedRobot(
             self.model, self.led_layout, self.settings, self._physics, angles, self.scene, self.task_ids
         )
+        self.things.begin(self._physics)
         self.snapshot = self.robot.sense(self._tick, self.time)
         self.sound.begin(self.snapshot)
+        self.cameras.begin(self.snapshot)
 
     def tick(self) -> Snapshot:
-        """Advance by one tick: LEDs, motion, motors, physics, sensors, sound, in this order."""
+        """Advance by one tick: things, LEDs, motion, motors, physics, sensors, sound, cameras, in this order."""
         self._tick += 1
+        self.things.tick()
         self.robot.act()
         self.snapshot = self.robot.sense(self._tick, self.time)
         self.sound.tick(self.snapshot)
+        self.cameras.tick(self.snapshot)
         for look in self.after_tick:
             look(self.snapshot)
         return self.snapshot
@@ -95,11 +115,30 @@ class Simulation:
             self.tick()
         return self.snapshot
 
+    def render_state(self, snapshot: Snapshot) -> RenderState:
+        """What there is to see at a snapshot, which is the last one. Any thread."""
+        return RenderState(
+            snapshot.torso.position,
+            snapshot.torso.orientation,
+            self.robot.true_positions,
+            self.robot.leds.values,
+            snapshot.objects,
+            snapshot.placed,
+            snapshot.gone,
+        )
+
     def close(self) -> None:
         """Free the engine."""
         self.sound.close()
+        self.cameras.close()
+        self.things.stop()
         if self._physics is not None:
             self.robot.motion.kill_all()
             self.robot.leds.kill_all()
             self._physics.close()
             self._physics = None
+
+    def _look_again(self) -> None:
+        """Let the last snapshot have the things that there are now, as time may stand still."""
+        bodies = self._physics.bodies
+        self.snapshot = replace(self.snapshot, objects=bodies.read(), placed=bodies.placed, gone=bodies.gone)

@@ -14,6 +14,7 @@ from nao_sim_bridge.sim.readings import Contact, FootForces, Pose
 from nao_sim_bridge.sim.rotations import Vector3, rotate_back
 from nao_sim_bridge.sim.sensors.body import BodySensors
 from nao_sim_bridge.sim.sensors.contacts import Presses, in_link_frames
+from nao_sim_bridge.sim.world import WorldObject
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,9 @@ class Snapshot:
         sonars: Echo distances left and right, m.
         battery_charge: 0..1.
         battery_current: A, positive while it discharges.
-        objects: True poses of the world's movable objects, by name.
+        objects: True poses of things that can be moved, were placed, or were put elsewhere, by name.
+        placed: Things that were added to those of the world.
+        gone: Names of things of the world that were taken away.
         contacts: Points where something presses on the robot.
         link_poses: Link index to the pose in world of each link that has a contact.
         fingers: Touch sensors that a simulated finger presses.
@@ -76,6 +79,8 @@ class Snapshot:
     battery_charge: float
     battery_current: float
     objects: Mapping[str, Pose]
+    placed: Tuple[WorldObject, ...]
+    gone: frozenset
     contacts: Tuple[Contact, ...]
     link_poses: Mapping[int, Pose]
     fingers: frozenset

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
 from collections.abc import Sequence
 
 import pybullet
+from PIL import Image
 
 from nao_sim_bridge.sim.meshes import Mesh
+from nao_sim_bridge.sim.world_pictures import WorldPicture, paint
 
 
 def visual_shape(mesh: Mesh, color: Sequence[float], client: int) -> int:
@@ -24,8 +28,23 @@ def visual_shape(mesh: Mesh, color: Sequence[float], client: int) -> int:
         pybullet.GEOM_MESH,
         vertices=mesh.vertices.tolist(),
         normals=mesh.normals.tolist(),
-        uvs=[(0.0, 0.0)] * len(mesh.vertices),
+        uvs=[(0.0, 0.0)] * len(mesh.vertices) if mesh.uvs is None else mesh.uvs.tolist(),
         indices=mesh.faces.ravel().tolist(),
         rgbaColor=(*color, 1.0),
         physicsClientId=client,
     )
+
+
+def texture(picture: WorldPicture, client: int) -> int:
+    """A texture of PyBullet, which takes them from files only.
+
+    Returns:
+        Id of the texture, for `changeVisualShape`.
+    """
+    descriptor, path = tempfile.mkstemp(suffix=".png")
+    os.close(descriptor)
+    try:
+        Image.fromarray(paint(picture)).save(path)
+        return pybullet.loadTexture(path, physicsClientId=client)
+    finally:
+        os.remove(path)

@@ -16,12 +16,13 @@ from nao_sim_bridge.paths import world_directory
 from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.rotations import Quaternion, Vector3, from_roll_pitch_yaw
 from nao_sim_bridge.sim.shapes import Shape
+from nao_sim_bridge.sim.world_pictures import WorldPicture
 from nao_sim_bridge.sim.world_sounds import WorldSound
 
 FLOOR = "floor"
 """A name that no object may have."""
 MOST_PARTS = 16
-"""PyBullet silently leaves out what goes beyond in one body."""
+"""PyBullet silently leaves out what goes beyond in one body that can be touched."""
 
 Color = tuple  # (r, g, b) in 0..1
 
@@ -124,10 +125,19 @@ class Background:
 
 @dataclass(frozen=True)
 class Part:
-    """A shape in the frame of the object that it belongs to, and its colour (r, g, b) in 0..1."""
+    """What is to be seen of an object: a shape in the frame of the object, and how it looks.
+
+    Attributes:
+        shape: Of any kind that pictures know.
+        color: (r, g, b) in 0..1.
+        picture: What covers its front instead of the colour: the +X face of a box, the +X half of a round shape.
+        shining: It is a lamp that is on: its colour is that of its light, whatever falls on it.
+    """
 
     shape: Shape
     color: Color
+    picture: WorldPicture | None = None
+    shining: bool = False
 
 
 @dataclass(frozen=True)
@@ -138,11 +148,14 @@ class WorldObject:
         name: Unique in the world.
         position: Of its frame, whose origin is its centre of mass, in the frame of the floor, m.
         rpy: Of its frame in that of the floor, rad.
-        parts: What it is made of.
+        parts: What is to be seen of it.
         mass: kg; 0 is immovable.
         friction: Coefficient.
         rolling_friction: m; keeps balls from rolling for ever.
         restitution: 0..1.
+        body: What is to be felt of it, of the kinds that the physics knows; None for the shapes of its parts.
+        kind: What it is, for people: `ball`, `landmark`, `person`...
+        origin: Where in its frame the point is that its entry calls `position`: between the feet of a person, m.
     """
 
     name: str
@@ -153,6 +166,14 @@ class WorldObject:
     friction: float
     rolling_friction: float
     restitution: float
+    body: tuple[Shape, ...] | None = None
+    kind: str = "thing"
+    origin: Vector3 = (0.0, 0.0, 0.0)
+
+    @property
+    def touched(self) -> tuple[Shape, ...]:
+        """The shapes that the physics knows of it."""
+        return tuple(part.shape for part in self.parts) if self.body is None else self.body
 
 
 @dataclass(frozen=True)

@@ -6,17 +6,19 @@ from typing import Sequence
 
 import pybullet
 
-from nao_sim_bridge.sim.meshes import merged, tessellate
-from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
+from nao_sim_bridge.sim.meshes import Mesh, front_and_rest, merged, tessellate
+from nao_sim_bridge.sim.rotations import Quaternion, Vector3, from_roll_pitch_yaw
 from nao_sim_bridge.sim.shapes import Shape
-from nao_sim_bridge.sim.visuals import visual_shape
+from nao_sim_bridge.sim.visuals import texture, visual_shape
 from nao_sim_bridge.sim.world import FLOOR, MOST_PARTS, Color, Floor, Part, Rug, World, WorldObject
+from nao_sim_bridge.sim.world_pictures import WorldPicture
 
 FLOOR_EXTENT = 10.0
 """Half the edge length of the visible floor, m; the floor of the physics has no end."""
 RUG_THICKNESS = 0.001
 NOWHERE = (0.0, 0.0, 0.0)
 UNTURNED = (0.0, 0.0, 0.0, 1.0)
+WHITE = (1.0, 1.0, 1.0)
 
 
 def build_world(world: World, client: int, visual: bool) -> dict[str, int]:
@@ -30,21 +32,27 @@ def build_world(world: World, client: int, visual: bool) -> dict[str, int]:
     Returns:
         PyBullet's body ids by name; `floor` is among them, its bumps are not.
     """
-    build_floor, build_object = (_see_floor, _see_object) if visual else (_touch_floor, _touch_object)
-
-    def build(thing: WorldObject) -> int:
-        turn = from_roll_pitch_yaw(*thing.rpy)
-        place = pybullet.multiplyTransforms(NOWHERE, world.floor.orientation, thing.position, turn)
-        return build_object(thing, *place, client)
-
+    build_floor = _see_floor if visual else _touch_floor
     bodies = {FLOOR: build_floor(world.floor, client)}
-    for heap in _bumps(world.floor):
-        build(heap)
-    bodies.update({thing.name: build(thing) for thing in world.objects})
+    for heap in heaps_of_bumps(world.floor):
+        build_object(heap, world.floor, client, visual)
+    bodies.update({thing.name: build_object(thing, world.floor, client, visual) for thing in world.objects})
     return bodies
 
 
-def _bumps(floor: Floor) -> list[WorldObject]:
+def build_object(thing: WorldObject, floor: Floor, client: int, visual: bool) -> int:
+    """Put one thing into a PyBullet world, where it says; see `build_world`. Returns PyBullet's body id."""
+    build = _see_object if visual else _touch_object
+    return build(thing, *place_of(thing, floor), client)
+
+
+def place_of(thing: WorldObject, floor: Floor) -> tuple[Vector3, Quaternion]:
+    """Position (m) and orientation in world of a thing where it says."""
+    turn = from_roll_pitch_yaw(*thing.rpy)
+    return pybullet.multiplyTransforms(NOWHERE, floor.orientation, thing.position, turn)
+
+
+def heaps_of_bumps(floor: Floor) -> list[WorldObject]:
     """All bumps, as many in one thing as can be: many bodies would cost the engine more."""
     parts = [Part(shape, floor.bump_color) for shape in floor.bumps]
     return [
@@ -66,7 +74,7 @@ def _touch_floor(floor: Floor, client: int) -> int:
 def _touch_object(thing: WorldObject, position: Sequence[float], orientation: Sequence[float], client: int) -> int:
     body = pybullet.createMultiBody(
         thing.mass,
-        _collision_shape([part.shape for part in thing.parts], client),
+        _collision_shape(thing.touched, client),
         basePosition=position,
         baseOrientation=orientation,
         physicsClientId=client,
@@ -122,14 +130,20 @@ def _see_rug(rug: Rug, client: int) -> int:
 
 
 def _see_object(thing: WorldObject, position: Sequence[float], orientation: Sequence[float], client: int) -> int:
-    by_color: dict[Color, list[Shape]] = {}
+    by_color: dict[Color, list[Mesh]] = {}
+    pictures: list[tuple[WorldPicture, Mesh]] = []
     for part in thing.parts:
-        by_color.setdefault(part.color, []).append(part.shape)
-    seen = [
-        visual_shape(merged([tessellate(shape).placed(shape) for shape in shapes]), color, client)
-        for color, shapes in by_color.items()
-    ]
-    return _body(seen, position, orientation, client)
+        mesh = tessellate(part.shape)
+        if part.picture is not None:
+            front, mesh = front_and_rest(mesh)
+            pictures.append((part.picture, front.placed(part.shape)))
+        by_color.setdefault(part.color, []).append(mesh.placed(part.shape))
+    seen = [visual_shape(merged(meshes), color, client) for color, meshes in by_color.items()]
+    covered = [visual_shape(mesh, WHITE, client) for _, mesh in pictures]
+    body = _body([*seen, *covered], position, orientation, client)
+    for link, (picture, _) in enumerate(pictures, len(seen) - 1):
+        pybullet.changeVisualShape(body, link, textureUniqueId=texture(picture, client), physicsClientId=client)
+    return body
 
 
 def _body(seen: Sequence[int], position: Sequence[float], orientation: Sequence[float], client: int) -> int:

@@ -58,7 +58,23 @@ LISTENING_CALLS = {
     "pause": (False,),
     "setParameter": ("Sensitivity", 0.9),
 }
+# Of the extractors that look through a camera.
+LOOKING_CALLS = {
+    **EXTRACTOR_CALLS,
+    "getActiveCamera": (),
+    "getFrameRate": (),
+    "getResolution": (),
+    "isPaused": (),
+    "isProcessing": (),
+    "pause": (False,),
+    "setActiveCamera": (1,),
+    "setFrameRate": (10,),
+    "setResolution": (1,),
+}
 CALLS = {
+    "ALBarcodeReader": LOOKING_CALLS,
+    "ALLandMarkDetection": {**LOOKING_CALLS, "setParameter": ("pause", False)},
+    "ALRedBallDetection": EXTRACTOR_CALLS,
     "ALAudioSourceLocalization": LISTENING_CALLS,
     "ALSoundDetection": LISTENING_CALLS,
     "ALSoundLocalization": LISTENING_CALLS,
@@ -464,6 +480,9 @@ COMPLETE = [
     ("ALSoundDetection", 16),
     ("ALSoundLocalization", 16),
     ("ALSpeechRecognition", 43),
+    ("ALRedBallDetection", 12),
+    ("ALLandMarkDetection", 22),
+    ("ALBarcodeReader", 21),
 ]
 
 

@@ -29,7 +29,8 @@ from nao_sim_bridge.sim.render import (
     preset_camera,
     write_png,
 )
-from nao_sim_bridge.sim.render.backdrop import Backdrop, blur, pixel_rays
+from nao_sim_bridge.sim.render.backdrop import Backdrop, blur
+from nao_sim_bridge.sim.render.view import View
 from nao_sim_bridge.sim.snapshot import Pose
 from nao_sim_bridge.sim.world import load_world
 
@@ -58,9 +59,9 @@ def count(picture, channel):
     return int(np.sum((values[..., channel] > 120) & (values[..., channel] > 1.8 * np.maximum(*others))))
 
 
-@pytest.fixture(scope="module")
-def renderer():
-    with Renderer("empty") as started:
+@pytest.fixture(scope="module", params=["opengl", "builtin"])
+def renderer(request):
+    with Renderer("empty", engine=request.param) as started:
         yield started.start()
 
 
@@ -268,14 +269,14 @@ def test_png_files_hold_the_picture(tmp_path):
 
 def test_rays_spread_over_the_field_of_view():
     camera = Camera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), fov=math.radians(90.0), width=100, height=100)
-    rays = pixel_rays(camera)
+    rays = View.of_camera(camera).rays()
     assert rays[0, 50][2] == pytest.approx(0.99) and rays[99, 50][2] == pytest.approx(-0.99)
     assert rays[50, 0][1] > 0.9  # the left edge of the picture is on the left
 
 
 def test_floor_tiles_alternate():
     camera = Camera((0.125, 0.125, 2.0), (0.125, 0.125, 0.0), up=(1.0, 0.0, 0.0), fov=0.25, width=40, height=40)
-    picture = Backdrop(load_world("empty")).draw(camera, None)
+    picture = Backdrop(load_world("empty")).draw(View.of_camera(camera), None)
     center, left = picture[20, 20], picture[20, 1]
     assert np.abs(center - left).max() > 0.02
 

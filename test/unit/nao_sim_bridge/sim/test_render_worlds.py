@@ -13,7 +13,8 @@ from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.render import Camera, RenderState, preset_camera
 from nao_sim_bridge.sim.render.backdrop import Backdrop
-from nao_sim_bridge.sim.render.studio import Studio
+from nao_sim_bridge.sim.render.engines import open_engine
+from nao_sim_bridge.sim.render.view import View
 from nao_sim_bridge.sim.world_reader import read_world
 
 RUG = {"center": [2.0, 0.5], "size": [0.4, 0.2], "yaw": 0.5, "color": [0.9, 0.1, 0.1]}
@@ -38,13 +39,13 @@ def middle(picture):
     return picture[20, 20].astype(float)
 
 
-@pytest.fixture
-def studio():
-    """Makes studios that are freed after the test."""
+@pytest.fixture(params=["opengl", "builtin"])
+def studio(request):
+    """Makes engines that are freed after the test."""
     made = []
 
     def make(of):
-        made.append(Studio(of, "V6"))
+        made.append(open_engine(request.param, of, "V6")[0])
         return made[-1]
 
     yield make
@@ -58,7 +59,7 @@ def studio():
 def test_a_rug_is_a_turned_rectangle_of_another_colour(along, across, inside):
     x = 2.0 + along * math.cos(0.5) - across * math.sin(0.5)
     y = 0.5 + along * math.sin(0.5) + across * math.cos(0.5)
-    seen = middle(Backdrop(world({"rugs": [RUG]})).draw(looking_at(x, y), None))
+    seen = middle(Backdrop(world({"rugs": [RUG]})).draw(View.of_camera(looking_at(x, y)), None))
     assert (seen == pytest.approx(RUG["color"], abs=0.01)) is inside
 
 
@@ -66,18 +67,27 @@ def test_the_floor_of_a_slope_is_seen_where_it_is():
     """The rug is 2 m ahead on the slope: the ray to that point meets it, one to the level floor below does not."""
     backdrop = Backdrop(world({"rugs": [RUG], "slope_deg": [10.0, 0.0]}))
     height = 2.0 * math.tan(math.radians(10.0))
-    assert middle(backdrop.draw(looking_at(2.0, 0.5, height), None)) == pytest.approx(RUG["color"], abs=0.01)
-    assert middle(backdrop.draw(looking_at(2.0, 0.5, 0.0), None)) != pytest.approx(RUG["color"], abs=0.01)
+    assert middle(backdrop.draw(View.of_camera(looking_at(2.0, 0.5, height)), None)) == pytest.approx(
+        RUG["color"], abs=0.01
+    )
+    assert middle(backdrop.draw(View.of_camera(looking_at(2.0, 0.5, 0.0)), None)) != pytest.approx(
+        RUG["color"], abs=0.01
+    )
 
 
 def test_furniture_far_from_the_robot_throws_a_shadow(studio):
     with_plate, without = studio(world({}, PLATE)), studio(world())
     # Low enough to look under the plate.
     camera = Camera((1.5, 0.0, 0.3), (2.5, 0.0, 0.0), fov=0.2, width=41, height=41)
-    dark, bright = middle(with_plate.take(STATE, camera)), middle(without.take(STATE, camera))
+    dark, bright = (
+        middle(with_plate.draw(STATE, View.of_camera(camera))),
+        middle(without.draw(STATE, View.of_camera(camera))),
+    )
     assert np.all(dark < 0.75 * bright)
     beside = replace(camera, eye=(1.5, 0.6, 0.3), target=(2.5, 0.6, 0.0))
-    assert middle(with_plate.take(STATE, beside)) == pytest.approx(middle(without.take(STATE, beside)), abs=2.0)
+    assert middle(with_plate.draw(STATE, View.of_camera(beside))) == pytest.approx(
+        middle(without.draw(STATE, View.of_camera(beside))), abs=2.0
+    )
 
 
 def test_the_shadow_of_what_can_be_moved_goes_with_it(studio):
@@ -85,7 +95,9 @@ def test_the_shadow_of_what_can_be_moved_goes_with_it(studio):
     camera = Camera((1.5, 0.0, 0.3), (2.5, 0.0, 0.0), fov=0.2, width=41, height=41)
     here = replace(STATE, objects={"plate": Pose((2.5, 0.0, 0.5), (0.0, 0.0, 0.0, 1.0))})
     gone = replace(STATE, objects={"plate": Pose((2.5, 1.5, 0.5), (0.0, 0.0, 0.0, 1.0))})
-    assert np.all(middle(moving.take(here, camera)) < 0.75 * middle(moving.take(gone, camera)))
+    assert np.all(
+        middle(moving.draw(here, View.of_camera(camera))) < 0.75 * middle(moving.draw(gone, View.of_camera(camera)))
+    )
 
 
 def test_two_shadows_on_each_other_are_no_darker_than_one(studio):
@@ -93,7 +105,9 @@ def test_two_shadows_on_each_other_are_no_darker_than_one(studio):
     one = studio(world({}, under))
     both = studio(world({}, under, {**under, "name": "lid", "position": [0.6, 0.0, 0.6], "mass": 1.0}))
     camera = Camera((0.6, -1.2, 0.3), (0.6, 0.0, 0.0), fov=0.2, width=41, height=41)
-    assert middle(both.take(STATE, camera)) == pytest.approx(middle(one.take(STATE, camera)), abs=3.0)
+    assert middle(both.draw(STATE, View.of_camera(camera))) == pytest.approx(
+        middle(one.draw(STATE, View.of_camera(camera))), abs=3.0
+    )
 
 
 def test_the_view_of_the_room_stays_where_it_is():

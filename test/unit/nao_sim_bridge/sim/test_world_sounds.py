@@ -206,7 +206,7 @@ def test_a_reset_begins_again(playing):
 def test_a_sound_rides_on_what_moves(playing):
     one = playing({"name": "bell", "on": "ball", "tone": 500, "position": [0, 0, 0.1]})
     physics = one.simulation._physics
-    pybullet.resetBaseVelocity(physics.objects["ball"], (1.0, 0.0, 0.0), physicsClientId=physics.client)
+    pybullet.resetBaseVelocity(physics.bodies.ids["ball"], (1.0, 0.0, 0.0), physicsClientId=physics.client)
     one.run(0.5)
     ball = one.now.objects["ball"].position
     place = one.simulation.sound.sources.get("bell").place

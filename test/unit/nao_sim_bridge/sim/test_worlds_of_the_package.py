@@ -108,7 +108,7 @@ def test_the_ball_of_the_lab_rolls_and_comes_to_rest(bench):
     start = one.now.objects["ball"].position
     physics = one.simulation._physics  # the robot cannot reach the ball from where it starts
     pybullet.resetBaseVelocity(
-        physics.objects["ball"], (0.6, -0.3, 0.0), (0.0, 0.0, 0.0), physicsClientId=physics.client
+        physics.bodies.ids["ball"], (0.6, -0.3, 0.0), (0.0, 0.0, 0.0), physicsClientId=physics.client
     )
     rolling = one.run(0.5).objects["ball"].position
     assert 0.1 < math.dist(rolling, start) < 1.0

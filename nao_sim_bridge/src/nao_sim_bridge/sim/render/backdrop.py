@@ -10,26 +10,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from nao_sim_bridge.sim.render.scene import Camera
+from nao_sim_bridge.sim.render.view import View
 from nao_sim_bridge.sim.world import Rug, World
 
 SHADE = 0.42
 """Share of the light that a shadow takes away."""
-
-
-def pixel_rays(camera: Camera) -> np.ndarray:
-    """(h, w, 3) float32 directions in world of the rays through the pixel centres; not of unit length."""
-    forward = np.subtract(camera.target, camera.eye).astype(float)
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, camera.up)
-    right /= np.linalg.norm(right)
-    up = np.cross(right, forward)
-    tangent = np.tan(camera.fov / 2.0)
-    vertical = (1.0 - (2.0 * np.arange(camera.height) + 1.0) / camera.height) * tangent
-    horizontal = ((2.0 * np.arange(camera.width) + 1.0) / camera.width - 1.0) * tangent
-    horizontal *= camera.width / camera.height
-    rays = forward + vertical[:, None, None] * up + horizontal[None, :, None] * right
-    return rays.astype(np.float32)
 
 
 def covers(rug: Rug, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -50,18 +35,18 @@ class Backdrop:
     def __init__(self, world: World, still: Shadow | None = None) -> None:
         self._world = world
         self._still = still
-        self._camera: Camera | None = None
+        self._view: tuple | None = None
         self._still_dark: np.ndarray
         self._bright: np.ndarray
         self._shaded: np.ndarray
         self._floor: tuple[np.ndarray, np.ndarray]
         self._points: tuple[np.ndarray, np.ndarray, np.ndarray]
 
-    def draw(self, camera: Camera, shadow: Shadow | None) -> np.ndarray:
+    def draw(self, view: View, shadow: Shadow | None) -> np.ndarray:
         """(h, w, 3) float32 picture in 0..1; the caller may write into it."""
-        if camera != self._camera:
-            self._look_from(camera)
-            self._camera = camera
+        if view.key != self._view:
+            self._look_from(view)
+            self._view = view.key
         picture = self._bright.copy()
         if shadow is None:
             return picture
@@ -76,24 +61,24 @@ class Backdrop:
             picture[rows, columns] -= dark[:, None] * self._shaded[near]
         return picture
 
-    def _look_from(self, camera: Camera) -> None:
+    def _look_from(self, view: View) -> None:
         """Prepare sky, lit floor, and what a full shadow takes from each floor pixel."""
         world = self._world
-        rays = pixel_rays(camera)
+        rays = view.rays()
         normal = np.array(world.floor.normal, dtype=np.float32)
         slope = rays @ normal
         horizon = np.array(world.background.horizon, dtype=np.float32)
         top = np.array(world.background.top, dtype=np.float32)
         share = np.clip(slope * np.float32(1.6), 0.0, 1.0)[..., None]
         self._bright = horizon * (1.0 - share) + top * share
-        eye = np.array(camera.eye, dtype=np.float32)
+        eye = view.eye.astype(np.float32)
         height = eye @ normal
         rows, columns = np.nonzero(slope < (-1e-4 if height > 0.0 else -np.inf))
         scale = -height / slope[rows, columns]
         x, y, z = (eye[:, None] + scale * rays[rows, columns].T).astype(np.float32)
         # The width of a pixel on the floor in tiles: tiles smaller than pixels fade into one colour.
         tile = np.float32(world.floor.tile_size)
-        pixel = np.float32(2.0 * np.tan(camera.fov / 2.0) / camera.height)
+        pixel = np.float32(2.0 * view.tangents[1] / view.height)
         contrast = np.clip(1.6 - 3.0 * scale * scale * pixel / (height * tile), 0.0, 1.0)
         odd = (np.floor(x / tile) + np.floor(y / tile)).astype(np.int32) & 1
         mix = (0.5 + (odd - np.float32(0.5)) * contrast)[:, None]

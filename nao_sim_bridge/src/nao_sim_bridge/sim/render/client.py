@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import threading
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nao_sim_bridge.sim.child_process import ChildProcess
-from nao_sim_bridge.sim.errors import SimulationError
+from nao_sim_bridge.sim.errors import SimulationError, UnknownName
 from nao_sim_bridge.sim.render.scene import Camera, RenderState
+from nao_sim_bridge.sim.render.wire import StateSender
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.sim.cameras.shot import Shot
 
 START_TIMEOUT = 60.0
 """s; building the robot takes well below one, but a busy machine may need long to start an interpreter."""
@@ -24,6 +30,10 @@ class PictureRefused(RenderError):
     """The picture process is well but cannot make this picture."""
 
 
+ENGINES = ("auto", "opengl", "builtin")
+log = logging.getLogger("nao_sim.pictures")
+
+
 def _process(mode: str, world_name: str, version: str) -> ChildProcess:
     """A new picture process; a window talks about its threads on the standard output, which nobody wants to read."""
     arguments = (mode, world_name, version)
@@ -36,12 +46,22 @@ class Renderer:
     Args:
         world_name: Name or path of the world.
         version: Robot version.
+        engine: What draws: "opengl"; "builtin", which is slower and needs nothing of the computer; or "auto" for
+            OpenGL where it can be had.
+
+    Raises:
+        UnknownName: There is no such engine.
     """
 
-    def __init__(self, world_name: str = "empty", version: str = "V6") -> None:
+    def __init__(self, world_name: str = "empty", version: str = "V6", engine: str = "auto") -> None:
+        if engine not in ENGINES:
+            raise UnknownName("renderer", engine, ENGINES)
         self._world_name = world_name
         self._version = version
+        self._asked = engine
+        self._engine: str | None = None
         self._worker: ChildProcess | None = None
+        self._sender = StateSender()
         self._lock = threading.Lock()
 
     @property
@@ -49,6 +69,11 @@ class Renderer:
         """Process id of the picture process; None while there is none."""
         worker = self._worker
         return worker.process.pid if worker is not None else None
+
+    @property
+    def engine(self) -> str | None:
+        """What draws, in words; None before the process has been started."""
+        return self._engine
 
     def start(self) -> Renderer:
         """Start the process now and wait until it is ready; else the first picture does.
@@ -74,26 +99,31 @@ class Renderer:
         Raises:
             RenderError: If the process dies, is late, or cannot draw this.
         """
-        with self._lock:
-            worker = self._ensure_worker()
-            try:
-                worker.pipe.send(("render", (state, camera)))
-                shape = worker.receive(timeout, "picture")
-                pixels = worker.pipe.recv_bytes()
-            except PictureRefused:
-                raise
-            except (OSError, EOFError, RenderError) as error:
-                # It is gone, or late: its answer would be taken for that of the next request.
-                words = str(error) if isinstance(error, RenderError) else f"picture: {worker.last_words()}"
-                self._worker = None
-                worker.kill()
-                raise RenderError(words) from error
+        shape, pixels = self._ask("render", state, camera, timeout)
         return np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
+
+    def capture(self, state: RenderState, shot: Shot, timeout: float = 10.0) -> bytes:
+        """Make what a camera in the robot's head gives.
+
+        Args:
+            state: What is to be seen.
+            shot: From where, in which colour space, and with which settings of the camera.
+            timeout: Longest time to wait, s; starting the process does not count.
+
+        Returns:
+            What `sim.cameras.photograph` makes of it: read it with `read_photograph`.
+
+        Raises:
+            RenderError: If the process dies, is late, or cannot draw this.
+        """
+        return self._ask("capture", state, shot, timeout)[1]
 
     def close(self) -> None:
         """End the process; a later picture would start it again."""
         with self._lock:
-            self._drop_worker()
+            if self._worker is not None:
+                self._worker.stop()
+                self._worker = None
 
     def __enter__(self) -> Renderer:
         return self
@@ -101,21 +131,32 @@ class Renderer:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    def _ask(self, kind: str, state: RenderState, subject: Camera | Shot, timeout: float) -> tuple[Any, bytes]:
+        """The answer to a request, and the bytes that follow it."""
+        with self._lock:
+            worker = self._ensure_worker()
+            content = (self._sender.pack(state), subject)
+            try:
+                return worker.ask(kind, content, timeout, "picture"), worker.receive_bytes("picture")
+            finally:
+                if worker.over:
+                    self._worker = None
+
     def _ensure_worker(self) -> ChildProcess:
         if self._worker is None:
-            worker = _process("pictures", self._world_name, self._version)
+            worker = _process(f"pictures:{self._asked}", self._world_name, self._version)
             try:
-                worker.receive(START_TIMEOUT, "starting")
+                engine, complaint = worker.receive(START_TIMEOUT, "starting")
             except RenderError:
                 worker.stop()
                 raise
-            self._worker = worker
+            if self._engine is None:
+                if complaint:
+                    log.warning("%s", complaint)
+                log.info("pictures are drawn by %s", engine)
+            self._worker, self._engine = worker, engine
+            self._sender = StateSender()
         return self._worker
-
-    def _drop_worker(self) -> None:
-        if self._worker is not None:
-            self._worker.stop()
-            self._worker = None
 
 
 class Viewer:
@@ -130,6 +171,7 @@ class Viewer:
         self._world_name = world_name
         self._version = version
         self._worker: ChildProcess | None = None
+        self._sender = StateSender()
         self._drawing = False
 
     def start(self) -> Viewer:
@@ -146,7 +188,7 @@ class Viewer:
         except RenderError:
             worker.stop()
             raise
-        self._worker, self._drawing = worker, False
+        self._worker, self._drawing, self._sender = worker, False, StateSender()
         return self
 
     def show(self, state: RenderState) -> None:
@@ -163,7 +205,7 @@ class Viewer:
                 pipe.recv()
                 self._drawing = False
             if not self._drawing:
-                pipe.send(("show", state))
+                pipe.send(("show", self._sender.pack(state)))
                 self._drawing = True
         except (OSError, EOFError) as error:
             raise RenderError(f"window: {self._worker.last_words()}") from error

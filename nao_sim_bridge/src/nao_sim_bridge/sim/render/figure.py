@@ -22,9 +22,14 @@ from nao_sim_bridge.sim.kinematics import (
 )
 from nao_sim_bridge.sim.meshes import Mesh, merged, tessellate
 from nao_sim_bridge.sim.model import RobotModel
-from nao_sim_bridge.sim.render.scene import RenderState
+from nao_sim_bridge.sim.render.scene import RobotLook
 from nao_sim_bridge.sim.shapes import Shape
 from nao_sim_bridge.sim.visuals import visual_shape
+
+HEAD = ("HeadYaw", "HeadPitch")
+"""Links that are in the way of the cameras in the head."""
+FAR_AWAY = (0.0, 0.0, -1000.0)
+UNTURNED = (0.0, 0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -59,11 +64,26 @@ class Figure:
         self._parts = self._build_links()
         self.lamp_bodies = tuple(self._build_lamps())
         self.lamp_light = np.zeros((len(self.lamp_bodies), 3))
-        self._shown: RenderState | None = None
+        self._shown: RobotLook | None = None
+        self._headless = False
 
-    def show(self, state: RenderState) -> None:
-        """Put all bodies where the state says; what has not changed is left alone."""
+    def hide(self) -> None:
+        """Put all bodies out of sight."""
+        for part in self._parts:
+            self._put(part, FAR_AWAY, UNTURNED)
+        self.lamp_light = np.zeros_like(self.lamp_light)
+        self._shown = None
+
+    def show(self, state: RobotLook, headless: bool = False) -> None:
+        """Put all bodies where the state says; what has not changed is left alone.
+
+        Args:
+            state: The robot.
+            headless: Leave the head out.
+        """
         shown = self._shown
+        if headless != self._headless:
+            shown, self._headless = None, headless
         same_joints = shown is not None and shown.joint_positions == state.joint_positions
         same_base = shown is not None and (shown.base_position, shown.base_orientation) == (
             state.base_position,
@@ -75,7 +95,7 @@ class Figure:
             self._light(state.led_values)
         self._shown = state
 
-    def _place(self, state: RenderState) -> None:
+    def _place(self, state: RobotLook) -> None:
         base = transform(quaternion_matrix(state.base_orientation), state.base_position)
         poses = {name: base @ pose for name, pose in link_transforms(self._model, state.joint_positions).items()}
         for wrist, side, index in self._hands:
@@ -83,8 +103,11 @@ class Figure:
                 poses[side + phalanx] = poses[wrist] @ pose
         placed = {name: (pose[:3, 3].tolist(), matrix_quaternion(pose[:3, :3])) for name, pose in poses.items()}
         for part in self._parts:
-            position, orientation = placed[part.frame]
-            pybullet.resetBasePositionAndOrientation(part.body, position, orientation, physicsClientId=self._client)
+            hidden = self._headless and part.frame in HEAD
+            self._put(part, *((FAR_AWAY, UNTURNED) if hidden else placed[part.frame]))
+
+    def _put(self, part: _Part, position: Sequence[float], orientation: Sequence[float]) -> None:
+        pybullet.resetBasePositionAndOrientation(part.body, position, orientation, physicsClientId=self._client)
 
     def _light(self, values: Sequence[float]) -> None:
         lamps = self._appearance.lamps

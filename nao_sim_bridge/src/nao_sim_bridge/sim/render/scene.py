@@ -13,25 +13,41 @@ from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, tr
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.rotations import Quaternion, Vector3
+from nao_sim_bridge.sim.world import WorldObject
 
 
 @dataclass(frozen=True)
-class RenderState:
-    """Everything that can change between two pictures of one world.
+class RobotLook:
+    """What a robot looks like at one moment.
 
     Attributes:
         base_position: Torso frame in world, m.
         base_orientation: Of the torso frame in world, quaternion (x, y, z, w).
         joint_positions: (26,) in Body order, rad (hands 0..1).
         led_values: (89,) intensities 0..1 in the order of the LED layout's devices.
-        objects: Poses of movable objects of the world, by name; others stay where they are.
     """
 
     base_position: Vector3
     base_orientation: Quaternion
     joint_positions: tuple[float, ...]
     led_values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class RenderState(RobotLook):
+    """Everything that can change between two pictures of one world; the robot itself first.
+
+    Attributes:
+        objects: Poses in world of movable and of placed objects, by name; others stay where they are.
+        placed: Things that were added to those of the world.
+        gone: Names of things of the world that were taken away.
+        others: Further robots, of the same version.
+    """
+
     objects: Mapping[str, Pose] = field(default_factory=dict)
+    placed: tuple[WorldObject, ...] = ()
+    gone: frozenset[str] = frozenset()
+    others: tuple[RobotLook, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import pybullet
 
-from nao_sim_bridge.sim.appearance import load_appearance
-from nao_sim_bridge.sim.errors import UnknownName
-from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.render.backdrop import Backdrop, Shadow, blur
-from nao_sim_bridge.sim.render.figure import Figure
-from nao_sim_bridge.sim.render.scene import Camera, RenderState
-from nao_sim_bridge.sim.rotations import Quaternion, Vector3
+from nao_sim_bridge.sim.render.scene import RenderState
+from nao_sim_bridge.sim.render.stage import Stage
+from nao_sim_bridge.sim.render.view import NEAR, View
 from nao_sim_bridge.sim.world import FLOOR, World
 from nao_sim_bridge.sim.world_builder import build_world
 
-NEAR, FAR = 0.02, 30.0
+FAR = 30.0
 LIGHT_DISTANCE = 6.0
 """Of the lamp for the shadows of things on each other, m; nearer, it leaves edges in rooms."""
 LAMP_DISTANCE = 15.0
@@ -29,7 +27,6 @@ SHADOW_PIXELS = 192
 MOST_SHADOW_PIXELS = 384
 STILL_REACH, STILL_PIXELS = 5.0, 1024
 """As both above, for the shadow of what never moves, around the origin of the world."""
-FAR_AWAY = (0.0, 0.0, -1000.0)
 DIFFUSE, SPECULAR = 0.62, 0.12
 CORE_WHITE = 0.12
 """Share of white in the light of a lamp: a saturated colour alone looks like paint, not like light."""
@@ -39,21 +36,23 @@ GLOW = 0.9
 class Studio:
     """Where pictures are taken; one thread only.
 
+    Attributes:
+        name: Of the engine, for people.
+
     Args:
         world: Floor, light, background and objects.
         version: Robot version.
     """
 
+    name = "the built-in renderer (PyBullet's TinyRenderer)"
+
     def __init__(self, world: World, version: str) -> None:
         self._world = world
-        self._model = load_model(version)
         self._client = pybullet.connect(pybullet.DIRECT)
-        self._objects = build_world(world, self._client, visual=True)
         # The floor is drawn as part of the backdrop.
-        pybullet.removeBody(self._objects.pop(FLOOR), physicsClientId=self._client)
-        self._movable = [thing.name for thing in world.objects if thing.mass > 0.0]
-        self._backdrop = Backdrop(world, self._cast_still_shadow())
-        self._figure = Figure(self._client, self._model, load_appearance(version), paint_lamps=False)
+        self._stage = Stage(world, version, self._client, floor=False, paint_lamps=False)
+        self._backdrop = Backdrop(world)
+        self._gone: frozenset[str] | None = None
         self._shadow: Shadow | None = None
         self._shadow_of: tuple = ()
 
@@ -61,34 +60,33 @@ class Studio:
         """Free the engine."""
         pybullet.disconnect(physicsClientId=self._client)
 
-    def take(self, state: RenderState, camera: Camera) -> np.ndarray:
+    def draw(self, state: RenderState, view: View) -> np.ndarray:
         """The (h, w, 3) uint8 picture of a state."""
-        self._figure.show(state)
-        for name, pose in state.objects.items():
-            if name not in self._objects:
-                raise UnknownName("object", name, self._objects)
-            self._put(name, pose.position, pose.orientation)
-        factor = camera.supersampling
-        fine = replace(camera, width=camera.width * factor, height=camera.height * factor)
-        picture = self._draw(state, fine)
+        if state.gone != self._gone:
+            self._backdrop, self._gone = Backdrop(self._world, self._cast_still_shadow(state.gone)), state.gone
+        self._stage.show(state)
+        shadow = self._floor_shadow(state) if view.shadows else None
+        if view.from_head:
+            # After the shadow, which has a head.
+            self._stage.show(state, headless=True)
+        factor = view.samples
+        fine = replace(view, width=view.width * factor, height=view.height * factor)
+        picture = self._draw(fine, shadow)
         if factor > 1:
-            shape = (camera.height, factor, camera.width, factor, 3)
+            shape = (view.height, factor, view.width, factor, 3)
             picture = picture.reshape(shape).mean(axis=(1, 3))
         return (picture * 255.0 + 0.5).astype(np.uint8)
 
-    def _draw(self, state: RenderState, camera: Camera) -> np.ndarray:
+    def _draw(self, view: View, shadow: Shadow | None) -> np.ndarray:
         """(h, w, 3) float32 picture in 0..1, one ray a pixel."""
-        view = pybullet.computeViewMatrix(camera.eye, camera.target, camera.up)
-        projection = pybullet.computeProjectionMatrixFOV(
-            math.degrees(camera.fov), camera.width / camera.height, NEAR, FAR
-        )
+        right, top = (NEAR * tangent for tangent in view.tangents)
         light = self._world.light
         colors, bodies = self._capture(
-            camera.width,
-            camera.height,
-            view,
-            projection,
-            shadow=int(camera.shadows),
+            view.width,
+            view.height,
+            view.to_camera().T.ravel().tolist(),
+            pybullet.computeProjectionMatrix(-right, right, -top, top, NEAR, FAR),
+            shadow=int(view.shadows),
             lightDirection=light.direction,
             lightDistance=LIGHT_DISTANCE,
             lightColor=light.color,
@@ -96,13 +94,21 @@ class Studio:
             lightDiffuseCoeff=DIFFUSE,
             lightSpecularCoeff=SPECULAR,
         )
-        picture = self._backdrop.draw(camera, self._floor_shadow(state) if camera.shadows else None)
+        picture = self._backdrop.draw(view, shadow)
         seen = bodies >= 0
         picture[seen] = colors[seen].astype(np.float32) / np.float32(255.0)
         self._light_up(picture, bodies)
         return np.clip(picture, 0.0, 1.0)
 
-    def _capture(self, width: int, height: int, view: tuple, projection: tuple, **light: object) -> tuple:
+    def _capture(
+        self,
+        width: int,
+        height: int,
+        view: Sequence[float],
+        projection: Sequence[float],
+        client: int | None = None,
+        **light: object,
+    ) -> tuple:
         """Colours (h, w, 3) and body ids (h, w), -1 where nothing is."""
         _, _, rgba, _, bodies = pybullet.getCameraImage(
             width,
@@ -110,7 +116,7 @@ class Studio:
             view,
             projection,
             renderer=pybullet.ER_TINY_RENDERER,
-            physicsClientId=self._client,
+            physicsClientId=self._client if client is None else client,
             **light,
         )
         colors = np.asarray(rgba, dtype=np.uint8).reshape(height, width, 4)[..., :3]
@@ -118,12 +124,13 @@ class Studio:
 
     def _light_up(self, picture: np.ndarray, bodies: np.ndarray) -> None:
         """Let lit lamps shine: their pixels take the colour of the light, and some spills around them."""
-        light = self._figure.lamp_light
+        figures = self._stage.figures
+        light = np.concatenate([figure.lamp_light for figure in figures])
         level = light.max(axis=1)
         if not np.any(level > 0.0):
             return
         table = np.zeros((bodies.max() + 2, 4), dtype=np.float32)
-        for body, rgb, strength in zip(self._figure.lamp_bodies, light, level):
+        for body, rgb, strength in zip([lamp for figure in figures for lamp in figure.lamp_bodies], light, level):
             if strength > 0.0 and body + 1 < len(table):
                 full = rgb / strength
                 table[body + 1, :3] = full * (1.0 - CORE_WHITE) + CORE_WHITE
@@ -157,50 +164,46 @@ class Studio:
             state.base_orientation,
             state.joint_positions,
             tuple(state.objects.items()),
+            state.placed,
+            state.gone,
+            state.others,
         )
         if self._shadow is None or key != self._shadow_of:
             self._shadow, self._shadow_of = self._cast_shadow(state), key
         return self._shadow
 
-    def _cast_still_shadow(self) -> Shadow | None:
-        """The shadow of what never moves; before anything else is there than the objects of the world."""
-        if len(self._movable) == len(self._objects) and not self._world.floor.bumps:
+    def _cast_still_shadow(self, gone: frozenset[str]) -> Shadow | None:
+        """The shadow of what never moves, which is in the world and not gone."""
+        still = [thing for thing in self._world.objects if thing.mass == 0.0 and thing.name not in gone]
+        if not still and not self._world.floor.bumps:
             return None
-        places = {name: self._place_of(name) for name in self._movable}
-        for name in self._movable:
-            self._put(name, FAR_AWAY, (0.0, 0.0, 0.0, 1.0))
-        shadow = self._cast(np.zeros(3), STILL_REACH, STILL_PIXELS)
-        for name, place in places.items():
-            self._put(name, *place)
-        return shadow
+        bare = replace(self._world, objects=tuple(still))
+        client = pybullet.connect(pybullet.DIRECT)
+        try:
+            pybullet.removeBody(build_world(bare, client, visual=True)[FLOOR], physicsClientId=client)
+            return self._cast(np.zeros(3), STILL_REACH, STILL_PIXELS, client)
+        finally:
+            pybullet.disconnect(physicsClientId=client)
 
     def _cast_shadow(self, state: RenderState) -> Shadow:
         """The shadow of the robot and of what can be moved near it."""
         x, y, z = state.base_position
         center = np.array((x, y, max(z, 0.0) / 2.0))
         reach = SHADOW_REACH
-        for name in self._movable:
-            distance = float(np.linalg.norm(np.array(self._place_of(name)[0]) - center))
+        for place in (*self._stage.loose(), *(other.base_position for other in state.others)):
+            distance = float(np.linalg.norm(place - center))
             if distance < 3.0:
                 reach = max(reach, distance + 0.3)
         return self._cast(center, reach, min(round(SHADOW_PIXELS * reach / SHADOW_REACH), MOST_SHADOW_PIXELS))
 
-    def _cast(self, center: np.ndarray, reach: float, pixels: int) -> Shadow:
+    def _cast(self, center: np.ndarray, reach: float, pixels: int, client: int | None = None) -> Shadow:
         """What the lamp does not see of the floor within `reach` of a point, m."""
         direction = np.array(self._world.light.direction)
         direction /= np.linalg.norm(direction)
         view = pybullet.computeViewMatrix(center + direction * LAMP_DISTANCE, center, (0.0, 1.0, 0.001))
         angle = 2.0 * math.degrees(math.atan(reach / LAMP_DISTANCE))
         projection = pybullet.computeProjectionMatrixFOV(angle, 1.0, LAMP_DISTANCE - 5.0, LAMP_DISTANCE + 5.0)
-        _, bodies = self._capture(pixels, pixels, view, projection, shadow=0)
+        _, bodies = self._capture(pixels, pixels, view, projection, client, shadow=0)
         matrices = (np.array(m).reshape(4, 4).T for m in (projection, view))
         to_clip, to_lamp = matrices
         return Shadow(bodies >= 0, to_clip @ to_lamp, center[:2], reach)
-
-    def _place_of(self, name: str) -> tuple:
-        return pybullet.getBasePositionAndOrientation(self._objects[name], physicsClientId=self._client)
-
-    def _put(self, name: str, position: Vector3, orientation: Quaternion) -> None:
-        pybullet.resetBasePositionAndOrientation(
-            self._objects[name], position, orientation, physicsClientId=self._client
-        )

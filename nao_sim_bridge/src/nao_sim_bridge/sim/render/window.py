@@ -7,13 +7,10 @@ from multiprocessing.connection import Connection
 
 import pybullet
 
-from nao_sim_bridge.sim.appearance import load_appearance
 from nao_sim_bridge.sim.errors import SimulationError
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.render.figure import Figure
-from nao_sim_bridge.sim.render.scene import RenderState
+from nao_sim_bridge.sim.render.stage import Stage
+from nao_sim_bridge.sim.render.wire import StateReceiver
 from nao_sim_bridge.sim.world import World
-from nao_sim_bridge.sim.world_builder import build_world
 
 PERIOD = 1.0 / 30.0
 
@@ -37,8 +34,7 @@ class Window:
             raise SimulationError("PyBullet could not open a window on this display")
         pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_GUI, 0, physicsClientId=self._client)
         pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_RENDERING, 0, physicsClientId=self._client)
-        self._objects = build_world(world, self._client, visual=True)
-        self._figure = Figure(self._client, load_model(version), load_appearance(version), paint_lamps=True)
+        self._stage = Stage(world, version, self._client, floor=True, paint_lamps=True)
         pybullet.resetDebugVisualizerCamera(0.85, 60.0, -14.0, (0.0, 0.0, 0.28), physicsClientId=self._client)
         lamp = [5.0 * part for part in world.light.direction]
         pybullet.configureDebugVisualizer(lightPosition=lamp, physicsClientId=self._client)
@@ -46,19 +42,13 @@ class Window:
 
     def serve(self) -> None:
         """Show what comes, at most thirty times a second, until the pipe or the window is closed."""
+        states = StateReceiver()
         while pybullet.isConnected(self._client):
             # Without news, look now and then whether somebody has closed the window.
             if not self._pipe.poll(PERIOD):
                 continue
-            _, state = self._pipe.recv()
+            _, packed = self._pipe.recv()
             began = time.monotonic()
-            self._show(state)
+            self._stage.show(states.unpack(packed))
             time.sleep(max(0.0, PERIOD - (time.monotonic() - began)))
             self._pipe.send(("shown", None))
-
-    def _show(self, state: RenderState) -> None:
-        self._figure.show(state)
-        for name, pose in state.objects.items():
-            pybullet.resetBasePositionAndOrientation(
-                self._objects[name], pose.position, pose.orientation, physicsClientId=self._client
-            )

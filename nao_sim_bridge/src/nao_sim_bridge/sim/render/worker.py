@@ -1,8 +1,10 @@
-"""The picture process: `python -m nao_sim_bridge.sim.render.worker FD (pictures|window) WORLD VERSION`.
+"""The picture process: `python -m nao_sim_bridge.sim.render.worker FD (pictures:ENGINE|window) WORLD VERSION`.
 
-It talks over the inherited pipe FD in tuples (kind, content). First it sends ("ready", None) or
-("error", text). Then it answers ("render", (state, camera)) with ("picture", shape) and the raw pixels, or
-with ("error", text); ("show", state) is answered with ("shown", None). It ends when the pipe is closed.
+It talks over the inherited pipe FD in tuples (kind, content). First it sends ("ready", (engine, complaint or None)),
+of a window ("ready", None), or ("error", text). Then it answers ("render", (state, camera)) with ("picture", shape)
+and the raw pixels, ("capture", (state, shot)) with ("picture", None) and the bytes of the camera, or with
+("error", text); ("show", state) is answered with ("shown", None). States are packed by `wire.py`. It ends when the pipe
+is closed.
 """
 
 from __future__ import annotations
@@ -20,13 +22,14 @@ def main(arguments: list[str]) -> int:
     descriptor, mode, world_name, version = arguments
     pipe = pipe_to_parent(descriptor)
     try:
-        serve = (
-            _open_pictures(pipe, world_name, version) if mode == "pictures" else _open_window(pipe, world_name, version)
-        )
+        if mode == "window":
+            serve, told = _open_window(pipe, world_name, version), None
+        else:
+            serve, told = _open_pictures(pipe, mode.partition(":")[2], world_name, version)
     except Exception as error:
         pipe.send(("error", error_text(error)))
         return 1
-    pipe.send(("ready", None))
+    pipe.send(("ready", told))
     try:
         serve()
     except (EOFError, BrokenPipeError, ConnectionResetError):
@@ -48,26 +51,46 @@ def _quiet_import() -> Any:
     return pybullet
 
 
-def _open_pictures(pipe: Connection, world_name: str, version: str) -> Any:
-    """Build the studio; returns what serves the pipe."""
+def _open_pictures(pipe: Connection, engine: str, world_name: str, version: str) -> tuple[Any, Any]:
+    """Build what draws; returns what serves the pipe, and what draws with a complaint about it or None."""
     _quiet_import()
-    from nao_sim_bridge.sim.render.studio import Studio
+    from nao_sim_bridge.sim.render.engines import open_engine
+    from nao_sim_bridge.sim.render.wire import StateReceiver
     from nao_sim_bridge.sim.world import load_world
 
-    studio = Studio(load_world(world_name), version)
+    drawing, complaint = open_engine(engine, load_world(world_name), version)
+    states = StateReceiver()
+    answers = {"render": _render, "capture": _capture}
 
     def serve() -> None:
         while True:
-            _, (state, camera) = pipe.recv()
+            kind, (packed, subject) = pipe.recv()
+            state = states.unpack(packed)
             try:
-                picture = studio.take(state, camera)
+                told, pixels = answers[kind](drawing, state, subject)
             except Exception as error:
                 pipe.send(("error", error_text(error)))
                 continue
-            pipe.send(("picture", picture.shape))
-            pipe.send_bytes(picture.tobytes())
+            pipe.send(("picture", told))
+            pipe.send_bytes(pixels)
 
-    return serve
+    return serve, (drawing.name, complaint)
+
+
+def _render(drawing: Any, state: Any, camera: Any) -> tuple[tuple, Any]:
+    """Shape and pixels of a picture from outside."""
+    from nao_sim_bridge.sim.render.view import View
+
+    picture = drawing.draw(state, View.of_camera(camera))
+    return picture.shape, picture.tobytes()
+
+
+def _capture(drawing: Any, state: Any, shot: Any) -> tuple[None, Any]:
+    """What a camera of the robot makes of what it sees."""
+    from nao_sim_bridge.sim.cameras.photograph import photograph
+    from nao_sim_bridge.sim.render.view import View
+
+    return None, photograph(drawing.draw(state, View.of_shot(shot)), shot)
 
 
 def _open_window(pipe: Connection, world_name: str, version: str) -> Any:

@@ -1,0 +1,57 @@
+"""What all readers of world files share: lists, numbers and colours, with errors that tell the place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from nao_sim_bridge.sim.config import vector
+from nao_sim_bridge.sim.errors import BadValue, UnknownName
+from nao_sim_bridge.sim.world import Color, WorldError
+from nao_sim_bridge.sim.world_pictures import WorldPicture
+
+GREY = (0.6, 0.6, 0.6)
+
+
+def entries(content: Mapping, key: str, where: str) -> list[tuple[str, Any]]:
+    """The entries of a list, each with its place for error texts."""
+    listed = content.get(key) or []
+    if not isinstance(listed, list):
+        raise WorldError(f"{where}: {key}", f"is {listed!r}, not a list")
+    return [(f"{where}: {key}[{i}]", entry) for i, entry in enumerate(listed)]
+
+
+def number(
+    entry: Mapping, key: str, where: str, default: float, lowest: float = 0.0, highest: float = math.inf
+) -> float:
+    """A number of an entry, within its limits."""
+    value = float(vector([entry.get(key, default)], f"{where}.{key}", 1, WorldError)[0])
+    if not lowest <= value <= highest:
+        upper = f"..{highest:g}" if highest != math.inf else " or more"
+        raise WorldError(f"{where}.{key}", f"is {value:g}, allowed is {lowest:g}{upper}")
+    return value
+
+
+def color(entry: Mapping, key: str, where: str, default: Color) -> Color:
+    """A colour (r, g, b) of an entry, each 0..1."""
+    value = vector(entry.get(key, default), f"{where}.{key}", 3, WorldError)
+    if value.min() < 0.0 or value.max() > 1.0:
+        raise WorldError(f"{where}.{key}", f"is {value.tolist()}, allowed is 0..1 each")
+    return tuple(value.tolist())
+
+
+def picture(kind: str, content: Any, where: str) -> WorldPicture:
+    """A picture, if there is one of that kind and content."""
+    try:
+        return WorldPicture(kind, str(content))
+    except (BadValue, UnknownName) as error:
+        raise WorldError(where, str(error)) from error
+
+
+def truth(entry: Mapping, key: str, where: str) -> bool:
+    """A switch of an entry, off unless it says otherwise."""
+    value = entry.get(key, False)
+    if not isinstance(value, bool):
+        raise WorldError(f"{where}.{key}", f"is {value!r}, not true or false")
+    return value
