@@ -1,0 +1,382 @@
+#!/usr/bin/env python3
+"""Streams, recordings and pictures of any ROS camera, without a robot: what is in the files, and how threads end."""
+
+import os
+import resource
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import actionlib
+import av
+import cv2
+import numpy as np
+import rospkg
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from sensor_msgs.msg import CompressedImage, Image
+from std_msgs.msg import Header, String
+
+from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
+from nao_library_msgs.msg import VisionFunction
+from nao_sim_bridge.testing import send, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside this file's relay
+from fake_vision import number_of, numbered  # noqa: E402
+
+TOP, BOTTOM = "webcam/image_raw", "other_camera/image_raw/compressed"
+SIZE = (320, 240)
+RATE = 15.0
+LIMIT = 20.0
+
+
+def f(function, **fields):
+    return VisionFunction(function=function, **fields)
+
+
+class Camera:
+    """Publishes numbered pictures at a rate, as cameras do.
+
+    Attributes:
+        stamps: Number -> stamp of each picture that was sent, s.
+        size: Of the pictures, pixels.
+        encoding: Of the pictures.
+    """
+
+    def __init__(self, topic, kind=Image):
+        self.publisher = rospy.Publisher(topic, kind, queue_size=30)
+        self.stamps = {}
+        self.size, self.encoding = SIZE, "bgr8"
+        self._kind = kind
+        self._pictures = {}
+        self._ended = threading.Event()
+        self._running = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def run(self):
+        self.size, self.encoding = SIZE, "bgr8"
+        self._running.set()
+
+    def pause(self):
+        self._running.clear()
+
+    def close(self):
+        self._ended.set()
+        self._running.set()
+        self._thread.join()
+        self.publisher.unregister()
+
+    def _run(self):
+        number, due = 0, time.monotonic()
+        while self._running.wait() and not self._ended.is_set():
+            due = max(due + 1.0 / RATE, time.monotonic() - 1.0 / RATE)
+            self._ended.wait(max(0.0, due - time.monotonic()))
+            number += 1
+            stamp = rospy.Time.now()
+            self.stamps[number] = stamp.to_sec()
+            self.publisher.publish(self._message(number % 256, Header(stamp=stamp, frame_id="webcam_optical")))
+
+    def _message(self, number, header):
+        picture = self._pictures.get((number, self.size))
+        if picture is None:
+            picture = self._pictures[number, self.size] = numbered(number, self.size)
+        if self._kind is CompressedImage:
+            return CompressedImage(header=header, format="jpeg", data=cv2.imencode(".jpg", picture)[1].tobytes())
+        width, height = self.size
+        data = picture.tobytes() if self.encoding == "bgr8" else bytes(4 * width * height)
+        return Image(
+            header=header, width=width, height=height, encoding=self.encoding, step=len(data) // height, data=data
+        )
+
+
+def read(path):
+    """Times in s and numbers of the frames of a video, and its length in s."""
+    with av.open(str(path)) as container:
+        frames = [(float(one.pts * one.time_base), one.to_ndarray(format="bgr24")) for one in container.decode(video=0)]
+        length = container.duration / 1e6 if container.duration else 0.0
+    return [time for time, _ in frames], [number_of(picture) for _, picture in frames], length
+
+
+class Vision(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(rospkg.get_ros_home()) / "vision_files"
+        cls.top, cls.bottom = Camera(TOP), Camera(BOTTOM, CompressedImage)
+        cls.client = cls.connect("NaoVision")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.top.close()
+        cls.bottom.close()
+
+    @staticmethod
+    def connect(name):
+        client = actionlib.SimpleActionClient(name, NaoVisionAction)
+        wait_until(lambda: client.wait_for_server(rospy.Duration(0.01)), 60.0, name)
+        return client
+
+    def setUp(self):
+        self.top.run()
+        self.bottom.run()
+
+    def tearDown(self):
+        for thread in self.play(f("listThreads")).threads:
+            self.play(f("deleteThread", id=thread.id))
+
+    def play(self, *functions, client=None):
+        run = send(client or self.client, NaoVisionGoal(list(functions))).wait(60.0)
+        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
+        return run.result
+
+    def refused(self, *functions):
+        run = send(self.client, NaoVisionGoal(list(functions))).wait(60.0)
+        self.assertEqual(run.state, GoalStatus.ABORTED)
+        return run.text
+
+    def thread(self, ident, client=None):
+        (thread,) = self.play(f("listThreads", id=ident), client=client).threads
+        return thread
+
+    def wait_for(self, ident, condition, what, client=None):
+        wait_until(lambda: condition(self.thread(ident, client)), LIMIT, what)
+
+    def check_video(self, video, camera):
+        """Frames are those of the camera, all of them between the first and the last, each at its time."""
+        times, numbers, length = read(video.path)
+        self.assertEqual(len(numbers), video.frames)
+        stamps = camera.stamps
+        (first,) = [n for n, stamp in stamps.items() if abs(stamp - video.began.to_sec()) < 1e-6]
+        self.assertEqual(numbers[0], first % 256)
+        # Numbers begin anew after 256; those of dropped frames are missing.
+        steps = [(b - a) % 256 for a, b in zip(numbers, numbers[1:])]
+        self.assertTrue(all(steps), numbers)
+        indices = [first, *(first + int(step) for step in np.cumsum(steps))]
+        wanted = [stamps[index] - stamps[first] for index in indices]
+        slack = 1e-3 if video.file_type == "mp4" else 0.006
+        self.assertLess(max(abs(a - b) for a, b in zip(times, wanted)), slack)
+        self.assertEqual(indices[-1] - first + 1, video.frames + video.dropped)
+        self.assertAlmostEqual(length, video.duration, delta=0.02 if video.file_type == "mp4" else 0.25)
+        self.assertAlmostEqual(video.duration, wanted[-1] + wanted[-1] / max(1, len(wanted) - 1), delta=0.2)
+
+    # What goes through
+
+    def test_a_stream_and_a_recording_of_each_camera(self):
+        heard = []
+        listener = rospy.Subscriber("NaoVision/small/image_raw", Image, heard.append)
+        self.play(
+            f("subscribe", id="small", width=160),
+            f("startRecording", id="top"),
+            f("startRecording", id="bottom", camera="bottom", file_type="avi"),
+        )
+        wait_until(lambda: len(heard) >= 20, LIMIT, "20 frames of the stream")
+        self.wait_for("top", lambda thread: thread.frames >= 30, "30 frames")
+        self.wait_for("bottom", lambda thread: thread.frames >= 30, "30 frames")
+        running = {thread.id: thread for thread in self.play(f("listThreads")).threads}
+        for ident in ("small", "top", "bottom"):
+            self.assertEqual((running[ident].state, running[ident].error), ("running", ""))
+            self.assertAlmostEqual(running[ident].frame_rate, RATE, delta=0.3 * RATE)
+        result = self.play(*(f("stopThread", id=ident) for ident in ("small", "top", "bottom")))
+        listener.unregister()
+        for message in heard:
+            self.assertEqual((message.width, message.height, message.header.frame_id), (160, 120, "webcam_optical"))
+            stamp = message.header.stamp.to_sec()
+            picture = np.frombuffer(message.data, np.uint8).reshape(120, 160, 3)
+            self.assertEqual(abs(self.stamp_of(number_of(picture), stamp) - stamp) < 1e-6, True)
+        top, bottom = result.recordings
+        self.check_video(top, self.top)
+        self.check_video(bottom, self.bottom)
+        self.assertEqual(Path(top.path).parent, self.folder)
+
+    def stamp_of(self, number, near):
+        return min((s for n, s in self.top.stamps.items() if n % 256 == number), key=lambda s: abs(s - near))
+
+    def test_pictures_are_newer_than_the_goal_and_stay(self):
+        asked = rospy.get_time()
+        result = self.play(
+            f("takePicture", str_param="one.png"), f("takePicture", camera="bottom", file_type="jpg", width=64)
+        )
+        one, two = result.pictures
+        self.assertEqual((one.path, one.width, one.height), (str(self.folder / "one.png"), *SIZE))
+        self.assertGreaterEqual(one.header.stamp.to_sec(), asked)
+        number = number_of(cv2.imread(one.path))
+        self.assertAlmostEqual(self.stamp_of(number, asked), one.header.stamp.to_sec(), places=6)
+        self.assertEqual(cv2.imread(two.path).shape, (48, 64, 3))
+        self.assertEqual((two.encoding, two.file_type), ("jpeg", "jpg"))
+        before = Path(one.path).read_bytes()
+        self.assertRegex(self.refused(f("takePicture", str_param="one.png")), "one.png is there already")
+        self.assertEqual(Path(one.path).read_bytes(), before)
+
+    def test_pictures_at_an_interval_end_with_their_goal(self):
+        result = self.play(f("takePictures", count=4, interval=0.4, file_type="jpg"))
+        stamps = [picture.header.stamp.to_sec() for picture in result.pictures]
+        for earlier, later in zip(stamps, stamps[1:]):
+            self.assertAlmostEqual(later - earlier, 0.4, delta=0.25)
+        run = send(self.client, NaoVisionGoal([f("takePictures", count=1000, interval=0.05, file_type="jpg")]))
+        wait_until(lambda: any(feedback.done >= 2 for _, feedback in run.feedback), LIMIT, "two pictures")
+        run.cancel()
+        run.wait(10.0)
+        self.assertEqual(run.state, GoalStatus.PREEMPTED)
+        self.assertTrue(2 <= len(run.result.pictures) < 1000)
+
+    def test_ten_streams_and_ten_recordings_at_once(self):
+        heard = [[] for _ in range(10)]
+        listeners = [
+            rospy.Subscriber(f"NaoVision/s{k}/image_raw", Image, heard[k].append, buff_size=1 << 22) for k in range(10)
+        ]
+        codecs = ["h264", "mpeg4"] * 5
+        self.play(
+            *(f("subscribe", id=f"s{k}", width=32 * (k + 1)) for k in range(10)),
+            *(f("startRecording", id=f"r{k}", codec=codecs[k], str_param=f"ten/r{k}") for k in range(10)),
+        )
+        for k in range(10):
+            wait_until(lambda k=k: len(heard[k]) >= 45, 60.0, f"45 frames of stream {k}")
+            self.wait_for(f"r{k}", lambda thread: thread.frames >= 60, "60 frames")
+        threads = self.play(f("listThreads")).threads
+        self.assertEqual({thread.state for thread in threads}, {"running"})
+        began = time.monotonic()
+        result = self.play(*(f("stopRecording", id=f"r{k}") for k in range(10)))
+        print(
+            f"ten recordings ended in {time.monotonic() - began:.2f} s; dropped {[v.dropped for v in result.recordings]}"
+        )
+        for listener in listeners:
+            listener.unregister()
+        for video, codec in zip(result.recordings, codecs):
+            self.assertEqual(video.codec, codec)
+            self.check_video(video, self.top)
+        for k in range(10):
+            self.assertEqual({message.width for message in heard[k]}, {32 * (k + 1)})
+
+    # What goes wrong
+
+    def test_a_camera_that_stalls_is_told_and_may_come_back(self):
+        self.play(f("startRecording", id="walk"))
+        self.wait_for("walk", lambda thread: thread.frames >= 5, "frames")
+        self.top.pause()
+        self.wait_for("walk", lambda thread: thread.state == "stalled", "the stall")
+        self.assertEqual(self.thread("walk").frame_rate, 0.0)
+        text = self.refused(f("takePicture", timeout=0.5))
+        self.assertRegex(text, "no picture came from /webcam/image_raw within 0.5 s: is its camera running")
+        frames = self.thread("walk").frames
+        self.top.run()
+        self.wait_for("walk", lambda thread: thread.state == "running" and thread.frames > frames, "the camera")
+        (video,) = self.play(f("stopRecording", id="walk")).recordings
+        self.check_video(video, self.top)
+        self.assertGreater(video.duration, 2.0)
+
+    def test_a_camera_that_changes_does_not_end_a_recording(self):
+        self.play(f("startRecording", id="walk"))
+        self.wait_for("walk", lambda thread: thread.frames >= 5, "frames")
+        self.top.size = (640, 480)
+        before = self.thread("walk").frames
+        self.wait_for("walk", lambda thread: thread.frames >= before + 5, "frames of another size")
+        self.top.encoding = "32FC1"
+        self.wait_for("walk", lambda thread: "'32FC1' cannot be read: known are bgr8" in thread.error, "the error")
+        self.assertEqual(self.thread("walk").state, "running")
+        self.assertRegex(self.refused(f("takePicture")), "32FC1")
+        self.top.run()
+        self.wait_for("walk", lambda thread: thread.error == "", "the end of the error")
+        (video,) = self.play(f("stopRecording", id="walk")).recordings
+        self.assertEqual((video.width, video.height), SIZE)
+        self.check_video(video, self.top)
+
+    def test_topics_without_pictures_are_refused(self):
+        publisher = rospy.Publisher("talk", String, queue_size=1, latch=True)
+        publisher.publish("hello")
+        wait_until(lambda: ["/talk", "std_msgs/String"] in rospy.get_published_topics(), LIMIT, "the topic")
+        for function in (f("subscribe", id="s", topic="talk"), f("takePicture", topic="talk")):
+            self.assertRegex(self.refused(function), "field topic: /talk holds std_msgs/String: a topic of sensor_msgs")
+        publisher.unregister()
+
+    def test_without_a_robot_its_settings_fail_in_time(self):
+        began = time.monotonic()
+        text = self.refused(f("setParameter", str_param="brightness", values=[10]))
+        self.assertIn("function 1 (setParameter):", text)
+        self.assertIn("127.0.0.1:9", text)
+        text = self.refused(f("setResolution", resolution="VGA"))
+        self.assertRegex(text, "there is no service /nao_camera/top/set_parameters")
+        self.assertLess(time.monotonic() - began, 15.0)
+        self.assertEqual(self.play(f("setActiveCamera", camera="1"), f("getActiveCamera")).memList, ["bottom"])
+        self.play(f("setActiveCamera", camera="top"))
+
+    # How it ends
+
+    def test_preemption_leaves_what_is_the_users(self):
+        wait = f("startRecording", id="walk")
+        wait.time = rospy.Duration(1000)
+        run = send(self.client, NaoVisionGoal([f("subscribe", id="s"), wait]))
+        run.wait_for_function(1)
+        run.cancel()
+        run.wait(10.0)
+        self.assertEqual(run.state, GoalStatus.PREEMPTED)
+        for ident in ("s", "walk"):
+            self.wait_for(ident, lambda thread: thread.frames >= 5, "frames after the goal")
+
+    def start_server(self, name, largest_file=None):
+        """A server of its own in a namespace; its process, client and folder."""
+
+        def limit():
+            if largest_file:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
+
+        folder = self.folder.parent / name
+        process = subprocess.Popen(
+            ["rosrun", "nao_library_modules", "nao_vision_server", f"__ns:={name}", "_pport:=9",
+             f"_record_dir:={folder}", "_camera_top:=/webcam/image_raw"],
+            preexec_fn=limit,
+        )  # fmt: skip
+        self.addCleanup(self.end, process)
+        return process, self.connect(f"{name}/NaoVision"), folder
+
+    def end(self, process, number=signal.SIGINT):
+        if process.poll() is None:
+            os.kill(process.pid, number)
+            process.wait(30.0)
+
+    def test_a_file_that_cannot_grow_ends_its_recording_alone(self):
+        _, client, folder = self.start_server("small", largest_file=300_000)
+        self.play(
+            f("startRecording", id="small", width=16, str_param="small"),
+            f("startRecording", id="large", codec="mjpeg", str_param="large"),
+            f("subscribe", id="s"),
+            client=client,
+        )
+        self.wait_for("large", lambda thread: thread.state == "failed", "the error", client)
+        self.assertRegex(self.thread("large", client).error, "large.mp4 cannot be written: File too large")
+        before = self.thread("small", client).frames
+        for ident in ("small", "s"):
+            self.wait_for(ident, lambda thread: thread.frames > before + 10, "further frames", client)
+        result = self.play(f("stopRecording", id="large"), f("stopRecording", id="small"), client=client)
+        self.assertIn("File too large", result.recordings[0].error)
+        self.assertGreater(len(read(folder / "large.mp4")[0]), 5)
+        self.assertEqual(len(read(folder / "small.mp4")[0]), result.recordings[1].frames)
+
+    def test_the_end_of_the_server_completes_its_files(self):
+        process, client, folder = self.start_server("ending")
+        self.play(f("startRecording", id="mp4", str_param="a.mp4"), f("startRecording", id="avi", str_param="a.avi"),
+                  client=client)  # fmt: skip
+        self.wait_for("avi", lambda thread: thread.frames >= 10, "frames", client)
+        began = time.monotonic()
+        self.end(process, signal.SIGTERM)
+        self.assertLess(time.monotonic() - began, 8.0)
+        for name in ("a.mp4", "a.avi"):
+            times, _, length = read(folder / name)
+            self.assertGreaterEqual(len(times), 10)
+            self.assertAlmostEqual(length, times[-1], delta=0.2)
+
+    def test_a_server_that_is_killed_leaves_what_it_has_written(self):
+        process, client, folder = self.start_server("killed")
+        self.play(f("startRecording", id="walk", str_param="a.mp4"), client=client)
+        self.wait_for("walk", lambda thread: thread.frames >= 75, "frames", client)
+        self.end(process, signal.SIGKILL)
+        self.assertGreaterEqual(len(read(folder / "a.mp4")[0]), 30)
+
+
+if __name__ == "__main__":
+    rospy.init_node("vision_test")
+    rostest.rosrun("nao_library_tests", "vision", Vision)
