@@ -34,7 +34,7 @@ class Designator:
 
     Attributes:
         kind: action, motion, location or object.
-        description: Keys and values; values may be designators.
+        description: Keys and values; values may be designators. In keys - and _ are alike: they are kept with _.
         quantifier: "a" for any that fits, "the" for the only one, "all" for all of them.
         parent: The one it was equated to, None at the first of a chain.
         successor: The one that was equated to it last, None at the newest.
@@ -59,7 +59,7 @@ class Designator:
         if quantifier not in QUANTIFIERS:
             raise PlanError(f"a designator with quantifier {quantifier!r}: {', '.join(QUANTIFIERS)}")
         self.kind = kind
-        self.description = dict(description)
+        self.description = {plain_key(key): value for key, value in description.items()}
         self.quantifier = quantifier
         self.parent: Designator | None = None
         self.successor: Designator | None = None
@@ -78,16 +78,16 @@ class Designator:
         Raises:
             DesignatorError: It has no such key.
         """
-        if key not in self.description:
+        if plain_key(key) not in self.description:
             raise DesignatorError(self, f"no key {key!r}: it has {', '.join(self.description) or 'none'}")
-        return self.description[key]
+        return self.description[plain_key(key)]
 
     def get(self, key: str, default: Any = None) -> Any:
         """The value of a key, or the default."""
-        return self.description.get(key, default)
+        return self.description.get(plain_key(key), default)
 
     def __contains__(self, key: object) -> bool:
-        return key in self.description
+        return isinstance(key, str) and plain_key(key) in self.description
 
     def copy(self, **changes: Any) -> Designator:
         """Another one with the same description and some keys changed; None takes a key away. It is not equated."""
@@ -212,6 +212,11 @@ def designator(description: Description, kind: str = "") -> Designator:
     if not kind and content.get("type") in KINDS:
         kind = content.pop("type")
     return Designator(kind or action, {key: _nested(value) for key, value in content.items()})
+
+
+def plain_key(key: str) -> str:
+    """A key as it is kept: `left-target` and `left_target` are alike."""
+    return key.replace("-", "_")
 
 
 def _mapping(description: Description) -> dict[str, Any]:

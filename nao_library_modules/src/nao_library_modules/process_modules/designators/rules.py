@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..failures import DesignatorError, PlanError
-from .designator import KINDS, Designator
+from .designator import KINDS, Designator, plain_key
 from .patterns import Mismatch, Pattern, as_pattern
 
 MOST_TOLD = 4
@@ -174,7 +174,7 @@ RULES = Rules()
 
 
 def rule(
-    kind: str,
+    kind: str | tuple[str, ...],
     keys: Mapping[str, Any] | None = None,
     *,
     priority: int = 0,
@@ -185,8 +185,8 @@ def rule(
     """A function as a rule.
 
     Args:
-        kind: Of designators that it is about.
-        keys: Patterns by key, for keys that Python has no names for, as `to-see`.
+        kind: Of designators that it is about; several in a tuple.
+        keys: Patterns by key, for keys that are arguments of this function, as `priority`.
         priority: The highest goes first.
         called: Its name, for people; that of the function if there is none.
         rules: Where it is added.
@@ -194,8 +194,9 @@ def rule(
     """
 
     def add(solve: Callable[..., Any]) -> Callable[..., Any]:
-        wanted = {key: as_pattern(value) for key, value in {**(keys or {}), **patterns}.items()}
-        rules.add(Rule(called or solve.__name__.replace("_", " ").strip(), kind, wanted, solve, priority))
+        wanted = {plain_key(key): as_pattern(value) for key, value in {**(keys or {}), **patterns}.items()}
+        for each in (kind,) if isinstance(kind, str) else kind:
+            rules.add(Rule(called or solve.__name__.replace("_", " ").strip(), each, wanted, solve, priority))
         return solve
 
     return add

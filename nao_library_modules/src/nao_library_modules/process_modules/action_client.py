@@ -1,0 +1,169 @@
+"""Goals of actions in plans: sent, waited for, and cancelled when the plan does not want them any more."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+
+from .control import Step, subtask
+from .failures import ActionlibActionTimedOut
+from .flow import retry_after_suspension, uninterrupted, wait_until
+from .fluents import Fluent
+
+log = logging.getLogger(__name__)
+
+SERVER_LIMIT = 10.0
+"""s to wait for a server."""
+CANCEL_LIMIT = 5.0
+"""s that a server may take to end a goal that was cancelled."""
+
+
+@dataclass(frozen=True)
+class ActionEnd:
+    """How a goal ended.
+
+    Attributes:
+        status: One of `actionlib_msgs/GoalStatus`.
+        text: What the server said about it.
+        result: Its result; None if it has none.
+    """
+
+    status: int
+    text: str
+    result: Any
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether it succeeded."""
+        return self.status == GoalStatus.SUCCEEDED
+
+    def __str__(self) -> str:
+        return self.text or f"it ended {GoalStatus.to_string(self.status).lower()}"
+
+
+class PlanActionClient:
+    """Client of an action for plans; several goals may run at once.
+
+    It stands on actionlib's ActionClient: SimpleActionClient knows one goal at a time, and looks for its end every
+    tenth of a second.
+
+    Attributes:
+        name: Of the action, as it was asked for.
+        timeout: Longest time a goal may take, s of the plan's clock; None for ever.
+
+    Args:
+        name: Of the action; relative to the namespace.
+        action: Its class, as JointTrajectoryAction.
+        timeout: See above.
+    """
+
+    def __init__(self, name: str, action: type, timeout: float | None = None) -> None:
+        self.name = name
+        self.timeout = timeout
+        self._client = actionlib.ActionClient(name, action)
+        self._there = Fluent(f"server of {name}", False)
+        threading.Thread(target=self._look_for_server, name=f"server of {name}", daemon=True).start()
+
+    def call(
+        self, goal: Any, timeout: float | None = None, on_feedback: Callable[[Any], None] | None = None
+    ) -> ActionEnd:
+        """Send a goal and wait for its end, in a plan.
+
+        A plan that ends cancels it, and sees it end. A suspension cancels it; it is sent again afterwards.
+
+        Args:
+            goal: The goal.
+            timeout: s; that of the client if there is none.
+            on_feedback: Gets the feedback, in actionlib's thread.
+
+        Raises:
+            ActionlibActionTimedOut: There is no server, or the goal took too long.
+        """
+        limit = self.timeout if timeout is None else timeout
+        body = lambda: retry_after_suspension(lambda: self._once(goal, limit, on_feedback))  # noqa: E731
+        return subtask(Step(f"action {self.name}", body))
+
+    def wait_for_server(self, timeout: float = SERVER_LIMIT) -> None:
+        """Wait until there is a server, in a plan.
+
+        Raises:
+            ActionlibActionTimedOut: There is none.
+        """
+        if not wait_until(lambda: self._there.value, [self._there], timeout):
+            where = rospy.resolve_name(self.name)
+            raise ActionlibActionTimedOut(f"there is no server for {where} after {timeout:g} s", action=self.name)
+
+    def _look_for_server(self) -> None:
+        if self._client.wait_for_server():
+            self._there.value = True
+
+    def _once(self, goal: Any, limit: float | None, on_feedback: Callable[[Any], None] | None) -> ActionEnd:
+        self.wait_for_server()
+        done = Fluent(f"goal of {self.name} is over", False)
+
+        def look(handle: Any) -> None:
+            if handle.get_comm_state() == actionlib.CommState.DONE:
+                done.value = True
+
+        told = None if on_feedback is None else lambda _, feedback: on_feedback(feedback)
+        handle = self._client.send_goal(goal, look, told)
+        try:
+            in_time = wait_until(lambda: done.value, [done], limit)
+        finally:
+            if not done.value:
+                handle.cancel()
+                with uninterrupted():
+                    if not wait_until(lambda: done.value, [done], CANCEL_LIMIT):
+                        log.warning("the goal of %s was cancelled %g s ago and does not end", self.name, CANCEL_LIMIT)
+        if not in_time:
+            raise ActionlibActionTimedOut(f"the goal of {self.name} took longer than {limit:g} s", action=self.name)
+        return ActionEnd(handle.get_terminal_state(), handle.get_goal_status_text(), handle.get_result())
+
+
+_lock = threading.Lock()
+_clients: dict[str, PlanActionClient] = {}
+
+
+def make_simple_action_client(name: str, ros_name: str, action: type, timeout: float | None = None) -> PlanActionClient:
+    """Make a client known by a name; one that is known already is given back.
+
+    Args:
+        name: That plans know it by.
+        ros_name: Of the action.
+        action: Its class.
+        timeout: Longest time a goal may take, s; None for ever.
+    """
+    with _lock:
+        if name not in _clients:
+            _clients[name] = PlanActionClient(ros_name, action, timeout)
+        return _clients[name]
+
+
+def get_simple_action_client(name: str) -> PlanActionClient:
+    """The client of a name.
+
+    Raises:
+        KeyError: There is none.
+    """
+    with _lock:
+        if name not in _clients:
+            raise KeyError(f"no action client {name!r}: there are {', '.join(_clients) or 'none'}")
+        return _clients[name]
+
+
+def call_simple_action_client(name: str, goal: Any, timeout: float | None = None) -> ActionEnd:
+    """Send a goal with the client of a name, and wait for its end; see `PlanActionClient.call`."""
+    return get_simple_action_client(name).call(goal, timeout)
+
+
+def destroy_simple_action_clients() -> None:
+    """Forget all clients."""
+    with _lock:
+        _clients.clear()

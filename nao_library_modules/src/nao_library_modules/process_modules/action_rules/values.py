@@ -1,0 +1,93 @@
+"""What values of keys may be for a NAO: sides, points, places; and the numbers that words stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+from ...places import Place
+from ..designators.designator import Designator, action, motion
+from ..designators.patterns import Mismatch, Pattern, one_of
+from ..failures import DesignatorError
+from ..settings import Settings, load_settings
+from ..space import Point3
+
+ODOM = "odom"
+SIDE = one_of("left", "right")
+BOTH = (action, motion)
+EYES = 0.19
+"""m, height of the eyes over the torso."""
+
+
+@lru_cache(maxsize=None)
+def numbers_of_nao() -> Settings:
+    """The numbers that rules use."""
+    return load_settings()
+
+
+def a_point() -> Pattern:
+    """A point: three numbers in m in the torso frame, with a frame behind them, or a `Point3`."""
+
+    def take(value: Any) -> Point3:
+        if isinstance(value, Point3):
+            return value
+        if isinstance(value, Mapping) and set(value) <= {"x", "y", "z", "frame"}:
+            value = [*(value.get(axis, 0.0) for axis in "xyz"), *([value["frame"]] if "frame" in value else [])]
+        if isinstance(value, str) or not isinstance(value, Sequence) or not 3 <= len(value) <= 4:
+            raise Mismatch
+        try:
+            x, y, z = map(float, value[:3])
+        except (TypeError, ValueError):
+            raise Mismatch from None
+        return Point3(x, y, z, *map(str, value[3:]))
+
+    return Pattern("a point [x, y, z] in m, in the torso frame or with the name of a frame behind it", take)
+
+
+def a_position() -> Pattern:
+    """As the head's target in older plans: two numbers, a point on the floor level of the eyes; or a point."""
+    point = a_point()
+
+    def take(value: Any) -> Point3:
+        if not isinstance(value, (str, Mapping)) and isinstance(value, Sequence) and len(value) == 2:
+            return Point3(*map(float, value), EYES)
+        return point.take(value)
+
+    return Pattern(f"two numbers [x, y] in m, at the height of the eyes, or {point.wanted}", take)
+
+
+def a_place() -> Pattern:
+    """A place: x, y in m and a heading in rad in odom, with a frame behind them, or a `Place`."""
+
+    def take(value: Any) -> tuple[Place, str]:
+        if isinstance(value, Place):
+            return value, ODOM
+        if isinstance(value, Mapping) and {"x", "y"} <= set(value) <= {"x", "y", "yaw", "frame"}:
+            listed = [value["x"], value["y"], value.get("yaw", 0.0)]
+            return Place(*map(float, listed)), str(value.get("frame", ODOM))
+        if isinstance(value, str) or not isinstance(value, Sequence) or not 2 <= len(value) <= 4:
+            raise Mismatch
+        *listed, frame = value if isinstance(value[-1], str) else (*value, ODOM)
+        try:
+            return Place(*map(float, [*listed, 0.0][:3])), frame
+        except (TypeError, ValueError):
+            raise Mismatch from None
+
+    return Pattern("a place [x, y, yaw] in m and rad, in odom or with the name of a frame behind it", take)
+
+
+def points_of(desig: Designator) -> Iterator[Point3]:
+    """Points in space that designators of things and of locations stand for.
+
+    Raises:
+        DesignatorError: It stands for none.
+    """
+    for solution in desig.solutions():
+        position = getattr(solution, "position", None)
+        if position is not None:
+            yield position
+        elif isinstance(solution, tuple) and len(solution) == 2 and isinstance(solution[0], Place):
+            yield Point3(solution[0].x, solution[0].y, 0.0, solution[1])
+        else:
+            raise DesignatorError(desig, f"it stands for {solution!r}, which has no place")

@@ -1,0 +1,226 @@
+"""Chains of joints out of a robot description (URDF): where their tip is, and how to get it somewhere. Pure.
+
+The arm of a NAO has five joints and the hand is wanted at a point: what the hand's direction is stays free. Solutions
+are found by damped least squares (Nakamura and Hanafusa 1986) from several beginnings; angles stay within the limits.
+"""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from naoqi.errors import NaoError
+
+MARGIN = 0.02
+"""rad that solutions stay away from the limits of joints: a motor does not get to its end."""
+CLOSE = 1e-4
+"""m; a solution is there."""
+STEPS = 120
+DAMPING = 0.03
+LONGEST_STEP = 0.3
+"""rad a joint, each step."""
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint of a chain.
+
+    Attributes:
+        name: Its name; empty for one that does not move.
+        origin: (4, 4) of its frame in that of the joint before.
+        axis: (3,) it turns about, in its own frame.
+        lower: rad.
+        upper: rad.
+    """
+
+    name: str
+    origin: np.ndarray
+    axis: np.ndarray
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What came of a search.
+
+    Attributes:
+        angles: By joint, rad.
+        point: Where the tip is then, m.
+        distance: From there to where it was wanted, m.
+    """
+
+    angles: Mapping[str, float]
+    point: tuple[float, float, float]
+    distance: float
+
+
+class Chain:
+    """Joints from a base to a tip.
+
+    Attributes:
+        joints: Names of those that move, from the base on.
+        lower: (n,) rad.
+        upper: (n,) rad.
+
+    Args:
+        description: The URDF.
+        base: Link that points are told in.
+        tip: Link whose origin is wanted somewhere.
+
+    Raises:
+        NaoError: It is no URDF, or there is no such chain.
+    """
+
+    def __init__(self, description: str, base: str, tip: str) -> None:
+        self._all = _joints(description, base, tip)
+        moving = [joint for joint in self._all if joint.name]
+        self.joints = tuple(joint.name for joint in moving)
+        self.lower = np.array([joint.lower for joint in moving])
+        self.upper = np.array([joint.upper for joint in moving])
+
+    def tip(self, angles: Sequence[float] | Mapping[str, float]) -> np.ndarray:
+        """(4, 4) of the tip in the base, for (n,) angles in rad, or angles by name."""
+        return self._frames(self._listed(angles))[-1][0]
+
+    def reach(self, point: Sequence[float], now: Sequence[float] | Mapping[str, float]) -> Solution:
+        """Angles that bring the tip to a point, or as near as they can.
+
+        Args:
+            point: (x, y, z) in the base, m.
+            now: Angles that the search begins from, and which a solution is to be near to.
+
+        Returns:
+            The first solution that is there; the nearest one if none is.
+        """
+        target = np.asarray(point, dtype=float)
+        best: Solution | None = None
+        for start in self._starts(self._listed(now)):
+            found = self._search(target, start)
+            if best is None or found.distance < best.distance:
+                best = found
+            if best.distance < 10.0 * CLOSE:
+                break
+        assert best is not None
+        return best
+
+    def _search(self, target: np.ndarray, start: np.ndarray) -> Solution:
+        low, high = self.lower + MARGIN, self.upper - MARGIN
+        angles = np.clip(start, low, high)
+        best, best_error = angles, math.inf
+        for _ in range(STEPS):
+            frames = self._frames(angles)
+            place = frames[-1][0][:3, 3]
+            error = target - place
+            distance = float(np.linalg.norm(error))
+            if distance < best_error:
+                best, best_error = angles, distance
+            if distance < CLOSE:
+                break
+            jacobian = np.stack([np.cross(axis, place - frame[:3, 3]) for frame, axis in frames[:-1]], axis=1)
+            # A joint at its limit that would go on has no say in this step.
+            wanted = jacobian.T @ error
+            stuck = ((angles <= low) & (wanted < 0.0)) | ((angles >= high) & (wanted > 0.0))
+            jacobian[:, stuck] = 0.0
+            damped = jacobian @ jacobian.T + DAMPING**2 * min(1.0, distance / 0.1) * np.eye(3)
+            step = jacobian.T @ np.linalg.solve(damped, error)
+            longest = float(np.abs(step).max())
+            if longest < 1e-7:
+                break
+            angles = np.clip(angles + step * min(1.0, LONGEST_STEP / longest), low, high)
+        place = self._frames(best)[-1][0][:3, 3]
+        x, y, z = map(float, place)
+        return Solution(dict(zip(self.joints, map(float, best))), (x, y, z), best_error)
+
+    def _starts(self, now: np.ndarray) -> list[np.ndarray]:
+        middle, span = (self.lower + self.upper) / 2.0, (self.upper - self.lower) / 2.0
+        # The corners of half the range, in a fixed order: the same question has the same answer.
+        corners = [middle + 0.5 * span * np.array(signs) for signs in _signs(len(self.joints))]
+        return [now, middle, *corners]
+
+    def _frames(self, angles: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Frame of each moving joint and its axis, in the base; at the end that of the tip."""
+        frames, here, place = [], np.eye(4), 0
+        for joint in self._all:
+            here = here @ joint.origin
+            if not joint.name:
+                continue
+            frames.append((here, here[:3, :3] @ joint.axis))
+            here = here.copy()
+            here[:3, :3] = here[:3, :3] @ _turn(joint.axis, float(angles[place]))
+            place += 1
+        return [*frames, (here, np.zeros(3))]
+
+    def _listed(self, angles: Sequence[float] | Mapping[str, float]) -> np.ndarray:
+        if isinstance(angles, Mapping):
+            missing = [name for name in self.joints if name not in angles]
+            if missing:
+                raise NaoError(f"no angle of {', '.join(missing)} is known")
+            angles = [angles[name] for name in self.joints]
+        return np.asarray(angles, dtype=float)
+
+
+def _joints(description: str, base: str, tip: str) -> list[Joint]:
+    try:
+        root = ElementTree.fromstring(description)
+    except ElementTree.ParseError as error:
+        raise NaoError(f"the robot description is no XML: {error}") from error
+    by_child = {_attribute(joint, "child", "link"): joint for joint in root.findall("joint")}
+    found: list[Joint] = []
+    link = tip
+    while link != base:
+        joint = by_child.get(link)
+        if joint is None:
+            raise NaoError(f"the robot description has no chain from {base} to {tip}: it ends at {link}")
+        found.append(_joint(joint))
+        link = _attribute(joint, "parent", "link")
+    return found[::-1]
+
+
+def _joint(joint: ElementTree.Element) -> Joint:
+    origin = np.eye(4)
+    place = joint.find("origin")
+    if place is not None:
+        roll, pitch, yaw = _floats(place.get("rpy", "0 0 0"))
+        turns = (((0, 0, 1), yaw), ((0, 1, 0), pitch), ((1, 0, 0), roll))
+        for axis, angle in turns:
+            origin[:3, :3] = origin[:3, :3] @ _turn(np.array(axis, dtype=float), angle)
+        origin[:3, 3] = _floats(place.get("xyz", "0 0 0"))
+    if joint.get("type") not in ("revolute", "continuous"):
+        return Joint("", origin, np.zeros(3), 0.0, 0.0)
+    axis = np.array(_floats(_attribute(joint, "axis", "xyz") or "1 0 0"))
+    lower = float(_attribute(joint, "limit", "lower") or -math.pi)
+    upper = float(_attribute(joint, "limit", "upper") or math.pi)
+    return Joint(joint.get("name", ""), origin, axis / np.linalg.norm(axis), lower, upper)
+
+
+def _attribute(element: ElementTree.Element, child: str, name: str) -> str:
+    found = element.find(child)
+    return "" if found is None else found.get(name, "")
+
+
+def _floats(text: str) -> list[float]:
+    return [float(word) for word in text.split()]
+
+
+def _turn(axis: np.ndarray, angle: float) -> np.ndarray:
+    """(3, 3) rotation about a unit axis (Rodrigues)."""
+    x, y, z = axis
+    c, s = math.cos(angle), math.sin(angle)
+    t = 1.0 - c
+    return np.array(
+        [
+            [c + x * x * t, x * y * t - z * s, x * z * t + y * s],
+            [y * x * t + z * s, c + y * y * t, y * z * t - x * s],
+            [z * x * t - y * s, z * y * t + x * s, c + z * z * t],
+        ]
+    )
+
+
+def _signs(count: int) -> list[list[int]]:
+    """Eight corners of a cube of any dimension, spread over it."""
+    return [[1 if (corner >> (place % 3)) & 1 else -1 for place in range(count)] for corner in range(8)]

@@ -1,0 +1,120 @@
+"""The functions under the process modules, by name: one call, one thing that the robot does.
+
+They may be called in plans, and outside of them. All take the robot of this node's namespace, unless `use_robot` names
+another one.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ..places import Place
+from .action_rules.values import a_place, a_point, a_position
+from .designators.patterns import Mismatch, Pattern
+from .failures import PlanError
+from .modules.lights import Lights
+from .modules.manipulation import Manipulation
+from .modules.navigation import Navigation
+from .modules.speech import Speech
+from .modules.vision import Vision
+from .plans import def_top_level_plan
+from .process_module import ProcessModule
+from .registry import start_process_modules as start_modules
+from .robot_link import RobotLink
+from .space import Point3
+
+_lock = threading.Lock()
+_robots: list[RobotLink] = []
+
+
+def use_robot(robot: RobotLink) -> RobotLink:
+    """Have the functions here act on a robot."""
+    with _lock:
+        _robots[:] = [robot]
+    return robot
+
+
+def this_robot() -> RobotLink:
+    """The robot that they act on: that of `use_robot`, else the one of this node's namespace."""
+    with _lock:
+        if not _robots:
+            _robots.append(RobotLink())
+        return _robots[0]
+
+
+def make_process_modules(robot: RobotLink | None = None) -> tuple[ProcessModule, ...]:
+    """The process modules of a NAO: manipulation, navigation, speech, lights, vision. They do not run yet."""
+    link = robot or this_robot()
+    return Manipulation(link), Navigation(link), Speech(link), Lights(link), Vision(link)
+
+
+def start_process_modules(robot: RobotLink | None = None) -> tuple[ProcessModule, ...]:
+    """Run the process modules of a NAO, each in a thread of its own, until `stop_process_modules`."""
+    modules = make_process_modules(robot)
+    start_modules(*modules)
+    return modules
+
+
+@def_top_level_plan
+def open_gripper(side: str) -> float:
+    """Open a hand, left or right; answers how far it is open, 0..1."""
+    return Manipulation(this_robot()).open_gripper(side)
+
+
+@def_top_level_plan
+def close_gripper(side: str, grasp: bool = False) -> float:
+    """Close a hand, left or right; answers how far it is open, 0..1. With `grasp` there has to be something in it."""
+    return Manipulation(this_robot()).close_gripper(side, grasp)
+
+
+@def_top_level_plan
+def move_head(x: float, y: float, z: float | None = None) -> tuple[float, float]:
+    """Look at a point: x m ahead and y m to the left of the torso, at the height of the eyes or z m over the torso.
+
+    Returns:
+        HeadYaw and HeadPitch, rad.
+    """
+    point = [x, y] if z is None else [x, y, z]
+    return Manipulation(this_robot()).move_head(_taken(a_position(), point))
+
+
+@def_top_level_plan
+def move_arm(target: Point3 | Sequence[float], side: str) -> Point3:
+    """Bring a hand to a point, (x, y, z) in m in the torso frame or with the name of a frame behind it.
+
+    Returns:
+        Where the hand is then, in the torso frame.
+    """
+    return Manipulation(this_robot()).move_arm(_taken(a_point(), target), side)
+
+
+@def_top_level_plan
+def go_stable() -> Mapping[str, float]:
+    """Take the pose from which everything else can begin; answers the angles of the joints, rad by name."""
+    return Manipulation(this_robot()).go_stable()
+
+
+@def_top_level_plan
+def walk_to(target: Place | Sequence[float]) -> Place:
+    """Walk to a place, (x, y, yaw) in m and rad in odom or with the name of a frame behind it.
+
+    Returns:
+        Where the robot is then, in odom.
+    """
+    place, frame = _taken(a_place(), target)
+    return Navigation(this_robot()).walk_to(place, frame)
+
+
+@def_top_level_plan
+def text_to_speech(sentence: str) -> None:
+    """Have a sentence said; does not wait until it is."""
+    Speech(this_robot()).text_to_speech(sentence)
+
+
+def _taken(pattern: Pattern, value: Any) -> Any:
+    try:
+        return pattern.take(value)
+    except Mismatch:
+        raise PlanError(f"{value!r} is not {pattern.wanted}") from None

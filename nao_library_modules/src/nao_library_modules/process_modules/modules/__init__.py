@@ -1,0 +1,1 @@
+"""The process modules of a NAO: manipulation, navigation, speech, lights and vision."""

@@ -1,0 +1,54 @@
+"""Lights: LEDs, through the action of the server NaoLights."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import rospy
+
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_msgs.msg import LedFunction
+
+from ..failures import LightsLowLevelFailure
+from ..robot_link import RobotLink
+from .robot_module import RobotModule
+
+ACTION = "NaoLights"
+LONGEST = 60.0
+FACE = "FaceLeds"
+
+
+class Lights(RobotModule):
+    """Changes the colour and the brightness of lights."""
+
+    name = "lights"
+
+    def __init__(self, robot: RobotLink, name: str = "") -> None:
+        super().__init__(robot, name)
+        self.commands = {"set_color": self.set_color, "set_intensity": self.set_intensity}
+
+    def set_color(self, color: str, lights: Sequence[str] = (FACE,), time: float = 0.0, revert: bool = False) -> None:
+        """Give lights a colour.
+
+        Args:
+            color: By name, or #RRGGBB.
+            lights: Lights and groups as the robot names them.
+            time: s to wait afterwards.
+            revert: Whether they get their former colour back then.
+
+        Raises:
+            LightsLowLevelFailure: There is no such light or colour, or it failed.
+        """
+        self._run(LedFunction(function="setColor", lights=list(lights), str_param=color, revert=revert), time)
+
+    def set_intensity(
+        self, intensity: float, lights: Sequence[str] = (FACE,), time: float = 0.0, revert: bool = False
+    ) -> None:
+        """Give lights a brightness, 0..1; the rest as for `set_color`."""
+        self._run(LedFunction(function="setIntensity", lights=list(lights), i_values=[intensity], revert=revert), time)
+
+    def _run(self, function: LedFunction, time: float) -> None:
+        function.time = rospy.Duration.from_sec(time)
+        end = self.robot.action(ACTION, NaoLedAction).call(NaoLedGoal([function]), time + LONGEST)
+        if not end.succeeded:
+            raise LightsLowLevelFailure(f"{function.function}: {end}")

@@ -1,0 +1,228 @@
+"""Manipulation: arms, head and hands, through the action `joint_trajectory` of nao_controller."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import rospy
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
+
+from ..designators.rules import Command
+from ..failures import (
+    GripperClosedCompletely,
+    GripperGoalNotReached,
+    LowLevelFailure,
+    ManipulationGoalNotReached,
+    ManipulationPoseUnreachable,
+    PlanError,
+    PtuGoalNotReached,
+    PtuGoalUnreachable,
+)
+from ..robot_link import TORSO, RobotLink
+from ..space import Point3, head_angles
+from .robot_module import RobotModule
+
+ACTION = "joint_trajectory"
+MARGIN = 5.0
+"""s that a motion may take longer than it says."""
+SIDES = {"left": "L", "right": "R"}
+HEAD = ("HeadYaw", "HeadPitch")
+
+
+class Manipulation(RobotModule):
+    """Moves arms to points, turns the head, opens and closes hands, and takes the stable pose.
+
+    Motions of different limbs run beside each other.
+    """
+
+    name = "manipulation"
+
+    def __init__(self, robot: RobotLink, name: str = "") -> None:
+        super().__init__(robot, name)
+        self.commands = {
+            "open_gripper": self.open_gripper,
+            "close_gripper": self.close_gripper,
+            "move_gripper": self.move_gripper,
+            "move_head": self.move_head,
+            "turn_head": self.turn_head,
+            "move_arm": self.move_arm,
+            "move_joints": self.move_joints,
+            "go_stable": self.go_stable,
+        }
+
+    def resources(self, command: Command) -> frozenset[str]:
+        """The limb that a command moves."""
+        side = self.side_of(command.arguments)
+        limbs = {"gripper": {f"{side} hand"}, "head": {"head"}, "arm": {f"{side} arm"}}
+        needed = limbs.get(command.name.rpartition("_")[2])
+        everything = {"head", *(f"{each} {limb}" for each in SIDES for limb in ("hand", "arm")), "legs"}
+        return frozenset(needed or everything)
+
+    # --- hands --------------------------------------------------------------------------------------------------------
+
+    def open_gripper(self, side: str) -> float:
+        """Open a hand; answers how far it is open, 0..1.
+
+        Raises:
+            GripperGoalNotReached: It does not open.
+        """
+        return self.move_gripper(side, self.robot.settings.gripper["open"])
+
+    def close_gripper(self, side: str, grasp: bool = False) -> float:
+        """Close a hand; answers how far it is open, 0..1.
+
+        Args:
+            side: left or right.
+            grasp: Whether there is to be something in it.
+
+        Raises:
+            GripperClosedCompletely: There is nothing in it.
+            GripperGoalNotReached: It does not close, although nothing is to be in it.
+        """
+        settings = self.robot.settings
+        closed = settings.gripper["closed"]
+        opening = self._gripper(side, closed)
+        if grasp and abs(opening - closed) < settings.gripper_tolerance:
+            raise GripperClosedCompletely(f"the {side} hand closed, and there is nothing in it", side=side)
+        if not grasp and abs(opening - closed) >= settings.gripper_tolerance:
+            raise self._not_reached(side, opening, closed)
+        return opening
+
+    def move_gripper(self, side: str, opening: float) -> float:
+        """Open a hand so far, 0..1; answers how far it is open.
+
+        Raises:
+            GripperGoalNotReached: It does not get there.
+        """
+        reached = self._gripper(side, opening)
+        if abs(reached - opening) >= self.robot.settings.gripper_tolerance:
+            raise self._not_reached(side, reached, opening)
+        return reached
+
+    def _gripper(self, side: str, opening: float) -> float:
+        joint = f"{_letter(side)}Hand"
+        return self._move({joint: float(opening)}, self.robot.settings.gripper_time, GripperGoalNotReached)[joint]
+
+    @staticmethod
+    def _not_reached(side: str, reached: float, wanted: float) -> GripperGoalNotReached:
+        text = f"the {side} hand is {reached:.2f} open instead of {wanted:.2f}"
+        return GripperGoalNotReached(text, side=side, reached=reached, wanted=wanted)
+
+    # --- head ---------------------------------------------------------------------------------------------------------
+
+    def move_head(self, target: Point3) -> tuple[float, float]:
+        """Look at a point with the top camera; answers HeadYaw and HeadPitch, rad.
+
+        Raises:
+            PtuGoalUnreachable: The head does not turn that far; `nearest` has the angles that it could have.
+            PtuGoalNotReached: It did not get there.
+        """
+        settings = self.robot.settings
+        point = self.robot.point_in(target, TORSO)
+        camera = [settings.camera[key] for key in ("forward", "up", "neck", "tilt")]
+        return self.turn_head(*head_angles(*point[:3], camera))
+
+    def turn_head(self, yaw: float, pitch: float) -> tuple[float, float]:
+        """Turn the head to two angles, rad; answers where it is then.
+
+        Raises:
+            PtuGoalUnreachable: The head does not turn that far.
+            PtuGoalNotReached: It did not get there.
+        """
+        settings, chain = self.robot.settings, self.robot.chain(TORSO, "Head")
+        wanted = (float(yaw), float(pitch))
+        nearest = tuple(min(max(each, low), high) for each, low, high in zip(wanted, chain.lower, chain.upper))
+        if max(abs(a - b) for a, b in zip(wanted, nearest)) > settings.head_tolerance:
+            text = f"the head cannot turn to yaw {yaw:.2f}, pitch {pitch:.2f} rad: the nearest is {_angles(nearest)}"
+            raise PtuGoalUnreachable(text, wanted=wanted, nearest=nearest)
+        goal = dict(zip(HEAD, map(float, nearest)))
+        reached = self._move(goal, self._time(goal, settings.head_speed), PtuGoalNotReached)
+        got = (reached[HEAD[0]], reached[HEAD[1]])
+        if max(abs(a - b) for a, b in zip(got, nearest)) > settings.head_tolerance:
+            text = f"the head is at {_angles(got)} instead of {_angles(nearest)}"
+            raise PtuGoalNotReached(text, wanted=nearest, reached=got)
+        return got
+
+    # --- arms ---------------------------------------------------------------------------------------------------------
+
+    def move_arm(self, target: Point3, side: str) -> Point3:
+        """Bring a hand to a point; answers where it is then, in the torso frame.
+
+        Raises:
+            ManipulationPoseUnreachable: The arm is too short; `nearest` is the point that it can reach, in the frame
+                of the target.
+            ManipulationGoalNotReached: It did not get there.
+        """
+        settings, letter = self.robot.settings, _letter(side)
+        chain = self.robot.chain(TORSO, f"{letter.lower()}_gripper")
+        point, now = self.robot.point_in(target, TORSO), self.robot.angles()
+        found = chain.reach(point[:3], now)
+        if found.distance > settings.arm_tolerance / 2.0:
+            nearest = self.robot.point_in(Point3(*found.point, TORSO), target.frame)
+            raise ManipulationPoseUnreachable(
+                f"the {side} hand cannot get to {target}: the nearest point is {nearest}, {found.distance:.3f} m away",
+                target=target,
+                nearest=nearest,
+                distance=found.distance,
+                side=side,
+            )
+        reached = self._move(found.angles, self._time(found.angles, settings.arm_speed), ManipulationGoalNotReached)
+        x, y, z = map(float, chain.tip({**now, **reached})[:3, 3])
+        hand = Point3(x, y, z, TORSO)
+        if hand.distance_to(point) > settings.arm_tolerance:
+            text = f"the {side} hand is at {hand} instead of {point}"
+            raise ManipulationGoalNotReached(text, target=target, reached=hand, side=side)
+        return hand
+
+    # --- joints -------------------------------------------------------------------------------------------------------
+
+    def move_joints(self, angles: Mapping[str, float], time: float = 0.0) -> Mapping[str, float]:
+        """Move joints to angles, rad by name; answers where they are then.
+
+        Args:
+            angles: See above.
+            time: s that it takes; 0 for what the arms' speed gives.
+
+        Raises:
+            ManipulationGoalNotReached: They did not get there.
+        """
+        wanted = {name: float(angle) for name, angle in angles.items()}
+        return self._move(wanted, time or self._time(wanted, self.robot.settings.arm_speed), ManipulationGoalNotReached)
+
+    def go_stable(self) -> Mapping[str, float]:
+        """Take the pose from which everything else can begin; answers the angles, rad by name.
+
+        Raises:
+            ManipulationGoalNotReached: The robot did not get there.
+        """
+        settings = self.robot.settings
+        return self._move(dict(settings.stable), settings.stable_time, ManipulationGoalNotReached)
+
+    def _time(self, goal: Mapping[str, float], speed: float) -> float:
+        now = self.robot.angles()
+        unknown = [name for name in goal if name not in now]
+        if unknown:
+            raise PlanError(f"no joint {', '.join(unknown)}: there are {', '.join(now)}")
+        way = max(abs(angle - now[name]) for name, angle in goal.items())
+        return max(way / speed, self.robot.settings.shortest_motion)
+
+    def _move(self, angles: Mapping[str, float], time: float, failure: type[LowLevelFailure]) -> dict[str, float]:
+        point = JointTrajectoryPoint(positions=list(angles.values()), time_from_start=rospy.Duration.from_sec(time))
+        goal = JointTrajectoryGoal(trajectory=JointTrajectory(joint_names=list(angles), points=[point]))
+        end = self.robot.action(ACTION, JointTrajectoryAction).call(goal, time + MARGIN)
+        if not end.succeeded:
+            raise failure(f"{', '.join(angles) if len(angles) < 7 else 'the body'}: {end}", status=end.status)
+        state = end.result.goal_position
+        return dict(zip(state.name, state.position))
+
+
+def _letter(side: str) -> str:
+    if side not in SIDES:
+        raise PlanError(f"side is {side!r}: left or right")
+    return SIDES[side]
+
+
+def _angles(pair: Sequence[float]) -> str:
+    return f"yaw {pair[0]:.2f}, pitch {pair[1]:.2f} rad"

@@ -1,0 +1,79 @@
+"""Navigation: walking to places, through the action `walk_target` of nao_path_follower."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from actionlib_msgs.msg import GoalStatus
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+
+from ...places import Place, wrapped, yaw_of_quaternion
+from ..failures import NavigationGoalNotReached, NavigationPoseUnreachable
+from ..fluents import Fluent
+from ..robot_link import RobotLink
+from .robot_module import RobotModule
+
+ACTION = "walk_target"
+MARGIN = 20.0
+"""s that a walk may take longer than the slowest one."""
+ODOM = "odom"
+
+
+class Navigation(RobotModule):
+    """Walks to places.
+
+    Attributes:
+        position: A fluent with the last (Place, frame) that a walk told.
+    """
+
+    name = "navigation"
+
+    def __init__(self, robot: RobotLink, name: str = "") -> None:
+        super().__init__(robot, name)
+        self.position = Fluent("position on the way", None)
+        self.commands = {"walk_to": self.walk_to}
+
+    def walk_to(self, target: Place, frame: str = ODOM) -> Place:
+        """Walk to a place; answers where the robot is then, in odom.
+
+        Args:
+            target: Where to, m and rad.
+            frame: Of the target.
+
+        Raises:
+            NavigationPoseUnreachable: The goal was refused.
+            NavigationGoalNotReached: The robot did not get there; `reached` is where it is, `wanted` where it was to
+                be, in odom.
+        """
+        settings = self.robot.settings
+        # The robot's own frames move along: what counts at the end is where the target was at the beginning.
+        wanted = self.robot.place(ODOM).then(target.seen_from(self.robot.place(frame)))
+        way = target.seen_from(self.robot.place(frame))
+        slowest = way.distance / settings.walk_speed[0] + math.pi / settings.walk_speed[1]
+        goal = MoveBaseGoal()
+        goal.target_pose.header.frame_id = frame
+        goal.target_pose.pose.position.x, goal.target_pose.pose.position.y = target.x, target.y
+        goal.target_pose.pose.orientation.z = math.sin(target.yaw / 2.0)
+        goal.target_pose.pose.orientation.w = math.cos(target.yaw / 2.0)
+        end = self.robot.action(ACTION, MoveBaseAction).call(goal, slowest + MARGIN, self._on_feedback)
+        reached = self.robot.place(ODOM)
+        if end.status == GoalStatus.REJECTED:
+            raise NavigationPoseUnreachable(f"{_shown(target, frame)}: {end}", target=target, frame=frame)
+        off, turn = reached.distance_to(wanted), abs(wrapped(reached.yaw - wanted.yaw))
+        if not end.succeeded or off > 2.0 * settings.walk_tolerance[0] or turn > 2.0 * settings.walk_tolerance[1]:
+            why = str(end) if not end.succeeded else f"it is {off:.3f} m and {turn:.2f} rad off"
+            text = f"the robot did not get to {_shown(target, frame)}: {why}"
+            raise NavigationGoalNotReached(text, target=target, frame=frame, reached=reached, wanted=wanted)
+        return reached
+
+    def _on_feedback(self, feedback: Any) -> None:
+        stamped = feedback.base_position
+        turn = stamped.pose.orientation
+        yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w) or 0.0
+        place = Place(stamped.pose.position.x, stamped.pose.position.y, yaw)
+        self.position.value = (place, stamped.header.frame_id)
+
+
+def _shown(place: Place, frame: str) -> str:
+    return f"x {place.x:.2f} m, y {place.y:.2f} m, {place.yaw:.2f} rad in {frame}"

@@ -1,0 +1,57 @@
+"""What the process modules of a robot have in common: a table of commands."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ..designators.rules import Command
+from ..failures import PlanError
+from ..process_module import AsynchronousProcessModule
+from ..robot_link import RobotLink
+
+
+class RobotModule(AsynchronousProcessModule):
+    """A module whose commands are functions; one more is one key-value pair.
+
+    Attributes:
+        robot: The robot.
+        commands: Function by name of the command; its arguments are those of the command.
+
+    Args:
+        robot: See above.
+        name: Of the module; that of its class if there is none.
+    """
+
+    def __init__(self, robot: RobotLink, name: str = "") -> None:
+        super().__init__(name)
+        self.robot = robot
+        self.clock = robot.clock
+        self.commands: dict[str, Callable[..., Any]] = {}
+
+    def execute(self, command: Command) -> Any:
+        """Carry out a command.
+
+        Raises:
+            PlanError: There is no such command, or it takes other arguments.
+            PlanFailure: It cannot be done.
+        """
+        function = self.commands.get(command.name)
+        if function is None:
+            known = ", ".join(sorted(self.commands))
+            raise PlanError(f"the process module {self.name} knows no {command.name!r}: it knows {known}")
+        try:
+            inspect.signature(function).bind(**command.arguments)
+        except TypeError as error:
+            raise PlanError(f"{command}: {error}") from error
+        return function(**command.arguments)
+
+    def resources(self, command: Command) -> frozenset[str]:
+        """Everything for one command at a time, unless a module knows better."""
+        return frozenset({self.name})
+
+    @staticmethod
+    def side_of(arguments: Mapping[str, Any]) -> str:
+        """The side that a command is about; empty for none."""
+        return str(arguments.get("side", ""))

@@ -1,0 +1,57 @@
+"""Speech: saying texts, through the topic `speech` of nao_speech, or its action when the end is to be waited for."""
+
+from __future__ import annotations
+
+import rospy
+from std_msgs.msg import String
+
+from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
+
+from ..failures import SpeechLowLevelFailure
+from ..flow import sleep
+from ..robot_link import RobotLink
+from .robot_module import RobotModule
+
+TOPIC = "speech"
+ACTION = "speech_action"
+LISTENER_LIMIT = 10.0
+"""s to wait for a node that speaks."""
+PERIOD = 0.02
+LONGEST = 120.0
+"""s that a text may take."""
+
+
+class Speech(RobotModule):
+    """Says texts."""
+
+    name = "speech"
+
+    def __init__(self, robot: RobotLink, name: str = "") -> None:
+        super().__init__(robot, name)
+        self.commands = {"say": self.say, "text_to_speech": self.text_to_speech}
+
+    def text_to_speech(self, text: str) -> None:
+        """Have a text said; does not wait until it is.
+
+        Raises:
+            SpeechLowLevelFailure: Nobody listens to the topic.
+        """
+        publisher = self.robot.publisher(TOPIC, String)
+        waited = 0.0
+        while publisher.get_num_connections() == 0:
+            if waited >= LISTENER_LIMIT:
+                where = rospy.resolve_name(TOPIC)
+                raise SpeechLowLevelFailure(f"nobody speaks what comes on {where}: is nao_speech running?")
+            sleep(PERIOD)
+            waited += PERIOD
+        publisher.publish(String(text))
+
+    def say(self, text: str) -> None:
+        """Say a text and wait until it is said; a cancel silences it.
+
+        Raises:
+            SpeechLowLevelFailure: It was not said.
+        """
+        end = self.robot.action(ACTION, SpeechWithFeedbackAction).call(SpeechWithFeedbackGoal(say=text), LONGEST)
+        if not end.succeeded:
+            raise SpeechLowLevelFailure(f"{text!r} was not said: {end}", text=text)

@@ -1,0 +1,94 @@
+"""Vision: looking for things, through the action of the server NaoVision."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
+from nao_library_msgs.msg import VisionFunction
+
+from ..failures import PerceptionLowLevelFailure, PerceptionObjectNotFound
+from ..robot_link import RobotLink
+from ..space import Point3
+from .robot_module import RobotModule
+
+ACTION = "NaoVision"
+MARGIN = 10.0
+DETECTORS = {
+    "ball": "detectBall",
+    "face": "detectFaces",
+    "person": "detectFaces",
+    "landmark": "detectLandmarks",
+    "code": "readBarcodes",
+}
+"""What is detected, by the type of an object."""
+
+
+@dataclass(frozen=True)
+class SeenThing:
+    """Something that was seen.
+
+    Attributes:
+        type: ball, face, landmark or code.
+        name: Whose face it is, a landmark's number, what a code says; empty if that is not known.
+        position: Where it is; None if only the direction is known.
+        confidence: 0..1.
+        alpha: rad, positive to the left of the camera's axis.
+        beta: rad, positive below it.
+    """
+
+    type: str
+    name: str
+    position: Point3 | None
+    confidence: float
+    alpha: float
+    beta: float
+
+
+class Vision(RobotModule):
+    """Looks for things."""
+
+    name = "vision"
+
+    def __init__(self, robot: RobotLink, name: str = "") -> None:
+        super().__init__(robot, name)
+        self.commands = {"detect": self.detect}
+
+    def detect(
+        self, type: str, name: str = "", timeout: float = 2.0, search: bool = False, camera: str = "", size: float = 0.0
+    ) -> list[SeenThing]:
+        """Look for things of a type; those that are seen.
+
+        Args:
+            type: One of `DETECTORS`.
+            name: Only that one: a face's name, a landmark's number, a code's text.
+            timeout: s.
+            search: Whether the head turns to find them.
+            camera: top or bottom; empty for the active one.
+            size: Of the real thing, m; 0 for what is usual.
+
+        Raises:
+            PerceptionObjectNotFound: Nothing was seen in time.
+            PerceptionLowLevelFailure: Looking failed.
+        """
+        if type not in DETECTORS:
+            raise PerceptionLowLevelFailure(f"nobody detects {type!r}: there are detectors for {', '.join(DETECTORS)}")
+        function = VisionFunction(function=DETECTORS[type], str_param=name)
+        if search:
+            kind = "face" if type == "person" else type
+            function = VisionFunction(function="lookFor", str_param=f"{kind} {name}".strip())
+        function.timeout, function.camera, function.size = timeout, camera, size
+        end = self.robot.action(ACTION, NaoVisionAction).call(NaoVisionGoal([function]), timeout + MARGIN)
+        if not end.succeeded:
+            raise PerceptionLowLevelFailure(f"{function.function}: {end}")
+        if not end.result.objects:
+            what = f"{type} {name}".strip()
+            raise PerceptionObjectNotFound(f"no {what} was seen in {timeout:g} s", type=type, name=name)
+        return [_seen(each) for each in end.result.objects]
+
+
+def _seen(found: Any) -> SeenThing:
+    where = found.position
+    position = Point3(where.x, where.y, where.z, found.base_frame) if found.located else None
+    return SeenThing(found.kind, found.name, position, found.confidence, found.alpha, found.beta)

@@ -1,0 +1,133 @@
+"""What process modules share of a robot: its actions, its joints, its frames, and its numbers. In ROS."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from typing import Any
+
+import rospy
+import tf2_ros
+from sensor_msgs.msg import JointState
+
+from ..places import Place, yaw_of_quaternion
+from ..robot_frames import tf_prefix
+from ..ros_clock import RosClock
+from .action_client import PlanActionClient
+from .chains import Chain
+from .failures import LowLevelFailure
+from .flow import wait_until
+from .fluents import Fluent
+from .settings import Settings, load_settings
+from .space import Point3, turned
+
+STATE_LIMIT = 5.0
+"""s to wait for the first joint states, and for frames."""
+ROBOT = "base_footprint"
+TORSO = "torso"
+
+
+class RobotLink:
+    """A robot as process modules know it: names are relative to the namespace of the node.
+
+    Attributes:
+        settings: Numbers, see `settings`.
+        clock: ROS time.
+        joints: A fluent with the last joint states: angles in rad by name.
+
+    Args:
+        settings: See above; those of the package if there are none.
+    """
+
+    def __init__(self, settings: Settings | None = None) -> None:
+        self.settings = settings or load_settings()
+        self.clock = RosClock()
+        self.joints = Fluent("joint states", {})
+        self._clients: dict[str, PlanActionClient] = {}
+        self._publishers: dict[str, rospy.Publisher] = {}
+        self._lock = threading.Lock()
+        self._chains: dict[str, Chain] = {}
+        self._buffer = tf2_ros.Buffer()
+        self._listener = tf2_ros.TransformListener(self._buffer)
+        self._subscriber = rospy.Subscriber("joint_states", JointState, self._on_joints, queue_size=1)
+
+    def action(self, name: str, kind: type) -> PlanActionClient:
+        """Client of an action; there is one for each."""
+        with self._lock:
+            if name not in self._clients:
+                self._clients[name] = PlanActionClient(name, kind)
+            return self._clients[name]
+
+    def publisher(self, topic: str, kind: type) -> rospy.Publisher:
+        """Publisher of a topic; there is one for each."""
+        with self._lock:
+            if topic not in self._publishers:
+                self._publishers[topic] = rospy.Publisher(topic, kind, queue_size=10)
+            return self._publishers[topic]
+
+    def angles(self) -> Mapping[str, float]:
+        """Angles of the joints, rad by name; the first ones are waited for, in a plan.
+
+        Raises:
+            LowLevelFailure: Nobody publishes them.
+        """
+        if not wait_until(lambda: self.joints.value, [self.joints], STATE_LIMIT):
+            raise LowLevelFailure(f"no joint states on {rospy.resolve_name('joint_states')}: is a driver running?")
+        return self.joints.value
+
+    def chain(self, base: str, tip: str) -> Chain:
+        """Joints between two links, out of the robot description.
+
+        Raises:
+            LowLevelFailure: There is no description.
+            NaoError: It has no such chain.
+        """
+        key = f"{base} {tip}"
+        if key not in self._chains:
+            found = rospy.search_param("robot_description")
+            if not found:
+                raise LowLevelFailure("there is no robot_description: is a driver running?")
+            self._chains[key] = Chain(rospy.get_param(found), base, tip)
+        return self._chains[key]
+
+    def place(self, frame: str) -> Place:
+        """Where the robot is now, seen from above, in a frame.
+
+        Raises:
+            LowLevelFailure: The frame is not connected with the robot.
+        """
+        found = self._transform(frame, ROBOT)
+        turn = found.rotation
+        yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
+        return Place(found.translation.x, found.translation.y, 0.0 if yaw is None else yaw)
+
+    def point_in(self, point: Point3, frame: str) -> Point3:
+        """A point in another frame, as the frames are now.
+
+        Raises:
+            LowLevelFailure: The frames are not connected.
+        """
+        if point.frame == frame:
+            return point
+        found = self._transform(frame, point.frame)
+        turn, move = found.rotation, found.translation
+        x, y, z = turned((point.x, point.y, point.z), (turn.x, turn.y, turn.z, turn.w))
+        return Point3(x + move.x, y + move.y, z + move.z, frame)
+
+    def _transform(self, to: str, of: str) -> Any:
+        """The transform that brings points of one frame into another."""
+        target, source = tf_prefix() + to.lstrip("/"), tf_prefix() + of.lstrip("/")
+        problem = ""
+
+        def known() -> bool:
+            nonlocal problem
+            there, problem = self._buffer.can_transform_core(target, source, rospy.Time())
+            return there
+
+        # /tf comes in a thread of its own and tells nobody; joint states come as often.
+        if not wait_until(known, [self.joints], STATE_LIMIT):
+            raise LowLevelFailure(f"the frame {of} cannot be told in {to}: {problem or 'is a driver running?'}")
+        return self._buffer.lookup_transform_core(target, source, rospy.Time()).transform
+
+    def _on_joints(self, message: JointState) -> None:
+        self.joints.value = dict(zip(message.name, message.position))

@@ -1,0 +1,67 @@
+"""Points and turns in space. Pure; lengths in m, angles in rad."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+
+class Point3(NamedTuple):
+    """A point in a frame.
+
+    Attributes:
+        x: m.
+        y: m.
+        z: m.
+        frame: Of /tf.
+    """
+
+    x: float
+    y: float
+    z: float
+    frame: str = "torso"
+
+    def distance_to(self, other: Sequence[float]) -> float:
+        """From here to a point of the same frame, m."""
+        return math.dist(self[:3], other[:3])
+
+    def __str__(self) -> str:
+        return f"({self.x:.3f}, {self.y:.3f}, {self.z:.3f}) m in {self.frame}"
+
+
+def turned(point: Sequence[float], quaternion: Sequence[float]) -> tuple[float, float, float]:
+    """A point turned by a unit quaternion (x, y, z, w)."""
+    px, py, pz = point
+    x, y, z, w = quaternion
+    # v + 2 w (q x v) + 2 q x (q x v)
+    cx, cy, cz = y * pz - z * py, z * px - x * pz, x * py - y * px
+    return (
+        px + 2.0 * (w * cx + y * cz - z * cy),
+        py + 2.0 * (w * cy + z * cx - x * cz),
+        pz + 2.0 * (w * cz + x * cy - y * cx),
+    )
+
+
+def head_angles(x: float, y: float, z: float, camera: Sequence[float]) -> tuple[float, float]:
+    """Yaw and pitch of a head that looks at a point.
+
+    Args:
+        x: Of the point, in the torso frame, m.
+        y: m.
+        z: m.
+        camera: (forward, up) of the camera from the neck joint that yaw and pitch turn about, and the height of that
+            joint in the torso frame, m; and the angle by which the camera looks down, rad.
+
+    Returns:
+        HeadYaw, HeadPitch; positive to the left and down.
+    """
+    forward, up, neck, tilt = camera
+    yaw = math.atan2(y, x)
+    far, high = math.hypot(x, y), z - neck
+    # The camera's ray goes past the neck at a distance that does not depend on the pitch.
+    past = up * math.cos(tilt) + forward * math.sin(tilt)
+    away = math.hypot(far, high)
+    down = math.atan2(-high, far)
+    lift = math.asin(max(-1.0, min(1.0, past / away))) if away > 0.0 else 0.0
+    return yaw, down + lift - tilt
