@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from nao_sim_bridge.sim.render.client import Renderer, RenderError, Viewer
 from nao_sim_bridge.sim.render.png import write_png
-from nao_sim_bridge.sim.render.scene import PRESETS, Camera, RenderState, preset_camera
+from nao_sim_bridge.sim.render.scene import PRESETS, Camera, RenderState, RobotLook, preset_camera
 
 __all__ = [
     "PRESETS",
@@ -12,6 +12,7 @@ __all__ = [
     "RenderError",
     "RenderState",
     "Renderer",
+    "RobotLook",
     "Viewer",
     "preset_camera",
     "write_png",

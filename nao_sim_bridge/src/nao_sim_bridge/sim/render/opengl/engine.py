@@ -12,7 +12,7 @@ from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.render.opengl.canvas import Canvases
 from nao_sim_bridge.sim.render.opengl.context import describe, open_context
 from nao_sim_bridge.sim.render.opengl.geometry import POSITION_FORMAT, VERTEX_FORMAT, VERTEX_NAMES
-from nao_sim_bridge.sim.render.opengl.items import Items, spheres_in_sight
+from nao_sim_bridge.sim.render.opengl.items import CORE_WHITE, Items, spheres_in_sight
 from nao_sim_bridge.sim.render.opengl.scene_block import BLOCK, camera_block, world_constants
 from nao_sim_bridge.sim.render.opengl.shaders import sources
 from nao_sim_bridge.sim.render.opengl.shadow_map import ShadowMap
@@ -22,7 +22,7 @@ from nao_sim_bridge.sim.render.view import NEAR, View
 from nao_sim_bridge.sim.world import World
 
 STILL_PIXELS, MOVING_PIXELS = 1024, 512
-SOFTNESS = 1.3
+SOFTNESS = 1.5
 """Distance of the samples of a shadow's edge, in pixels of its map."""
 MOVING_REACH = 3.5
 """What moves throws a shadow when it is as near to the robot, m."""
@@ -32,7 +32,7 @@ COARSE_BELOW = 10.0
 """Radius in pixels of what is drawn with fewer triangles."""
 CLIP_DISTANCE_0 = 0x3000
 ROWS = ("row_x", "row_y", "row_z", "glow")
-HALO_SIZE, HALO_LIGHT = 2.6, 0.5
+HALO_SIZE, HALO_LIGHT = 2.6, 0.4
 """Of the light around a lamp: its radius in radii of the lamp, and its strength."""
 
 
@@ -203,7 +203,8 @@ class OpenGLEngine:
         if len(lit) == 0:
             return
         size = HALO_SIZE * items.radii[lit, None]
-        light = items.glow[lit, :3] * items.glow[lit, 3:] * HALO_LIGHT
+        # Only the core of the lamp is nearly white.
+        light = (items.glow[lit, :3] - CORE_WHITE).clip(0.0) * items.glow[lit, 3:] * HALO_LIGHT
         self._glows.write(np.concatenate([centers[lit], size, light], axis=1).astype("f4").tobytes())
         context = self._context
         context.enable(moderngl.BLEND)

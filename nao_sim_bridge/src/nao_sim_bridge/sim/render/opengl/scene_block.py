@@ -14,11 +14,11 @@ BLOCK = np.dtype(
 """As `shaders.SCENE` declares it."""
 FROM_BELOW = 0.80
 """Share of the light from above that comes from below, too."""
-WALLS = 0.15
+WALLS = 0.11
 """What surfaces that stand upright get besides."""
 FILL = 0.12
 """Of the second lamp, for surfaces that face it."""
-BRIGHTER = 1.12
+BRIGHTER = 1.06
 """Things, than the floor of the same colour: else a room looks dim."""
 SUNK = 0.0005
 """What is deeper in the floor is not drawn, m."""

@@ -8,6 +8,8 @@ import numpy as np
 
 MARGIN = 0.02
 """Around what throws shadows, m; the edge of the map must be free, for it goes on for ever."""
+FINEST = 0.004
+"""Width of a pixel, m; if they were finer, edges of shadows would be hard."""
 OFFSET = (1.5, 2.0)
 """Of the distances in the map, against surfaces that shade themselves."""
 
@@ -27,6 +29,7 @@ class ShadowMap:
 
     def __init__(self, context: Any, size: int, toward_lamp: np.ndarray) -> None:
         self._context = context
+        self._least = size * FINEST
         self.texture = context.depth_texture((size, size))
         self.texture.compare_func = "<="
         self.texture.repeat_x = self.texture.repeat_y = False
@@ -57,6 +60,7 @@ class ShadowMap:
         seen = centers @ axes.T
         reach = radii[:, None] + MARGIN
         low, high = (seen - reach).min(axis=0), (seen + reach).max(axis=0)
+        high[:2] = np.maximum(high[:2], low[:2] + self._least)
         matrix = np.eye(4)
         matrix[:3, :3] = axes / (high - low)[:, None]
         matrix[:3, 3] = -low / (high - low)
