@@ -50,9 +50,7 @@ class Things:
         changed: Called when something was placed, moved at once or removed.
     """
 
-    def __init__(
-        self, world: World, task_ids: TaskIds, now: Callable[[], float], changed: Callable[[], None]
-    ) -> None:
+    def __init__(self, world: World, task_ids: TaskIds, now: Callable[[], float], changed: Callable[[], None]) -> None:
         self._world = world
         self._ids = task_ids
         self._now = now

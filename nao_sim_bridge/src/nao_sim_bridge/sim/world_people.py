@@ -75,7 +75,7 @@ def _trunk(scale: float, clothes: Color, trousers: Color, skin: Color) -> tuple[
         body.append(_rod(0.045 * scale, shoulder, wrist))
     parts += [
         Part(Shape("ellipsoid", _scaled((0.115, 0.170, 0.130), scale), _scaled((0.0, 0.0, 0.90), scale)), trousers),
-        Part(Shape("pillow", _scaled((0.23, 0.34, 0.50), scale), _scaled((0.0, 0.0, 1.13), scale)), clothes),
+        Part(Shape("pillow", _scaled((0.23, 0.34, 0.46), scale), _scaled((0.0, 0.0, 1.12), scale)), clothes),
         Part(Shape("ellipsoid", _scaled((0.095, 0.195, 0.085), scale), _scaled((-0.01, 0.0, 1.31), scale)), clothes),
     ]
     body.append(_rod(0.14 * scale, (0.0, 0.0, 0.95 * scale), (0.0, 0.0, 1.25 * scale)))
@@ -90,9 +90,7 @@ def _hand(side: float) -> tuple[float, float, float]:
     return (0.045, side * 0.232, 0.76)
 
 
-def _head(
-    look: FaceLook, face: WorldPicture, half_axes: tuple[float, float, float], middle: float
-) -> list[Part]:
+def _head(look: FaceLook, face: WorldPicture, half_axes: tuple[float, float, float], middle: float) -> list[Part]:
     hair = look.skin if look.hair_style == "bald" else look.hair
     parts = [Part(Shape("ellipsoid", half_axes, (0.0, 0.0, middle)), hair, face)]
     for side in (-1.0, 1.0):

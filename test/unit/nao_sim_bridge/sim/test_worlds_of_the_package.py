@@ -12,6 +12,7 @@ import yaml
 
 from nao_sim_bridge.sim.rotations import rotate
 from nao_sim_bridge.sim.world import load_world, world_names
+from nao_sim_bridge.sim.world_cards import CARDS
 from nao_sim_bridge.sim.world_reader import read_world
 
 ROOT = Path(__file__).parents[4]
@@ -42,7 +43,7 @@ def edges(name, world="lab"):
 
 
 def test_the_worlds_that_there_are():
-    assert set(WORLDS) == {"empty", "lab", "obstacles", "party", "slope_3deg", "uneven"}
+    assert set(WORLDS) == {"empty", "gallery", "lab", "obstacles", "party", "slope_3deg", "uneven"}
     assert all(load_world(name).description for name in WORLDS)
 
 
@@ -123,8 +124,39 @@ def test_the_world_of_the_documents_can_be_read(tmp_path):
     content = yaml.safe_load("".join(texts))
     world = read_world(content, "mine", "mine.yaml", tmp_path)
     assert [sound.name for sound in world.sounds] == ["anna", "radio", "hum", "knock"]
-    assert [thing.name for thing in world.objects] == ["ball", "chair"]
+    assert [thing.name for thing in world.objects][:2] == ["ball", "chair"]
+    assert {thing.kind for thing in world.objects} >= set(CARDS) - {"image"} | {"person", "nao", "ball"}
     assert len(world.floor.rugs) == 1 and len(world.floor.bumps) == 20
+
+
+def test_nothing_in_the_lab_is_to_be_recognised_but_its_ball():
+    things = load_world("lab").objects
+    shown = {part.picture.kind for thing in things for part in thing.parts if part.picture is not None}
+    assert shown == {"poster", "pattern"}
+    assert not {thing.kind for thing in things} & {"person", "nao"}
+
+
+def test_the_gallery_has_some_of_each_within_reach_of_the_eyes():
+    things = load_world("gallery").objects
+    kinds = [thing.kind for thing in things]
+    for kind, count in (
+        ("landmark", 3),
+        ("face", 2),
+        ("person", 4),
+        ("qr", 1),
+        ("barcode", 2),
+        ("nao", 1),
+        ("ball", 1),
+    ):
+        assert kinds.count(kind) == count, kind
+    for thing in things:
+        if thing.kind in ("landmark", "face", "qr", "barcode", "nao", "person"):
+            x, y, _ = thing.position
+            assert 0.5 < math.hypot(x, y) < 2.5
+            assert abs(math.atan2(y, x)) < math.radians(119.0), f"the head cannot be turned to {thing.name}"
+            towards_robot = math.atan2(-y, -x)
+            off = (thing.rpy[2] - towards_robot + math.pi) % (2.0 * math.pi) - math.pi
+            assert abs(off) < 0.1, f"{thing.name} does not face the robot"
 
 
 def test_bumps_of_the_uneven_floor_are_3_to_8_mm_high():

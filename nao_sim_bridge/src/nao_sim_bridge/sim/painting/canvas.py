@@ -36,12 +36,14 @@ class Canvas:
 
     def lay(self, mask: np.ndarray, color: Sequence[float], strength: float = 1.0) -> None:
         """Lay a colour on, as far as the mask goes."""
-        share = (mask * strength)[..., None]
-        self.rgb += share * (np.asarray(color, np.float32) - self.rgb)
+        near = _where_any(mask)
+        part = self.rgb[near]
+        part += (mask[near] * np.float32(strength))[..., None] * (np.asarray(color, np.float32) - part)
 
     def shade(self, mask: np.ndarray, factor: float | Sequence[float]) -> None:
         """Make darker (below 1) or brighter (above 1), as far as the mask goes."""
-        self.rgb *= 1.0 + mask[..., None] * (np.asarray(factor, np.float32) - 1.0)
+        near = _where_any(mask)
+        self.rgb[near] *= 1.0 + mask[near][..., None] * (np.asarray(factor, np.float32) - 1.0)
 
     def ellipse(
         self, x: float, y: float, half_width: float, half_height: float, tilt: float = 0.0, soft: float = 0.0
@@ -56,10 +58,16 @@ class Canvas:
             tilt: Of its X over that of the canvas, rad.
             soft: Width of the edge as a share of the smaller half axis; 0 for one pixel.
         """
+        smaller = min(half_width, half_height)
+        # What is soft reaches beyond the edge by half of that.
+        reach = max(half_width, half_height) * (1.0 + max(soft, self._edge / smaller))
+        mask = np.zeros_like(self.x)
+        near = self._near((x - reach, x + reach), (y - reach, y + reach))
         c, s = math.cos(tilt), math.sin(tilt)
-        dx, dy = self.x - x, self.y - y
-        reach = np.hypot((c * dx + s * dy) / half_width, (c * dy - s * dx) / half_height)
-        return self.inside((1.0 - reach) * min(half_width, half_height), soft * min(half_width, half_height))
+        dx, dy = self.x[near] - x, self.y[near] - y
+        away = np.hypot((c * dx + s * dy) / half_width, (c * dy - s * dx) / half_height)
+        mask[near] = self.inside((1.0 - away) * smaller, soft * smaller)
+        return mask
 
     def inside(self, depth: np.ndarray, soft: float = 0.0) -> np.ndarray:
         """Mask of where a signed depth (positive inside) is above 0, with an edge of `soft` or of a pixel."""
@@ -72,11 +80,7 @@ class Canvas:
         reach = max(widths) + max(soft, self._edge)
         xs, ys = zip(*points)
         mask = np.zeros_like(self.x)
-        columns = np.flatnonzero(np.abs(self.x[0] - (min(xs) + max(xs)) / 2.0) <= (max(xs) - min(xs)) / 2.0 + reach)
-        rows = np.flatnonzero(np.abs(self.y[:, 0] - (min(ys) + max(ys)) / 2.0) <= (max(ys) - min(ys)) / 2.0 + reach)
-        if not len(columns) or not len(rows):
-            return mask
-        near = (slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1))
+        near = self._near((min(xs) - reach, max(xs) + reach), (min(ys) - reach, max(ys) + reach))
         x, y = self.x[near], self.y[near]
         depth = np.full_like(x, -np.inf)
         for (x0, y0), (x1, y1), w0, w1 in zip(points, points[1:], widths, widths[1:]):
@@ -86,9 +90,23 @@ class Canvas:
         mask[near] = self.inside(depth, soft)
         return mask
 
+    def _near(self, across: tuple[float, float], up: tuple[float, float]) -> tuple[slice, slice]:
+        """The pixels of a rectangle."""
+        columns = np.searchsorted(self.x[0], across)
+        rows = np.searchsorted(-self.y[:, 0], (-up[1], -up[0]))
+        return slice(rows[0], rows[1]), slice(columns[0], columns[1])
+
     def pixels(self) -> np.ndarray:
         """The picture, (h, w, 3) uint8."""
         return (np.clip(self.rgb, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+
+
+def _where_any(mask: np.ndarray) -> tuple[slice, slice]:
+    """The rectangle outside of which a mask is 0: most of them are small."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    if not len(rows):
+        return slice(0, 0), slice(0, 0)
+    return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
 
 
 def arch(half_width: float, middle: float, ends: float, count: int = 9) -> list[tuple[float, float]]:
