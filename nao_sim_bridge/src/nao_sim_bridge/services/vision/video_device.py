@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Sequence
+from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.errors import NaoqiError
@@ -110,18 +110,18 @@ class ALVideoDevice:
     # --- pictures -------------------------------------------------------------------------------------------------
 
     def getImageRemote(self, handle: str) -> Task:
-        return self._images(handle, "getImageRemote").then(lambda images: images[0])
+        return self._images(handle, "getImageRemote", _first)
 
     def getImagesRemote(self, handle: str) -> Task:
-        return self._images(handle, "getImagesRemote")
+        return self._images(handle, "getImagesRemote", _all)
 
     def getDirectRawImageRemote(self, handle: str) -> Task:
         self._check_native(handle)
-        return self._images(handle, "getDirectRawImageRemote").then(lambda images: images[0])
+        return self._images(handle, "getDirectRawImageRemote", _first)
 
     def getDirectRawImagesRemote(self, handle: str) -> Task:
         self._check_native(handle)
-        return self._images(handle, "getDirectRawImagesRemote")
+        return self._images(handle, "getDirectRawImagesRemote", _all)
 
     def releaseImage(self, handle: str) -> bool:
         self._subscribers.get(handle)
@@ -165,13 +165,13 @@ class ALVideoDevice:
             self._states.use(view.camera)
         return handle
 
-    def _images(self, handle: str, call: str) -> Task:
+    def _images(self, handle: str, call: str, answer: Callable[[list[Frame]], Any]) -> Task:
         subscriber = self._subscribers.get(handle)
-        if subscriber.several and "Images" not in call:
+        if subscriber.several and answer is _first:
             raise NaoqiError(f"{handle!r} looks through several cameras; use {call.replace('Image', 'Images')}")
         for view in subscriber.views:
             self._states.check(view.camera)
-        return self._subscribers.ask(handle, call, lambda frames: list(map(container, frames)))
+        return self._subscribers.ask(handle, call, answer)
 
     def _check_native(self, handle: str) -> Subscriber:
         subscriber = self._subscribers.get(handle)
@@ -202,6 +202,14 @@ def container(frame: Frame) -> tuple:
         -left,
         -top,
     )
+
+
+def _first(frames: list[Frame]) -> tuple:
+    return container(frames[0])
+
+
+def _all(frames: list[Frame]) -> list[tuple]:
+    return list(map(container, frames))
 
 
 def whole_numbers(values: Any, field: str, count: int | None = None) -> list[int]:

@@ -76,8 +76,10 @@ def exposure_of(pixels: np.ndarray, values: Mapping[int, int], sensor: SensorMod
     target = sensor.target_luminance + sensor.target_of_brightness * values[BRIGHTNESS]
     light = _brightness_for(histogram / histogram.sum(), target) ** GAMMA
     exposure = min(max(round(light * sensor.exposure), 1), sensor.longest_exposure)
-    gain = min(max(round(light * sensor.exposure / exposure * sensor.gain), sensor.gain), sensor.most_gain)
-    return Exposure(exposure, gain)
+    if exposure < sensor.longest_exposure:
+        return Exposure(exposure, sensor.gain)
+    gain = max(round(light * sensor.exposure / exposure * sensor.gain), sensor.gain)
+    return Exposure(exposure, min(gain, sensor.most_gain))
 
 
 def _brightness_for(shares: np.ndarray, target: float) -> float:

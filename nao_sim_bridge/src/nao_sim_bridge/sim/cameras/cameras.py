@@ -208,6 +208,7 @@ class Cameras:
         """Put all parameters of a camera to their defaults."""
         with self.lock:
             self._parameters[self.tables.camera(camera)] = self.tables.defaults
+            self._chosen[camera] = self._nothing_chosen()
 
     def kept_alive(self, camera: int) -> bool:
         """Whether a camera stays on while nobody looks."""

@@ -19,6 +19,8 @@ from nao_sim_bridge.sim.errors import SimulationError
 
 log = logging.getLogger("nao_sim.cameras")
 
+TIMEOUT = 30.0
+"""Longest time for a picture, s of wall time; a busy machine may take a thousand times as long as an idle one."""
 KEPT = 4
 """How many pictures are kept for those who ask for the same a little later."""
 
@@ -139,7 +141,7 @@ class Darkroom:
 
     def _photograph(self, moment: Moment, shot: Shot) -> bytes:
         if moment.replaced_by is None:
-            return self.renderer.capture(moment.state, shot)
+            return self.renderer.capture(moment.state, shot, TIMEOUT)
         size = (shot.width, shot.height)
         larger = shot.width > moment.replaced_by.shape[1]
         picture = cv2.resize(moment.replaced_by, size, interpolation=cv2.INTER_LINEAR if larger else cv2.INTER_AREA)

@@ -43,7 +43,9 @@ class Shutter:
         """
         if rate == self.rate:
             return
-        if self.rate and rate:
+        if self.rate and rate and self._count == 0:
+            self._origin = max(self._origin, Fraction(now + 1))
+        elif self.rate and rate:
             # From the last frame on, so that slower streams that divide the rate go on as before.
             last, period = self.next_time - self._ticks_per_second / self.rate, self._ticks_per_second / rate
             self._origin, self._count = last, max(1, math.ceil((now + Fraction(1, 2) - last) / period))

@@ -275,15 +275,21 @@ class CameraStream:
         self._drawing -= 1
         if ask.given_up:
             if not self._closed:
-                self._pending.appendleft(moment)
-                if len(self._pending) > self._keep:
-                    self._pending.popleft()
-                    self._drop()
+                self._take_back(moment)
             return None
         callback, ask.callback = ask.callback, _answered
         self._had_one = True
         self._owes_since = time.monotonic()
         return callback
+
+    def _take_back(self, moment: Moment) -> None:
+        """A frame that nobody waits for any more: the next who asks gets it, unless there is a newer one to have."""
+        if self._asks:
+            self._draw(self._asks.popleft(), moment)
+        elif len(self._pending) < self._keep:
+            self._pending.appendleft(moment)
+        else:
+            self._drop()
 
     def _draw(self, ask: Ask, moment: Moment) -> None:
         self._drawing += 1
