@@ -7,7 +7,7 @@ from dataclasses import replace
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.arguments import number
 from nao_sim_bridge.services.vision.photo_capture_files import FORMATS, picture_files
-from nao_sim_bridge.services.vision.photo_capture_series import PhotoSettings, Photographer
+from nao_sim_bridge.services.vision.photo_capture_series import Photographer, PhotoSettings
 from nao_sim_bridge.sim.cameras.settings import CameraTables
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.tasks import Task

@@ -95,13 +95,14 @@ class VideoRecorder:
     def stop(self) -> Task:
         """End at the present moment of simulated time; the task ends with [frames, path] when the file is complete.
 
-        Raises:
-            NaoqiError: No recording is under way.
+        Without a recording it ends at once with [0, ""].
         """
         with self._lock:
             recording, self._recording = self._recording, None
         if recording is None:
-            raise NaoqiError("no recording is under way; start one first")
+            nothing = Task("stopRecording", 0)
+            nothing.finish([0, ""])
+            return nothing
         try:
             self._runner.execute(recording.finish, "stopRecording")
         except SimulationStopped:

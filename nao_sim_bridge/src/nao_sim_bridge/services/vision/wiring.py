@@ -4,15 +4,22 @@ from __future__ import annotations
 
 from typing import Any
 
+from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.memory_store import MemoryStore
-from nao_sim_bridge.services.vision import barcode_reader, landmark_detection, red_ball_detection
+from nao_sim_bridge.services.vision import (
+    barcode_reader,
+    face_detection,
+    landmark_detection,
+    movement_detection,
+    red_ball_detection,
+)
 from nao_sim_bridge.services.vision.watching import Watching
 from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.vision.client import VisionProcess
 
 
 class VisionModules:
-    """ALRedBallDetection, ALLandMarkDetection and ALBarcodeReader of one robot.
+    """ALRedBallDetection, ALLandMarkDetection, ALBarcodeReader, ALFaceDetection and ALMovementDetection of one robot.
 
     Attributes:
         process: The vision process; it starts when somebody is subscribed first.
@@ -21,16 +28,25 @@ class VisionModules:
     Args:
         simulation: Whose cameras these are.
         memory: Where events go.
+        files: Where known faces are kept.
     """
 
-    def __init__(self, simulation: Simulation, memory: MemoryStore) -> None:
+    def __init__(self, simulation: Simulation, memory: MemoryStore, files: ClientFiles) -> None:
         self.process = VisionProcess()
         self._memory = memory
         self._tables = simulation.cameras.tables
         self._ball = red_ball_detection.RedBallDetection(simulation, memory, self.process).watching
         self._landmarks = landmark_detection.LandMarkDetection(simulation, memory, self.process).watching
         self._barcodes = barcode_reader.BarcodeReader(simulation, memory, self.process).watching
-        self.watchings: list[Watching] = [self._ball, self._landmarks, self._barcodes]
+        self._faces = face_detection.ALFaceDetection(simulation, memory, self.process, files)
+        self._movement = movement_detection.ALMovementDetection(simulation, memory, self.process)
+        self.watchings: list[Watching] = [
+            self._ball,
+            self._landmarks,
+            self._barcodes,
+            self._faces.watching,
+            self._movement.watching,
+        ]
 
     def modules(self) -> dict[str, list[Any]]:
         """The modules by name, as `make_service` wants them."""
@@ -38,10 +54,13 @@ class VisionModules:
             red_ball_detection.NAME: red_ball_detection.parts(self._ball, self._memory),
             landmark_detection.NAME: landmark_detection.parts(self._landmarks, self._memory, self._tables),
             barcode_reader.NAME: barcode_reader.parts(self._barcodes, self._memory, self._tables),
+            face_detection.NAME: face_detection.parts(self._faces, self._memory, self._tables),
+            movement_detection.NAME: movement_detection.parts(self._movement, self._memory, self._tables),
         }
 
     def close(self) -> None:
         """Look at nothing any more and end the process; blocking."""
+        self._faces.learner.close()
         self.process.close()  # first: who waits for an answer gets none
         for watching in self.watchings:
             watching.stop()

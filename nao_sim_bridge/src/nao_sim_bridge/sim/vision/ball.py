@@ -206,6 +206,8 @@ def _edges(cone: Cone, excess: np.ndarray, lens: _Lens, settings: BallSettings) 
 
 def _without_outliers(directions: np.ndarray, cone: Cone) -> np.ndarray:
     """Without the few that are far off what the others say: a highlight at the rim, a thing in front."""
+    if not len(directions):
+        return directions
     better = fit_cone(directions) or cone
     off = np.abs(np.arccos(np.clip(directions @ better.axis, -1.0, 1.0)) - better.angle)
     limit = max(3.0 * float(np.median(off)), 0.06 * better.angle)

@@ -56,7 +56,10 @@ def find_eyes(grey: np.ndarray, box: Box) -> tuple[Point, Point]:
     x, y, width, height = box
     scale = SIZE / width
     face = cv2.warpAffine(
-        grey, np.float32(((scale, 0, -x * scale), (0, scale, -y * scale))), (SIZE, SIZE), borderMode=cv2.BORDER_REPLICATE
+        grey,
+        np.float32(((scale, 0, -x * scale), (0, scale, -y * scale))),
+        (SIZE, SIZE),
+        borderMode=cv2.BORDER_REPLICATE,
     ).astype(np.float32)
     dark = _darkness(face)
     middles_x, middles_y, halves, slopes, belief = _CANDIDATES

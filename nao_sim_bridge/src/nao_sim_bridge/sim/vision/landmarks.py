@@ -168,6 +168,17 @@ def _among(ellipse: Ellipse, others: list[Ellipse]) -> bool:
     return False
 
 
+def _size(ellipse: Ellipse, optics: Optics, shape: tuple[int, ...]) -> float:
+    """The widest angle between two opposite points of the edge, rad."""
+    height, width = shape[:2]
+    lens = optics.intrinsics(width, height)
+    edge = ellipse.points(np.arange(RAYS) * (2.0 * math.pi / RAYS), np.ones(1))[:, 0]
+    rays = np.column_stack([np.ones(RAYS), (edge - (lens.cx, lens.cy)) / (lens.fx, lens.fy)])
+    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+    cosines = np.sum(rays[: RAYS // 2] * rays[RAYS // 2 :], axis=1)
+    return float(np.arccos(np.clip(cosines.min(), -1.0, 1.0)))
+
+
 def _landmark(
     number: int, heading: float, quality: float, ellipse: Ellipse, optics: Optics, shape: tuple[int, ...]
 ) -> Landmark:
@@ -179,10 +190,6 @@ def _landmark(
     right, _ = optics.angles(x + across / width, y)
     _, top = optics.angles(x, y - down / height)
     _, bottom = optics.angles(x, y + down / height)
-    lens = optics.intrinsics(width, height)
-    # Off the middle of the picture, everything is drawn larger than its angle.
-    aside = math.hypot((ellipse.center[0] - lens.cx) / lens.fx, (ellipse.center[1] - lens.cy) / lens.fy)
-    size = 2.0 * math.atan(ellipse.radii[0] / lens.fx / math.sqrt(1.0 + aside * aside))
     return Landmark(
-        number, alpha, beta, left - right, bottom - top, heading, size, float(x), float(y), float(quality)
+        number, alpha, beta, left - right, bottom - top, heading, _size(ellipse, optics, shape), float(x), float(y), float(quality)
     )

@@ -1,0 +1,42 @@
+"""Photos and films put together: what they need, and what has to be ended in the end."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nao_sim_bridge.record_dir import ClientFiles
+from nao_sim_bridge.services.vision import photo_capture, video_recorder
+from nao_sim_bridge.services.vision.photo_capture_series import Photographer
+from nao_sim_bridge.services.vision.video_recorder_recording import VideoRecorder
+from nao_sim_bridge.sim.runner import SimulationRunner
+from nao_sim_bridge.sim.simulation import Simulation
+
+
+class PictureModules:
+    """ALPhotoCapture and ALVideoRecorder of one robot.
+
+    Attributes:
+        photographer: Takes photos.
+        recorder: Records films.
+
+    Args:
+        simulation: Whose cameras these are.
+        runner: Its thread.
+        files: Where clients may have files written to.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles) -> None:
+        cameras = simulation.cameras
+        self.photographer = Photographer(cameras, photo_capture.NAME)
+        self.recorder = VideoRecorder(cameras, runner, cameras.tables, video_recorder.NAME)
+        self._photos = photo_capture.ALPhotoCapture(self.photographer, files, cameras.tables)
+        self._films = video_recorder.ALVideoRecorder(self.recorder, files, cameras.tables)
+
+    def modules(self) -> dict[str, list[Any]]:
+        """The modules by name, as `make_service` wants them."""
+        return {photo_capture.NAME: [self._photos], video_recorder.NAME: [self._films]}
+
+    def close(self) -> None:
+        """Complete the film that is recorded, and take no more photos; blocking."""
+        self.recorder.close()
+        self.photographer.close()
