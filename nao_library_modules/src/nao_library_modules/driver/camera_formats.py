@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 import vision_definitions as vision
 from naoqi.errors import NaoError
 
@@ -101,5 +103,8 @@ def read_picture(image: Sequence[Any], camera: int) -> Picture:
     if not isinstance(pixels, (bytes, bytearray)) or len(pixels) != expected:
         found = f"{len(pixels)} bytes" if isinstance(pixels, (bytes, bytearray)) else type(pixels).__name__
         raise NaoError(f"a picture of {width}x{height} in {encoding} has {found}, not {expected} bytes")
+    if encoding == YUV422:
+        # NAOqi puts brightness first (YUYV), and what ROS calls yuv422 has colour first (UYVY).
+        pixels = np.frombuffer(pixels, dtype=np.uint16).byteswap().tobytes()
     source = image[7] if len(image) > 7 and image[7] in CAMERAS else camera
     return Picture(seconds + 1e-6 * microseconds, source, width, height, encoding, pixels)

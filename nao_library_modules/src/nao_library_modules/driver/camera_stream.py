@@ -13,12 +13,12 @@ from naoqi.errors import NaoError, RobotError, RobotUnreachable
 
 from ..errors import Preempted
 from ..health import Level, Report
+from ..image_clock import ImageClock
 from ..interrupt import Interrupt
 from ..robot import wait_for_calls
 from .camera_formats import CAMERA_NAMES, RESOLUTIONS, SPACES, Picture, read_picture
 from .camera_rate import RateMeter
 from .demand import Demand
-from .image_clock import ImageClock
 
 log = logging.getLogger(__name__)
 
@@ -298,7 +298,8 @@ class CameraStream:
             except Preempted:
                 continue
             except NaoError as error:
-                if not isinstance(error, RobotUnreachable):  # a lost connection is told elsewhere
+                # A lost connection is told elsewhere, and one that has ended has no pictures.
+                if not isinstance(error, RobotUnreachable) and not subscription.interrupt.is_set():
                     self._fail_once(str(error))
             except Exception as error:  # a mistake in here must not leave a node that lives and shows nothing
                 log.exception("%s failed", self._name)

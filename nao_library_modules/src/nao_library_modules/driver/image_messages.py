@@ -56,10 +56,11 @@ def from_info(info: CameraInfo) -> Calibration:
 
 
 def header_of(time: float, frame: str) -> Header:
-    """A header.
+    """A header; times are told to the microsecond, as the robot tells them.
 
     Args:
         time: ROS time, s.
         frame: Name of the frame.
     """
-    return Header(stamp=rospy.Time.from_sec(time), frame_id=frame)
+    seconds, microseconds = divmod(round(time * 1e6), 1000000)
+    return Header(stamp=rospy.Time(seconds, 1000 * microseconds), frame_id=frame)

@@ -17,9 +17,10 @@ from nao_library_msgs.srv import LearnFace, LearnFaceResponse, VisionMotionSensi
 from naoqi.errors import BadArguments, NaoError, UnknownMethod
 
 from ..health import Report
+from ..image_clock import ImageClock
 from ..robot_frames import tf_prefix
 from .camera_formats import CAMERA_NAMES, TOP
-from .image_clock import ImageClock
+from .image_messages import header_of
 from .node import name_for_robot, publish
 from .services import offer
 from .vision_detection import FACES, LANDMARKS, MOVEMENT, Detection, Kind
@@ -159,4 +160,4 @@ class NaoVisionServices:
         if is_wallclock():
             with self._lock:
                 time = self._clocks[kind].take(view.time, rospy.get_time())
-        return Header(stamp=rospy.Time.from_sec(time), frame_id=frame)
+        return header_of(time, frame)
