@@ -130,8 +130,8 @@ def movement_look(value: Any) -> Look:
     """A picture with movements, from the key MovementDetection/MovementInfo.
 
     Args:
-        value: [[s, us], [[[alpha, beta], [left, top, width, height], share of the pixels, ...], ...], camera in the
-            torso, camera in FRAME_ROBOT, camera]; rad.
+        value: [[s, us], [[[alpha, beta], [left, top, width, height], [share of the picture's pixels, of the
+            region's], ...], ...], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
 
     Raises:
         ValueError: If the value is something else.
@@ -237,7 +237,8 @@ def _movements(content: Any) -> list[Sight]:
     for place, (centre, region, share, *_) in enumerate(content):
         alpha, beta = _finite(centre)
         *_, width, height = _finite(region)
-        confidence = min(max(float(share), 0.0), 1.0)
+        of_region = share[-1] if isinstance(share, (list, tuple)) else share
+        confidence = min(max(float(of_region), 0.0), 1.0)
         sights.append(Sight(MOVEMENT, "", f"{place}", confidence, alpha, beta, abs(width), abs(height)))
     return sights
 

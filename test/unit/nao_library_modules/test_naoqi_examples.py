@@ -57,6 +57,16 @@ def test_the_things_of_the_lab_are_told_and_drawn(tmp_path):
         assert picture.size == (960, 600)
 
 
+def test_things_are_placed_moved_drawn_and_cleared_up(server, tmp_path):
+    done = run("place_things", "--port", str(server.broker.port), "--output", str(tmp_path / "things.png"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "red_ball: x 0.50 m, y -0.12 m, z 0.03 m" in done.stdout
+    assert "clara: x 1.50 m, y -0.40 m, z 0.00 m" in done.stdout
+    assert server.runner.snapshot.placed == ()
+    with Image.open(tmp_path / "things.png") as picture:
+        assert picture.size == (960, 600)
+
+
 def test_a_robot_that_is_watched_is_drawn_and_so_is_its_record(server, tmp_path):
     record, first, second = (tmp_path / name for name in ("walk.json", "first.png", "second.png"))
     watched = ["--port", str(server.broker.port), "--watch", "0.2", "--record", str(record), "--output", str(first)]
@@ -68,7 +78,7 @@ def test_a_robot_that_is_watched_is_drawn_and_so_is_its_record(server, tmp_path)
     assert first.read_bytes() == second.read_bytes()
 
 
-@pytest.mark.parametrize("name", ["naoqi_walk", "look_at_the_lab", "plot_walk"])
+@pytest.mark.parametrize("name", ["naoqi_walk", "look_at_the_lab", "place_things", "plot_walk"])
 def test_without_a_robot_it_says_so(name):
     done = run(name, "--port", "1")
     assert done.returncode == 1

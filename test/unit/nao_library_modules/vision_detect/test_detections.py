@@ -78,6 +78,12 @@ def test_a_robot_that_fails_leaves_nothing_behind(vision, eyes, robot):
     assert eyes.idle()
 
 
+def test_a_robot_that_is_lost_ends_the_look(vision, eyes, clock, robot):
+    clock.script = [lambda: robot.connection.become("lost", "no answer")]
+    assert "went away: no answer" in abort(vision, f("detectBall", timeout=60.0))
+    assert clock.time == pytest.approx(100.1) and eyes.idle()
+
+
 def test_a_value_that_cannot_be_is_passed_over(vision, eyes, clock):
     clock.script = [
         lambda: eyes.raise_event(BALL, [1, 2]),
@@ -154,7 +160,7 @@ def movement(eyes, time, *clusters):
 def test_movement_is_where_it_is_and_how_much_of_it(vision, eyes, clock):
     clock.script = [
         lambda: movement(eyes, 100.1, ((0.3, 0.0), 0.1)),
-        lambda: movement(eyes, 100.2, ((0.2, 0.1), 0.5), ((-0.3, 0.0), 0.4)),
+        lambda: movement(eyes, 100.2, ((0.2, 0.1), [0.01, 0.5]), ((-0.3, 0.0), 0.4)),
     ]
     result = succeed(vision, f("detectMovement", confidence=0.3, sensitivity=0.9))
     assert [(o.kind, o.alpha, o.confidence, o.located) for o in result.objects] == [
