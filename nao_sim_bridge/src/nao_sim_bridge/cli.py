@@ -11,6 +11,7 @@ from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR
 from nao_sim_bridge.server import ServerOptions
 from nao_sim_bridge.sim.model import VERSIONS
 from nao_sim_bridge.sim.postures import load_postures
+from nao_sim_bridge.sim.render.client import ENGINES
 from nao_sim_bridge.sim.simulation import Scene
 from nao_sim_bridge.sim.world import world_names
 
@@ -54,6 +55,12 @@ def parser(prog: str) -> argparse.ArgumentParser:
     options.add_argument(
         "--sound-card", action="store_true", help="let it be heard on this computer, too (at speed 1; needs PortAudio)"
     )
+    options.add_argument(
+        "--renderer",
+        choices=ENGINES,
+        default="auto",
+        help="what draws what the cameras see: opengl, builtin (slower), or auto: OpenGL where it can be had",
+    )
     options.add_argument("--paused", action="store_true", help="start without time passing")
     options.add_argument("--verbose", action="store_true", help="log more")
     return options
@@ -81,6 +88,7 @@ def server_options(arguments: argparse.Namespace) -> ServerOptions:
         arguments.record_dir,
         arguments.sound_file,
         arguments.sound_card,
+        arguments.renderer,
     )
 
 

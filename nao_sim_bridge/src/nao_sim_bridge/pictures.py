@@ -9,7 +9,7 @@ import threading
 from PIL import Image
 
 from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.render.client import Renderer, RenderError, Viewer
+from nao_sim_bridge.sim.render.client import RenderError, Viewer
 from nao_sim_bridge.sim.render.scene import RenderState, preset_camera
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
@@ -32,7 +32,7 @@ class Pictures:
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation
         self._runner = runner
-        self._renderer = Renderer(simulation.scene.world, simulation.scene.version)
+        self._renderer = simulation.renderer
         self._viewer: Viewer | None = None
         self._closing = threading.Event()
 
@@ -45,6 +45,8 @@ class Pictures:
             snapshot.positions,
             self._simulation.robot.leds.values,
             snapshot.objects,
+            snapshot.placed,
+            snapshot.gone,
         )
 
     def png(self, view: str, width: int, height: int) -> bytes:
@@ -73,9 +75,8 @@ class Pictures:
         threading.Thread(target=self._mirror, args=(self._viewer,), name="window", daemon=True).start()
 
     def close(self) -> None:
-        """End the picture processes."""
+        """Close the window."""
         self._closing.set()
-        self._renderer.close()
         if self._viewer is not None:
             self._viewer.close()
 

@@ -24,6 +24,7 @@ VALUES = (
     "payload",
     "sensor_noise",
     "sensor_delay",
+    "renderer",
     "record_dir",
     "sound_file",
     "publish_clock",

@@ -34,6 +34,7 @@ from nao_sim_bridge.services.posture import ALRobotPosture
 from nao_sim_bridge.services.posture_events import PostureEvents
 from nao_sim_bridge.services.system import ALSystem
 from nao_sim_bridge.services.vision import video_device
+from nao_sim_bridge.services.vision.photo_capture_wiring import PictureModules
 from nao_sim_bridge.services.vision.wiring import VisionModules
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.runner import SimulationRunner
@@ -64,6 +65,7 @@ class ServerOptions:
         record_dir: Folder for files of clients; "~" stands for the home of the user.
         sound_file: Name in `record_dir` of a WAV for everything that the loudspeakers play; empty for none.
         sound_card: Let it be heard on this computer, too; only at speed 1.
+        renderer: What draws: "auto", "opengl" or "builtin"; see `Renderer`.
     """
 
     scene: Scene = field(default_factory=Scene)
@@ -75,6 +77,7 @@ class ServerOptions:
     record_dir: Path = DEFAULT_RECORD_DIR
     sound_file: str = ""
     sound_card: bool = False
+    renderer: str = "auto"
 
 
 class SimulatorServer:
@@ -97,7 +100,7 @@ class SimulatorServer:
     def __init__(self, options: ServerOptions) -> None:
         self.options = options
         self.ended = threading.Event()
-        self.simulation = Simulation(options.scene)
+        self.simulation = Simulation(options.scene, renderer=options.renderer)
         self.runner = SimulationRunner(self.simulation, options.speed, options.paused, on_end=self.ended.set)
         self.memory = MemoryStore(lambda: self.runner.snapshot.time)
         self.broker = Broker()
@@ -107,7 +110,8 @@ class SimulatorServer:
         self.speech = SpeechModules(self.simulation, self.runner, self.memory, self.files, self.broker)
         self._recognition = RecognitionModule(self.simulation, self.runner, self.memory, self.files)
         self._video = video_device.VideoDevice(self.simulation.cameras, self.files)
-        self.vision = VisionModules(self.simulation, self.memory)
+        self.vision = VisionModules(self.simulation, self.memory, self.files)
+        self._pictures_taken = PictureModules(self.simulation, self.runner, self.files)
         self.sounds = WorldSoundsControl(self.simulation, self.runner, self.files)
         self.things = ThingsControl(self.simulation, self.runner, self.files)
         self._outlets: list[SoundFile | SoundCard] = []
@@ -155,6 +159,7 @@ class SimulatorServer:
             **{name: sound_localization.parts(name, self.simulation, self.memory) for name in sound_localization.NAMES},
             video_device.NAME: self._video.parts(),
             **self.vision.modules(),
+            **self._pictures_taken.modules(),
             "ALSystem": [ALSystem(self.memory, self.reset_task, self.ended.set)],
         }
 
@@ -162,6 +167,7 @@ class SimulatorServer:
         """Leave the network and end the simulation."""
         self.ended.set()
         self._audio.close()
+        self._pictures_taken.close()
         self.vision.close()
         self._video.close()
         self.sounds.close()

@@ -35,6 +35,11 @@ def test_what_is_played_can_go_to_a_file_and_to_the_sound_card():
     assert (chosen.sound_file, chosen.sound_card) == ("all.wav", True)
 
 
+def test_what_draws_can_be_chosen():
+    assert options().renderer == "auto"
+    assert options("--renderer", "builtin").renderer == "builtin"
+
+
 def test_the_friction_of_the_world_can_be_asked_for():
     assert options("--friction", "world").scene == options().scene
 
@@ -59,6 +64,7 @@ def test_as_fast_as_possible_has_several_spellings(text):
         (["--payload", "-1"], "'-1' is not an amount"),
         (["--sensor-noise", "inf"], "'inf' is not an amount"),
         (["--sensor-delay", "nan"], "'nan' is not an amount"),
+        (["--renderer", "vulkan"], "invalid choice: 'vulkan' (choose from"),
         (["--seed", "x"], "invalid int value: 'x'"),
         (["--wrold", "empty"], "unrecognized arguments: --wrold"),
     ],

@@ -34,6 +34,7 @@ class Simulation:
         snapshot: What was sensed at the last tick; any thread may read it.
         after_tick: Called with the snapshot at the end of every tick; they stay at a reset.
         sound: What sounds and what is heard; it stays at a reset, which ends everything that plays.
+        renderer: What draws what the cameras see, and pictures from outside; any thread may ask.
         cameras: What the robot sees; it stays at a reset.
         things: What is in the world and may come, move and go; a reset puts it to where the world file says.
         holds: As long as one of them answers True, time that runs faster than the wall clock waits: for work in other
@@ -41,7 +42,7 @@ class Simulation:
         wake: To be called, from any thread, when one of `holds` may answer differently; set by who lets time pass.
     """
 
-    def __init__(self, scene: Scene | None = None, settings: Settings | None = None) -> None:
+    def __init__(self, scene: Scene | None = None, settings: Settings | None = None, renderer: str = "auto") -> None:
         self.scene = scene or Scene()
         self.settings = settings or load_settings()
         self.model = load_model(self.scene.version)
@@ -55,10 +56,11 @@ class Simulation:
         self.sound = SoundWorld(
             self.model, self.settings.tick_s, self.task_ids, self.scene.seed, released=lambda: self.wake()
         )
+        self.renderer = Renderer(self.scene.world, self.scene.version, renderer)
         self.cameras = Cameras(
             self.model,
             self.settings.tick_s,
-            Renderer(self.scene.world, self.scene.version),
+            self.renderer,
             self.render_state,
             self.scene.seed,
             released=lambda: self.wake(),
@@ -131,6 +133,7 @@ class Simulation:
         """Free the engine."""
         self.sound.close()
         self.cameras.close()
+        self.renderer.close()
         self.things.stop()
         if self._physics is not None:
             self.robot.motion.kill_all()
