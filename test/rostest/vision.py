@@ -103,6 +103,14 @@ def read(path):
     return [time for time, _ in frames], [number_of(picture) for _, picture in frames], length
 
 
+def readable(path):
+    """How many frames of a video can be read that ends in the middle of one."""
+    capture, count = cv2.VideoCapture(str(path)), 0
+    while capture.read()[0]:
+        count += 1
+    return count
+
+
 class Vision(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -150,7 +158,7 @@ class Vision(unittest.TestCase):
         """Frames are those of the camera, all of them between the first and the last, each at its time."""
         times, numbers, length = read(video.path)
         self.assertEqual(len(numbers), video.frames)
-        stamps = camera.stamps
+        stamps = dict(camera.stamps)
         (first,) = [n for n, stamp in stamps.items() if abs(stamp - video.began.to_sec()) < 1e-6]
         self.assertEqual(numbers[0], first % 256)
         # Numbers begin anew after 256; those of dropped frames are missing.
@@ -162,7 +170,7 @@ class Vision(unittest.TestCase):
         self.assertLess(max(abs(a - b) for a, b in zip(times, wanted)), slack)
         self.assertEqual(indices[-1] - first + 1, video.frames + video.dropped)
         self.assertAlmostEqual(length, video.duration, delta=0.02 if video.file_type == "mp4" else 0.25)
-        self.assertAlmostEqual(video.duration, wanted[-1] + wanted[-1] / max(1, len(wanted) - 1), delta=0.2)
+        self.assertAlmostEqual(video.duration, 2.0 * wanted[-1] - wanted[-2], places=3)
 
     # What goes through
 
@@ -194,7 +202,7 @@ class Vision(unittest.TestCase):
         self.assertEqual(Path(top.path).parent, self.folder)
 
     def stamp_of(self, number, near):
-        return min((s for n, s in self.top.stamps.items() if n % 256 == number), key=lambda s: abs(s - near))
+        return min((s for n, s in list(self.top.stamps.items()) if n % 256 == number), key=lambda s: abs(s - near))
 
     def test_pictures_are_newer_than_the_goal_and_stay(self):
         asked = rospy.get_time()
@@ -241,9 +249,8 @@ class Vision(unittest.TestCase):
         self.assertEqual({thread.state for thread in threads}, {"running"})
         began = time.monotonic()
         result = self.play(*(f("stopRecording", id=f"r{k}") for k in range(10)))
-        print(
-            f"ten recordings ended in {time.monotonic() - began:.2f} s; dropped {[v.dropped for v in result.recordings]}"
-        )
+        dropped = [video.dropped for video in result.recordings]
+        print(f"ten recordings ended in {time.monotonic() - began:.2f} s; dropped {dropped}")
         for listener in listeners:
             listener.unregister()
         for video, codec in zip(result.recordings, codecs):
@@ -339,7 +346,7 @@ class Vision(unittest.TestCase):
             process.wait(30.0)
 
     def test_a_file_that_cannot_grow_ends_its_recording_alone(self):
-        _, client, folder = self.start_server("small", largest_file=300_000)
+        _, client, folder = self.start_server("small", largest_file=60_000)
         self.play(
             f("startRecording", id="small", width=16, str_param="small"),
             f("startRecording", id="large", codec="mjpeg", str_param="large"),
@@ -353,7 +360,8 @@ class Vision(unittest.TestCase):
             self.wait_for(ident, lambda thread: thread.frames > before + 10, "further frames", client)
         result = self.play(f("stopRecording", id="large"), f("stopRecording", id="small"), client=client)
         self.assertIn("File too large", result.recordings[0].error)
-        self.assertGreater(len(read(folder / "large.mp4")[0]), 5)
+        frames = result.recordings[0].frames
+        self.assertTrue(frames / 2 < readable(folder / "large.mp4") <= frames, frames)
         self.assertEqual(len(read(folder / "small.mp4")[0]), result.recordings[1].frames)
 
     def test_the_end_of_the_server_completes_its_files(self):
@@ -374,7 +382,7 @@ class Vision(unittest.TestCase):
         self.play(f("startRecording", id="walk", str_param="a.mp4"), client=client)
         self.wait_for("walk", lambda thread: thread.frames >= 75, "frames", client)
         self.end(process, signal.SIGKILL)
-        self.assertGreaterEqual(len(read(folder / "a.mp4")[0]), 30)
+        self.assertGreaterEqual(readable(folder / "a.mp4"), 60)
 
 
 if __name__ == "__main__":

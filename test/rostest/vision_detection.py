@@ -20,10 +20,10 @@ from things_fixture import FACING, Things, angle_between, point  # noqa: E402
 
 EXTRACTORS = (
     "ALRedBallDetection",
-    #"ALFaceDetection",
+    "ALFaceDetection",
     "ALLandMarkDetection",
     "ALBarcodeReader",
-    #"ALMovementDetection",
+    "ALMovementDetection",
 )
 BEARING = math.radians(2.0)
 HEAD = ["HeadYaw", "HeadPitch"]
@@ -162,6 +162,7 @@ class VisionDetection(unittest.TestCase):
         self.assertEqual((result.memList, result.objects), ([], []))
 
     def test_the_head_follows_a_ball(self):
+        self.look(pitch=0.25)
         self.things.place("ball", (1.2, 0.0, 0.03), ball=0.03)
         run = self.start(f("trackBall", duration=9.0, size=0.03))
         run.wait_for_function(0)
@@ -182,6 +183,7 @@ class VisionDetection(unittest.TestCase):
         self.assertGreater(yaw, 1.2)
 
     def test_a_preempted_track_ends_and_the_head_goes_back(self):
+        self.look(pitch=0.25)
         self.things.place("ball", (1.0, 0.3, 0.03), ball=0.03)
         before = self.robot.module("ALMotion").getAngles("Head", False)
         run = self.start(f("trackBall", revert=True))

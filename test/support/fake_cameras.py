@@ -7,8 +7,8 @@ from collections import deque
 
 import numpy as np
 
-from nao_sim_bridge.sim.cameras.stream import CameraClosed
 from nao_sim_bridge.sim.cameras.frame import Frame
+from nao_sim_bridge.sim.cameras.stream import CameraClosed
 
 SIZES = {0: (160, 120), 1: (320, 240), 2: (640, 480), 3: (1280, 960), 7: (80, 60), 8: (40, 30)}
 FIELD = (0.9826, 0.7627)

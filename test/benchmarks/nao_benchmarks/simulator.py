@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from typing import Any, Sequence
 
 import qi
@@ -68,6 +69,12 @@ class Simulator:
     def wake_up(self) -> None:
         """Stiffen the robot and let it stand; returns when it does."""
         self.ask("ALMotion", "wakeUp")
+
+    def pace(self, seconds: float) -> float:
+        """Simulated s that pass in a s, looked at for a while (s of wall time)."""
+        began, at = time.perf_counter(), self.ask("NaoSimulation", "time")
+        time.sleep(seconds)
+        return (self.ask("NaoSimulation", "time") - at) / (time.perf_counter() - began)
 
     def close(self) -> None:
         """Leave, and end the process."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..row import Row
+from .cameras import CameraFrame, CameraRate, PhysicsWithCameras
 from .chained_functions import ChainedFunctions
 from .goal_round_trip import GoalRoundTrip
 from .hearing_tick import HearingTick
@@ -24,10 +25,14 @@ ROWS: tuple[Row, ...] = (
     WalkingTick(),
     WalkController(),
     HearingTick(),
+    CameraFrame("camera_frame", "320x240"),
+    CameraFrame("camera_frame_vga", "640x480"),
     RealTimeFactor(),
     WalkingRealTimeFactor(),
     RecognitionSpeed(),
     PhysicsWithSound(),
+    CameraRate(),
+    PhysicsWithCameras(),
     ProxyCall(),
     GoalRoundTrip(),
     ChainedFunctions(),

@@ -40,21 +40,15 @@ class PhysicsWithSound(Row):
             simulator.wake_up()
             loud, silent = [], []
             for _ in range(ROUNDS):
-                silent.append(self._pace(simulator))
+                silent.append(simulator.pace(LOOK))
                 listen(simulator)
                 talk = simulator.session.service("ALTextToSpeech").call("say", TEXT, _async=True)
                 simulator.ask("NaoSimulation", "advance", 0.5)
-                loud.append(self._pace(simulator))
+                loud.append(simulator.pace(LOOK))
                 simulator.ask("ALTextToSpeech", "stopAll")
                 talk.wait(int(1000 * LOOK))
                 simulator.ask("ALSpeechRecognition", "unsubscribe", LISTENER)
         return Figures.compared(Sample(tuple(loud)), Sample(tuple(silent)), scale=1.0)
-
-    @staticmethod
-    def _pace(simulator: Simulator) -> float:
-        began, at = time.perf_counter(), simulator.ask("NaoSimulation", "time")
-        time.sleep(LOOK)
-        return (simulator.ask("NaoSimulation", "time") - at) / (time.perf_counter() - began)
 
 
 class RecognitionSpeed(Row):

@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""Times frames of the robot's camera against a bare getCameraImage of the same room, robot and size.
+
+Ours is all that a frame takes: the snapshot goes to the process that draws, is drawn with shadows, goes through the
+camera's sensor, and comes back as bytes. Prints JSON: `ours` and `reference`, s of each frame.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+
+import pybullet
+from nao_benchmarks.errors import BenchmarkError
+from nao_benchmarks.stats import interleave
+
+from nao_sim_bridge.sim.cameras.optics import CameraOptics
+from nao_sim_bridge.sim.cameras.places import CameraPlaces
+from nao_sim_bridge.sim.kinematics import quaternion_matrix
+from nao_sim_bridge.sim.render.stage import Stage
+from nao_sim_bridge.sim.simulation import Scene, Simulation
+from nao_sim_bridge.sim.world import load_world
+
+WORLD = "lab"
+RESOLUTIONS = {"320x240": 1, "640x480": 2}
+RGB, TOP, RATE = 11, 0, 30
+NEAR, FAR = 0.02, 30.0
+WARM_UP = 5
+PATIENCE = 60.0
+
+
+class Bare:
+    """PyBullet's own picture of the room and the robot, seen from the robot's top camera.
+
+    Args:
+        simulation: What is to be seen.
+        width: Pixels.
+        height: Pixels.
+    """
+
+    def __init__(self, simulation: Simulation, width: int, height: int) -> None:
+        self._client = pybullet.connect(pybullet.DIRECT)
+        self._size = (width, height)
+        state = simulation.render_state(simulation.snapshot)
+        world = load_world(WORLD)
+        stage = Stage(world, simulation.scene.version, self._client, floor=True, paint_lamps=False)
+        stage.show(state, headless=True)
+        eye, orientation = CameraPlaces(simulation.model).in_world(state, TOP)
+        axes = quaternion_matrix(orientation)
+        self._view = pybullet.computeViewMatrix(eye, axes[:, 0] + eye, axes[:, 2])
+        vfov = math.degrees(CameraOptics(simulation.scene.version, TOP).vfov)
+        self._projection = pybullet.computeProjectionMatrixFOV(vfov, width / height, NEAR, FAR)
+
+    def take(self) -> None:
+        """One picture."""
+        pybullet.getCameraImage(
+            *self._size,
+            self._view,
+            self._projection,
+            renderer=pybullet.ER_TINY_RENDERER,
+            shadow=1,
+            physicsClientId=self._client,
+        )
+
+    def close(self) -> None:
+        """Free the engine."""
+        pybullet.disconnect(self._client)
+
+
+def time_frames(rounds: int, size: str) -> dict[str, list[float]]:
+    """Alternate frames of both kinds.
+
+    Raises:
+        BenchmarkError: If a frame is not a new one.
+    """
+    simulation = Simulation(Scene(world=WORLD, posture="Stand"))
+    resolution = simulation.cameras.tables.resolution(RESOLUTIONS[size])
+    bare = Bare(simulation, resolution.width, resolution.height)
+    stream = simulation.cameras.open("benchmark", TOP, resolution.id, RGB, RATE)
+    due = round(1.0 / (RATE * simulation.settings.tick_s))
+    numbers: list[int] = []
+
+    def take() -> None:
+        numbers.append(stream.take(PATIENCE).number)
+
+    def prepared() -> None:
+        """Time passes outside of what is timed: before the bare picture's turn, and after it."""
+        for _ in range(due):
+            simulation.tick()
+
+    try:
+        prepared()
+        take()
+        ours: list[float] = []
+        reference: list[float] = []
+        for turn in range(-WARM_UP, rounds):
+            prepared()
+            mine, other = interleave([take, bare.take], 1)
+            if turn >= 0:
+                ours += mine.seconds
+                reference += other.seconds
+    finally:
+        simulation.close()
+        bare.close()
+    if len(set(numbers)) < len(numbers):
+        raise BenchmarkError("a frame was taken twice")
+    return {"ours": ours, "reference": reference}
+
+
+def main() -> int:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=60, help="frames to measure")
+    parser.add_argument("--size", choices=RESOLUTIONS, default="320x240", help="of the frames, in pixels (320x240)")
+    options = parser.parse_args()
+    try:
+        print(json.dumps(time_frames(options.rounds, options.size)))
+    except BenchmarkError as error:
+        print(error)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,321 @@
+#!/usr/bin/env python3
+"""Both cameras as topics: what they show and where, calibrations, rates, changes at run time, and nobody looking."""
+
+import math
+import subprocess
+import sys
+import tempfile
+import unittest
+from contextlib import contextmanager
+from pathlib import Path
+
+import cv2
+import numpy as np
+import rospy
+import rostest
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray
+from dynamic_reconfigure import DynamicReconfigureCallbackException
+from dynamic_reconfigure.client import Client
+from sensor_msgs.msg import CameraInfo, CompressedImage
+
+from nao_sim_bridge.testing import SimulatedRobot, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from camera_fixture import LIMIT, MAGENTA, Geometry, Look, magenta_spot, pixels_of, project  # noqa: E402
+
+TOP, BOTTOM = 0, 1
+NAMES = ("top", "bottom")
+FOLDERS = tuple(f"nao_robot/camera/{name}/" for name in NAMES)
+FRAMES = ("CameraTop_optical_frame", "CameraBottom_optical_frame")
+SIZES = {0: (160, 120), 1: (320, 240), 2: (640, 480)}
+TICK = 1 / 120.0
+DEFAULTS = {
+    "resolution": 1,
+    "frame_rate": 15.0,
+    "color_space": 13,
+    "auto_exposition": 1,
+    "auto_white_balance": 1,
+    "brightness": 0,
+    "contrast": 32,
+    "camera_info_url": "",
+}
+BRIGHTNESS, CONTRAST, AUTO_EXPOSITION = 0, 1, 11
+
+
+class DriverCamera(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.device = cls.robot.module("ALVideoDevice")
+        cls.simulation = cls.robot.module("NaoSimulation")
+        cls.geometry = Geometry(cls.robot)
+        cls.settings = [Client(f"nao_camera/{name}", timeout=LIMIT) for name in NAMES]
+        cls.reports = {}
+        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.note, queue_size=100)
+        with Look(FOLDERS[TOP]) as look:  # what draws the pictures has begun
+            look.after(0.0)
+
+    @classmethod
+    def note(cls, message):
+        for status in message.status:
+            values = {entry.key: entry.value for entry in status.values}
+            cls.reports[status.name] = (status.message, values)
+
+    def setUp(self):
+        self.robot.reset()
+        for settings in self.settings:
+            settings.update_configuration(DEFAULTS)
+        self.wait_for_nobody()
+
+    def wait_for_nobody(self):
+        wait_until(lambda: self.device.getSubscribers() == [], LIMIT, "the end of all subscriptions")
+
+    # --- what is seen, and where ----------------------------------------------------------------------------------
+
+    @contextmanager
+    def placed(self, position):
+        """A magenta ball that hangs in the air, at (3,) m in world."""
+        description = {"name": "spot", "sphere": 0.03, "position": [float(each) for each in position], "color": MAGENTA}
+        self.simulation.placeObject(yaml.safe_dump(description, default_flow_style=True))
+        try:
+            yield
+        finally:
+            self.simulation.removeObject("spot")
+
+    def error_of_the_spot(self, look, image_point):
+        """Pixels between where a ball at 0.7 m is seen and where it should be.
+
+        Args:
+            look: Open camera.
+            image_point: Where to place it, share of the width and height of the picture.
+        """
+        image, info = look.now()
+        pose = self.geometry.optical_in_world(image.header.frame_id, image.header.stamp)
+        x, y = image_point[0] * info.width, image_point[1] * info.height
+        ray = np.array(((x - info.K[2]) / info.K[0], (y - info.K[5]) / info.K[4], 1.0))
+        point = pose @ np.append(0.7 * ray, 1.0)
+        with self.placed(point[:3]):
+            image, info = look.now(lambda image: magenta_spot(image)[1] > 0)
+            pose = self.geometry.optical_in_world(image.header.frame_id, image.header.stamp)
+        spot, _ = magenta_spot(image)
+        should = project(info, (np.linalg.inv(pose) @ point)[:3])
+        look.now(lambda image: magenta_spot(image)[1] == 0)
+        return float(np.linalg.norm(spot - should))
+
+    def test_a_thing_is_seen_where_camera_info_and_tf_say(self):
+        for camera, resolution, head in ((TOP, 1, (0.0, -0.2)), (TOP, 2, (0.5, -0.1)), (BOTTOM, 1, (-0.4, -0.5))):
+            with self.subTest(camera=NAMES[camera], size=SIZES[resolution], head=head):
+                self.settings[camera].update_configuration({"resolution": resolution})
+                motion = self.robot.module("ALMotion")
+                motion.setStiffnesses("Head", 1.0)
+                motion.angleInterpolation("Head", list(head), 1.0, True)
+                with Look(FOLDERS[camera]) as look:
+                    look.now(lambda image, width=SIZES[resolution][0]: image.width == width)
+                    for place in ((0.5, 0.5), (0.15, 0.25), (0.85, 0.7)):
+                        self.assertLess(self.error_of_the_spot(look, place), 2.0, place)
+
+    def test_camera_info_is_the_geometry_of_the_camera(self):
+        for camera in (TOP, BOTTOM):
+            hfov, vfov = self.device.getHorizontalFOV(camera), self.device.getVerticalFOV(camera)
+            for resolution, (width, height) in SIZES.items():
+                with self.subTest(camera=NAMES[camera], size=(width, height)):
+                    self.settings[camera].update_configuration({"resolution": resolution})
+                    with Look(FOLDERS[camera]) as look:
+                        image, info = look.now(lambda image, width=width: image.width == width)
+                    self.assertEqual(info.header.stamp, image.header.stamp)
+                    self.assertEqual(info.header.frame_id, FRAMES[camera])
+                    self.assertEqual((info.width, info.height), (width, height))
+                    self.assertEqual((image.width, image.height, image.step), (width, height, 3 * width))
+                    self.assertEqual((image.encoding, len(image.data)), ("bgr8", 3 * width * height))
+                    fx, fy = width / 2 / math.tan(hfov / 2), height / 2 / math.tan(vfov / 2)
+                    np.testing.assert_allclose(info.K, (fx, 0, width / 2, 0, fy, height / 2, 0, 0, 1), rtol=1e-5)
+                    np.testing.assert_allclose(np.array(info.P).reshape(3, 4)[:, :3].ravel(), info.K)
+                    self.assertEqual((info.distortion_model, list(info.D)), ("plumb_bob", [0.0] * 5))
+
+    # --- rates and demand -----------------------------------------------------------------------------------------
+
+    def test_pictures_come_at_the_rate_that_was_asked_for_in_the_robots_time(self):
+        for rate, cameras in ((30, (TOP,)), (15, (TOP, BOTTOM)), (5, (BOTTOM,))):
+            with self.subTest(rate=rate), self.robot.at_speed(0.5):
+                looks = []
+                for camera in cameras:
+                    self.settings[camera].update_configuration({"frame_rate": float(rate)})
+                    looks.append(Look(FOLDERS[camera]))
+                for look in looks:
+                    look.now()
+                begin = rospy.get_time()
+                for look in looks:
+                    look.after(begin + 2.0)
+                    look.__exit__()
+                    stamps = np.array([image.header.stamp.to_sec() for image, _ in look.pairs])
+                    stamps = stamps[(stamps > begin) & (stamps <= begin + 2.0)]
+                    steps = np.diff(stamps)
+                    self.assertGreater(steps.min(), 1.0 / rate - TICK - 1e-6)
+                    # Now and then the machine does something else for the length of a picture.
+                    self.assertGreaterEqual(len(stamps), 0.9 * 2.0 * rate)
+                    np.testing.assert_allclose(np.median(steps), 1.0 / rate, atol=1e-4 + TICK * (120 % rate > 0))
+                self.wait_for_nobody()
+
+    def test_the_robot_is_asked_for_nothing_while_nobody_looks(self):
+        self.assertEqual(self.device.getSubscribers(), [])
+        with Look(FOLDERS[BOTTOM]) as look:
+            look.now()
+            self.assertEqual(len(self.device.getSubscribers()), 1)
+            with Look(FOLDERS[BOTTOM]) as second:
+                second.now()
+                self.assertEqual(len(self.device.getSubscribers()), 1)
+        self.wait_for_nobody()
+        counts = []
+        for _ in range(2):
+            self.reports.clear()
+            report = self.wait_for_report("nao_camera: camera bottom", "nobody looks")
+            counts.append(report["pictures"])
+            self.robot.advance(1.0)
+        self.assertEqual(counts[0], counts[1])
+
+    def test_camera_info_alone_comes_as_well(self):
+        info = rospy.wait_for_message(f"{FOLDERS[TOP]}camera_info", CameraInfo, LIMIT)
+        self.assertEqual(info.header.frame_id, FRAMES[TOP])
+        self.wait_for_nobody()
+
+    def wait_for_report(self, name, text):
+        wait_until(lambda: self.reports.get(name, ("",))[0] == text, LIMIT, f"{name}: {text}")
+        return self.reports[name][1]
+
+    def test_diagnostics_tell_what_comes(self):
+        with Look(FOLDERS[TOP]) as look, self.robot.at_speed(0.5):
+            look.now()
+            self.reports.clear()
+            values = self.wait_for_report("nao_camera: camera top", "pictures come")
+            self.assertEqual((values["size"], values["colour space"]), ("320x240", "BGR"))
+            self.assertIn("computed", values["calibration"])
+
+    # --- colours and files ----------------------------------------------------------------------------------------
+
+    def test_compressed_pictures_are_the_raw_ones(self):
+        compression = Client(f"{FOLDERS[TOP]}image_raw/compressed", timeout=LIMIT)
+        for kind, tolerance in (("png", 0), ("jpeg", 8)):
+            compression.update_configuration({"format": kind, "jpeg_quality": 95})
+            files = {}
+            topic = f"{FOLDERS[TOP]}image_raw/compressed"
+            subscriber = rospy.Subscriber(topic, CompressedImage, lambda m, f=files: f.update({m.header.stamp: m}))
+            with self.subTest(kind=kind), Look(FOLDERS[TOP]) as look:
+                known = "bgr8; {} compressed bgr8".format(kind)
+                image, _ = look.now(lambda i, f=files, k=known: i.header.stamp in f and f[i.header.stamp].format == k)
+                file = files[image.header.stamp]
+                self.assertEqual(file.header.frame_id, image.header.frame_id)
+                decoded = cv2.imdecode(np.frombuffer(file.data, np.uint8), cv2.IMREAD_COLOR)[..., ::-1]
+                difference = np.abs(decoded.astype(int) - pixels_of(image))
+                self.assertLessEqual(difference.mean(), tolerance)
+                self.assertLess(len(file.data), len(image.data))
+            subscriber.unregister()
+
+    def test_colour_spaces_are_encodings_of_the_same_picture(self):
+        pictures = {}
+        with Look(FOLDERS[TOP]) as look:
+            for number, encoding in ((11, "rgb8"), (13, "bgr8"), (0, "mono8"), (9, "yuv422")):
+                self.settings[TOP].update_configuration({"color_space": number})
+                image, _ = look.now(lambda image, encoding=encoding: image.encoding == encoding)
+                pictures[encoding] = pixels_of(image).astype(float)
+        self.assertLess(np.abs(pictures["rgb8"] - pictures["bgr8"]).mean(), 4.0)
+        grey = pictures["rgb8"] @ (0.299, 0.587, 0.114)
+        self.assertLess(np.abs(pictures["mono8"] - grey).mean(), 6.0)
+        packed = pictures["yuv422"].astype(np.uint8)
+        self.assertLess(np.abs(packed[..., 1] - pictures["mono8"]).mean(), 4.0)
+        red_green_blue = cv2.cvtColor(packed, cv2.COLOR_YUV2RGB_UYVY).astype(float)
+        self.assertLess(np.abs(red_green_blue - pictures["rgb8"]).mean(), 16.0)
+
+    # --- parameters -----------------------------------------------------------------------------------------------
+
+    def test_parameters_change_while_pictures_come(self):
+        with Look(FOLDERS[TOP]) as look:
+            before, _ = look.now()
+            handles = self.device.getSubscribers()
+            self.settings[TOP].update_configuration({"resolution": 2, "frame_rate": 10.0})
+            after, info = look.now(lambda image: image.width == 640)
+            self.assertEqual(info.width, 640)
+            self.assertEqual(self.device.getSubscribers(), handles, "another subscription")
+            self.settings[TOP].update_configuration({"resolution": 1, "frame_rate": 15.0})
+            look.now(lambda image: image.width == 320)
+            stamps = [image.header.stamp.to_sec() for image, _ in look.pairs]
+            self.assertEqual(stamps, sorted(set(stamps)))
+
+    def test_parameters_of_the_picture_are_the_cameras(self):
+        with Look(FOLDERS[TOP]) as look:
+            self.settings[TOP].update_configuration({"exposure": 8, "gain": 16})
+            self.assertEqual(self.settings[TOP].get_configuration()["auto_exposition"], 0)
+            self.assertEqual(self.device.getParameter(TOP, AUTO_EXPOSITION), 0)
+            dark = np.mean(pixels_of(look.after(rospy.get_time() + 0.2)[0]))
+            self.settings[TOP].update_configuration({"brightness": 100})
+            self.assertEqual(self.device.getParameter(TOP, BRIGHTNESS), 100)
+            bright = np.mean(pixels_of(look.after(rospy.get_time() + 0.2)[0]))
+        self.assertGreater(bright, dark + 20.0)
+        self.assertEqual(self.device.getParameter(BOTTOM, BRIGHTNESS), 0)
+
+    def test_what_others_have_set_stays_and_is_told(self):
+        self.device.setParameter(BOTTOM, CONTRAST, 60)
+        self.addCleanup(self.device.setParameter, BOTTOM, CONTRAST, 32)
+        with Look(FOLDERS[BOTTOM]) as look:
+            look.now()
+            wait_until(lambda: self.settings[BOTTOM].get_configuration()["contrast"] == 60, LIMIT, "the contrast")
+        self.assertEqual(self.device.getParameter(BOTTOM, CONTRAST), 60)
+
+    def test_what_cannot_be_is_refused(self):
+        before = self.settings[TOP].get_configuration()
+        for change in ({"resolution": 6}, {"color_space": 14}, {"camera_info_url": "nowhere"}):
+            with self.subTest(**change), self.assertRaises(DynamicReconfigureCallbackException):
+                self.settings[TOP].update_configuration(change)
+        after = self.settings[TOP].get_configuration()
+        self.assertEqual({name: after[name] for name in DEFAULTS}, {name: before[name] for name in DEFAULTS})
+
+    # --- calibration ----------------------------------------------------------------------------------------------
+
+    def test_a_calibration_is_read_set_and_kept(self):
+        folder = Path(tempfile.mkdtemp(prefix="nao_calibration"))
+        path, measured = folder / "bottom.yaml", folder / "measured.yaml"
+        program = ["rosrun", "nao_library_modules", "send_camera_info", "bottom"]
+        content = {
+            "image_width": 640,
+            "image_height": 480,
+            "camera_name": "nao_camera_bottom",
+            "camera_matrix": {"rows": 3, "cols": 3, "data": [558.6, 0, 308.9, 0, 556.1, 247.6, 0, 0, 1]},
+            "distortion_model": "plumb_bob",
+            "distortion_coefficients": {"rows": 1, "cols": 5, "data": [-0.065, 0.061, 0.004, -0.006, 0]},
+        }
+        path.write_text(yaml.safe_dump(content), encoding="utf-8")
+        content["camera_matrix"]["data"][0] = 600.0
+        measured.write_text(yaml.safe_dump(content), encoding="utf-8")
+        self.settings[BOTTOM].update_configuration({"camera_info_url": f"file://{path}"})
+        with Look(FOLDERS[BOTTOM]) as look:
+            _, info = look.now()
+            np.testing.assert_allclose(info.K, (279.3, 0, 154.45, 0, 278.05, 123.8, 0, 0, 1))
+            self.assertAlmostEqual(info.D[0], -0.065)
+            told = subprocess.run([*program, str(measured)], stdout=subprocess.PIPE, text=True, timeout=LIMIT)
+            self.assertEqual((told.returncode, told.stdout), (0, f"kept in {path}\n"))
+            _, info = look.now()
+            self.assertAlmostEqual(info.K[0], 300.0)
+            self.assertEqual(yaml.safe_load(path.read_text(encoding="utf-8"))["camera_matrix"]["data"][0], 600.0)
+            self.settings[BOTTOM].update_configuration({"camera_info_url": ""})
+            _, info = look.now()
+            self.assertEqual(info.K[2], 160.0)
+        failed = subprocess.run(program, stderr=subprocess.PIPE, text=True, timeout=LIMIT)
+        self.assertEqual((failed.returncode, failed.stderr), (1, "either a file or --fov is needed\n"))
+
+    # --- one camera -----------------------------------------------------------------------------------------------
+
+    def test_one_camera_alone_has_the_names_of_nao_robot(self):
+        settings = Client("alone/nao_camera", timeout=LIMIT)
+        with Look("alone/") as look:
+            image, info = look.now()
+            self.assertEqual((image.header.frame_id, image.width), (FRAMES[BOTTOM], 160))
+            settings.update_configuration({"source": TOP})
+            image, info = look.now(lambda image: image.header.frame_id == FRAMES[TOP])
+            self.assertGreater(info.K[0], 0.0)
+            settings.update_configuration({"source": BOTTOM})
+            look.now(lambda image: image.header.frame_id == FRAMES[BOTTOM])
+
+
+if __name__ == "__main__":
+    rospy.init_node("driver_camera_test")
+    rostest.rosrun("nao_library_tests", "driver_camera", DriverCamera)

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""The robot is late, dies while somebody looks through its cameras, and comes back: pictures and detections go on."""
+
+import os
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from dynamic_reconfigure.client import Client
+from std_srvs.srv import Empty
+
+from nao_library_msgs.srv import VisionMotionSensitivity
+from nao_sim_bridge.testing import wait_until
+from naoqi import ALProxy
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from camera_fixture import LIMIT, Look  # noqa: E402
+
+PORT = int(os.environ.get("NAO_PORT", "9559"))
+BRIGHTNESS = 0
+
+
+class DriverCameraLostRobot(unittest.TestCase):
+    def setUp(self):
+        self.simulator = None
+        self.addCleanup(self.kill)
+        self.reports = {}
+        rospy.Subscriber("/diagnostics", DiagnosticArray, self.note, queue_size=100)
+        self.switches = {}
+        for change in ("enable", "disable"):
+            name = f"nao_vision/landmark_detection/{change}"
+            rospy.wait_for_service(name, LIMIT)
+            self.switches[change] = rospy.ServiceProxy(name, Empty)
+        self.settings = Client("nao_camera/top", timeout=LIMIT)
+
+    def note(self, message):
+        self.reports.update((status.name, status.message) for status in message.status)
+
+    def start(self):
+        self.simulator = subprocess.Popen([sys.executable, "-m", "nao_sim_bridge", "--port", str(PORT)])
+
+    def kill(self):
+        if self.simulator is not None:
+            self.simulator.kill()
+            self.simulator.wait()
+            self.simulator = None
+
+    def proxy(self, name):
+        return ALProxy(name, "127.0.0.1", PORT)
+
+    def wait_for_report(self, name, text):
+        wait_until(lambda: text in self.reports.get(name, ""), LIMIT, lambda: f"{name}: {text}; it says {self.reports}")
+
+    def check_pictures(self, look):
+        image, info = look.now()
+        self.assertEqual((image.width, info.width), (160, 160))
+        self.assertLess(abs(image.header.stamp.to_sec() - rospy.get_time()), 5.0)
+        self.assertGreater(info.K[0], 0.0)
+        self.wait_for_report("nao_camera: camera top", "pictures")
+        subscribers = self.proxy("ALVideoDevice").getSubscribers()
+        self.assertIn("ros_nao_camera_top_0", subscribers)
+        self.assertEqual(self.proxy("ALVideoDevice").getParameter(0, BRIGHTNESS), 20)
+
+    def check_detection(self):
+        landmarks = self.proxy("ALLandMarkDetection")
+        wait_until(lambda: landmarks.getSubscribersInfo(), LIMIT, "the detection of landmarks")
+        self.assertEqual([entry[0] for entry in landmarks.getSubscribersInfo()], ["ros_nao_vision"])
+
+    def test_a_robot_that_is_late_dies_and_comes_back(self):
+        with self.assertRaisesRegex(rospy.ServiceException, str(PORT)):
+            self.switches["enable"]()
+        sensitivity = rospy.ServiceProxy("nao_vision/movement_detection_sensitivity", VisionMotionSensitivity)
+        with self.assertRaisesRegex(rospy.ServiceException, str(PORT)):
+            sensitivity()
+        # What is set before the robot is there holds when it comes.
+        self.settings.update_configuration({"resolution": 0, "brightness": 20})
+        with Look("nao_robot/camera/top/") as look:
+            self.wait_for_report("nao_camera: camera top", "no pictures: ")
+            self.assertEqual(look.pairs, [])
+            self.start()
+            self.check_pictures(look)
+            self.switches["enable"]()
+            self.check_detection()
+            for _ in range(2):
+                self.kill()
+                self.wait_for_report("nao_camera: camera top", "no pictures: ")
+                self.wait_for_report("nao_vision: landmark detection", "cannot run")
+                self.start()
+                self.check_pictures(look)
+                self.check_detection()
+            stamps = [image.header.stamp for image, _ in look.pairs]
+            self.assertEqual(stamps, sorted(set(stamps)))
+            self.switches["disable"]()
+            self.assertEqual(self.proxy("ALLandMarkDetection").getSubscribersInfo(), [])
+        device = self.proxy("ALVideoDevice")
+        wait_until(lambda: device.getSubscribers() == [], LIMIT, "the end of the subscription")
+
+
+if __name__ == "__main__":
+    rospy.init_node("driver_camera_lost_robot_test")
+    rostest.rosrun("nao_library_tests", "driver_camera_lost_robot", DriverCameraLostRobot)
