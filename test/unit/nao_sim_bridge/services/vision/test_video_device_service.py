@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -203,6 +206,30 @@ def test_the_seventh_of_a_name_is_refused(video):
         video.subscribeCamera("looker", TOP, vd.kQVGA, 11, 15)
     with pytest.raises(RuntimeError, match="ALVideoDevice::subscribeCamera name is 'looker', allowed is another one"):
         video.subscribeCamera("looker", TOP, vd.kQVGA, 11, 15)
+
+
+def test_a_client_that_dies_is_cleaned_up(robot, video, image, monkeypatch):
+    """Its process is killed while it waits for a picture; time stands still meanwhile."""
+    program = (
+        "import sys; from naoqi import ALProxy; video = ALProxy('ALVideoDevice', '127.0.0.1', int(sys.argv[1]));"
+        "handle = video.subscribeCamera('dead', 0, 1, 11, 5); print(handle, flush=True); video.getImageRemote(handle)"
+    )
+    path = os.pathsep.join(sys.path)
+    command = [sys.executable, "-c", program, str(robot.server.broker.port)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONPATH": path}) as client:
+        handle = next(line.strip() for line in client.stdout if line.startswith("dead"))
+        client.kill()
+    alive = video.subscribeCamera("alive", TOP, vd.kQVGA, 11, 5)
+    robot.advance(0.5)  # the call of the dead client, if it came through, has had its picture
+    assert image(alive, after=0.3)[0] == 320
+    assert set(video.getSubscribers()) == {handle, alive}
+    subscribers = robot.server._video.subscribers
+    now = subscribers._clock()
+    monkeypatch.setattr(subscribers, "_clock", lambda: now + 50.0)
+    assert image(alive, after=0.3)[0] == 320
+    monkeypatch.setattr(subscribers, "_clock", lambda: now + 70.0)
+    assert video.getSubscribers() == [alive]
+    assert [stream.name for stream in robot.server.simulation.cameras.streams] == [alive]
 
 
 @pytest.mark.parametrize(
