@@ -19,7 +19,7 @@ LEAST_SLANT = 0.02
 """Share of the radius; less perspective makes no difference."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Reading:
     """What a disc says.
 
@@ -27,11 +27,13 @@ class Reading:
         number: Of the mark.
         heading: Its turn in the picture, rad, counterclockwise.
         quality: Correlation of its fans with those of the mark, up to 1.
+        middle: (2,) place of its middle in the picture, pixels: not that of the ellipse when it is near and slanted.
     """
 
     number: int
     heading: float
     quality: float
+    middle: np.ndarray
 
 
 class LandmarkCode:
@@ -89,7 +91,8 @@ class LandmarkCode:
         if not self._all_right(profile, which, turn):
             return
         heading = -turn * 2.0 * math.pi / self._count
-        yield Reading(self._numbers[which], math.remainder(heading, 2.0 * math.pi), float(best[which]))
+        middle = ellipse.center if slant is None else ellipse.center + ellipse.shape @ slant
+        yield Reading(self._numbers[which], math.remainder(heading, 2.0 * math.pi), float(best[which]), middle)
 
     def _framed(self, rim: np.ndarray, card: np.ndarray, black: float, white: float) -> bool:
         """Whether there is a dark rim around the fans, and a light card around that."""

@@ -12,7 +12,7 @@ import numpy as np
 from nao_sim_bridge.sim.cameras.optics import Optics
 from nao_sim_bridge.sim.landmarks import Landmarks, load_landmarks
 from nao_sim_bridge.sim.vision.ellipse import Ellipse, distance_from, ellipse_of
-from nao_sim_bridge.sim.vision.landmark_code import LandmarkCode
+from nao_sim_bridge.sim.vision.landmark_code import LandmarkCode, Reading
 from nao_sim_bridge.sim.vision.sampling import sample
 from nao_sim_bridge.sim.vision.settings import LandmarkSettings, load_vision
 
@@ -77,8 +77,7 @@ class LandmarkDetector:
             tried.append(guess)
             reading = self._code.read(grey, ellipse, focal)
             if reading is not None and not _among(ellipse, [other for other, _ in found]):
-                mark = _landmark(reading.number, reading.heading, reading.quality, ellipse, optics, grey.shape)
-                found.append((ellipse, mark))
+                found.append((ellipse, _landmark(reading, ellipse, optics, grey.shape)))
         return sorted((mark for _, mark in found), key=lambda mark: mark.x)
 
     def _refined(self, ellipse: Ellipse, grey: np.ndarray) -> Ellipse | None:
@@ -179,17 +178,24 @@ def _size(ellipse: Ellipse, optics: Optics, shape: tuple[int, ...]) -> float:
     return float(np.arccos(np.clip(cosines.min(), -1.0, 1.0)))
 
 
-def _landmark(
-    number: int, heading: float, quality: float, ellipse: Ellipse, optics: Optics, shape: tuple[int, ...]
-) -> Landmark:
+def _landmark(reading: Reading, ellipse: Ellipse, optics: Optics, shape: tuple[int, ...]) -> Landmark:
     height, width = shape[:2]
-    x, y = ellipse.center[0] / width, ellipse.center[1] / height
-    across, down = ellipse.half_extent
+    (column, row), (middle, level), (across, down) = reading.middle, ellipse.center, ellipse.half_extent
+    x, y = float(column) / width, float(row) / height
     alpha, beta = optics.angles(x, y)
-    left, _ = optics.angles(x - across / width, y)
-    right, _ = optics.angles(x + across / width, y)
-    _, top = optics.angles(x, y - down / height)
-    _, bottom = optics.angles(x, y + down / height)
+    left, _ = optics.angles((middle - across) / width, y)
+    right, _ = optics.angles((middle + across) / width, y)
+    _, top = optics.angles(x, (level - down) / height)
+    _, bottom = optics.angles(x, (level + down) / height)
     return Landmark(
-        number, alpha, beta, left - right, bottom - top, heading, _size(ellipse, optics, shape), float(x), float(y), float(quality)
+        number=reading.number,
+        alpha=alpha,
+        beta=beta,
+        width=left - right,
+        height=bottom - top,
+        heading=reading.heading,
+        size=_size(ellipse, optics, shape),
+        x=x,
+        y=y,
+        quality=reading.quality,
     )
