@@ -79,14 +79,8 @@ def located(
     across, down = 2.0 * math.tan(lens.width / 2.0), 2.0 * math.tan(lens.height / 2.0)
     ray = (1.0, (0.5 - region.x) * across, (0.5 - region.y) * down)
     stretch = math.hypot(*ray)
-    # In units of the focal length.
-    width, height = region.width * across, region.height * down
-    distance = None
-    if size > 0.0 and sight.size_x > 0.0 and sight.size_y > 0.0:
-        if sight.kind == BALL:  # its size is the angle in which it is seen, wherever in the picture
-            distance = size / math.sin((sight.size_x + sight.size_y) / 4.0)
-        else:
-            distance = stretch * size / _seen_width(sight, width, height)
+    known = size > 0.0 and sight.size_x > 0.0 and sight.size_y > 0.0
+    distance = _distance(sight, size, ray, region.width * across, region.height * down) if known else None
     scale = (1.0 if distance is None else distance) / stretch
     place = (ray[0] * scale, ray[1] * scale, ray[2] * scale)
     return Sighting(
@@ -102,12 +96,26 @@ def located(
     )
 
 
-def _seen_width(sight: Sight, width: float, height: float) -> float:
-    if sight.kind == LANDMARK:
-        return max(width, height)  # a disc that is seen from the side is narrower one way only
-    if sight.kind == CODE:
-        return 2.0 * math.tan(sight.size_x / 2.0)  # it may be turned in the picture: its region is larger
-    return width
+def _distance(sight: Sight, size: float, ray: Vector, width: float, height: float) -> float:
+    """How far away something is, m.
+
+    Args:
+        sight: What is seen.
+        size: Real size, m.
+        ray: To its centre, 1 along the axis.
+        width: In the picture, in units of the focal length.
+        height: Likewise.
+    """
+    stretch = math.hypot(*ray)
+    if sight.kind == BALL:  # its size is the angle in which it is seen, wherever in the picture
+        return size / math.sin((sight.size_x + sight.size_y) / 4.0)
+    if sight.kind == CODE:  # it may be turned in the picture, and is larger then
+        return stretch * size / (2.0 * math.tan(sight.size_x / 2.0))
+    # Away from the axis everything is drawn larger than the angle in which it is seen.
+    across = width * math.hypot(1.0, ray[2]) / stretch**2
+    if sight.kind == LANDMARK:  # a disc that is seen from the side is narrower one way only
+        return size / max(across, height * math.hypot(1.0, ray[1]) / stretch**2)
+    return size / across
 
 
 def moved(point: Vector, pose: Pose) -> Vector:
@@ -126,13 +134,13 @@ def ros_time(robot_time: float | None, now: float) -> float:
         robot_time: s; None if it is not known.
         now: ROS time, s.
     """
-    if robot_time is None or not 0.0 <= now - robot_time <= CLOCKS_AGREE:
+    if robot_time is None or abs(now - robot_time) > CLOCKS_AGREE:
         return now
     return robot_time
 
 
 CLOCKS_AGREE = 5.0
-"""s that a picture may be old; more is another clock."""
+"""s between a picture's time and ours; more is another clock. In simulated time ours may also be a little late."""
 
 
 def merged(pictures: Sequence[Sequence[Sighting]]) -> list[Sighting]:

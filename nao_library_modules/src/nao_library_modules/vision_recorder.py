@@ -41,6 +41,7 @@ class Recording(FrameThread):
     """Writes frames into a file; each start makes a new one."""
 
     kind = "recording"
+    whole = True
 
     def __init__(
         self, ident: str, topic: str, rate: float, topics: Any, clock: Any, files: VisionFiles, wish: VideoWish

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from sensor_msgs.msg import CompressedImage, Image
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 from nao_library_msgs.msg import VisionThread
 
+from .vision_camera_info import COMPRESSED, info_topic, scaled_info
 from .vision_pictures import encoded, encoding_of, is_compressed, picture_of, scaled, visible, wanted_size
 from .vision_thread import Frame, FrameThread
-
-COMPRESSED = "/compressed"
-"""Topics whose name ends so have pictures as JPEG, as image_transport's do."""
 
 
 class Stream(FrameThread):
     """Passes frames on to a topic.
 
     Frames whose form does not change are passed on as they came. Those that do are worked on only while somebody
-    listens.
+    listens. Beside the pictures goes the camera_info of their camera, if it has one, in the size of the stream.
 
     Attributes:
         topic_out: Where they go.
@@ -47,12 +45,30 @@ class Stream(FrameThread):
         self._wanted = (width, height)
         self._compress = topic_out.endswith(COMPRESSED)
         self._publisher: Any = None
+        self._infos: Any = None
+        self._info_subscription: Any = None
+        self._info: Any = None  # the latest one; set by the thread that receives it
 
     def _begin(self) -> None:
         self._publisher = self._topics.publisher(self.topic_out, CompressedImage if self._compress else Image)
+        theirs, ours = info_topic(self.topic), info_topic(self.topic_out)
+        if theirs and ours and theirs != ours:
+            self._info = None
+            self._infos = self._topics.publisher(ours, CameraInfo)
+            self._info_subscription = self._topics.subscribe_info(theirs, self._take_info)
+
+    def _take_info(self, info: Any) -> None:
+        self._info = info
 
     def _handle(self, frame: Frame) -> tuple[int, int] | None:
-        message = frame.message
+        size = self._publish(frame.message)
+        info = self._info
+        if info is not None and self._infos.is_heard():
+            width, height = size if all(size) else (info.width, info.height)
+            self._infos.publish(scaled_info(info, frame.message.header, width, height))
+        return size
+
+    def _publish(self, message: Any) -> tuple[int, int]:
         if self._as_it_came(message):
             self._publisher.publish(message)
             return (0, 0) if is_compressed(message) else (message.width, message.height)
@@ -95,9 +111,10 @@ class Stream(FrameThread):
         )
 
     def _end(self) -> None:
-        if self._publisher is not None:
-            self._publisher.close()
-            self._publisher = None
+        for end in (self._info_subscription, self._infos, self._publisher):
+            if end is not None:
+                end.close()
+        self._info_subscription = self._infos = self._publisher = None
 
     def _fill(self, report: VisionThread) -> None:
         report.topic_out = self.topic_out

@@ -27,8 +27,12 @@ SLOW_CAMERA = 5.0
 """A camera with few frames a second stalls after so many of its periods."""
 LOOK_EVERY = 1.0
 """s of wall-clock time between two looks whether frames still come."""
+STAMP_STEP = 1e-6
+"""s; more than what rounding does to stamps, which are whole nanoseconds."""
 END_LIMIT = 10.0
 """s that the frames which wait may take when a thread is stopped."""
+LAST_FRAME_LIMIT = 1.0
+"""s to wait at a stop for frames that are on their way; a camera that is later than that has another clock."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,8 @@ class FrameThread:
     """
 
     kind = ""
+    whole = False
+    """Whether it takes what the camera saw until it was stopped, also what comes a moment later."""
 
     def __init__(self, ident: str, topic: str, rate: float, topics: Any, clock: Any) -> None:
         """Make it ready; nothing is received yet.
@@ -147,13 +153,28 @@ class FrameThread:
             self._finish()
             raise
 
-    def stop(self) -> None:
-        """Take no frames any more; those that have come are passed on first. No effect if it does not run."""
+    def stop(self, at_once: bool = False) -> None:
+        """Take no frames any more; those that have come are passed on first. No effect if it does not run.
+
+        Args:
+            at_once: Whether not to wait for those that are on their way.
+        """
         with self._changed:
-            was_running = self._state == "running"
-            if was_running:
+            if self._state == "running" and self.whole and not at_once:
+                self._wait_for_the_last()
+            if self._state == "running":
                 self._state = "stopped"
         self._finish()
+
+    def _wait_for_the_last(self) -> None:
+        """Wait until frames come that are newer than this moment; with the condition held."""
+        now = self._clock.now()
+        late = self._last_arrival - self._last_stamp
+        if not self._arrivals or self._stalled(now) or not -STAMP_STEP <= late < LAST_FRAME_LIMIT:
+            return
+        self._until = self._ended = now
+        due = now - STAMP_STEP
+        self._changed.wait_for(lambda: self._last_stamp >= due or self._state != "running", LAST_FRAME_LIMIT)
 
     def _finish(self) -> None:
         """Unsubscribe, and wait for the worker's end."""
@@ -206,7 +227,8 @@ class FrameThread:
         self._error = ""
         self._began: float | None = None
         self._ended: float | None = None
-        self._last_arrival = 0.0
+        self._last_arrival = self._last_stamp = 0.0
+        self._until: float | None = None
         self._told_stalled = False
 
     def _arrived(self, message: Any) -> None:
@@ -217,7 +239,10 @@ class FrameThread:
             if self._state != "running":
                 return
             self._arrivals += 1
-            self._last_arrival = now
+            self._last_arrival, self._last_stamp = now, frame.stamp
+            if self._until is not None and frame.stamp >= self._until:
+                self._changed.notify_all()
+                return
             if not self._limit.passes(frame.stamp):
                 return
             self._queue.append(frame)

@@ -74,7 +74,7 @@ class VisionThreads:
         for thread in self.known.values():
             if thread.runs:
                 log.info("%s %r ends with the server", thread.kind, thread.ident)
-            thread.stop()
+            thread.stop(at_once=True)
 
 
 def unknown(ident: str, known: object) -> BadGoal:

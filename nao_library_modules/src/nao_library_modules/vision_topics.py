@@ -8,12 +8,12 @@ from typing import Any
 
 import rosgraph
 import rospy
-from sensor_msgs.msg import CompressedImage, Image
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 from naoqi.errors import NaoError
 
 from .errors import BadGoal
-from .vision_stream import COMPRESSED
+from .vision_camera_info import COMPRESSED
 
 BUFFER = 1 << 24
 """Bytes to read at once: a smaller buffer than a picture makes rospy read it in many pieces, and late."""
@@ -29,7 +29,7 @@ class SettingsTrouble(NaoError):  # noqa: N818  named like the errors of the pro
 
 
 class Publisher:
-    """Publishes pictures on a topic."""
+    """Publishes pictures, or what belongs to them."""
 
     def __init__(self, publisher: rospy.Publisher) -> None:
         """Take over a publisher."""
@@ -49,7 +49,7 @@ class Publisher:
 
 
 class Subscription:
-    """Takes pictures from a topic until it is closed; may be closed twice."""
+    """Takes messages from a topic until it is closed; may be closed twice."""
 
     def __init__(self, topic: str, kind: type, take: Callable[[Any], None]) -> None:
         """Begin.
@@ -82,8 +82,12 @@ class VisionTopics:
         """
         return Subscription(topic, self._kind(topic), take)
 
+    def subscribe_info(self, topic: str, take: Callable[[Any], None]) -> Subscription:
+        """Take what cameras tell of themselves (sensor_msgs/CameraInfo) from a topic, which need not be there."""
+        return Subscription(topic, CameraInfo, take)
+
     def publisher(self, topic: str, kind: type) -> Publisher:
-        """Publish pictures on a topic."""
+        """Publish messages of a kind on a topic."""
         return Publisher(rospy.Publisher(topic, kind, queue_size=QUEUE))
 
     def resolved(self, topic: str) -> str:

@@ -57,6 +57,22 @@ def test_the_things_of_the_lab_are_told_and_drawn(tmp_path):
         assert picture.size == (960, 600)
 
 
+def test_what_the_robot_sees_is_saved(tmp_path):
+    lab = SimulatorServer(ServerOptions(Scene(world="lab", posture="Stand"), port=0))
+    lab.start()
+    try:
+        done = run("naoqi_picture", "--port", str(lab.broker.port), "--size", "320x240", str(tmp_path / "seen.png"))
+        handles = lab.broker.service("ALVideoDevice").getSubscribers()
+    finally:
+        lab.stop()
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert re.search(r"320x240 pixels, taken at \d+\.\d{3} s", done.stdout)
+    assert handles == []
+    with Image.open(tmp_path / "seen.png") as picture:
+        assert picture.size == (320, 240)
+        assert all(high - low > 60 for low, high in picture.getextrema())
+
+
 def test_things_are_placed_moved_drawn_and_cleared_up(server, tmp_path):
     done = run("place_things", "--port", str(server.broker.port), "--output", str(tmp_path / "things.png"))
     assert done.returncode == 0, done.stdout + done.stderr
@@ -78,7 +94,7 @@ def test_a_robot_that_is_watched_is_drawn_and_so_is_its_record(server, tmp_path)
     assert first.read_bytes() == second.read_bytes()
 
 
-@pytest.mark.parametrize("name", ["naoqi_walk", "look_at_the_lab", "place_things", "plot_walk"])
+@pytest.mark.parametrize("name", ["naoqi_walk", "naoqi_picture", "look_at_the_lab", "place_things", "plot_walk"])
 def test_without_a_robot_it_says_so(name):
     done = run(name, "--port", "1")
     assert done.returncode == 1

@@ -7,10 +7,11 @@ import threading
 
 import pytest
 from fake_vision import compressed, image, number_of, numbered, numbered_image, wait_for
-from sensor_msgs.msg import CompressedImage, Image
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 from nao_library_modules import vision_recorder, vision_thread
 from nao_library_modules.errors import BadGoal
+from nao_library_modules.vision_camera_info import info_topic
 from nao_library_modules.vision_files import VisionFiles
 from nao_library_modules.vision_pictures import encoded, picture_of
 from nao_library_modules.vision_recorder import Recording, VideoWish
@@ -51,7 +52,7 @@ def stream(topics, clock):
 
     yield make
     for one in made:
-        one.stop()
+        one.stop(at_once=True)
 
 
 @pytest.fixture
@@ -66,7 +67,7 @@ def recording(topics, clock, files):
 
     yield make
     for one in made:
-        one.stop()
+        one.stop(at_once=True)
 
 
 @pytest.fixture
@@ -150,6 +151,37 @@ def test_a_stream_compresses_and_decompresses(stream, topics, clock):
     two.stop()
     (message,) = topics.publishers[OUT].messages
     assert (message.encoding, number_of(picture_of(message))) == ("bgr8", 78)
+
+
+def test_a_streams_camera_info_is_in_its_size(stream, topics, clock):
+    one = stream(width=32)
+    topics.send(CAMERA, image(clock.time))  # nothing is known of the camera yet
+    wait_for(lambda: one.report().frames == 1)
+    calibration = CameraInfo(width=64, height=48, distortion_model="plumb_bob", D=[0.1] * 5)
+    calibration.K = [60.0, 0.0, 32.0, 0.0, 62.0, 24.0, 0.0, 0.0, 1.0]
+    calibration.P = [60.0, 0.0, 32.0, 8.0, 0.0, 62.0, 24.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+    calibration.roi.width, calibration.roi.x_offset = 20, 10
+    topics.send("/camera/camera_info", calibration)
+    topics.send(CAMERA, image(clock.time))
+    one.stop()
+    (info,) = topics.publishers["/out/camera_info"].messages
+    assert (info.width, info.height, info.distortion_model, list(info.D)) == (32, 24, "plumb_bob", [0.1] * 5)
+    assert info.K == [30.0, 0.0, 16.0, 0.0, 31.0, 12.0, 0.0, 0.0, 1.0]
+    assert info.P == [30.0, 0.0, 16.0, 4.0, 0.0, 31.0, 12.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+    assert (info.roi.width, info.roi.x_offset) == (10, 5)
+    assert info.header == topics.publishers[OUT].messages[1].header
+    assert topics.count("/camera/camera_info") == 0 and topics.publishers["/out/camera_info"].closed
+
+
+@pytest.mark.parametrize(
+    "topic, beside",
+    [
+        ("/a/image_raw", "/a/camera_info"), ("/a/image_raw/compressed", "/a/camera_info"),
+        ("/image", "/camera_info"), ("/relay", ""), ("/a/compressed", ""),
+    ],
+)  # fmt: skip
+def test_camera_info_is_beside_the_pictures(topic, beside):
+    assert info_topic(topic) == beside
 
 
 def test_nobody_works_for_nobody(stream, topics, send, monkeypatch):
@@ -281,6 +313,29 @@ def test_a_recording_has_another_size_and_rate(recording, send):
     one.stop()
     assert read(one.video.path) == [0, 5, 10, 15]
     assert (one.video.width, one.video.height, one.video.dropped) == (32, 24, 0)
+
+
+def test_what_was_seen_before_the_stop_is_in_the_file_also_if_it_comes_later(recording, send, topics, clock, in_thread):
+    one = recording()
+    send(5)
+    clock.time += 0.25  # three frames are on their way
+    stop, _ = in_thread(one.stop)
+    wait_for(lambda: one._until is not None)
+    for number, stamp in ((5, 50.6), (6, 50.7), (7, 50.8)):
+        clock.time += 0.1
+        topics.send(CAMERA, numbered_image(number, stamp))
+    stop.join(5.0)
+    assert read(one.video.path) == [0, 1, 2, 3, 4, 5, 6]
+    assert one.report().duration == pytest.approx(0.75)
+
+
+@pytest.mark.parametrize("lateness", [-3.0, 30.0])
+def test_a_camera_with_another_clock_holds_no_stop_up(recording, topics, clock, monkeypatch, lateness):
+    one = recording()
+    topics.send(CAMERA, numbered_image(0, clock.time - lateness))
+    monkeypatch.setattr(one._changed, "wait_for", lambda *_: pytest.fail("it waits"))
+    one.stop()
+    assert one.video.frames == 1
 
 
 def test_each_start_makes_a_file(recording, send, files):

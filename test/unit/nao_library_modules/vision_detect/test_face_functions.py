@@ -19,7 +19,7 @@ def test_faces_with_and_without_names(vision, eyes, clock):
     assert result.memList == ["anna", "face"]
     assert (anna.name, anna.confidence, anna.kind, other.name) == ("anna", 0.8, "face", "")
     assert anna.width == pytest.approx(math.tan(0.1) / math.tan(HFOV / 2))
-    depth = 0.16 / (2.0 * math.tan(0.1))
+    depth = 0.16 / (2.0 * math.tan(0.1)) / math.cos(0.2)
     assert (anna.camera_position.x, anna.camera_position.z) == pytest.approx((-depth * math.tan(0.2), depth))
     assert eyes.idle()
 

@@ -14,6 +14,7 @@ from ..space import Point3
 from .robot_module import RobotModule
 
 ACTION = "NaoVision"
+ODOM = "odom"
 MARGIN = 10.0
 DETECTORS = {
     "ball": "detectBall",
@@ -32,7 +33,8 @@ class SeenThing:
     Attributes:
         type: ball, face, landmark or code.
         name: Whose face it is, a landmark's number, what a code says; empty if that is not known.
-        position: Where it is; None if only the direction is known.
+        position: Where it is, in odom; None if only the direction is known.
+        time: When it was seen, s of ROS time.
         confidence: 0..1.
         alpha: rad, positive to the left of the camera's axis.
         beta: rad, positive below it.
@@ -41,6 +43,7 @@ class SeenThing:
     type: str
     name: str
     position: Point3 | None
+    time: float
     confidence: float
     alpha: float
     beta: float
@@ -85,10 +88,13 @@ class Vision(RobotModule):
         if not end.result.objects:
             what = f"{type} {name}".strip()
             raise PerceptionObjectNotFound(f"no {what} was seen in {timeout:g} s", type=type, name=name)
-        return [_seen(each) for each in end.result.objects]
+        return [self._seen(each) for each in end.result.objects]
 
-
-def _seen(found: Any) -> SeenThing:
-    where = found.position
-    position = Point3(where.x, where.y, where.z, found.base_frame) if found.located else None
-    return SeenThing(found.kind, found.name, position, found.confidence, found.alpha, found.beta)
+    def _seen(self, found: Any) -> SeenThing:
+        """What NaoVision tells; places in odom, for the robot's own frame moves."""
+        where = found.position
+        position = None
+        if found.located:
+            position = self.robot.point_in(Point3(where.x, where.y, where.z, found.base_frame), ODOM)
+        time = found.header.stamp.to_sec()
+        return SeenThing(found.kind, found.name, position, time, found.confidence, found.alpha, found.beta)

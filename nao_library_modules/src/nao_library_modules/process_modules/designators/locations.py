@@ -1,0 +1,287 @@
+"""Locations: places that a description stands for, sampled one after the other and checked.
+
+    a(location, near=the(object_, type="table"), distance=0.35)
+    a(location, to="see", object=the(object_, type="ball"))
+    a(location, to="reach", object=the(object_, type="ball"), side="left")
+    a(location, pose=[1.0, 0.5, 1.57], frame="odom")
+
+Generators give candidates, those of the highest priority first; every validator says of each candidate what it thinks:
+a candidate is taken when nobody rejects it. Users add generators and validators of their own.
+"""
+
+from __future__ import annotations
+
+import enum
+import math
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any
+
+from ...places import Place, wrapped
+from ..failures import DesignatorError
+from ..space import Point3
+from .designator import Designator, location
+from .objects import BELIEFS, KnownObject
+from .rules import rule
+
+MOST_TRIES = 200
+"""Candidates that are looked at before a description is given up."""
+ROBOT_RADIUS = 0.17
+"""m around the robot that has to be free: half its width with hanging arms, and a little."""
+AROUND = 24
+SEEING = (0.35, 0.6, 1.0, 1.5)
+"""m from which things are looked at."""
+REACHING = (0.16, 0.19, 0.13)
+"""m in front of the robot that things are reached."""
+LONGEST_REACH = 0.3
+"""m from a shoulder to the hand, at most; the hand gets 0.22 m ahead."""
+SHOULDER_HEIGHT, SHOULDER_ASIDE = 0.42, 0.1
+EYE_HEIGHT = 0.47
+STEEPEST = 0.75
+"""rad down that the top camera can look with the whole head bowed."""
+
+
+class Verdict(enum.Enum):
+    """What a validator thinks of a candidate."""
+
+    ACCEPT = "accept"
+    REJECT = "reject"
+    MAYBE_REJECT = "maybe reject"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A place that may be meant, with its frame."""
+
+    place: Place
+    frame: str
+
+
+Generator = Callable[[Designator], Iterable[Candidate]]
+Validator = Callable[[Designator, Candidate], Verdict]
+
+_lock = threading.Lock()
+_generators: list[tuple[int, str, Generator]] = []
+_validators: list[tuple[int, str, Validator]] = []
+
+
+def register_location_generator(priority: int, generator: Generator, name: str = "") -> None:
+    """Add what gives candidates; one of the same name is replaced. The highest priority goes first."""
+    _register(_generators, priority, name or generator.__name__, generator)
+
+
+def register_location_validation_function(priority: int, validator: Validator, name: str = "") -> None:
+    """Add what judges candidates; one of the same name is replaced. The highest priority is asked first."""
+    _register(_validators, priority, name or validator.__name__, validator)
+
+
+@rule(location, called="location")
+def sampled(desig: Designator) -> Iterator[tuple[Place, str]]:
+    """Places with their frames that the generators give and no validator rejects.
+
+    Raises:
+        DesignatorError: No generator knows what is meant, or all candidates were rejected: by whom, and how often.
+    """
+    rejected: dict[str, int] = {}
+    looked = taken = 0
+    doubtful = []
+    for candidate in islice(_candidates(desig), MOST_TRIES):
+        looked += 1
+        verdict, who = _judge(desig, candidate)
+        if verdict is Verdict.REJECT:
+            rejected[who] = rejected.get(who, 0) + 1
+        elif verdict is Verdict.MAYBE_REJECT:
+            doubtful.append(candidate)
+        else:
+            taken += 1
+            yield candidate.place, candidate.frame
+    for candidate in doubtful:
+        taken += 1
+        yield candidate.place, candidate.frame
+    if not looked:
+        known = ", ".join(name for _, name, _ in _generators)
+        raise DesignatorError(desig, f"nobody knows which place is meant (there are generators: {known})")
+    if not taken:
+        told = ", ".join(f"{who} rejected {count}" for who, count in rejected.items())
+        raise DesignatorError(desig, f"none of {looked} places will do: {told}")
+
+
+def next_different_location_solution(desig: Designator, distance: float = 0.1, turn: float = 0.3) -> Designator | None:
+    """The next designator of the location whose place is another one by more than m or rad; None if there is none."""
+    place, _ = desig.reference()
+    following = desig.next_solution()
+    while following is not None:
+        other, _ = following.reference()
+        if place.distance_to(other) > distance or abs(wrapped(place.yaw - other.yaw)) > turn:
+            return following
+        following = following.next_solution()
+    return None
+
+
+# --- generators -------------------------------------------------------------------------------------------------------
+
+
+def pose_of_description(desig: Designator) -> Iterator[Candidate]:
+    """The place that is told: pose=[x, y, yaw], with frame."""
+    pose = desig.get("pose")
+    if pose is None:
+        return
+    try:
+        x, y, yaw = map(float, [*pose, 0.0][:3])
+    except (TypeError, ValueError):
+        raise DesignatorError(desig, f"its pose is {pose!r}, not [x, y, yaw] in m and rad") from None
+    yield Candidate(Place(x, y, yaw), str(desig.get("frame", "odom")))
+
+
+def around_object(desig: Designator) -> Iterator[Candidate]:
+    """Places around a thing from which one looks at it: near=..., with distance in m from its edge."""
+    thing = _thing(desig, "near")
+    if thing is None:
+        return
+    distance = desig.get("distance", 0.1)
+    yield from _ring(thing, [float(distance) + ROBOT_RADIUS])
+
+
+def to_see(desig: Designator) -> Iterator[Candidate]:
+    """Places from which a thing can be seen: to="see", object=..."""
+    thing = _thing(desig, "object", "obj", "target")
+    if desig.get("to") == "see" and thing is not None:
+        yield from _ring(thing, SEEING)
+
+
+def to_reach(desig: Designator) -> Iterator[Candidate]:
+    """Places from which a hand gets to a thing: to="reach", object=..., side=..."""
+    thing = _thing(desig, "object", "obj", "target")
+    if desig.get("to") != "reach" or thing is None:
+        return
+    sides = [desig["side"]] if "side" in desig else ["left", "right"]
+    for ahead in REACHING:
+        for turn in _turns():
+            for side in sides:
+                aside = SHOULDER_ASIDE if side == "left" else -SHOULDER_ASIDE
+                # The thing is ahead of the shoulder, seen from a robot with this heading.
+                foot = Place(thing.position.x, thing.position.y, turn).then(Place(-ahead, -aside, 0.0))
+                yield Candidate(foot, thing.position.frame)
+
+
+# --- validators -------------------------------------------------------------------------------------------------------
+
+
+def not_in_collision(desig: Designator, candidate: Candidate) -> Verdict:
+    """Nothing that is known stands where the robot would."""
+    place = candidate.place
+    for thing in BELIEFS.all():
+        if thing.position.frame != candidate.frame or not any(thing.size):
+            continue
+        low = thing.position.z - thing.size[2] / 2.0
+        if low < 0.58 and thing.distance_to(place.x, place.y) < ROBOT_RADIUS - 1e-9:
+            return Verdict.REJECT
+    return Verdict.ACCEPT
+
+
+def in_view(desig: Designator, candidate: Candidate) -> Verdict:
+    """What is to be seen is not hidden, nor too steep below the eyes."""
+    thing = _thing(desig, "object", "obj", "target")
+    if desig.get("to") != "see" or thing is None:
+        return Verdict.UNKNOWN
+    place = candidate.place
+    away = math.hypot(thing.position.x - place.x, thing.position.y - place.y)
+    if math.atan2(EYE_HEIGHT - thing.position.z, away) > STEEPEST:
+        return Verdict.REJECT
+    eye = Point3(place.x, place.y, EYE_HEIGHT, candidate.frame)
+    hides = (each for each in BELIEFS.all() if each.name != thing.name and each.position.frame == candidate.frame)
+    return Verdict.REJECT if any(_between(each, eye, thing.position) for each in hides) else Verdict.ACCEPT
+
+
+def in_reach(desig: Designator, candidate: Candidate) -> Verdict:
+    """The hand is long enough."""
+    thing = _thing(desig, "object", "obj", "target")
+    if desig.get("to") != "reach" or thing is None:
+        return Verdict.UNKNOWN
+    x, y, _ = Place(thing.position.x, thing.position.y, 0.0).seen_from(candidate.place)
+    up = thing.position.z - SHOULDER_HEIGHT
+    reach = min(math.hypot(x, y - aside, up) for aside in (SHOULDER_ASIDE, -SHOULDER_ASIDE))
+    return Verdict.ACCEPT if reach <= LONGEST_REACH else Verdict.REJECT
+
+
+# --- inside -----------------------------------------------------------------------------------------------------------
+
+
+def _thing(desig: Designator, *keys: str) -> KnownObject | None:
+    for key in keys:
+        value = desig.get(key)
+        if isinstance(value, KnownObject):
+            return value
+        if isinstance(value, Designator):
+            found = value.reference()
+            if not isinstance(found, KnownObject):
+                raise DesignatorError(desig, f"its {key} stands for {found!r}, which is no known object")
+            return found
+    return None
+
+
+def _ring(thing: KnownObject, distances: Iterable[float]) -> Iterator[Candidate]:
+    """Places at distances from the edge of a thing, all around, with the thing ahead."""
+    for distance in distances:
+        for turn in _turns():
+            # From the middle outwards until the edge is so far away.
+            c, s = math.cos(turn), math.sin(turn)
+            away = distance
+            for _ in range(8):
+                away += distance - thing.distance_to(thing.position.x - away * c, thing.position.y - away * s)
+            place = Place(thing.position.x - away * c, thing.position.y - away * s, turn)
+            yield Candidate(place, thing.position.frame)
+
+
+def _turns() -> Iterator[float]:
+    """Headings: ahead first, then more and more to both sides."""
+    for step in range(AROUND):
+        yield wrapped(2.0 * math.pi / AROUND * ((step + 1) // 2) * (-1 if step % 2 else 1))
+
+
+def _between(thing: KnownObject, eye: Point3, target: Point3) -> bool:
+    """Whether the box of a thing is on the way from the eye to the target."""
+    if not any(thing.size):
+        return False
+    steps = max(2, int(eye.distance_to(target) / 0.02))
+    for step in range(1, steps):
+        share = step / steps
+        x, y, z = (a + share * (b - a) for a, b in zip(eye[:3], target[:3]))
+        half = thing.size[2] / 2.0
+        # The last centimetres do not count: things stand on others.
+        if math.dist((x, y, z), target[:3]) > 0.06 and abs(z - thing.position.z) < half and not thing.distance_to(x, y):
+            return True
+    return False
+
+
+def _candidates(desig: Designator) -> Iterator[Candidate]:
+    for _, _, generator in tuple(_generators):
+        yield from generator(desig)
+
+
+def _judge(desig: Designator, candidate: Candidate) -> tuple[Verdict, str]:
+    """The verdict on a candidate, and whose it is: the first that rejects counts."""
+    doubt = ""
+    for _, name, validator in tuple(_validators):
+        verdict = validator(desig, candidate)
+        if verdict is Verdict.REJECT:
+            return verdict, name
+        if verdict is Verdict.MAYBE_REJECT:
+            doubt = doubt or name
+    return (Verdict.MAYBE_REJECT, doubt) if doubt else (Verdict.ACCEPT, "")
+
+
+def _register(there: list, priority: int, name: str, function: Any) -> None:
+    with _lock:
+        there[:] = [entry for entry in there if entry[1] != name]
+        there.append((priority, name, function))
+        there.sort(key=lambda entry: -entry[0])
+
+
+for _priority, _generator in ((30, pose_of_description), (20, to_reach), (20, to_see), (10, around_object)):
+    register_location_generator(_priority, _generator)
+for _priority, _validator in ((20, not_in_collision), (10, in_reach), (10, in_view)):
+    register_location_validation_function(_priority, _validator)

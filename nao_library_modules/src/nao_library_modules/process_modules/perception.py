@@ -1,0 +1,156 @@
+"""Perceiving: what plans know of things is brought up to date by looking; and places that a plan has to be at.
+
+Two examples:
+
+    ball = perceive(a(object_, type="ball"))               # an equated designator; its reference is where it is now
+    at_location(a(location, to="see", object=ball), do(look, ball), robot_position)
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..places import Place, wrapped
+from .control import Branch, Step, do, pursue, subtask
+from .designators.designator import Designator, action, an, current_desig, equate, location, object_
+from .designators.locations import next_different_location_solution
+from .designators.objects import BELIEFS, KnownObject
+from .failures import (
+    AmbiguousPerception,
+    NavigationHighLevelFailure,
+    NavigationLowLevelFailure,
+    PerceptionObjectNotFound,
+    PlanError,
+)
+from .flow import wait_until
+from .fluents import AnyFluent
+from .handling import do_retry, with_failure_handling, with_retry_counters
+from .registry import perform
+
+QUANTIFIERS = ("a", "all", "the", "currently-visible")
+TRIES = 10
+"""How often `at_location` goes back to where it has to be."""
+
+
+def perceive(
+    desig: Designator, quantifier: str = "", *, timeout: float = 2.0, search: bool = False
+) -> Designator | list[Designator]:
+    """Look for the object that a designator describes, in a plan.
+
+    Args:
+        desig: Of an object, with its type: ball, face, person, landmark or code.
+        quantifier: "a" for the one that is seen best, "the" for the only one, "all" and "currently-visible" for all
+            of them; that of the designator if there is none.
+        timeout: s to look.
+        search: Whether the head turns to find it.
+
+    Returns:
+        A designator that is equated to it and stands for what was seen; with "all" a list of designators.
+
+    Raises:
+        PerceptionObjectNotFound: It was not seen.
+        AmbiguousPerception: Several were seen that a description fits which means one.
+        PlanError: It is no object, or has no type.
+    """
+    wanted = quantifier or desig.quantifier
+    if wanted not in QUANTIFIERS:
+        raise PlanError(f"perceive {wanted!r}: {', '.join(QUANTIFIERS)}")
+    if desig.kind != object_ or "type" not in desig:
+        raise PlanError(f"perceive: {desig} is no object with a type")
+
+    def body() -> Designator | list[Designator]:
+        looking = an(action, type="detecting", object=current_desig(desig), timeout=timeout, search=search)
+        seen = [each for each in perform(looking) if each.position is not None]
+        if not seen:
+            raise PerceptionObjectNotFound(f"{desig} was seen, but not where it is", designator=desig)
+        if wanted == "the" and len(seen) > 1:
+            raise AmbiguousPerception(desig, f"{len(seen)} were seen that fit")
+        if wanted in ("all", "currently-visible"):
+            return [_designator_of(_believe(each, desig)) for each in seen]
+        best = max(seen, key=lambda each: each.confidence)
+        return equate(desig, _designator_of(_believe(best, desig)))
+
+    return subtask(Step(f"perceive {desig}", body))
+
+
+def examine(desig: Designator, *keys: str) -> dict[str, Any]:
+    """Look at an object and tell what is known of some keys then; in a plan."""
+    found = perceive(desig, "a")
+    assert isinstance(found, Designator)
+    thing = found.reference()
+    return {key: thing.value(key) for key in keys}
+
+
+def go_to(desig: Designator) -> Place:
+    """Walk to a location, in a plan: to the first of its places that can be reached; where the robot is then.
+
+    Raises:
+        NavigationHighLevelFailure: None of them can be reached.
+    """
+    place = [current_desig(desig)]
+
+    def next_place(failure: NavigationLowLevelFailure) -> None:
+        following = next_different_location_solution(place[0])
+        if following is not None:
+            place[0] = following
+            do_retry("place")
+        raise NavigationHighLevelFailure(f"no way to {desig}: {failure}", designator=desig) from failure
+
+    def body() -> Place:
+        with with_retry_counters(place=TRIES):
+            walk = lambda: perform(an(action, type="going", target=place[0].reference()))  # noqa: E731
+            return with_failure_handling(walk, {NavigationLowLevelFailure: next_place})
+
+    return subtask(Step(f"go to {desig}", body))
+
+
+def at_location(desig: Designator, body: Branch, position: AnyFluent, distance: float = 0.2, turn: float = 0.6) -> Any:
+    """Do something at a location, in a plan: when the robot gets away from there, it goes back and begins again.
+
+    Args:
+        desig: The location.
+        body: What to do there.
+        position: A fluent with the `Place` of the robot, in the frame of the location.
+        distance: m that it may get away.
+        turn: rad that it may turn away.
+
+    Returns:
+        What the body answers.
+
+    Raises:
+        NavigationHighLevelFailure: The location was lost too often, or cannot be reached.
+        PlanFailure: What the body failed with.
+    """
+    if desig.kind != location:
+        raise PlanError(f"at_location: {desig} is no location")
+    lost = object()
+
+    def away() -> bool:
+        goal, _ = current_desig(desig).reference()
+        here = position.value
+        return goal.distance_to(here) > distance or abs(wrapped(goal.yaw - here.yaw)) > turn
+
+    def watch() -> object:
+        wait_until(away, [position])
+        return lost
+
+    def run() -> Any:
+        for _ in range(TRIES):
+            if away():
+                go_to(desig)
+            answer = pursue(body, do(watch, name="still there"))
+            if answer is not lost:
+                return answer
+        raise NavigationHighLevelFailure(f"{desig} was lost {TRIES} times", designator=desig)
+
+    return subtask(Step(f"at {desig}", run))
+
+
+def _believe(seen: Any, desig: Designator) -> KnownObject:
+    facts = {key: value for key, value in desig.description.items() if key not in ("type", "name", "position", "size")}
+    return BELIEFS.saw(desig["type"], seen.name, seen.position, seen.time, **facts)
+
+
+def _designator_of(thing: KnownObject) -> Designator:
+    description = {"type": thing.type, "name": thing.name, **thing.facts}
+    return Designator(object_, description, resolve=lambda _: [thing])

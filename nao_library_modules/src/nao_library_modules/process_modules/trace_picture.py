@@ -1,0 +1,141 @@
+"""Draws the trace of a plan: a line a task, with a bar from its begin to its end. Needs Pillow."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from PIL import Image, ImageDraw, ImageFont
+
+from naoqi.errors import NaoError
+
+from .trace import Record, Trace
+
+PAPER, GRID, INK, FAINT = (255, 255, 255), (228, 228, 232), (50, 50, 56), (130, 130, 138)
+COLORS = {
+    "created": (200, 200, 205),
+    "running": (66, 133, 244),
+    "suspended": (244, 180, 0),
+    "succeeded": (52, 160, 90),
+    "failed": (205, 55, 45),
+    "evaporated": (150, 150, 158),
+}
+LINE, TEXT, INDENT, MARGIN = 22, 13, 16, 14
+NAMES, BARS = 400, 560
+"""Widths of the column of names and of that of bars, in pixels."""
+LONGEST_NAME = 58
+MOST_LINES = 200
+FINE = 2
+"""Drawn so many times larger and then reduced, for smooth edges."""
+
+
+def draw(trace: Trace) -> Image.Image:
+    """The picture of a trace.
+
+    Args:
+        trace: With at least one task; of very long ones the first tasks.
+
+    Raises:
+        NaoError: It has no task.
+    """
+    lines = list(_lines(trace, None, 0))
+    if not lines:
+        raise NaoError("a trace without a task cannot be drawn")
+    left_out, lines = max(0, len(lines) - MOST_LINES), lines[:MOST_LINES]
+    end = max(max(record.ended or 0.0, record.began or 0.0, record.created) for record, _ in lines) or 1e-3
+    size = (NAMES + BARS + 2 * MARGIN, (len(lines) + 2) * LINE + 2 * MARGIN)
+    picture = Image.new("RGB", (size[0] * FINE, size[1] * FINE), PAPER)
+    pen = ImageDraw.Draw(picture)
+    top = MARGIN + LINE
+    _draw_time(pen, end, top, top + len(lines) * LINE)
+    for row, (record, depth) in enumerate(lines):
+        _draw_task(pen, record, depth, top + row * LINE, end)
+    _draw_legend(pen, top + len(lines) * LINE + LINE // 4, left_out)
+    return picture.resize(size, Image.LANCZOS)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Draw a trace that was kept as JSON."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("trace", type=Path, help="JSON file of a trace")
+    parser.add_argument("picture", type=Path, help="PNG file to write")
+    options = parser.parse_args(argv)
+    try:
+        draw(Trace.from_json(options.trace.read_text(encoding="utf-8"))).save(options.picture)
+    except (OSError, ValueError, KeyError, TypeError, NaoError) as error:
+        print(f"{options.trace}: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _lines(trace: Trace, parent: int | None, depth: int) -> Iterator[tuple[Record, int]]:
+    for record in trace.children(parent):
+        yield record, depth
+        yield from _lines(trace, record.number, depth + 1)
+
+
+def _draw_time(pen: ImageDraw.ImageDraw, end: float, top: int, bottom: int) -> None:
+    step = 10.0 ** math.floor(math.log10(end))
+    step = next(each for each in (step / 5.0, step / 2.0, step, 2.0 * step) if end / each <= 8.0)
+    for number in range(int(end / step) + 1):
+        x = _x(number * step, end)
+        pen.line([_fine(x, top), _fine(x, bottom)], fill=GRID, width=FINE)
+        pen.text(_fine(x, top - 4), f"{number * step:g} s", FAINT, _font(), anchor="ms")
+
+
+def _draw_task(pen: ImageDraw.ImageDraw, record: Record, depth: int, y: int, end: float) -> None:
+    middle, color = y + LINE / 2.0, COLORS[record.state]
+    x = MARGIN + depth * INDENT
+    pen.ellipse([*_fine(x, middle - 4), *_fine(x + 8, middle + 4)], fill=color)
+    arguments = record.facts.get("arguments", "")
+    pen.text(
+        _fine(x + 14, middle), _cut(f"{record.name}({arguments})" if arguments else record.name), INK, _font(), "lm"
+    )
+    # Long names do not run into the bars.
+    pen.rectangle([*_fine(NAMES + MARGIN - 8, y), *_fine(NAMES + MARGIN - 1, y + LINE)], fill=PAPER)
+    if record.began is None:
+        return
+    begin, stop = _x(record.began, end), _x(record.ended if record.ended is not None else end, end)
+    pen.rectangle([*_fine(NAMES + MARGIN - 1, y + 1), *_fine(NAMES + MARGIN - 1, y + 1)], fill=PAPER)
+    pen.rounded_rectangle([*_fine(begin, y + 5), *_fine(max(stop, begin + 2), y + LINE - 5)], 3 * FINE, fill=color)
+    told = record.failure.partition(":")[0] if record.state == "failed" else record.result
+    if told:
+        told, width = _cut(told), 0
+        width = pen.textlength(told, _font()) / FINE
+        right = stop + 6 + width < NAMES + MARGIN + BARS
+        at, anchor = (stop + 6, "lm") if right else (begin - 6, "rm")
+        if right or begin - 6 - width > NAMES + MARGIN:
+            pen.text(_fine(at, middle), told, FAINT, _font(), anchor)
+
+
+def _draw_legend(pen: ImageDraw.ImageDraw, y: int, left_out: int) -> None:
+    x = float(MARGIN)
+    for state, color in COLORS.items():
+        pen.ellipse([*_fine(x, y + LINE / 2.0 - 4), *_fine(x + 8, y + LINE / 2.0 + 4)], fill=color)
+        pen.text(_fine(x + 12, y + LINE / 2.0), state, FAINT, _font(), "lm")
+        x += 12 + pen.textlength(state, _font()) / FINE + 18
+    if left_out:
+        pen.text(_fine(x, y + LINE / 2.0), f"({left_out} tasks more)", FAINT, _font(), "lm")
+
+
+def _x(time: float, end: float) -> float:
+    return NAMES + MARGIN + (BARS - 60) * time / end
+
+
+def _fine(x: float, y: float) -> tuple[float, float]:
+    return x * FINE, y * FINE
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST_NAME else f"{text[: LONGEST_NAME - 1]}…"
+
+
+def _font() -> ImageFont.ImageFont:
+    return ImageFont.load_default(TEXT * FINE)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
