@@ -117,6 +117,8 @@ class FakeTopics:
         self.on_subscribe(topic)
         return SimpleNamespace(close=close)
 
+    subscribe_info = subscribe
+
     def send(self, topic, message):
         with self._lock:
             takers = list(self.subscribers.get(topic, []))

@@ -33,18 +33,23 @@ def developed(fine, size, noise, seed):
 def sphere(distance, radius, alpha=0.0, beta=0.0, color=(20, 25, 215), back=GREY, size=(320, 240), noise=2.0, seed=0):
     """A ball that is lit from above, colours in the order blue, green, red."""
     lens = OPTICS.intrinsics(FINE * size[0], FINE * size[1])
-    x, y = np.meshgrid(np.arange(FINE * size[0]) + 0.5, np.arange(FINE * size[1]) + 0.5)
+    center = towards(distance, alpha, beta)
+    picture = np.empty((FINE * size[1], FINE * size[0], 3))
+    picture[:] = back
+    # Only around its middle: rays take their time.
+    reach = 1.5 * lens.fx * math.tan(math.asin(radius / distance))
+    across, down = lens.cx - lens.fx * center[1] / center[0], lens.cy - lens.fy * center[2] / center[0]
+    left, right = (int(np.clip(across + side, 0, FINE * size[0])) for side in (-reach, reach))
+    top, bottom = (int(np.clip(down + side, 0, FINE * size[1])) for side in (-reach, reach))
+    x, y = np.meshgrid(np.arange(left, right) + 0.5, np.arange(top, bottom) + 0.5)
     rays = np.stack([np.ones_like(x), (lens.cx - x) / lens.fx, (lens.cy - y) / lens.fy], axis=-1)
     rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
-    center = towards(distance, alpha, beta)
     along = rays @ center
     root = along**2 - distance**2 + radius**2
     hit = root > 0.0
     normal = (rays * (along - np.sqrt(np.maximum(root, 0.0)))[..., None] - center) / radius
     light = 0.45 + 0.55 * np.maximum(normal @ np.array((-0.3, 0.2, 0.93)), 0.0)
-    picture = np.empty((*hit.shape, 3))
-    picture[:] = back
-    picture[hit] = (np.array(color) * light[..., None])[hit]
+    picture[top:bottom, left:right][hit] = (np.array(color) * light[..., None])[hit]
     return developed(picture, size, noise, seed)
 
 
