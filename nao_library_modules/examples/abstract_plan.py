@@ -10,16 +10,14 @@ import argparse
 import sys
 
 import rospy
-from std_srvs.srv import Empty
 
 from nao_library_modules.process_modules import action_rules  # noqa: F401  what actions are in numbers
-from nao_library_modules.process_modules.control import do, par, top_level
+from nao_library_modules.process_modules.control import do, par
 from nao_library_modules.process_modules.designators.designator import action, an
-from nao_library_modules.process_modules.failures import PlanFailure
 from nao_library_modules.process_modules.goals import achieve, declare_goal, def_goal
-from nao_library_modules.process_modules.low_level import make_process_modules, this_robot
-from nao_library_modules.process_modules.registry import perform, with_process_modules_running
-from nao_library_modules.process_modules.trace import trace_of
+from nao_library_modules.process_modules.low_level import this_robot
+from nao_library_modules.process_modules.plan_runner import run_and_tell, wake_up
+from nao_library_modules.process_modules.registry import perform
 
 OPEN = 0.9
 
@@ -61,21 +59,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("x", type=float, nargs="?", default=2.0, help="m ahead that the head looks at (2)")
     parser.add_argument("y", type=float, nargs="?", default=3.0, help="m to the left that the head looks at (3)")
+    parser.add_argument("--trace", default="", help="file for the trace of the plan, as JSON")
+    parser.add_argument("--picture", default="", help="file for its picture, as PNG")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("abstract_plan", anonymous=True)
-    rospy.wait_for_service("body_stiffness/enable")
-    rospy.ServiceProxy("body_stiffness/enable", Empty)()
-    roots: list = []
-    status = 0
-    with with_process_modules_running(*make_process_modules()):
-        try:
-            plan = do(abstract_plan, options.x, options.y)
-            top_level(plan, clock=this_robot().clock, observers=[roots.append])
-        except PlanFailure as failure:
-            print(f"the plan failed: {failure}", file=sys.stderr)
-            status = 1
-    print(trace_of(roots[0]))
-    return status
+    wake_up()
+    return run_and_tell(do(abstract_plan, options.x, options.y), trace=options.trace, picture=options.picture)
 
 
 if __name__ == "__main__":

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-import signal
 import socket
-import subprocess
 import time
 from pathlib import Path
 from typing import Callable, Sequence
+
+from .own_stack import OwnStack
 
 WORLD = "lab"
 # Everything the loudspeakers play.
@@ -17,39 +17,18 @@ SOUND = "sound.wav"
 LOUD = 0.02
 
 
-class Stack:
-    """Simulator and action servers, started by roslaunch on free ports.
+class Stack(OwnStack):
+    """The stack of the demonstration: in the lab, with everything that sounds in a file. This program talks to it.
 
     Args:
         output: Folder for pictures and the log.
     """
 
     def __init__(self, output: Path) -> None:
-        self.ros_port, self.nao_port = free_port(), free_port()
-        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{self.ros_port}"
-        self.log = output / "stack.log"
         if (output / SOUND).exists():
             (output / SOUND).unlink()  # of the last demonstration; the simulator would not replace it
-        command = ["roslaunch", "--port", str(self.ros_port), "nao_library", "nao_sim.launch"]
-        command += [f"nao_port:={self.nao_port}", f"record_dir:={output}", f"world:={WORLD}", f"sound_file:={SOUND}"]
-        with self.log.open("wb") as log:
-            self._process = subprocess.Popen(
-                command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True
-            )
-
-    def alive(self) -> bool:
-        """Whether roslaunch still runs."""
-        return self._process.poll() is None
-
-    def stop(self) -> None:
-        """End everything that was started."""
-        for number, limit in ((signal.SIGINT, 15.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0)):
-            if self.alive():
-                self._process.send_signal(number)
-                try:
-                    self._process.wait(limit)
-                except subprocess.TimeoutExpired:
-                    continue
+        super().__init__(output / "stack.log", {"record_dir": str(output), "world": WORLD, "sound_file": SOUND})
+        os.environ["ROS_MASTER_URI"] = self.master_uri
 
 
 def loud_time(path: Path) -> float:
@@ -89,13 +68,6 @@ def can_connect(port: int) -> bool:
     """Whether something listens on a port of this machine."""
     with socket.socket() as probe:
         return probe.connect_ex(("127.0.0.1", port)) == 0
-
-
-def free_port() -> int:
-    """A port that nobody uses now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def write_table(rows: Sequence[tuple[str, str, bool]], path: Path) -> None:

@@ -47,7 +47,7 @@ class PlanFailure(NaoError):  # noqa: N818  CRAM's names, here and below
         details: What handlers may want to know, by name.
     """
 
-    def __init__(self, text: str = "", **details: Any) -> None:
+    def __init__(self, text: str = "", /, **details: Any) -> None:
         """Keep the text and the facts.
 
         Args:
@@ -272,7 +272,7 @@ class GoalNotAchieved(HighLevelFailure):
     """
 
 
-def fail(failure: PlanFailure | type[PlanFailure] | str, text: str = "", **details: Any) -> NoReturn:
+def fail(failure: PlanFailure | type[PlanFailure] | str, text: str = "", /, **details: Any) -> NoReturn:
     """Signal a failure: `fail("no ball")`, `fail(ObjectUnreachable, "too high", height=0.8)`.
 
     Args:

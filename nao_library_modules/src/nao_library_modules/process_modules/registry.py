@@ -214,9 +214,8 @@ def perform(desig: Union[Designator, Command]) -> Any:
     if not isinstance(desig, Designator) or desig.kind not in ("action", "motion"):
         raise PlanError(f"perform: {desig!r} is no designator of an action or a motion")
     desig = current_desig(desig)
-    goal = desig.get("goal")
-    if goal is not None and not isinstance(goal, Occasion):
-        raise DesignatorError(desig, f"its goal is {goal!r}, not an occasion")
+    told = desig.get("goal")
+    goal = told if isinstance(told, Occasion) else None  # of walks it is a place
 
     def body() -> Any:
         if goal is not None and holds(goal):

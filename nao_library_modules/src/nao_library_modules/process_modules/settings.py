@@ -29,6 +29,8 @@ class Settings:
         arm_targets: Points for the left hand by word, in the torso frame, m; of the right hand mirrored.
         arm_speed: rad/s.
         arm_tolerance: m that the hand may be away from its target.
+        shoulder: Of the left arm in the torso frame, m.
+        pointing_reach: m from the shoulder to a hand that points at something.
         shortest_motion: s.
         stable: Angles of all joints of the stable pose, rad, by joint.
         stable_time: s that it takes.
@@ -46,6 +48,8 @@ class Settings:
     arm_targets: Dict[str, Tuple[float, float, float]]
     arm_speed: float
     arm_tolerance: float
+    shoulder: Tuple[float, float, float]
+    pointing_reach: float
     shortest_motion: float
     stable: Dict[str, float]
     stable_time: float

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ..designators.designator import Designator, action
@@ -71,3 +71,11 @@ def to_reach(side: str, target: Any, desig: Designator) -> Command:
 def to_stand() -> Command:
     """Resolve {name: go stable}."""
     return command(MANIPULATION, "go_stable")
+
+
+@rule(BOTH, type=one_of("pointing"), at=anything(), side=one_of("left", "right", "").or_else(""))
+def pointing(at: Any, side: str, desig: Designator) -> Iterator[Command]:
+    """Resolve {type: pointing, at: ...}: with the nearer arm, or that of a side."""
+    targets = points_of(at) if isinstance(at, Designator) else [_arm_target(desig, side or "left", at)]
+    for target in targets:
+        yield command(MANIPULATION, "point_at", target=target, side=side)

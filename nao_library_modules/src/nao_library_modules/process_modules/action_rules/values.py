@@ -58,11 +58,13 @@ def a_position() -> Pattern:
 
 
 def a_place() -> Pattern:
-    """A place: x, y in m and a heading in rad in odom, with a frame behind them, or a `Place`."""
+    """A place: x, y in m and a heading in rad in odom, with a frame behind them; a `Place`, or one with its frame."""
 
     def take(value: Any) -> tuple[Place, str]:
         if isinstance(value, Place):
             return value, ODOM
+        if isinstance(value, tuple) and len(value) == 2 and isinstance(value[0], Place):
+            return value[0], str(value[1])
         if isinstance(value, Mapping) and {"x", "y"} <= set(value) <= {"x", "y", "yaw", "frame"}:
             listed = [value["x"], value["y"], value.get("yaw", 0.0)]
             return Place(*map(float, listed)), str(value.get("frame", ODOM))

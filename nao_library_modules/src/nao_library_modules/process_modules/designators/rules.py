@@ -44,7 +44,7 @@ class Command:
         return f"{self.module}: {self.name}({inside})"
 
 
-def command(module: str, name: str, **arguments: Any) -> Command:
+def command(module: str, name: str, /, **arguments: Any) -> Command:
     """A command with its arguments by name."""
     return Command(module, name, arguments)
 

@@ -48,6 +48,7 @@ class Manipulation(RobotModule):
             "move_head": self.move_head,
             "turn_head": self.turn_head,
             "move_arm": self.move_arm,
+            "point_at": self.point_at,
             "move_joints": self.move_joints,
             "go_stable": self.go_stable,
         }
@@ -55,7 +56,8 @@ class Manipulation(RobotModule):
     def resources(self, command: Command) -> frozenset[str]:
         """The limb that a command moves."""
         side = self.side_of(command.arguments)
-        limbs = {"gripper": {f"{side} hand"}, "head": {"head"}, "arm": {f"{side} arm"}}
+        arms = {f"{side} arm"} if side else {f"{each} arm" for each in SIDES}
+        limbs = {"gripper": {f"{side} hand"}, "head": {"head"}, "arm": arms, "at": arms}
         needed = limbs.get(command.name.rpartition("_")[2])
         everything = {"head", *(f"{each} {limb}" for each in SIDES for limb in ("hand", "arm")), "legs"}
         return frozenset(needed or everything)
@@ -175,6 +177,22 @@ class Manipulation(RobotModule):
             text = f"the {side} hand is at {hand} instead of {point}"
             raise ManipulationGoalNotReached(text, target=target, reached=hand, side=side)
         return hand
+
+    def point_at(self, target: Point3, side: str = "") -> Point3:
+        """Point at something with the arm that is nearer to it, or that of a side; answers where the hand is then.
+
+        Raises:
+            ManipulationPoseUnreachable: The arm does not point that way.
+            ManipulationGoalNotReached: It did not get there.
+        """
+        point = self.robot.point_in(target, TORSO)
+        side = side or ("left" if point.y >= 0.0 else "right")
+        _, y, z = self.robot.settings.shoulder
+        shoulder = Point3(0.0, y if _letter(side) == "L" else -y, z, TORSO)
+        away = max(shoulder.distance_to(point), 1e-6)
+        share = self.robot.settings.pointing_reach / away
+        hand = Point3(*(a + share * (b - a) for a, b in zip(shoulder[:3], point[:3])), TORSO)
+        return self.move_arm(hand, side)
 
     # --- joints -------------------------------------------------------------------------------------------------------
 

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""A plan that goes and looks: it walks to the table, looks for the ball, points at it, and says where it is.
+
+Needs a running robot in the lab: `roslaunch nao_library nao_sim.launch world:=lab`. Ctrl-C ends it: the robot stops.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+import rospy
+
+from nao_library_modules.process_modules import action_rules  # noqa: F401  what actions are in numbers
+from nao_library_modules.process_modules.control import do, par, seq
+from nao_library_modules.process_modules.designators.designator import Designator, a, action, an, location, object_, the
+from nao_library_modules.process_modules.designators.objects import BELIEFS
+from nao_library_modules.process_modules.failures import ObjectNowhereToBeFound, PerceptionObjectNotFound, fail
+from nao_library_modules.process_modules.handling import give, with_failure_handling
+from nao_library_modules.process_modules.low_level import this_robot
+from nao_library_modules.process_modules.perception import go_to, perceive
+from nao_library_modules.process_modules.plan_runner import run_and_tell, wake_up
+from nao_library_modules.process_modules.plans import def_plan
+from nao_library_modules.process_modules.registry import perform
+from nao_library_modules.process_modules.space import Point3
+
+BALL_RADIUS = 0.05
+"""m, of the ball in the lab."""
+
+
+def know_the_lab() -> None:
+    """What the robot knows of the lab before it looks: where the table is."""
+    BELIEFS.know("table", position=Point3(0.95, 0.0, 0.15, "odom"), size=(0.70, 1.10, 0.30))
+
+
+@def_plan
+def find_ball(ball: Designator) -> Designator:
+    """Look for the ball: first ahead, then all around."""
+
+    def look_around(_failure: PerceptionObjectNotFound) -> None:
+        perform(an(action, type="saying", text="Where is the ball?", wait=False))
+        give(perceive(ball, timeout=30.0, search=True))
+
+    return with_failure_handling(do(perceive, ball, timeout=3.0), {PerceptionObjectNotFound: look_around})
+
+
+def fetch() -> str:
+    """Go to the table, find the ball, point at it, and say where it is."""
+    table, ball = the(object_, type="table"), a(object_, type="ball", size=BALL_RADIUS)
+    par(
+        do(go_to, a(location, near=table, distance=0.1)),
+        do(perform, an(action, type="saying", text="I am going to the table.")),
+    )
+    try:
+        seen = find_ball(ball)
+    except PerceptionObjectNotFound as failure:
+        fail(ObjectNowhereToBeFound, f"no ball: {failure}")
+    par(
+        do(perform, an(action, type="pointing", at=seen)),
+        do(perform, an(action, type="looking", target=seen)),
+    )
+    place = this_robot().point_in(seen.reference().position, "base_footprint")
+    side = "left" if place.y > 0.0 else "right"
+    words = f"There is the ball, {place.distance_to((0.0, 0.0, 0.0)):.1f} metres away, on my {side}."
+    seq(do(perform, an(action, type="saying", text=words)), do(perform, an(action, type="standing")))
+    return words
+
+
+def main() -> int:
+    """Run the plan; the exit status tells whether it succeeded."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--trace", default="", help="file for the trace of the plan, as JSON")
+    parser.add_argument("--picture", default="", help="file for its picture, as PNG")
+    options = parser.parse_args(rospy.myargv()[1:])
+    rospy.init_node("fetch_plan", anonymous=True)
+    know_the_lab()
+    wake_up()
+    return run_and_tell(fetch, trace=options.trace, picture=options.picture)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,73 @@
+"""A simulated robot with all its nodes, on a ROS master and ports of its own, for as long as a program needs it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+
+LIMITS = ((signal.SIGINT, 15.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0))
+
+
+class OwnStack:
+    """Simulator, driver and action servers, started by roslaunch on free ports.
+
+    Attributes:
+        ros_port: Of its ROS master.
+        nao_port: Of the simulated robot's NAOqi.
+        log: What roslaunch and the nodes have printed.
+
+    Args:
+        log: Where that goes.
+        arguments: Of nao_sim.launch, by name.
+    """
+
+    def __init__(self, log: Path, arguments: Mapping[str, str]) -> None:
+        self.ros_port, self.nao_port = free_port(), free_port()
+        self.log = log
+        command = ["roslaunch", "--port", str(self.ros_port), "nao_library", "nao_sim.launch"]
+        command += [f"{name}:={value}" for name, value in {"nao_port": str(self.nao_port), **arguments}.items()]
+        with log.open("wb") as output:
+            self._process = subprocess.Popen(
+                command,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,
+                env={**os.environ, "ROS_MASTER_URI": self.master_uri},
+            )
+
+    @property
+    def master_uri(self) -> str:
+        """Address of its ROS master."""
+        return f"http://127.0.0.1:{self.ros_port}"
+
+    def alive(self) -> bool:
+        """Whether roslaunch still runs."""
+        return self._process.poll() is None
+
+    def stop(self) -> None:
+        """End everything that was started."""
+        for number, limit in LIMITS:
+            if self.alive():
+                self._process.send_signal(number)
+                try:
+                    self._process.wait(limit)
+                except subprocess.TimeoutExpired:
+                    continue
+
+    def __enter__(self) -> OwnStack:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+
+def free_port() -> int:
+    """A port that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]

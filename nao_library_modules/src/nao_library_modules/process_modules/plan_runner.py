@@ -1,0 +1,103 @@
+"""Runs a plan on a robot: process modules, ROS time, the topic of the tree, and what is kept of the trace."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import rospy
+from std_srvs.srv import Empty
+
+from .control import Branch, top_level
+from .failures import PlanFailure
+from .low_level import make_process_modules, this_robot
+from .plan_topic import PlanTopic
+from .registry import with_process_modules_running
+from .robot_link import RobotLink
+from .tasks import Task
+from .trace import Trace, trace_of
+
+WAKE_UP = "wakeup"
+
+
+class PlanRun:
+    """A plan that runs once on a robot.
+
+    Attributes:
+        trace: Of the run, when it is over.
+
+    Args:
+        robot: That it runs on; the one of this node's namespace if there is none.
+        trace_file: Where the trace is kept, as JSON; None for nowhere.
+        picture_file: Where its picture is kept, as PNG; None for nowhere.
+    """
+
+    def __init__(
+        self, robot: RobotLink | None = None, trace_file: Path | None = None, picture_file: Path | None = None
+    ) -> None:
+        self._robot = robot or this_robot()
+        self._trace_file, self._picture_file = trace_file, picture_file
+        self._root: Task | None = None
+        self.trace: Trace | None = None
+
+    def run(self, body: Branch, name: str = "") -> Any:
+        """Run a plan with all process modules; what it answers. The end of the node ends it, and stops the robot.
+
+        Raises:
+            PlanFailure: What it failed with.
+        """
+        topic = PlanTopic()
+        rospy.on_shutdown(self._end)
+        try:
+            with with_process_modules_running(*make_process_modules(self._robot)):
+                observers = [self._see, topic]
+                return top_level(body, name=name, clock=self._robot.clock, observers=observers)
+        finally:
+            topic.close()
+            if self._root is not None:
+                self.trace = trace_of(self._root)
+                self._keep(self.trace)
+
+    def _see(self, task: Task) -> None:
+        if self._root is None:
+            self._root = task
+
+    def _end(self) -> None:
+        if self._root is not None:
+            self._root.evaporate("the node ends")
+
+    def _keep(self, trace: Trace) -> None:
+        if self._trace_file is not None:
+            self._trace_file.write_text(trace.to_json() + "\n", encoding="utf-8")
+        if self._picture_file is not None:
+            from .trace_picture import draw  # Pillow takes its time
+
+            draw(trace).save(self._picture_file)
+
+
+def wake_up() -> None:
+    """Have the robot stand with its motors on: what walks and moves needs that. Waits for the driver."""
+    rospy.wait_for_service(WAKE_UP)
+    rospy.ServiceProxy(WAKE_UP, Empty)()
+
+
+def run_and_tell(plan: Branch, name: str = "", trace: str = "", picture: str = "") -> int:
+    """Run a plan and print its tree; the exit status of a program that does nothing else.
+
+    Args:
+        plan: The plan.
+        name: Of its root.
+        trace: File for the trace as JSON; empty for none.
+        picture: File for its picture as PNG; empty for none.
+    """
+    run = PlanRun(trace_file=Path(trace) if trace else None, picture_file=Path(picture) if picture else None)
+    status = 0
+    try:
+        run.run(plan, name)
+    except PlanFailure as failure:
+        print(f"the plan failed: {failure}", file=sys.stderr)
+        status = 1
+    if run.trace is not None:
+        print(run.trace)
+    return status
