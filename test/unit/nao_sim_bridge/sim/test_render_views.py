@@ -37,18 +37,37 @@ def world(*objects) -> World:
     return read_world({**content, "objects": list(objects)}, "test", "test.yaml")
 
 
-@pytest.fixture(params=["opengl", "builtin"])
-def engine(request):
-    """Makes engines that are freed after the test."""
+@pytest.fixture(scope="module", params=["opengl", "builtin"])
+def name(request):
+    """Of each engine."""
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def drawing(name):
+    """An engine with an empty world."""
+    made, _ = open_engine(name, world(), "V6")
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def engine(name):
+    """Makes further engines, which are freed after the test."""
     made = []
 
     def make(*objects):
-        made.append(open_engine(request.param, world(*objects), "V6")[0])
+        made.append(open_engine(name, world(*objects), "V6")[0])
         return made[-1]
 
     yield make
     for one in made:
         one.close()
+
+
+def placed(*entries, **changes):
+    """The state without the robot, with things of an otherwise empty world."""
+    return replace(AWAY, placed=world(*entries).objects, **changes)
 
 
 def shot(position=(0.0, 0.0, 0.5), rpy=(0.0, 0.0, 0.0), width=320, height=240, fov=(56.3, 43.7)):
@@ -89,34 +108,34 @@ def middle(weights):
         ((-1.0, -0.2, 0.9), (0.0, 0.0, 0.5), (-0.5, -0.3, 3.1), (60.9, 47.6)),
     ],
 )
-def test_a_ball_is_seen_where_the_projection_says(engine, size, ball, position, rpy, fov):
+def test_a_ball_is_seen_where_the_projection_says(drawing, size, ball, position, rpy, fov):
     thing = {"name": "ball", "sphere": 0.025, "position": list(ball), "color": list(GREEN)}
     view = View.of_shot(shot(position, rpy, *size, fov))
-    seen = clear(engine(thing).draw(AWAY, view), 1)
+    seen = clear(drawing.draw(placed(thing), view), 1)
     expected = view.project(ball)
     assert 0.0 < expected[0] < size[0] and 0.0 < expected[1] < size[1]
     # The middle of what is seen of a ball is a little farther out than the image of its middle.
     assert middle(seen > 0.0) == pytest.approx(expected, abs=0.5)
 
 
-def test_left_is_left_and_up_is_up(engine):
+def test_left_is_left_and_up_is_up(drawing):
     things = [
         {"name": "left", "sphere": 0.03, "position": [1.0, 0.3, 0.5], "color": list(GREEN)},
         {"name": "up", "sphere": 0.03, "position": [1.0, 0.0, 0.7], "color": list(BLUE)},
     ]
-    picture = engine(*things).draw(AWAY, View.of_shot(shot()))
+    picture = drawing.draw(placed(*things), View.of_shot(shot()))
     assert middle(clear(picture, 1))[0] < 100
     assert middle(clear(picture, 2))[1] < 80
 
 
-def test_the_near_hides_the_far(engine):
+def test_the_near_hides_the_far(drawing):
     near = {"name": "near", "box": [0.1, 0.4, 0.4], "position": [1.0, 0.0, 0.5], "color": list(RED)}
     far = {"name": "far", "box": [0.1, 0.3, 0.3], "position": [1.5, 0.0, 0.5], "color": list(GREEN)}
     view = View.of_shot(shot())
-    picture = engine(far, near).draw(AWAY, view)
+    picture = drawing.draw(placed(far, near), view)
     assert np.count_nonzero(clear(picture, 0)) > 1000 and np.count_nonzero(clear(picture, 1)) == 0
-    beside = replace(AWAY, objects={"near": Pose((1.0, 1.0, 0.5), UNTURNED)})
-    assert np.count_nonzero(clear(engine(far, near).draw(beside, view), 1)) > 1000
+    beside = placed(far, near, objects={"near": Pose((1.0, 1.0, 0.5), UNTURNED)})
+    assert np.count_nonzero(clear(drawing.draw(beside, view), 1)) > 1000
 
 
 @pytest.fixture(scope="module")
@@ -138,28 +157,28 @@ def card(picture, shape=None, **changes):
 
 
 @pytest.mark.parametrize("kind, size", [("box", (0.02, 0.4, 0.4)), ("sphere", (0.2,))])
-def test_a_picture_on_a_thing_is_upright_and_not_mirrored(engine, four_colors, kind, size):
+def test_a_picture_on_a_thing_is_upright_and_not_mirrored(drawing, four_colors, kind, size):
     thing = card(four_colors, Shape(kind, size, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
-    picture = engine().draw(replace(AWAY, placed=(thing,)), View.of_shot(shot()))
+    picture = drawing.draw(replace(AWAY, placed=(thing,)), View.of_shot(shot()))
     red, green, blue = (middle(clear(picture, channel)) for channel in range(3))
     assert red[0] < 155 and red[1] < 115
     assert green[0] > 165 and green[1] < 115
     assert blue[0] < 155 and blue[1] > 125
 
 
-def test_a_picture_covers_its_side_of_a_box_and_no_other(engine, four_colors):
+def test_a_picture_covers_its_side_of_a_box_and_no_other(drawing, four_colors):
     behind = replace(card(four_colors), rpy=(0.0, 0.0, 0.0))
-    picture = engine().draw(replace(AWAY, placed=(behind,)), View.of_shot(shot()))
+    picture = drawing.draw(replace(AWAY, placed=(behind,)), View.of_shot(shot()))
     assert all(np.count_nonzero(clear(picture, channel)) == 0 for channel in range(3))
-    front = engine().draw(replace(AWAY, placed=(card(four_colors),)), View.of_shot(shot()))
+    front = drawing.draw(replace(AWAY, placed=(card(four_colors),)), View.of_shot(shot()))
     rows, columns = np.nonzero(clear(front, 0))
     # A quarter of 0.4 m at 1 m, where 300 pixels are 1 m.
     assert (columns.min(), columns.max()) == pytest.approx((100, 160), abs=2)
     assert (rows.min(), rows.max()) == pytest.approx((60, 120), abs=2)
 
 
-def test_what_was_placed_comes_moves_and_goes(engine):
-    drawing, view = engine(), View.of_shot(shot())
+def test_what_was_placed_comes_moves_and_goes(drawing):
+    view = View.of_shot(shot())
     part = Part(Shape("sphere", (0.05,), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)), GREEN)
     ball = replace(card(None), name="ball", parts=(part,), position=(1.0, 0.2, 0.5))
     without = drawing.draw(AWAY, view)
@@ -170,31 +189,31 @@ def test_what_was_placed_comes_moves_and_goes(engine):
     assert np.array_equal(drawing.draw(AWAY, view), without)
 
 
-def test_what_is_gone_is_not_seen_and_throws_no_shadow_and_its_name_may_come_again(engine):
+def test_what_is_gone_is_not_seen_and_throws_no_shadow_and_its_name_may_come_again(drawing, engine):
     plate = {"name": "plate", "box": [0.4, 0.4, 0.02], "position": [1.2, 0.0, 0.3], "color": list(GREEN)}
-    drawing, view = engine(plate), View.of_shot(shot(rpy=(0.0, 0.25, 0.0)))
-    there, gone = drawing.draw(AWAY, view), drawing.draw(replace(AWAY, gone=frozenset(["plate"])), view)
+    with_plate, view = engine(plate), View.of_shot(shot(rpy=(0.0, 0.25, 0.0)))
+    there, gone = with_plate.draw(AWAY, view), with_plate.draw(replace(AWAY, gone=frozenset(["plate"])), view)
     assert np.count_nonzero(clear(there, 1)) > 300 and np.count_nonzero(clear(gone, 1)) == 0
-    assert np.array_equal(gone, engine().draw(AWAY, view))
+    assert np.array_equal(gone, drawing.draw(AWAY, view))
     again = replace(card(None), name="plate", parts=(Part(Shape("sphere", (0.05,), (0, 0, 0), (0, 0, 0)), RED),))
-    back = drawing.draw(replace(AWAY, gone=frozenset(["plate"]), placed=(again,)), view)
+    back = with_plate.draw(replace(AWAY, gone=frozenset(["plate"]), placed=(again,)), view)
     assert np.count_nonzero(clear(back, 0)) > 100 and np.count_nonzero(clear(back, 1)) == 0
-    assert np.array_equal(drawing.draw(AWAY, view), there)
+    assert np.array_equal(with_plate.draw(AWAY, view), there)
 
 
-def test_names_that_nothing_has_are_errors(engine):
-    drawing, view = engine({"name": "ball", "sphere": 0.1, "position": [1, 0, 0.1]}), View.of_shot(shot())
+def test_names_that_nothing_has_are_errors(drawing):
+    ball, view = {"name": "ball", "sphere": 0.1, "position": [1, 0, 0.1]}, View.of_shot(shot())
     for wrong in ({"objects": {"bal": Pose((0.0, 0.0, 0.0), UNTURNED)}}, {"gone": frozenset(["bal"])}):
         with pytest.raises(UnknownName, match="unknown object 'bal': did you mean 'ball'"):
-            drawing.draw(replace(AWAY, **wrong), view)
+            drawing.draw(placed(ball, **wrong), view)
 
 
-def test_a_thing_throws_a_shadow_that_goes_with_it(engine):
+def test_a_thing_throws_a_shadow_that_goes_with_it(drawing):
     plate = {"name": "plate", "box": [0.3, 0.3, 0.02], "position": [1.2, 0.0, 0.35], "mass": 1.0}
-    drawing, view = engine(plate), View.of_shot(shot(rpy=(0.0, 0.4, 0.0)))
+    view = View.of_shot(shot(rpy=(0.0, 0.4, 0.0)))
 
     def darker(y):
-        moved = replace(AWAY, objects={"plate": Pose((1.2, y, 0.35), UNTURNED)})
+        moved = placed(plate, objects={"plate": Pose((1.2, y, 0.35), UNTURNED)})
         near = replace(moved, base_position=(-1.0, 0.0, 0.333))
         difference = drawing.draw(near, replace(view, shadows=False)).astype(int) - drawing.draw(near, view)
         return difference[130:].sum(axis=2) > 60
@@ -204,10 +223,9 @@ def test_a_thing_throws_a_shadow_that_goes_with_it(engine):
 
 
 @pytest.mark.parametrize("camera", [0, 1])
-def test_the_head_is_not_in_the_way_of_its_cameras(engine, camera):
+def test_the_head_is_not_in_the_way_of_its_cameras(drawing, camera):
     """Nothing but the floor and the sky is to be seen of an empty world, and the same as without a robot."""
     view = from_head(STATE, camera)
-    drawing = engine()
     seen, without = drawing.draw(STATE, view).astype(int), drawing.draw(AWAY, view)
     changed = np.any(np.abs(seen - without) > 3, axis=2)
     if camera == 0:
@@ -217,18 +235,17 @@ def test_the_head_is_not_in_the_way_of_its_cameras(engine, camera):
         assert not changed[:120].any()
 
 
-def test_an_arm_that_is_raised_is_seen(engine):
+def test_an_arm_that_is_raised_is_seen(drawing):
     angles = list(STATE.joint_positions)
     angles[MODEL.joint_index["LShoulderPitch"]] = -0.2
     angles[MODEL.joint_index["LShoulderRoll"]] = -0.2
     raised = replace(STATE, joint_positions=tuple(angles))
-    drawing, view = engine(), from_head(raised)
+    view = from_head(raised)
     changed = np.any(np.abs(drawing.draw(raised, view).astype(int) - drawing.draw(STATE, view)) > 20, axis=2)
     assert changed.sum() > 3000 and middle(changed)[0] < 140  # on the left
 
 
-def test_from_outside_the_robot_has_its_head_after_a_picture_from_inside(engine):
-    drawing = engine()
+def test_from_outside_the_robot_has_its_head_after_a_picture_from_inside(drawing):
     outside = replace(View.of_shot(shot((1.0, 0.0, 0.45), (0.0, 0.0, math.pi))), from_head=False)
     before = drawing.draw(STATE, outside)
     drawing.draw(STATE, from_head(STATE))
@@ -237,8 +254,8 @@ def test_from_outside_the_robot_has_its_head_after_a_picture_from_inside(engine)
     assert np.count_nonzero(np.any(headless != before, axis=2)) > 500
 
 
-def test_other_robots_are_seen_with_their_heads_lights_and_postures(engine):
-    drawing, view = engine(), from_head(STATE)
+def test_other_robots_are_seen_with_their_heads_lights_and_postures(drawing):
+    view = from_head(STATE)
     facing = (0.0, 0.0, 1.0, 0.0)
     dark = RobotLook((1.2, 0.0, 0.333), facing, STATE.joint_positions, (0.0,) * 89)
     alone = drawing.draw(STATE, view)

@@ -80,12 +80,14 @@ class Studio:
     def _draw(self, view: View, shadow: Shadow | None) -> np.ndarray:
         """(h, w, 3) float32 picture in 0..1, one ray a pixel."""
         right, top = (NEAR * tangent for tangent in view.tangents)
+        # The engine looks through the lower left corner of a pixel, not through its middle.
+        aside, up = right / view.width, top / view.height
         light = self._world.light
         colors, bodies = self._capture(
             view.width,
             view.height,
             view.to_camera().T.ravel().tolist(),
-            pybullet.computeProjectionMatrix(-right, right, -top, top, NEAR, FAR),
+            pybullet.computeProjectionMatrix(aside - right, aside + right, up - top, up + top, NEAR, FAR),
             shadow=int(view.shadows),
             lightDirection=light.direction,
             lightDistance=LIGHT_DISTANCE,
