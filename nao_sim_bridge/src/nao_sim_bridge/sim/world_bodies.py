@@ -12,6 +12,8 @@ from nao_sim_bridge.sim.world import World, WorldObject
 from nao_sim_bridge.sim.world_builder import build_object, build_world, place_of
 
 UNMOVED: Vector3 = (0.0, 0.0, 0.0)
+NEARLY = 0.02
+"""What is nearer is woken by a change, m."""
 DISTANCE = 8
 """Column of PyBullet's closest points."""
 
@@ -68,38 +70,48 @@ class WorldBodies:
             self._loose[thing.name] = self.ids[thing.name]
         else:
             self._fixed[thing.name] = Pose(*place_of(thing, self._floor))
-        self._wake()
+        self._wake(self._around(self.ids[thing.name]))
 
     def remove(self, name: str) -> None:
         """Take a thing away."""
+        around = self._around(self.ids[name])
         pybullet.removeBody(self.ids.pop(name), physicsClientId=self._client)
         removed = self._things.pop(name)
         self._loose.pop(name, None)
         self._fixed.pop(name, None)
+        self._wake(around)
         if removed in self.placed:
             self.placed = tuple(thing for thing in self.placed if thing is not removed)
         elif name in self._of_world:
             self.gone |= {name}
-        self._wake()
 
     def put(self, name: str, pose: Pose, velocity: Vector3 = UNMOVED) -> None:
         """Put a thing somewhere; it has that velocity (m/s, in world) until something changes it."""
         body = self.ids[name]
+        self._wake(self._around(body))
         pybullet.resetBasePositionAndOrientation(body, pose.position, pose.orientation, physicsClientId=self._client)
         if name in self._loose:
             pybullet.resetBaseVelocity(body, velocity, UNMOVED, physicsClientId=self._client)
         else:
             self._fixed[name] = pose
-        self._wake()
+        self._wake(self._around(body))
 
     def depth_in(self, name: str, other: int) -> float:
         """How far a thing is inside another body, m; 0 when it is not."""
         points: Sequence = pybullet.getClosestPoints(self.ids[name], other, 0.0, physicsClientId=self._client)
         return max((-point[DISTANCE] for point in points), default=0.0)
 
-    def _wake(self) -> None:
-        """Let everything that sleeps look whether what it lies on is still there."""
+    def _around(self, body: int) -> set[int]:
+        """Bodies that touch another one, or nearly."""
+        low, high = pybullet.getAABB(body, physicsClientId=self._client)
+        low, high = [value - NEARLY for value in low], [value + NEARLY for value in high]
+        found = pybullet.getOverlappingObjects(low, high, physicsClientId=self._client) or ()
+        return {entry[0] for entry in found}
+
+    def _wake(self, bodies: set[int]) -> None:
+        """Let those of the bodies that sleep look whether what they lie on is still there."""
         for body in self._loose.values():
-            pybullet.changeDynamics(
-                body, -1, activationState=pybullet.ACTIVATION_STATE_WAKE_UP, physicsClientId=self._client
-            )
+            if body in bodies:
+                pybullet.changeDynamics(
+                    body, -1, activationState=pybullet.ACTIVATION_STATE_WAKE_UP, physicsClientId=self._client
+                )

@@ -1,8 +1,8 @@
 """People who stand in a world: simple figures with a face.
 
 `position` is on the floor, between the feet; they look along X of the thing. `person` is one of the names of
-`config/faces.json`; `height` in m, `clothes` and `trousers` are colours. `nod` is how far the head is bent down, rad; if
-it is not told, about as far as people do it who look at a robot some steps away.
+`config/faces.json`; `height` in m, `clothes` and `trousers` are colours. `nod` is how far the head is bent down, rad;
+if it is not told, about as far as people do it who look at a robot some steps away.
 """
 
 from __future__ import annotations

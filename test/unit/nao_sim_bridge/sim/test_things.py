@@ -58,7 +58,7 @@ def test_what_cannot_be_moved_holds_the_robot_up(bench):
 
 
 def test_a_thing_without_support_falls_also_when_it_slept(one):
-    one.run(2.0)
+    one.run(4.0)
     height = one.now.objects["blue_cube"].position[2]
     one.simulation.things.remove("table")
     assert one.run(1.0).objects["blue_cube"].position[2] == pytest.approx(height - 0.3, abs=0.01)
