@@ -14,6 +14,7 @@ from typing import Callable, Mapping
 
 import numpy as np
 
+from nao_sim_bridge.sim.cameras.asks import Answer, Ask, CameraClosed
 from nao_sim_bridge.sim.cameras.automatics import NEUTRAL_KELVIN
 from nao_sim_bridge.sim.cameras.darkroom import CapturesPictures, Darkroom
 from nao_sim_bridge.sim.cameras.moment import Moment
@@ -31,7 +32,7 @@ from nao_sim_bridge.sim.cameras.places import CameraPlaces
 from nao_sim_bridge.sim.cameras.rate import Shutter
 from nao_sim_bridge.sim.cameras.sensor import Chosen
 from nao_sim_bridge.sim.cameras.settings import CAMERAS, load_cameras
-from nao_sim_bridge.sim.cameras.stream import Answer, Ask, CameraClosed, CameraStream
+from nao_sim_bridge.sim.cameras.stream import CameraStream
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.render.scene import RenderState

@@ -7,13 +7,14 @@ import threading
 import time
 from collections import deque
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Callable, Union
+from typing import TYPE_CHECKING, Any, Callable
 
+from nao_sim_bridge.sim.cameras.asks import Answer, Ask, CameraClosed
 from nao_sim_bridge.sim.cameras.frame import Frame
 from nao_sim_bridge.sim.cameras.moment import Moment
 from nao_sim_bridge.sim.cameras.rate import Share, exact_rate
 from nao_sim_bridge.sim.cameras.settings import ColorSpace, Resolution
-from nao_sim_bridge.sim.errors import BadValue, SimulationError
+from nao_sim_bridge.sim.errors import BadValue
 
 if TYPE_CHECKING:
     from nao_sim_bridge.sim.cameras.cameras import Cameras
@@ -24,24 +25,6 @@ PATIENCE = 10.0
 """Wall time, s: time that runs fast waits no longer than this for somebody who has got a frame to ask for the next."""
 MOST_ASKS = 32
 """How many frames may be asked for before the first of them is there."""
-
-Answer = Union[Frame, Exception]
-
-
-class CameraClosed(SimulationError):
-    """A stream, or all cameras, were closed while somebody waited for a frame."""
-
-
-class Ask:
-    """Somebody waits for a frame.
-
-    Args:
-        callback: Called once, with a frame or an error.
-    """
-
-    def __init__(self, callback: Callable[[Answer], None]) -> None:
-        self.callback = callback
-        self.given_up = False
 
 
 class CameraStream:
@@ -138,7 +121,7 @@ class CameraStream:
             if ask in self._asks:
                 self._asks.remove(ask)
                 ask.given_up = True
-            elif ask.callback is not _answered:
+            elif not ask.answered:
                 ask.given_up = True
             return ask.given_up
 
@@ -277,13 +260,14 @@ class CameraStream:
             if not self._closed:
                 self._take_back(moment)
             return None
-        callback, ask.callback = ask.callback, _answered
         self._had_one = True
         self._owes_since = time.monotonic()
-        return callback
+        return ask.take_callback()
 
     def _take_back(self, moment: Moment) -> None:
         """A frame that nobody waits for any more: the next who asks gets it, unless there is a newer one to have."""
+        if moment.camera != self._camera:
+            return
         if self._asks:
             self._draw(self._asks.popleft(), moment)
         elif len(self._pending) < self._keep:
@@ -320,7 +304,3 @@ class CameraStream:
     def _closed_error(self) -> CameraClosed:
         how = "closed" if self._closed else "finished"
         return CameraClosed(f"camera stream {self.name!r} is {how}")
-
-
-def _answered(_: Answer) -> None:
-    """In the place of a callback that has been called."""
