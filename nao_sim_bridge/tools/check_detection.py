@@ -86,7 +86,8 @@ class Tally:
         if self.bearings:
             parts.append(f"bearing off {np.mean(self.bearings):.2f} mean, {max(self.bearings):.2f} most, deg")
         if self.distances:
-            parts.append(f"distance off {100 * np.mean(self.distances):.1f} mean, {100 * max(self.distances):.1f} most, %")
+            mean, most = 100 * np.mean(self.distances), 100 * max(self.distances)
+            parts.append(f"distance off {mean:.1f} mean, {most:.1f} most, %")
         parts.append(f"{1000 * np.mean(self.times):.1f} ms")
         return ", ".join(parts)
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from nao_sim_bridge.sim.cameras.optics import Intrinsics
+
 
 @dataclass(frozen=True, eq=False)
 class Ellipse:
@@ -50,18 +52,30 @@ class Ellipse:
             unit = _seen_slanted(unit, slant)
         return self.center + unit @ self.shape.T
 
-    def slant(self, focal: float) -> np.ndarray:
-        """(2,) where, up to its sign, the middle of a circle that is seen as this ellipse is in the unit circle.
+    def slants(self, lens: Intrinsics) -> tuple[np.ndarray, np.ndarray]:
+        """(2,) each: where in the unit circle the middle of a circle is seen that looks like this.
+
+        There are two circles in space that do, slanted to opposite sides, and the edge does not tell which it is.
 
         Args:
-            focal: Focal length, pixels.
+            lens: Of the picture.
         """
-        long, short = self.radii
-        # A slant by an angle of cosine short / long brings one end nearer by the radius times its sine.
-        amount = long / focal * math.sqrt(max(0.0, 1.0 - (short / long) ** 2))
-        values, axes = np.linalg.eigh(self.shape @ self.shape.T)
-        direction = np.linalg.solve(self.shape, axes[:, 0] * math.sqrt(values[0]))
-        return amount * direction / np.linalg.norm(direction)
+        # The directions to the edge are a cone; the circles are cuts through it. Source: the eigenvectors of a cone
+        # give the two planes that cut it in circles, and the middle is the pole of their line at infinity.
+        inverse = np.linalg.inv(self.shape)
+        metric = inverse.T @ inverse
+        side = -metric @ self.center
+        rest = np.array([[self.center @ metric @ self.center - 1.0]])
+        conic = np.block([[metric, side[:, None]], [side[None, :], rest]])
+        matrix = np.array(((lens.fx, 0.0, lens.cx), (0.0, lens.fy, lens.cy), (0.0, 0.0, 1.0)))
+        (least, middle, most), axes = np.linalg.eigh(matrix.T @ conic @ matrix)
+        steep, flat = math.sqrt(max(0.0, most - middle)), math.sqrt(middle - least)
+        found = []
+        for sign in (1.0, -1.0):
+            normal = steep * axes[:, 2] + sign * flat * axes[:, 0]
+            x, y, scale = np.linalg.solve(conic, np.linalg.solve(matrix.T, normal))
+            found.append(inverse @ (np.array((x, y)) / scale - self.center))
+        return found[0], found[1]
 
 
 def _seen_slanted(unit: np.ndarray, slant: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ from typing import Iterator
 
 import numpy as np
 
+from nao_sim_bridge.sim.cameras.optics import Intrinsics
 from nao_sim_bridge.sim.landmarks import Landmarks
 from nao_sim_bridge.sim.vision.ellipse import Ellipse
 from nao_sim_bridge.sim.vision.sampling import sample
@@ -58,17 +59,16 @@ class LandmarkCode:
         blurred = _blurred(patterns, PER_SECTOR // 2)
         self._spectra = np.conj(np.fft.rfft(_normalised(blurred), axis=1))
 
-    def read(self, grey: np.ndarray, ellipse: Ellipse, focal: float) -> Reading | None:
+    def read(self, grey: np.ndarray, ellipse: Ellipse, lens: Intrinsics) -> Reading | None:
         """The mark that a disc is, None when it is none.
 
         Args:
             grey: (h, w) uint8.
             ellipse: Edge of the disc.
-            focal: Focal length, pixels.
+            lens: Of the picture.
         """
-        slant = ellipse.slant(focal)
         # Which end of a slanted disc is nearer cannot be told from its edge.
-        both = (slant, -slant) if np.linalg.norm(slant) >= LEAST_SLANT else (None,)
+        both = [slant for slant in ellipse.slants(lens) if np.linalg.norm(slant) >= LEAST_SLANT] or [None]
         readings = [reading for side in both for reading in self._read(grey, ellipse, side)]
         return max(readings, key=lambda reading: reading.quality, default=None)
 

@@ -65,7 +65,7 @@ class LandmarkDetector:
     def detect(self, image: np.ndarray, optics: Optics, _: Any = None) -> list[Landmark]:
         """The landmarks in a picture; see `Detector`."""
         grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
-        focal = optics.intrinsics(grey.shape[1], grey.shape[0]).fx
+        lens = optics.intrinsics(grey.shape[1], grey.shape[0])
         found: list[tuple[Ellipse, Landmark]] = []
         tried: list[Ellipse] = []
         for guess in _discs(grey, self._settings):
@@ -75,7 +75,7 @@ class LandmarkDetector:
             if ellipse is None:
                 continue
             tried.append(guess)
-            reading = self._code.read(grey, ellipse, focal)
+            reading = self._code.read(grey, ellipse, lens)
             if reading is not None and not _among(ellipse, [other for other, _ in found]):
                 found.append((ellipse, _landmark(reading, ellipse, optics, grey.shape)))
         return sorted((mark for _, mark in found), key=lambda mark: mark.x)

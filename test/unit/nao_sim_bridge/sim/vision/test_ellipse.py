@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from nao_sim_bridge.sim.cameras.optics import Intrinsics
 from nao_sim_bridge.sim.vision.ellipse import Ellipse, distance_from, ellipse_of
 
 TURNS = np.linspace(0.0, 2.0 * math.pi, 40, endpoint=False)
@@ -46,22 +47,26 @@ def test_angles_run_clockwise_from_the_top():
     assert right == pytest.approx((15.0, 10.0))
 
 
-@pytest.mark.parametrize("yaw", [0.5, -0.8])
-def test_a_slant_moves_the_middle_of_a_near_circle_as_perspective_does(yaw):
-    # A circle of 5 cm radius, 40 cm ahead, turned about the vertical: focal length 300 pixels.
-    focal, radius, distance = 300.0, 0.05, 0.4
+@pytest.mark.parametrize("yaw", [0.0, 0.5, -0.8])
+@pytest.mark.parametrize("aside", [-0.15, 0.0, 0.2])
+def test_a_slant_moves_the_inside_of_a_near_circle_as_perspective_does(yaw, aside):
+    # A circle of 5 cm radius, 40 cm ahead, turned about the vertical.
+    lens, radius, distance = Intrinsics(300.0, 300.0, 160.0, 120.0), 0.05, 0.4
     circle = np.stack([radius * np.sin(TURNS), -radius * np.cos(TURNS)], axis=1)
 
     def seen(points):
-        x, depth = points[:, 0] * math.cos(yaw), distance + points[:, 0] * math.sin(yaw)
-        return focal * np.stack([x, points[:, 1]], axis=1) / depth[:, None]
+        x, depth = aside + points[:, 0] * math.cos(yaw), distance + points[:, 0] * math.sin(yaw)
+        places = np.stack([lens.fx * x, lens.fy * (points[:, 1] + 0.5 * aside)], axis=1) / depth[:, None]
+        return places + (lens.cx, lens.cy)
 
     ellipse = ellipse_of(seen(circle).astype(np.float32))
-    slant = ellipse.slant(focal)
-    nearest = min(
-        (ellipse.points(TURNS, np.array((0.6,)), side)[:, 0] for side in (slant, -slant)),
-        key=lambda places: np.abs(places - seen(0.6 * circle)).max(),
+    middle = seen(np.zeros((1, 2)))[0]
+    off, slant = min(
+        ((np.linalg.norm(ellipse.center + ellipse.shape @ side - middle), tuple(side)) for side in ellipse.slants(lens))
     )
-    flat = ellipse.points(TURNS, np.array((0.6,)))[:, 0]
-    assert np.abs(nearest - seen(0.6 * circle)).max() < 0.15
-    assert np.abs(flat - seen(0.6 * circle)).max() > 1.0
+    assert off < 0.1
+    # Half way out: on the picture of the circle of half the radius.
+    inner = ellipse.points(TURNS, np.array((0.5,)), np.array(slant))[:, 0]
+    fine = np.linspace(0.0, 2.0 * math.pi, 2000)
+    wanted = seen(0.5 * radius * np.stack([np.sin(fine), -np.cos(fine)], axis=1))
+    assert np.linalg.norm(inner[:, None] - wanted[None], axis=2).min(axis=1).max() < 0.15
