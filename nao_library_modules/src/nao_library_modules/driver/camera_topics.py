@@ -160,7 +160,8 @@ class CameraTopics:
         self._tuning.set_again(camera)
         shown = self._tuning.read(camera)
         self._shown.update(shown)
-        update(self._server, shown)
+        if any(self._config[name] != value for name, value in shown.items()):
+            update(self._server, shown)
 
     # --- parameters -----------------------------------------------------------------------------------------------
 
