@@ -12,7 +12,8 @@ from nao_library_msgs.msg import RecordedVideo, VisionThread
 
 from .vision_files import FileTrouble, VisionFiles
 from .vision_pictures import picture_of, scaled, visible
-from .vision_thread import Frame, FrameThread
+from .vision_queue import Frame
+from .vision_thread import FrameThread
 from .vision_video import VideoFile
 
 

@@ -10,7 +10,8 @@ from nao_library_msgs.msg import VisionThread
 
 from .vision_camera_info import COMPRESSED, info_topic, scaled_info
 from .vision_pictures import encoded, encoding_of, is_compressed, picture_of, scaled, visible, wanted_size
-from .vision_thread import Frame, FrameThread
+from .vision_queue import Frame
+from .vision_thread import FrameThread
 
 
 class Stream(FrameThread):

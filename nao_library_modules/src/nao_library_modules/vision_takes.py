@@ -16,7 +16,7 @@ from .vision_base import VisionBase
 from .vision_cameras import camera_name
 from .vision_checks import DEFAULT_TIMEOUT, check_picture, check_pictures, numbered
 from .vision_pictures import PICTURE_TYPES, encoded, encoding_of, picture_of, scaled
-from .vision_thread import Frame, frame_of
+from .vision_queue import Frame, frame_of
 
 TAKING = "taking pictures"
 """Status in the feedback."""

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections import deque
-from dataclasses import dataclass
 from typing import Any
 
 from nao_library_msgs.msg import VisionThread
@@ -13,14 +11,11 @@ from naoqi.errors import NaoError
 
 from .errors import BadGoal
 from .vision_pictures import BadPicture
+from .vision_queue import Frame, FrameQueue, frame_of
 from .vision_times import RateLimit, RateMeter
 
 log = logging.getLogger(__name__)
 
-MOST_FRAMES = 30
-"""That wait for their turn; of more the oldest go."""
-MOST_BYTES = 16 << 20
-"""Of pictures that wait; two always may."""
 STALLED_AFTER = 2.0
 """s of ROS time without a frame."""
 SLOW_CAMERA = 5.0
@@ -33,24 +28,6 @@ END_LIMIT = 10.0
 """s that the frames which wait may take when a thread is stopped."""
 LAST_FRAME_LIMIT = 1.0
 """s to wait at a stop for frames that are on their way; a camera that is later than that has another clock."""
-
-
-@dataclass(frozen=True)
-class Frame:
-    """A message of a camera.
-
-    Attributes:
-        message: sensor_msgs/Image or sensor_msgs/CompressedImage.
-        stamp: When it was taken, s; when it came, if the camera does not say.
-    """
-
-    message: Any
-    stamp: float
-
-
-def frame_of(message: Any, now: float) -> Frame:
-    """A message that came at a ROS time, in s."""
-    return Frame(message, message.header.stamp.to_sec() or now)
 
 
 class FrameThread:
@@ -205,7 +182,7 @@ class FrameThread:
                 error=self._error,
                 topic=self.topic,
                 frames=self._frames,
-                dropped=self._dropped,
+                dropped=self._dropped + self._queue.dropped,
                 frame_rate=0.0 if stalled or self._state != "running" else self._meter.rate,
                 width=self._size[0],
                 height=self._size[1],
@@ -218,8 +195,7 @@ class FrameThread:
 
     def _forget(self) -> None:
         """Begin to count anew."""
-        self._queue: deque[Frame] = deque()
-        self._queued_bytes = 0
+        self._queue = FrameQueue()
         self._limit = RateLimit(self._rate)
         self._meter = RateMeter()
         self._arrivals = self._frames = self._dropped = 0
@@ -245,11 +221,7 @@ class FrameThread:
                 return
             if not self._limit.passes(frame.stamp):
                 return
-            self._queue.append(frame)
-            self._queued_bytes += len(message.data)
-            while len(self._queue) > MOST_FRAMES or (self._queued_bytes > MOST_BYTES and len(self._queue) > 2):
-                self._queued_bytes -= len(self._queue.popleft().message.data)
-                self._dropped += 1
+            self._queue.put(frame)
             self._changed.notify_all()
 
     def _next(self) -> Frame | None:
@@ -259,9 +231,7 @@ class FrameThread:
                 if not self._queue and self._state == "running":
                     self._changed.wait(LOOK_EVERY)
                 if self._queue:
-                    frame = self._queue.popleft()
-                    self._queued_bytes -= len(frame.message.data)
-                    return frame
+                    return self._queue.take()
                 if self._state != "running":
                     return None
             self._look_whether_stalled()
@@ -285,7 +255,6 @@ class FrameThread:
             with self._changed:
                 self._state, self._error = "failed", problem
                 self._ended = self._ended or self._clock.now()
-                self._queue.clear()
             subscription = self._subscription  # `stop` may close it as well, which does no harm
             if subscription is not None:
                 subscription.close()

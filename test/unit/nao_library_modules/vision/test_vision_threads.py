@@ -9,7 +9,7 @@ import pytest
 from fake_vision import compressed, image, number_of, numbered, numbered_image, wait_for
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
-from nao_library_modules import vision_recorder, vision_thread
+from nao_library_modules import vision_queue, vision_recorder
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.vision_camera_info import info_topic
 from nao_library_modules.vision_files import VisionFiles
@@ -198,7 +198,7 @@ def test_nobody_works_for_nobody(stream, topics, send, monkeypatch):
 
 
 def test_a_slow_thread_drops_the_oldest_frames_and_counts_them(stream, topics, send, monkeypatch):
-    monkeypatch.setattr(vision_thread, "MOST_FRAMES", 4)
+    monkeypatch.setattr(vision_queue, "MOST_FRAMES", 4)
     one = stream()
     slow = Slow(one, monkeypatch)
     send(1)
@@ -213,7 +213,7 @@ def test_a_slow_thread_drops_the_oldest_frames_and_counts_them(stream, topics, s
 
 def test_large_frames_that_wait_are_bounded_in_bytes(stream, topics, send, monkeypatch):
     frame = 64 * 48 * 3
-    monkeypatch.setattr(vision_thread, "MOST_BYTES", 3 * frame + 100)
+    monkeypatch.setattr(vision_queue, "MOST_BYTES", 3 * frame + 100)
     one = stream()
     slow = Slow(one, monkeypatch)
     send(1)
@@ -437,7 +437,7 @@ def test_ten_streams_and_ten_recordings_at_once(topics, clock, files, send):
         thread.start()
     for _ in range(5):
         send(10)
-        wait_for(lambda: all(thread._queue == type(thread._queue)() for thread in threads.known.values()))
+        wait_for(lambda: all(not thread._queue for thread in threads.known.values()))
     threads.close()
     assert [thread.report().dropped for thread in threads.known.values()] == [0] * 20
     assert [read(files.folder / f"{number}.mp4") for number in range(10)] == [list(range(50))] * 10
