@@ -78,6 +78,8 @@ class CommonModule:
             call_id = next(self._ids)
             self._posted[call_id] = result if isinstance(result, Task) else None
             self._forget_finished()
+        if isinstance(result, Task):
+            result.add_done_callback(lambda done: self._drop_result(call_id, done))
         return call_id
 
     def isRunning(self, call_id: int) -> bool:
@@ -121,6 +123,13 @@ class CommonModule:
             if call_id not in self._posted:
                 raise NaoqiError(f"no posted call has the id {call_id}")
             return self._posted[call_id]
+
+    def _drop_result(self, call_id: int, done: Task) -> None:
+        """Nobody can ask for what a posted call has given, and pictures are large; that it has ended is remembered."""
+        if not isinstance(done.value, Task):
+            with self._lock:
+                if call_id in self._posted:
+                    self._posted[call_id] = None
 
     def _forget_finished(self) -> None:
         """Keep no more than `REMEMBERED` calls, but all that still run."""

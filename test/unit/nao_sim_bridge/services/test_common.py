@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import weakref
+
 import pytest
 
 from nao_sim_bridge.services.common import REMEMBERED
@@ -157,3 +159,18 @@ def test_calls_that_still_run_are_remembered_however_many_follow(proxy, leds):
     assert proxy.isRunning(max(numbers)) is False
     with pytest.raises(RuntimeError, match=f"no posted call has the id {over}"):
         proxy.isRunning(over)
+
+
+def test_what_a_posted_call_gave_is_not_kept(proxy, leds):
+    """A picture, for example: thousands of them would fill the memory."""
+
+    class Large:
+        pass
+
+    picture = Large()
+    kept = weakref.ref(picture)
+    call_id = proxy.pCall("rasta", 1.0)
+    leds.commands.pop(0).finish(picture)
+    del picture
+    assert kept() is None
+    assert proxy.isRunning(call_id) is False and proxy.wait(call_id, 0) is False
