@@ -174,6 +174,14 @@ class DriverCamera(unittest.TestCase):
             self.robot.advance(1.0)
         self.assertEqual(counts[0], counts[1])
 
+    def test_a_reset_of_the_world_does_not_end_the_pictures(self):
+        with Look(FOLDERS[TOP]) as look:
+            look.now()
+            self.robot.reset()
+            for _ in range(3):
+                image, info = look.now()
+                self.assertEqual((image.width, info.width), (320, 320))
+
     def test_camera_info_alone_comes_as_well(self):
         info = rospy.wait_for_message(f"{FOLDERS[TOP]}camera_info", CameraInfo, LIMIT)
         self.assertEqual(info.header.frame_id, FRAMES[TOP])

@@ -53,7 +53,9 @@ def sphere(distance, radius, alpha=0.0, beta=0.0, color=(20, 25, 215), back=GREY
     return developed(picture, size, noise, seed)
 
 
-def card(picture, width, distance, alpha=0.0, beta=0.0, yaw=0.0, pitch=0.0, roll=0.0, size=(320, 240), seed=0, onto=None):
+def card(
+    picture, width, distance, alpha=0.0, beta=0.0, yaw=0.0, pitch=0.0, roll=0.0, size=(320, 240), seed=0, onto=None
+):
     """A card that hangs in front of the camera, turned about the vertical, slanted and rolled (counterclockwise).
 
     Args:
