@@ -11,6 +11,7 @@ from .memory import Memory
 from .motion_latency import MotionStart, MotionStop
 from .moving_tick import MovingTick
 from .physics_tick import PhysicsTick
+from .plans import ParOfHundred, PerformOverhead
 from .proxy_call import ProxyCall
 from .real_time_factor import RealTimeFactor
 from .sound import PhysicsWithSound, RecognitionSpeed
@@ -36,6 +37,8 @@ ROWS: tuple[Row, ...] = (
     ProxyCall(),
     GoalRoundTrip(),
     ChainedFunctions(),
+    PerformOverhead(),
+    ParOfHundred(),
     MotionStart(),
     MotionStop(),
     SpeechStart(),
