@@ -19,6 +19,7 @@ import math
 import sys
 import time
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Mapping, Sequence
 
 import cv2
@@ -49,7 +50,7 @@ LIGHTS: Mapping[str, Mapping[int, int]] = {
     "bright (+60)": {0: 60},
     "short exposure": {11: 0, 17: 16},
     "long exposure": {11: 0, 17: 64},
-    "high gain": {11: 0, 6: 200},
+    "high gain": {11: 0, 6: 100},
     "little contrast": {1: 20},
     "much contrast": {1: 48},
     "pale (40)": {2: 40},
@@ -103,13 +104,16 @@ class Checks:
         count: Pictures of each kind.
         frames: Pictures of the part `lab`.
         seed: Of all choices.
+        folder: For pictures in which not everything is as it should be; None to keep none.
     """
 
-    def __init__(self, stage: Stage, count: int, frames: int, seed: int) -> None:
+    def __init__(self, stage: Stage, count: int, frames: int, seed: int, folder: Path | None = None) -> None:
         self.misses: list[str] = []
         self._stage = stage
         self._count = count
         self._frames = frames
+        self._folder = folder
+        self._kept = 0
         self._random = np.random.default_rng(seed)
         self._ball, self._marks, self._codes = BallDetector(), LandmarkDetector(), BarcodeDetector()
 
@@ -172,8 +176,7 @@ class Checks:
                     found = [b for b in found if math.hypot(b.alpha - alpha, b.beta - beta) > math.radians(BEARING)]
                 tally.wrong += len(found)
                 if found:
-                    print(f"  picture {number} from {np.round(place, 2)}, heading {view.heading:.2f}: {found}")
-                    cv2.imwrite(f"/tmp/false_{name}_{number}.png", image)
+                    self._keep(image, f"{name} in the lab: {found}")
         for name, tally in tallies.items():
             self._judge(f"{name}: false ones in {self._frames} pictures of the lab", tally)
 
@@ -197,6 +200,8 @@ class Checks:
         tally.wanted += 1
         near = [b for b in found if math.hypot(b.alpha - alpha, b.beta - beta) < math.radians(3 * BEARING)]
         tally.wrong += len(found) - len(near)
+        if not near or len(found) > 1:
+            self._keep(image, f"ball of {100 * radius:.0f} cm at {distance:.2f} m, {alpha:.2f} {beta:.2f}: {found}")
         if near:
             tally.found += 1
             off = math.hypot(near[0].alpha - alpha, near[0].beta - beta)
@@ -219,6 +224,8 @@ class Checks:
         tally.wanted += 1
         right = [m for m in found if m.number == number]
         tally.wrong += len(found) - len(right)
+        if len(found) != 1 or not right:
+            self._keep(image, f"mark {number} at {distance:.2f} m, tilt {tilt:.0f} deg: {found}")
         if right:
             tally.found += 1
             tally.bearings.append(math.degrees(math.hypot(right[0].alpha - alpha, right[0].beta - beta)))
@@ -258,6 +265,14 @@ class Checks:
         tally.times.append(time.process_time() - began)
         return found
 
+    def _keep(self, image: np.ndarray, what: str) -> None:
+        """Write a picture in which not everything was as it should be."""
+        if self._folder is not None:
+            self._kept += 1
+            path = self._folder / f"{self._kept:03d}.png"
+            cv2.imwrite(str(path), image)
+            print(f"  {path.name}: {what}")
+
     def _seed(self) -> int:
         return int(self._random.integers(1 << 30))
 
@@ -281,10 +296,15 @@ def options(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--frames", type=int, default=200, help="pictures of the lab")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--engine", default="auto", help="auto, opengl or builtin")
+    parser.add_argument(
+        "--keep", type=Path, metavar="FOLDER", help="write pictures there that are not as they should be"
+    )
     chosen = parser.parse_args(arguments)
     for part in chosen.parts:
         if part not in PARTS:
             parser.error(f"no part {part}; there are {', '.join(PARTS)}")
+    if chosen.keep is not None and not chosen.keep.is_dir():
+        parser.error(f"--keep is {chosen.keep}, which is no folder")
     for name in ("count", "frames"):
         if getattr(chosen, name) < 1:
             parser.error(f"--{name} is {getattr(chosen, name)}, allowed is 1 or more")
@@ -296,7 +316,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = options(arguments)
     cv2.setNumThreads(1)
     with Stage("lab", chosen.engine) as stage:
-        checks = Checks(stage, chosen.count, chosen.frames, chosen.seed)
+        checks = Checks(stage, chosen.count, chosen.frames, chosen.seed, chosen.keep)
         for part in chosen.parts or PARTS:
             getattr(checks, part)()
     for what in checks.misses:

@@ -175,6 +175,21 @@ class VisionDetection(unittest.TestCase):
         (ball,) = run.result.objects
         self.check(ball, (0.9, 0.8, 0.03), 0.12)
 
+    def test_the_head_follows_one_face_of_two(self):
+        self.look()
+        start, end = self.things.from_camera(0.9, 0.15), self.things.from_camera(0.8, 0.6)
+        self.things.place("anna", start, FACING, face="anna")
+        self.see(f("forgetAllFaces"), f("learnFace", str_param="Anna"))
+        self.things.place("ben", self.things.from_camera(0.9, -0.2), FACING, face="ben")
+        run = self.start(f("trackFace", str_param="Anna", duration=9.0))
+        run.wait_for_function(0)
+        self.things.move("anna", end, FACING + math.radians(35.0), 4.0)
+        run.wait(90.0)
+        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
+        self.assertEqual([seen.name for seen in run.result.objects], ["Anna"])
+        self.assertGreater(float(run.result.memList[0]), 6.0)
+        self.assertLess(angle_between((1.0, 0.0, 0.0), self.things.in_camera(end)), math.radians(4.0))
+
     def test_a_ball_behind_the_shoulder_is_found(self):
         place = self.things.place("ball", (-0.3, 0.9, 0.03), ball=0.03)
         (ball,) = self.see(f("lookFor", str_param="ball", count=3)).objects

@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
 """Pictures, videos and settings of the robot's own cameras, through the whole stack."""
 
+import os
+import signal
+import subprocess
 import unittest
 
 import av
 import cv2
 import numpy as np
+import rosnode
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
@@ -164,6 +168,24 @@ class VisionRobot(unittest.TestCase):
         self.assertLessEqual({info.header.stamp for info in infos[1:-1]}, {m.header.stamp for m in pictures})
         self.assertEqual((infos[-1].width, infos[-1].header.frame_id), (160, "CameraTop_optical_frame"))
         np.testing.assert_allclose(np.array(infos[-1].K)[:6], np.array(whole.K)[:6] / 2.0)
+
+    def test_a_server_can_start_its_cameras_itself(self):
+        server = subprocess.Popen(
+            ["rosrun", "nao_library_modules", "nao_vision_server", "--pport", os.environ["NAO_PORT"], "__ns:=own",
+             "_autostart:=true", "_launchpath:=nao_library cameras.launch", "_record_dir:=own_files"],
+        )  # fmt: skip
+        try:
+            client = self.robot.action_client("own/NaoVision", NaoVisionAction)
+            run = send(client, NaoVisionGoal([f("takePicture", timeout=120.0)])).wait(LIMIT)
+            self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
+            (picture,) = run.result.pictures
+            self.assertEqual((picture.topic, picture.width), ("/own/nao_robot/camera/top/image_raw", 320))
+            self.assertEqual(cv2.imread(picture.path).shape, (240, 320, 3))
+        finally:
+            server.send_signal(signal.SIGINT)
+            server.wait(LIMIT)
+        # The launch file has ended with the server.
+        wait_until(lambda: not rosnode.rosnode_ping("/own/nao_camera", max_count=1), 20.0, "the end of the cameras")
 
     def test_what_is_recorded_moves_with_the_head(self):
         self.play(f("startRecording", id="look"))

@@ -83,7 +83,7 @@ LAYERS = (
     ),
 )
 # Files of the server layer that ROS may be in; the others run without.
-ROS_SIDE = {"ros_node.py", "ros_side.py", "ros_sounds.py", "testing.py"}
+ROS_SIDE = {"ros_node.py", "ros_side.py", "ros_sounds.py", "ros_things.py", "testing.py"}
 
 
 def files_of(layer: Layer) -> list[Path]:

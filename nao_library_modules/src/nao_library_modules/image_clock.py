@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-DRIFT = 1e-4
-"""How fast one clock may run away from the other: s a second."""
-LATENESS = 2.0
-"""s by which a picture may come later than the quickest ones; from there on, one of the clocks was set."""
+from collections import deque
+
+WINDOW = 1.0
+"""s over which the quickest picture tells how the clocks go together. A simulated robot's clock may go slower than ROS
+time, when the computer has too much to do: the shorter, the sooner that is noticed."""
+LEAST = 3
+"""Pictures that are compared however few there are."""
 STEP = 1e-6
 """Least time between two pictures, s."""
 
@@ -13,18 +16,18 @@ STEP = 1e-6
 class ImageClock:
     """Maps the robot's times of one stream to ROS time, so that they grow from picture to picture. For one thread.
 
-    A picture comes some time after it was taken, sometimes sooner and sometimes later. The quickest ones tell how the
-    robot's clock and ROS time go together.
+    A picture comes some time after it was taken, sometimes sooner and sometimes later. The quickest of the last ones
+    tells how the robot's clock and ROS time go together.
     """
 
     def __init__(self) -> None:
         """Begin a stream."""
-        self._offset: float | None = None
+        self._latest: deque[tuple[float, float]] = deque()  # robot's time, and how much later it is in ROS time
         self._last = (0.0, 0.0)
 
     def restart(self) -> None:
         """Begin another stream, whose clock may be another one."""
-        self._offset = None
+        self._latest.clear()
 
     def take(self, robot: float, now: float) -> float:
         """ROS time of the next picture.
@@ -36,13 +39,16 @@ class ImageClock:
         Returns:
             ROS time at which it was taken, s; never after its arrival.
         """
-        late = now - robot
         last_robot, last_ros = self._last
-        if self._offset is None or robot < last_robot or late - self._offset > LATENESS or now < last_ros:
-            self._offset, ros = late, now  # the first one, or a clock was set
-        else:
-            self._offset = min(late, self._offset + DRIFT * (robot - last_robot))
+        if robot < last_robot or now < last_ros:
+            self._latest.clear()  # a clock was set back
+        first = not self._latest
+        self._latest.append((robot, now - robot))
+        while len(self._latest) > LEAST and robot - self._latest[0][0] > WINDOW:
+            self._latest.popleft()
+        ros = robot + min(late for _, late in self._latest)
+        if not first:
             # Once in a while a picture is quicker than all before: the time steps back, but not before the last one.
-            ros = max(robot + self._offset, min(last_ros + STEP, now))
+            ros = max(ros, min(last_ros + STEP, now))
         self._last = (robot, ros)
         return ros

@@ -52,6 +52,9 @@ class GoalClient:
     `SimpleActionClient.wait_for_result` waits in slices of 100 ms, and its done callback comes before it is
     ready for the next goal. The client below it tells of each transition when the message arrives.
 
+    Attributes:
+        server: Name of the action.
+
     Args:
         server: Name of the action.
         limit: Longest wait for the server, in s.
@@ -62,7 +65,7 @@ class GoalClient:
     """
 
     def __init__(self, server: str, limit: float, action: type = NaoLedAction) -> None:
-        self._server = server
+        self.server = server
         self._client = actionlib.ActionClient(server, action)
         if not self._client.wait_for_server(rospy.Duration(limit)):
             raise BenchmarkError(f"no action server {server} within {limit:g} s")
@@ -85,8 +88,8 @@ class GoalClient:
 
         handle = self._client.send_goal(goal, changed)
         if not done.wait(GOAL_LIMIT):
-            raise BenchmarkError(f"a goal of {self._server} did not end within {GOAL_LIMIT:g} s")
+            raise BenchmarkError(f"a goal of {self.server} did not end within {GOAL_LIMIT:g} s")
         status = handle.get_goal_status()
         if status != GoalStatus.SUCCEEDED:
             text = f"{GoalStatus.to_string(status).lower()} {handle.get_goal_status_text()}".rstrip()
-            raise BenchmarkError(f"a goal of {self._server} ended {text}")
+            raise BenchmarkError(f"a goal of {self.server} ended {text}")

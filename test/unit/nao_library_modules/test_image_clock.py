@@ -19,8 +19,8 @@ def test_the_quickest_pictures_tell_how_the_clocks_go_together():
     assert all(before[1] < after[1] for before, after in zip(times, times[1:]))
     assert all(ros <= arrived for _, ros, arrived in times)
     late = [ros - 1000.0 - taken for taken, ros, _ in times[100:]]
-    assert max(late) - min(late) < 0.003, "the jitter of the way is in the times"
-    assert late[-1] == pytest.approx(0.02, abs=0.003)
+    assert max(late) - min(late) < 0.012, "the jitter of the way is in the times"
+    assert sum(late) / len(late) == pytest.approx(0.02, abs=0.003)
 
 
 def test_a_clock_that_runs_away_is_followed():
@@ -45,3 +45,19 @@ def test_time_stands_still_rather_than_going_back_when_a_picture_is_quick():
     late = clock.take(10.0, 200.5)
     quick = clock.take(10.033, 200.04)
     assert quick <= 200.04 and late <= 200.5
+
+
+def test_a_robot_whose_time_goes_slower_is_followed():
+    """A simulation that does not keep real time: its pictures are not dated back further and further."""
+    clock = ImageClock()
+    for number in range(300):
+        taken = number / 15.0
+        arrived = 500.0 + taken / 0.5 + 0.02
+        ros = clock.take(taken, arrived)
+        assert arrived - ros < 1.1
+
+
+def test_few_pictures_are_compared_as_well():
+    clock = ImageClock()
+    times = [clock.take(float(number), 100.0 + number + late) for number, late in enumerate((0.1, 0.5, 0.3))]
+    assert times == pytest.approx([100.1, 101.1, 102.1])

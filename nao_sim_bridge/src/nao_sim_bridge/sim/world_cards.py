@@ -47,7 +47,7 @@ def _make(kind: str, entry: Mapping[str, Any], where: str, files: Callable[[str]
 def _picture(kind: str, content: Any, where: str, files: Callable[[str], Path]) -> WorldPicture:
     if kind != "image":
         return picture(kind, content, where)
-    return picture("file", files(str(content)), where)
+    return picture("file", str(files(str(content))), where)
 
 
 def _stand(entry: Mapping[str, Any], where: str, height: float) -> tuple[Part, ...]:

@@ -43,6 +43,9 @@ def color(entry: Mapping, key: str, where: str, default: Color) -> Color:
 
 def picture(kind: str, content: Any, where: str) -> WorldPicture:
     """A picture, if there is one of that kind and content."""
+    if not isinstance(content, str) and kind != "landmark":
+        # YAML makes numbers of digits and forgets leading zeros.
+        raise WorldError(where, f"is {content!r}, not a text: put it between quotes")
     try:
         return WorldPicture(kind, str(content))
     except (BadValue, UnknownName) as error:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..row import Figures, Row, at_most
-from ..stack import BARE_SERVER, Stack
+from ..stack import Stack
 from ..stats import interleave
 
 ROUNDS, WARM_UP = 300, 30
@@ -37,7 +37,7 @@ class PerformOverhead(Row):
 
         from ..goals import list_group
 
-        client, goal = PlanActionClient(BARE_SERVER, NaoLedAction), list_group(GROUP)
+        client, goal = PlanActionClient(bare.server, NaoLedAction), list_group(GROUP)
 
         class Bare(ProcessModule):
             name = "bare"

@@ -173,6 +173,8 @@ def test_the_lights_of_another_nao():
         ({"landmark": 64, "heading": 1, "rpy": [0, 0, 1]}, "rpy and heading: one of both"),
         ({"qr": "x" * 301}, "1 to 300 bytes"),
         ({"barcode": "123"}, "12 or 13 digits"),
+        ({"barcode": 4006381333931}, r"it\.barcode: is 4006381333931, not a text: put it between quotes"),
+        ({"landmark": True}, "landmark is 'True', allowed is one of 64"),
         ({"image": "nowhere.png"}, "a file that is there"),
         ({"person": "nobody"}, "allowed is one of anna"),
         ({"person": "anna", "height": 3}, r"it\.height: is 3, allowed is 0.9..1.9"),

@@ -1,4 +1,4 @@
-"""What an extractor saw last: its event, raised with each picture in which something is, and emptied when it is gone."""
+"""What an extractor saw last: its event, raised with each picture in which something is, and emptied afterwards."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 Angles are NAOqi's: alpha is positive to the left, beta positive downwards, both 0 in the middle of the picture, rad.
 Places in the picture are normalised: (0, 0) is its upper left corner and (1, 1) the lower right one.
 
-NAOqi itself takes angles for proportional to places, which is half a degree wrong half way to the edge. Here a
+NAOqi itself takes angles for proportional to places, which is nearly a degree wrong half way to the edge. Here a
 bearing is what geometry says.
 """
 

@@ -54,10 +54,13 @@ def _quiet_import() -> Any:
 def _open_pictures(pipe: Connection, engine: str, world_name: str, version: str) -> tuple[Any, Any]:
     """Build what draws; returns what serves the pipe, and what draws with a complaint about it or None."""
     _quiet_import()
+    import cv2
+
     from nao_sim_bridge.sim.render.engines import open_engine
     from nao_sim_bridge.sim.render.wire import StateReceiver
     from nao_sim_bridge.sim.world import load_world
 
+    cv2.setNumThreads(1)  # the other cores are for physics
     drawing, complaint = open_engine(engine, load_world(world_name), version)
     states = StateReceiver()
     answers = {"render": _render, "capture": _capture}

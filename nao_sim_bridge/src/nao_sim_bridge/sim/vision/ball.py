@@ -59,11 +59,12 @@ class BallDetector:
     def detect(self, image: np.ndarray, optics: Optics, _: Any = None) -> list[Ball]:
         """The balls in a picture; see `Detector`."""
         excess, redness = red_parts(image, self._settings.dark)
-        found = []
-        for component in _components(redness, self._settings):
-            ball = self._ball(component, excess, redness, optics)
-            if ball is not None:
-                found.append(ball)
+        found: list[Ball] = []
+        for level in self._settings.redness:
+            for component in _components(redness, level, self._settings):
+                ball = self._ball(component, excess, redness, optics)
+                if ball is not None and not any(_same(ball, other) for other in found):
+                    found.append(ball)
         return sorted(found, key=lambda ball: -ball.quality)
 
     def _ball(self, component: np.ndarray, excess: np.ndarray, redness: np.ndarray, optics: Optics) -> Ball | None:
@@ -84,7 +85,7 @@ class BallDetector:
             return None
         pixel = 1.0 / lens.fx
         allowed = self._settings.roundness[0] * pixel + self._settings.roundness[1] * cone.angle
-        filled = _filled(cone, redness, lens, self._settings.redness)
+        filled = _filled(cone, redness, lens, self._settings.redness[0])
         if cone.residual > allowed or filled < self._settings.filled:
             return None
         x, y = optics.project(cone.axis)
@@ -155,9 +156,14 @@ class _Edges:
     inside: float
 
 
-def _components(redness: np.ndarray, settings: BallSettings) -> list[np.ndarray]:
-    """Outlines, (n, 2) in pixels, of the largest red areas."""
-    mask = (redness > settings.redness).astype(np.uint8)
+def _same(ball: Ball, other: Ball) -> bool:
+    """Whether two findings are of one ball."""
+    return math.hypot(ball.alpha - other.alpha, ball.beta - other.beta) < other.radius
+
+
+def _components(redness: np.ndarray, level: float, settings: BallSettings) -> list[np.ndarray]:
+    """Outlines, (n, 2) in pixels, of the largest areas that are redder than a level."""
+    mask = (redness > level).astype(np.uint8)
     contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     sized = [(cv2.contourArea(contour) + len(contour) / 2.0, contour) for contour in contours]
     large = sorted((item for item in sized if item[0] >= settings.least_pixels), key=lambda item: -item[0])

@@ -76,7 +76,5 @@ def _read(grey: np.ndarray, factor: int) -> list[Barcode]:
             continue
         place = result.position
         corners = (place.top_left, place.top_right, place.bottom_right, place.bottom_left)
-        codes.append(
-            Barcode(result.text, result.format.name, tuple((c.x / factor, c.y / factor) for c in corners))
-        )
+        codes.append(Barcode(result.text, result.format.name, tuple((c.x / factor, c.y / factor) for c in corners)))
     return codes

@@ -9,9 +9,9 @@ from typing import Any, Callable
 
 import numpy as np
 
+from nao_sim_bridge.sim.cameras.optics import Optics
 from nao_sim_bridge.sim.child_process import ChildProcess
 from nao_sim_bridge.sim.errors import SimulationError
-from nao_sim_bridge.sim.cameras.optics import Optics
 
 log = logging.getLogger("nao_sim.vision")
 

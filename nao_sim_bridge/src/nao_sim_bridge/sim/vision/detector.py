@@ -7,8 +7,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from nao_sim_bridge.sim.errors import UnknownName
 from nao_sim_bridge.sim.cameras.optics import Optics
+from nao_sim_bridge.sim.errors import UnknownName
 
 # Full names of the classes, imported when they are wanted: not every robot looks for faces.
 DETECTORS = {

@@ -16,7 +16,7 @@ FILE = "vision.json"
 class BallSettings:
     """What a red ball is; the file has the meanings. Radii in rad."""
 
-    redness: float
+    redness: Tuple[float, float]
     dark: float
     least_pixels: int
     most_candidates: int

@@ -116,7 +116,6 @@ class Eyes:
         pixels = np.full((2, 2, 3), number, np.uint8).tobytes()
         self.stream.put(Frame(time, camera, 2, 2, 13, 3, pixels, 0.9, 0.7, POSE, POSE))
 
-
     def result(self):
         return self.results.get(timeout=self.patience)
 

@@ -82,6 +82,14 @@ def test_the_better_of_two_balls_comes_first(detector):
     assert first.quality > second.quality
 
 
+def test_a_ball_in_front_of_something_red_is_found(detector):
+    chair = np.where(np.arange(240)[:, None, None] < 120, np.uint8([[[46, 51, 158]]]), np.uint8([[GREY]]))
+    ball = sphere(0.8, 0.05, 0.1, 0.0, noise=0.0)
+    there = (ball[..., 2].astype(int) - ball[..., 0] > 40)[..., None]
+    (found,) = detector.detect(np.where(there, ball, np.broadcast_to(chair, ball.shape)), OPTICS)
+    assert (found.alpha, found.beta) == pytest.approx((0.1, 0.0), abs=math.radians(0.3))
+
+
 @pytest.mark.parametrize("color", [ORANGE, BROWN, PINK, (200, 60, 40)], ids=["orange", "brown", "pink", "blue"])
 def test_balls_of_other_colours_are_none(detector, color):
     assert detector.detect(sphere(0.6, 0.05, color=color), OPTICS) == []

@@ -80,6 +80,10 @@ class OpenGLEngine:
 
     def draw(self, state: RenderState, view: View) -> np.ndarray:
         """The (h, w, 3) uint8 picture of a state; the caller may write into it."""
+        with self._context:  # there may be others in this process
+            return self._draw(state, view)
+
+    def _draw(self, state: RenderState, view: View) -> np.ndarray:
         items = self._items_for(state)
         items.show(state)
         context = self._context
