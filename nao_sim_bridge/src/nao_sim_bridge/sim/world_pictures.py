@@ -5,6 +5,7 @@ What is on a thing is a small value; who draws the world paints it when it is ne
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -13,6 +14,8 @@ import numpy as np
 
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
 
+log = logging.getLogger("nao_sim.pictures")
+
 KINDS = ("landmark", "qr", "barcode", "face", "head", "poster", "pattern", "file")
 CODE128 = "code128:"
 """Begins the content of a barcode that is not an article number."""
@@ -20,6 +23,7 @@ LONGEST_QR, LONGEST_BARCODE = 300, 40
 MOST_PIXELS = 2048
 """Edge of a picture, at most: larger files are made smaller."""
 KEPT = 64
+GREY = 128
 ASPECTS = {"landmark": 1.0, "qr": 1.0, "face": 0.8, "poster": 0.75, "pattern": 1.0}
 """Width over height of the kinds that always have the same."""
 
@@ -71,10 +75,13 @@ def barcode(content: str) -> tuple[str, str]:
 def paint(picture: WorldPicture) -> np.ndarray:
     """The picture, (h, w, 3) uint8, first row on top; read-only, painted once.
 
-    Raises:
-        BadValue: Its file cannot be read.
+    A file that cannot be read any more is grey: a camera must not go blind because of a file that somebody removed.
     """
-    painted = _paint(picture.kind, picture.content)
+    try:
+        painted = _paint(picture.kind, picture.content)
+    except BadValue as error:
+        log.warning("a thing of the world is grey: %s", error)
+        painted = np.full((8, 8, 3), GREY, np.uint8)
     painted.flags.writeable = False
     return painted
 
@@ -87,7 +94,7 @@ def aspect(picture: WorldPicture) -> float:
     """
     if picture.kind in ASPECTS:
         return ASPECTS[picture.kind]
-    height, width = paint(picture).shape[:2]
+    height, width = _paint(picture.kind, picture.content).shape[:2]
     return width / height
 
 

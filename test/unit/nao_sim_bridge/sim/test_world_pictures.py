@@ -104,7 +104,16 @@ def test_a_file_that_is_no_picture_is_told(tmp_path):
     path = tmp_path / "text.png"
     path.write_text("no picture")
     with pytest.raises(BadValue, match="a picture: "):
-        paint(WorldPicture("file", str(path)))
+        aspect(WorldPicture("file", str(path)))
+
+
+def test_a_file_that_has_vanished_meanwhile_is_grey_and_nobody_goes_blind(tmp_path, caplog):
+    path = tmp_path / "small.png"
+    Image.new("RGB", (30, 20), (200, 10, 10)).save(path)
+    picture = WorldPicture("file", str(path))
+    path.unlink()
+    assert np.unique(paint(picture)).tolist() == [128]
+    assert "a thing of the world is grey: picture file is" in caplog.text
 
 
 def test_a_picture_goes_to_another_process_and_is_painted_once():
