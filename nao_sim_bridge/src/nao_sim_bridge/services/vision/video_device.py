@@ -56,6 +56,10 @@ class VideoDevice:
             VideoDeviceOld(self._cameras, self.subscribers, settings, cameras, angles),
         ]
 
+    def client_gone(self, module: str) -> None:
+        """A module of a client has left: whatever it has subscribed under its name ends."""
+        self.subscribers.remove_all(module)
+
     def close(self) -> None:
         """End of recordings and of all subscriptions."""
         self._recordings.close()

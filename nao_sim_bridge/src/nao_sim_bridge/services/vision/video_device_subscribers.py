@@ -1,8 +1,8 @@
 """The subscribers of ALVideoDevice, by the handles that they were given.
 
-libqi does not say whose call it is, nor when a client has gone. So a handle that nobody has used for a minute is taken
-from the cameras, and its place is free for others of the same name; should its client be alive after all, its next call
-finds everything as it was.
+libqi does not say whose call it is, nor when a client has gone that is no module itself. So a handle that nobody has
+used for a minute is taken from the cameras, and its place is free for others of the same name; should its client be
+alive after all, its next call finds everything as it was.
 """
 
 from __future__ import annotations

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import os
+import queue
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+import qi
 
 import vision_definitions as vd
 from naoqi import ALProxy
@@ -230,6 +232,21 @@ def test_a_client_that_dies_is_cleaned_up(robot, video, image, monkeypatch):
     monkeypatch.setattr(subscribers, "_clock", lambda: now + 70.0)
     assert video.getSubscribers() == [alive]
     assert [stream.name for stream in robot.server.simulation.cameras.streams] == [alive]
+
+
+def test_a_module_that_leaves_is_cleaned_up_at_once(robot, video, monkeypatch, patience):
+    subscribers = robot.server._video.subscribers
+    remove_all, gone = subscribers.remove_all, queue.Queue()
+    monkeypatch.setattr(subscribers, "remove_all", lambda name: gone.put((name, remove_all(name))))
+    client = qi.Session()
+    client.connect(f"tcp://127.0.0.1:{robot.server.broker.port}")
+    client.listen("tcp://127.0.0.1:0")
+    client.registerService("LookingModule", type("LookingModule", (), {})())
+    for name in ("LookingModule", "other"):
+        client.service("ALVideoDevice").subscribeCamera(name, TOP, vd.kQVGA, 11, 15)
+    client.close()
+    assert gone.get(timeout=patience) == ("LookingModule", 1)
+    assert video.getSubscribers() == ["other_0"]
 
 
 @pytest.mark.parametrize(
