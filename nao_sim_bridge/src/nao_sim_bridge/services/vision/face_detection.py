@@ -66,7 +66,8 @@ class ALFaceDetection:
 
     def learnFace(self, name: str) -> Task:
         """Learn the face in view; False when there is none or more than one, or ten pictures of the person."""
-        return self.learner.look(lambda description: self._people.learn(_checked(name), description))
+        known_as = _checked(name)
+        return self.learner.look(lambda description: self._people.learn(known_as, description))
 
     def reLearnFace(self, name: str) -> Task:
         """Learn one more picture of somebody who is known; False also when nobody of the name is."""

@@ -12,6 +12,7 @@ from nao_sim_bridge.services.extractor import DEFAULT_PERIOD_MS, Subscription
 from nao_sim_bridge.sim.cameras.cameras import CameraClosed, Cameras, CameraStream
 from nao_sim_bridge.sim.cameras.frame import Frame
 from nao_sim_bridge.sim.cameras.optics import Optics
+from nao_sim_bridge.sim.vision.client import VisionClosed
 
 log = logging.getLogger("nao_sim.vision")
 
@@ -42,7 +43,9 @@ class Watching:
     """Looks through a camera for one module: every picture that is due goes to its detector, in a thread of its own.
 
     It looks at most as often as the frame rate says, and no sooner after a picture than the period of its subscribers
-    (the shortest counts). Any thread may call.
+    (the shortest counts); their precision changes nothing. Time that runs faster than the wall clock waits until a
+    picture has been looked at and its event raised, so a fast run has the same events at the same times; else pictures
+    that come while it is busy are left out. Any thread may call.
 
     Args:
         cameras: Of the robot.
@@ -237,6 +240,8 @@ class Watching:
             found = self._detector.detect(frame.array(), Optics(frame.hfov, frame.vfov), self._settings(frame))
             if stream is self._stream:  # nobody wants it any more when that has been closed meanwhile
                 self._on_result(frame, found)
+        except VisionClosed:
+            pass  # the robot is being shut down
         except Exception as error:
             if stream is self._stream:
                 self._tell_failure(error)

@@ -15,6 +15,8 @@ from nao_sim_bridge.sim.vision.settings import BallSettings, load_vision
 
 ROUNDS = 3
 """How often edges are looked for, each time from a better middle."""
+WHOLE = 0.95
+"""With less of its edge inside the picture, a ball counts as cut."""
 BORDER = 1.5
 """Pixels; an edge closer to that of the picture may be that of the picture."""
 INSIDE = (0.35, 0.8)
@@ -81,9 +83,11 @@ class BallDetector:
             cone = fit_cone(_without_outliers(edges.directions, cone))
         if cone is None or edges is None or not self._possible(cone):
             return None
-        if edges.inside < self._settings.arc:
-            return None
         pixel = 1.0 / lens.fx
+        # Little of a small outline fits a circle whatever it is.
+        cut = edges.inside < WHOLE
+        if edges.inside < self._settings.arc or (cut and cone.angle < self._settings.least_cut * pixel):
+            return None
         allowed = self._settings.roundness[0] * pixel + self._settings.roundness[1] * cone.angle
         filled = _filled(cone, redness, lens, self._settings.redness[0])
         if cone.residual > allowed or filled < self._settings.filled:
@@ -193,8 +197,8 @@ def _edges(cone: Cone, excess: np.ndarray, lens: _Lens, settings: BallSettings) 
     sure = shares <= INSIDE[1]
     level = np.median(values[:, sure], axis=1)
     # What is behind need not be grey: the edge is half way between what is inside and what is just outside.
-    behind = np.minimum(values[:, -STEPS // 4 :].min(axis=1), 0.6 * level)
-    half = 0.5 * (level + np.maximum(behind, 0.0))
+    behind = np.minimum(np.median(values[:, -STEPS // 4 :], axis=1), 0.6 * level)
+    half = 0.5 * (level + behind)
     below = (values < half[:, None]) & ~sure[None, :]
     first = np.argmax(below, axis=1)
     index = np.arange(settings.rays)

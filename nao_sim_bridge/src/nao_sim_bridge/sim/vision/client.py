@@ -29,6 +29,10 @@ class VisionError(SimulationError):
     """The vision process died or does not answer; it is started again when there is something to do."""
 
 
+class VisionClosed(VisionError):
+    """The process was closed: nobody wants to know any more."""
+
+
 class VisionRefused(VisionError):
     """The process is well, but a detector failed."""
 
@@ -82,7 +86,7 @@ class VisionProcess:
         with self._lock:
             for last in (False, True):
                 if self._closed:
-                    raise VisionError(f"{detector.name}: the vision process is closed")
+                    raise VisionClosed(f"{detector.name}: the vision process is closed")
                 if detector.deaths >= DEATHS:
                     raise VisionError(f"{detector.name}: ended the vision process {DEATHS} times")
                 try:
@@ -92,7 +96,9 @@ class VisionProcess:
                 except VisionError as error:
                     self._process = None
                     detector.deaths += 1
-                    if last or self._closed:
+                    if self._closed:
+                        raise VisionClosed(f"{detector.name}: the vision process was closed meanwhile") from error
+                    if last:
                         raise
                     log.warning("%s; it is started again", error)
                 else:
@@ -159,7 +165,8 @@ class RemoteDetector:
 
         Raises:
             VisionRefused: The detector failed.
-            VisionError: The process died twice, is late, or is closed.
+            VisionClosed: It is closed.
+            VisionError: The process died twice, or is late.
         """
         return self.call("detect", np.ascontiguousarray(image), optics, settings)
 

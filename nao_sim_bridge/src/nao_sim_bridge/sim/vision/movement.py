@@ -24,7 +24,7 @@ WIDTH = 320
 # How old the picture is that a new one is compared with, s, or older: in less time, what is slow moves too little.
 MOMENT = 0.2
 # Share of the picture that a cluster has at least; moving pixels within this share of the width are one cluster.
-LEAST_SHARE, GAP = 0.0006, 0.03
+LEAST_SHARE, GAP = 0.0006, 0.08
 # When more than this share of the picture has changed it was the light, or the robot was carried away.
 EVERYTHING = 0.7
 # By how much the pose of the camera may change between two pictures that are compared, rad and m.

@@ -25,6 +25,7 @@ class BallSettings:
     roundness: Tuple[float, float]
     filled: float
     arc: float
+    least_cut: float
     least_radius: float
     most_radius: float
 

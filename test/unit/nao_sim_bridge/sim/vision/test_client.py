@@ -14,7 +14,7 @@ from seen_cards import OPTICS, mark, sphere
 from nao_sim_bridge.sim.errors import UnknownName
 from nao_sim_bridge.sim.vision import client
 from nao_sim_bridge.sim.vision.ball import BallDetector
-from nao_sim_bridge.sim.vision.client import VisionError, VisionProcess, VisionRefused
+from nao_sim_bridge.sim.vision.client import VisionClosed, VisionError, VisionProcess, VisionRefused
 from nao_sim_bridge.sim.vision.detector import DETECTORS, make_detector
 
 DYING = """
@@ -156,7 +156,7 @@ def test_closed_it_answers_nothing_and_the_process_ends():
     ball.detect(sphere(0.8, 0.05), OPTICS)
     pid = process.pid
     process.close()
-    with pytest.raises(VisionError, match="closed"):
+    with pytest.raises(VisionClosed, match="^ball: the vision process is closed$"):
         ball.detect(sphere(0.8, 0.05), OPTICS)
     ball.close()
     with pytest.raises(ProcessLookupError):
@@ -175,7 +175,7 @@ def test_who_waits_for_a_hanging_process_hears_of_the_end(tmp_path, monkeypatch,
     def work():
         try:
             process.detector("ball").detect(sphere(0.8, 0.05), OPTICS)
-        except VisionError as error:
+        except VisionClosed as error:
             errors.append(error)
 
     waiting = threading.Thread(target=work)
