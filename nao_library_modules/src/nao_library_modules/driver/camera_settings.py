@@ -10,7 +10,7 @@ import vision_definitions as vision
 from naoqi.errors import NaoError
 
 from .camera_formats import BOTTOM, CAMERAS, COLOR_SPACES, RESOLUTIONS, TOP
-from .camera_stream import StreamSettings
+from .camera_subscriber import StreamSettings
 from .reconfigure import Field
 
 LEAST_RATE, MOST_RATE = 1.0, 30.0

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from naoqi.errors import NaoError, RobotError, RobotUnreachable
+from naoqi.errors import NaoError, RobotUnreachable
 
 from ..errors import Preempted
 from ..health import Level, Report
@@ -18,12 +18,11 @@ from ..interrupt import Interrupt
 from ..robot import wait_for_calls
 from .camera_formats import CAMERA_NAMES, RESOLUTIONS, SPACES, Picture, read_picture
 from .camera_rate import RateMeter
+from .camera_subscriber import DEVICE, CameraSubscriber, StreamSettings
 from .demand import Demand
 
 log = logging.getLogger(__name__)
 
-DEVICE = "ALVideoDevice"
-ANSWER_LIMIT = 5.0
 SILENCE_LIMIT = 3.0
 """s without a picture, of the robot's time and of ours, after which the robot is asked anew."""
 BEGIN_LIMIT = 15.0
@@ -33,36 +32,6 @@ FAILURE_PAUSE = 0.5
 CLOSE_LIMIT = 2.0
 SLOW = 0.8
 """Share of the rate that was asked for below which the pictures are reported as too few."""
-
-
-@dataclass(frozen=True)
-class StreamSettings:
-    """What a subscriber of ALVideoDevice asks for.
-
-    Attributes:
-        camera: NAOqi's number of the camera.
-        resolution: NAOqi's number of the size.
-        color_space: NAOqi's number.
-        frame_rate: Pictures a second.
-    """
-
-    camera: int
-    resolution: int
-    color_space: int
-    frame_rate: int
-
-    @property
-    def period(self) -> float:
-        """Time between two pictures, s."""
-        return 1.0 / self.frame_rate
-
-
-CHANGES = {
-    "resolution": "setResolution",
-    "color_space": "setColorSpace",
-    "frame_rate": "setFrameRate",
-}
-"""What of the settings can be changed while pictures come, and by which method."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +73,7 @@ class CameraStream:
         """
         self._robot = robot
         self._name = name
+        self._subscriber = CameraSubscriber(robot, name)
         self._settings = settings
         self._clock = clock
         self._sink = sink
@@ -150,11 +120,18 @@ class CameraStream:
                     self._demand.restart()
                 return
             try:
-                self._send(subscription.handle, before, settings)
+                self._subscriber.change(subscription.handle, before, settings)
             except NaoError:
-                self._restore(subscription.handle, settings, before)
+                self._change_back(subscription.handle, settings, before)
                 raise
             self._settings = settings
+
+    def _change_back(self, handle: str, tried: StreamSettings, before: StreamSettings) -> None:
+        try:
+            self._subscriber.change(handle, tried, before)
+        except NaoError as error:  # what went wrong first is what is told
+            log.debug("%s: %s", self._name, error)
+            self._demand.restart()
 
     def report(self) -> Report:
         """Whether pictures come, and how many."""
@@ -193,7 +170,7 @@ class CameraStream:
         self._forget()  # that of a connection that was lost
         self._prepare()  # without the lock: who changes the settings holds others
         with self._changing:
-            handle = self._subscribe(self._settings)
+            handle = self._subscriber.subscribe(self._settings)
             self._rate.restart()
             self._note_life()
             self._shows = False
@@ -203,12 +180,8 @@ class CameraStream:
 
     def _end(self) -> None:
         subscription = self._forget()
-        if subscription is None:
-            return
-        try:
-            self._ask("unsubscribe", subscription.handle)
-        except RobotError as error:  # the robot has forgotten it
-            log.debug("%s: %s", self._name, error)
+        if subscription is not None:
+            self._subscriber.unsubscribe(subscription.handle)
 
     def _forget(self) -> Subscription | None:
         with self._news:
@@ -216,37 +189,6 @@ class CameraStream:
         if subscription is not None:
             subscription.interrupt.stop()
         return subscription
-
-    def _subscribe(self, wanted: StreamSettings) -> str:
-        """The handle of a new subscription.
-
-        Raises:
-            NaoError: If there is none to be had.
-        """
-        arguments = (self._name, wanted.camera, wanted.resolution, wanted.color_space, wanted.frame_rate)
-        try:
-            handle = self._ask("subscribeCamera", *arguments)
-        except RobotUnreachable:
-            raise
-        except NaoError as error:
-            handle, refused = "", error
-        else:
-            refused = NaoError(f"the robot does not accept {self._name} as a subscriber of its cameras")
-        if handle:
-            return handle
-        # A node that was killed leaves its subscriptions behind, and a name may have a few only.
-        if not self._end_leftovers():
-            raise refused
-        handle = self._ask("subscribeCamera", *arguments)
-        if not handle:
-            raise refused
-        return handle
-
-    def _end_leftovers(self) -> int:
-        leftovers = [each for each in self._ask("getSubscribers") if each.rpartition("_")[0] == self._name]
-        for handle in leftovers:
-            self._ask("unsubscribe", handle)
-        return len(leftovers)
 
     def _is_alive(self) -> bool:
         """Whether pictures come. On a simulation that stands still, none are due."""
@@ -257,29 +199,6 @@ class CameraStream:
             return True
         self._fail_once("no picture has come for some time")
         return False
-
-    # --- calls ----------------------------------------------------------------------------------------------------
-
-    def _ask(self, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(DEVICE).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
-
-    def _send(self, handle: str, before: StreamSettings, after: StreamSettings) -> None:
-        """Tell the robot what is new.
-
-        Raises:
-            NaoError: If it refuses.
-        """
-        for name, method in CHANGES.items():
-            value = getattr(after, name)
-            if value != getattr(before, name) and self._ask(method, handle, value) is False:
-                raise NaoError(f"the robot refuses the {name} {value} for its {CAMERA_NAMES[after.camera]}")
-
-    def _restore(self, handle: str, tried: StreamSettings, before: StreamSettings) -> None:
-        try:
-            self._send(handle, tried, before)
-        except NaoError as error:  # what went wrong first is what is told
-            log.debug("%s: %s", self._name, error)
-            self._demand.restart()
 
     # --- in the thread of the pictures ----------------------------------------------------------------------------
 

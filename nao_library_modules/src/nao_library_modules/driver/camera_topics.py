@@ -23,7 +23,8 @@ from .camera_formats import CAMERA_NAMES, CAMERAS, SIZES, Picture
 from .camera_info_files import camera_name
 from .camera_infos import CameraInfos
 from .camera_settings import TUNINGS, changed_tunings, fields_of, settled, stream_settings
-from .camera_stream import ANSWER_LIMIT, DEVICE, CameraStream
+from .camera_stream import CameraStream
+from .camera_subscriber import ANSWER_LIMIT, DEVICE
 from .camera_tuning import CameraTuning
 from .image_compression import FORMATS, JPEG, compress
 from .image_messages import from_info, header_of, to_compressed, to_image, to_info

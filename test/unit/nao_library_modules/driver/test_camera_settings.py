@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from nao_library_modules.driver.camera_settings import changed_tunings, fields_of, settled, stream_settings
-from nao_library_modules.driver.camera_stream import StreamSettings
+from nao_library_modules.driver.camera_subscriber import StreamSettings
 from naoqi.errors import NaoError
 
 NAMES = {

@@ -10,7 +10,8 @@ import pytest
 from set_clock import SetClock
 
 from nao_library_modules.driver import camera_stream, demand
-from nao_library_modules.driver.camera_stream import BEGIN_LIMIT, SILENCE_LIMIT, CameraStream, StreamSettings
+from nao_library_modules.driver.camera_stream import BEGIN_LIMIT, SILENCE_LIMIT, CameraStream
+from nao_library_modules.driver.camera_subscriber import StreamSettings
 from nao_library_modules.health import Level
 from naoqi.errors import NaoError, RobotError
 
@@ -165,6 +166,13 @@ def test_the_robot_is_asked_only_while_somebody_looks(stream, device, eventually
     eventually(lambda: device.subscribers == {})
     eventually(lambda: [call.canceled for call in device.asked] == [True])
     assert stream.report().message == "nobody looks"
+
+
+def test_the_end_of_the_node_ends_the_subscription(stream, device, eventually):
+    stream.want(True)
+    eventually(lambda: device.asked)
+    stream.close()
+    assert device.subscribers == {} and device.calls == ["subscribe", "unsubscribe"]
 
 
 def test_pictures_come_with_their_times_one_call_at_a_time(stream, device, clock, seen, eventually):
