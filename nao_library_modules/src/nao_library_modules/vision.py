@@ -149,6 +149,7 @@ class NaoVision(
         self.interrupt.stop()
         self.threads.close()
         super().shut_down()
+        self.threads.close()  # of a goal that was just about to start one
 
     def _tell_progress(self, position: int, function: str, count: int) -> None:
         self._progress = (position - 1, function, count)

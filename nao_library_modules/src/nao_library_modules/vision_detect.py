@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from .function_chain import checked_by
-from .vision_detect_base import DETECTORS, DetectionBase, InUse, Wanted, timeout_of
+from .vision_detect_base import DETECTORS, DetectionBase, Wanted, timeout_of
+from .vision_detect_cameras import InUse
 from .vision_detect_checks import camera_index, check_detection, check_landmarks, check_movement, require_mark
 from .vision_detect_events import BALL, CODE, LANDMARK, MOVEMENT
 from .vision_detect_space import merged

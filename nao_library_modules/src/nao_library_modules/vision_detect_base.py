@@ -8,24 +8,21 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
-from naoqi.errors import NaoError, UnknownMethod
+from naoqi.errors import NaoError
 
-from .extractor_use import Events, ExtractorUse
+from .extractor_use import Events
+from .image_clock import ImageClock
 from .memory_functions import MEMORY
-from .motion_facts import MOTION
-from .vision_cameras import CAMERAS, RESOLUTIONS
+from .vision_cameras import RESOLUTIONS
+from .vision_detect_cameras import ROBOT, TORSO, CameraAccess
 from .vision_detect_events import (
     BALL,
-    CAMERA_FRAMES,
     CODE,
     FACE,
     LANDMARK,
     MOVEMENT,
     NOTHING,
-    Lens,
     Look,
-    Pose,
-    Region,
     Sight,
     ball_look,
     code_sights,
@@ -33,17 +30,14 @@ from .vision_detect_events import (
     landmark_look,
     movement_look,
 )
-from .vision_detect_space import DEFAULT_SIZES, Sighting, located, ros_time
+from .vision_detect_space import DEFAULT_SIZES, Sighting, located, same_clock
 from .vision_results import Seen, seen_messages
 
 log = logging.getLogger(__name__)
 
-VIDEO = "ALVideoDevice"
 MOVEMENT_KEY = "MovementDetection/MovementInfo"
 DEFAULT_TIMEOUT = 10.0
 """s that functions wait for something to be seen, where a message leaves it to us."""
-TORSO, ROBOT = 0, 2
-"""NAOqi's FRAME_TORSO and FRAME_ROBOT."""
 
 
 @dataclass(frozen=True)
@@ -130,26 +124,24 @@ class Watch:
                 yield sightings
 
 
-class DetectionBase(ExtractorUse):
+class DetectionBase(CameraAccess):
     """To be mixed into NaoBasic.
 
     Attributes:
         seen: What the chain saw so far; new for each goal.
         frame_prefix: Prefix of the robot's frames, with its slash; may be empty.
-        active_camera: The camera that functions use where a message names none: top or bottom.
     """
 
     seen: Seen
     frame_prefix: str
-    active_camera: str
     tell: Callable[..., None]  # of NaoVision: feedback
-    _lenses: dict[tuple[int, int], Lens] | None = None
+    _clocks: dict[str, ImageClock] | None = None
 
     @contextmanager
     def watching(self, wanted: Wanted) -> Iterator[Watch]:
         """Have an extractor look during a block."""
         detector = DETECTORS[wanted.kind]
-        with self._camera(detector.module, wanted.camera) as camera, self.events_of(detector.event) as events:
+        with self.looking_through(detector.module, wanted.camera) as camera, self.events_of(detector.event) as events:
             with self.subscribed(detector.module, wanted.kind):
                 yield Watch(self, wanted, events, camera)
 
@@ -177,19 +169,13 @@ class DetectionBase(ExtractorUse):
             return []
         if look.camera != camera or look.in_robot is None or look.in_torso is None:
             return []
-        lens, now = self._lens(camera), self.clock.now()
+        lens, time = self.lens(camera), self._time(wanted.kind, look.time)
         size = wanted.size or DEFAULT_SIZES.get(wanted.kind, 0.0)
         found = []
         for sight in filter(None, map(wanted.picks, look.sights)):
-            region = sight.region or self._region(camera, sight)
-            time = ros_time(look.time, now)
+            region = sight.region or self.region(camera, sight)
             found.append(located(sight, camera, time, region, lens, size, look.in_torso, look.in_robot))
         return found
-
-    def others_of(self, module: str) -> list[str]:
-        """Who else has an extractor work."""
-        subscribers = self.call(self.robot.proxy(module), "getSubscribersInfo")
-        return [name for name, *_ in subscribers if not name.startswith(self.subscriber_for(""))]
 
     def end_leftover_detections(self) -> bool:
         """End what a server of this name could not end, for it was killed; tells whether the robot was asked."""
@@ -212,75 +198,19 @@ class DetectionBase(ExtractorUse):
         if not value:
             return NOTHING
         resolution = int(self.call(self.robot.proxy(DETECTORS[CODE].module), "getResolution"))
-        sights = code_sights(value, *_size(resolution), self._lens(camera))
-        return Look(None, camera, self._camera_pose(camera, TORSO), self._camera_pose(camera, ROBOT), sights)
+        sights = code_sights(value, *_size(resolution), self.lens(camera))
+        return Look(None, camera, self.camera_pose(camera, TORSO), self.camera_pose(camera, ROBOT), sights)
 
-    def _camera_pose(self, camera: int, frame: int) -> Pose:
-        position = self.call(self.robot.proxy(MOTION), "getPosition", CAMERA_FRAMES[camera], frame, True)
-        x, y, z, wx, wy, wz = map(float, position)
-        return x, y, z, wx, wy, wz
-
-    def _lens(self, camera: int) -> Lens:
-        if self._lenses is None:
-            self._lenses = {}
-        key = (self.robot.connection.generation, camera)  # behind a new connection is another robot perhaps
-        if key not in self._lenses:
-            proxy = self.robot.proxy(VIDEO)
-            methods = ("getHorizontalFOV", "getVerticalFOV")
-            self._lenses[key] = Lens(*(float(self.call(proxy, method, camera)) for method in methods))
-        return self._lenses[key]
-
-    def _region(self, camera: int, sight: Sight) -> Region:
-        """Where a sight is in the picture, as the robot itself has it: angles of others are not all geometry's."""
-        angles = [sight.alpha, sight.beta, sight.size_x, sight.size_y]
-        numbers = self.call(self.robot.proxy(VIDEO), "getImageInfoFromAngularInfo", camera, angles)
-        return Region(*map(float, numbers))
-
-    @contextmanager
-    def _camera(self, module: str, wanted: int | None) -> Iterator[int]:
-        """Have an extractor look through a camera during a block; who had it look through another gets that back."""
-        owner = module
-        try:
-            now = int(self.call(self.robot.proxy(module), "getActiveCamera"))
-        except UnknownMethod:  # it looks through the robot's active camera
-            owner = VIDEO
-            now = int(self.call(self.robot.proxy(VIDEO), "getActiveCamera"))
-        camera = CAMERAS[self.active_camera] if wanted is None else wanted
-        if camera == now:
-            yield now
-            return
-        others = self.others_of(module)
-        if others:
-            if wanted is None:
-                yield now
-                return
-            raise InUse(module, others, f"looks through {CAMERA_FRAMES[now]}")
-        if self.begin(owner, "setActiveCamera", [camera], "setActiveCamera", now) is False:
-            raise NaoError(f"{owner} cannot look through {CAMERA_FRAMES[camera]}")
-        proxy = self.robot.proxy(owner)
-        with self.ended_by(lambda: self.call_now(proxy, "setActiveCamera", now), f"{owner} keeps its camera"):
-            yield camera
-
-
-class InUse(NaoError):
-    """An extractor works for others, and what a function needs would disturb them.
-
-    Attributes:
-        module: NAOqi module.
-        others: Who it works for.
-    """
-
-    def __init__(self, module: str, others: Sequence[str], how: str) -> None:
-        """Compose the text.
-
-        Args:
-            module: NAOqi module.
-            others: Who it works for.
-            how: What it does for them that would have to change.
-        """
-        super().__init__(f"{module} {how} for {', '.join(others)}: it cannot be changed while they need it")
-        self.module = module
-        self.others = list(others)
+    def _time(self, kind: str, robot_time: float | None) -> float:
+        """ROS time of a picture, s."""
+        now = self.clock.now()
+        if robot_time is None:
+            return now
+        if same_clock(robot_time, now):
+            return robot_time
+        if self._clocks is None:
+            self._clocks = {name: ImageClock() for name in DETECTORS}
+        return self._clocks[kind].take(robot_time, now)
 
 
 def timeout_of(timeout: float) -> float:

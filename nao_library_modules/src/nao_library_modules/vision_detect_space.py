@@ -124,19 +124,14 @@ def moved(point: Vector, pose: Pose) -> Vector:
     return x + pose[0], y + pose[1], z + pose[2]
 
 
-def ros_time(robot_time: float | None, now: float) -> float:
-    """ROS time of a picture, s.
-
-    The robot's clock counts if it goes with ROS time, as it does in simulated time and where clocks are synchronised.
-    A clock that is far off says nothing: then it is now.
+def same_clock(robot_time: float, now: float) -> bool:
+    """Whether the robot's clock goes with ROS time, as in simulated time and where clocks are synchronised.
 
     Args:
-        robot_time: s; None if it is not known.
+        robot_time: Of a picture, s.
         now: ROS time, s.
     """
-    if robot_time is None or abs(now - robot_time) > CLOCKS_AGREE:
-        return now
-    return robot_time
+    return abs(now - robot_time) <= CLOCKS_AGREE
 
 
 CLOCKS_AGREE = 5.0

@@ -33,8 +33,8 @@ LAST_FRAME_LIMIT = 1.0
 class FrameThread:
     """Takes the frames of a topic in a thread of its own, from its start to its stop, as often as it is started.
 
-    Threads: `_arrived` is called by the one that receives messages; the worker calls `_begin_frames` excepted all
-    hooks; the rest belongs to the thread that executes goals. The condition guards everything that they share.
+    Threads: `_arrived` is called by the one that receives messages, `_handle` and `_end` by the worker. The rest is for
+    the thread that executes goals; `stop` also for the one that ends the node. The condition guards what they share.
 
     Attributes:
         ident: The user's name for it.
@@ -116,6 +116,7 @@ class FrameThread:
             raise BadGoal(
                 "id", self.ident, "stop it first, or take another name", problem=f"{self.ident!r} runs already"
             )
+        self._finish()  # what failed before may still have something open
         self._forget()
         self._begin()
         with self._changed:
@@ -155,17 +156,17 @@ class FrameThread:
 
     def _finish(self) -> None:
         """Unsubscribe, and wait for the worker's end."""
-        if self._subscription is not None:
-            self._subscription.close()
-            self._subscription = None
+        subscription, self._subscription = self._subscription, None
+        if subscription is not None:
+            subscription.close()
         with self._changed:
             self._ended = self._ended or self._clock.now()
             self._changed.notify_all()
-        if self._worker is not None:
-            self._worker.join(END_LIMIT)
-            if self._worker.is_alive():
+        worker = self._worker
+        if worker is not None:
+            worker.join(END_LIMIT)
+            if worker.is_alive():
                 log.warning("%s %r has not ended after %g s", self.kind, self.ident, END_LIMIT)
-            self._worker = None
 
     def report(self) -> VisionThread:
         """What there is to tell about it now."""

@@ -20,7 +20,7 @@ YAWS = (0.0, 0.8, 1.6, 2.0, -0.8, -1.6, -2.0)
 PITCHES = {BALL: (0.2, 0.45)}
 """rad, positive downwards: a ball lies on the floor."""
 USUAL_PITCHES = (0.0, -0.4, 0.3)
-REACTION = 0.3
+REACTION = 0.2
 """s in which the head is to get to where it should look: less is quicker, more is smoother."""
 LEAST_FRACTION = 0.01
 STILL = math.radians(0.7)

@@ -402,6 +402,35 @@ def test_a_recording_that_failed_can_be_started_again(recording, send, monkeypat
     assert (one.report().state, one.report().error, read(one.video.path)) == ("stopped", "", [1, 2])
 
 
+def test_what_failed_at_its_first_frame_leaves_no_subscription(recording, topics, monkeypatch):
+    one = recording()
+    one.stop()
+    monkeypatch.setattr(one, "_handle", lambda _: 1 / 0)
+
+    def at_once(topic):
+        topics.send(topic, numbered_image(1, 60.0))
+        wait_for(lambda: one.report().state == "failed")
+
+    topics.on_subscribe = at_once  # before the subscription is known to the thread
+    one.start()
+    topics.on_subscribe = lambda topic: None
+    monkeypatch.undo()
+    one.start()
+    assert topics.count(CAMERA) == 1
+    one.stop()
+    assert topics.count(CAMERA) == 0
+
+
+def test_a_stop_may_come_from_two_sides(recording, send, in_thread):
+    one = recording()
+    send(3)
+    stops = [in_thread(one.stop) for _ in range(4)]
+    for thread, outcome in stops:
+        thread.join(5.0)
+        assert outcome == [None]
+    assert one.video.frames == 3
+
+
 def test_a_file_that_is_there_is_not_replaced(topics, clock, files):
     (files.folder / "walk.mp4").write_text("precious")
     wish = VideoWish(files.folder / "walk.mp4", "mp4", "h264")

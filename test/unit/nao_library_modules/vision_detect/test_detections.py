@@ -111,6 +111,18 @@ def test_landmarks_with_their_numbers_and_the_median_of_several_looks(vision, ey
     assert eyes.idle()
 
 
+def test_times_of_another_clock_become_ros_time(vision, eyes, clock):
+    """The quickest picture tells how the clocks go together: the later ones are not from when they came."""
+
+    def picture(robot_time):
+        return lambda: eyes.raise_event(MARKS, marks_value(eyes, mark(64), time=robot_time))
+
+    clock.script = [picture(7000.08), picture(7000.20), picture(7000.23)]
+    functions = [f("detectLandmarks")] * 3
+    stamps = [seen.header.stamp.to_sec() for seen in succeed(vision, *functions).objects]
+    assert stamps == pytest.approx([100.1, 100.2, 100.23], abs=0.001)
+
+
 def test_only_the_landmark_that_is_asked_for(vision, eyes, clock):
     clock.script = [
         lambda: eyes.raise_event(MARKS, marks_value(eyes, mark(64))),

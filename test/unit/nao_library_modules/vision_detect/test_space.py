@@ -9,7 +9,7 @@ import pytest
 from fake_seeing import HFOV, VFOV
 
 from nao_library_modules.vision_detect_events import LANDMARK, Lens, Region, Sight
-from nao_library_modules.vision_detect_space import located, ros_time
+from nao_library_modules.vision_detect_space import located
 
 LENS = Lens(HFOV, VFOV)
 HERE = (0.0,) * 6
@@ -50,10 +50,3 @@ def test_a_landmark_is_where_it_is_however_it_hangs(centre, tilt):
     seen = located(sight, 0, 1.0, region, LENS, 0.092, HERE, HERE)
     assert seen.distance == pytest.approx(math.hypot(*centre), rel=0.035)
     assert seen.in_robot == pytest.approx(centre, abs=0.035 * math.hypot(*centre))
-
-
-@pytest.mark.parametrize(
-    ("robot", "now", "time"), [(99.9, 100.0, 99.9), (None, 100.0, 100.0), (3.0, 100.0, 100.0), (100.1, 100.0, 100.1)]
-)
-def test_only_a_clock_that_goes_with_ours_tells_when_a_picture_was_taken(robot, now, time):
-    assert ros_time(robot, now) == time
