@@ -87,6 +87,10 @@ class Broker:
         if entry is not None:
             self._session.unregisterService(entry[0])
 
+    def when_gone(self, callback: Callable[[str], None]) -> None:
+        """Have `callback(module)` called, in a thread of libqi, when a module has left; only after `listen`."""
+        self._session.serviceUnregistered.connect(lambda _, module: callback(module))
+
     def service(self, module: str) -> Any:
         """The service of that name, of the simulator or of a client."""
         return self._session.service(module)

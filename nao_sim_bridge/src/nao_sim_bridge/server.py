@@ -128,6 +128,7 @@ class SimulatorServer:
         self._open_outlets()
         sys.setswitchinterval(SWITCH_INTERVAL)
         self.broker.listen(self.options.address, self.options.port, lambda: not self.ended.is_set())
+        self.broker.when_gone(self._video.client_gone)
         robot_leds = lambda: self.simulation.robot.leds.values  # noqa: E731
         self.memory.add_live(live_keys(self.runner, self.simulation.model, self.simulation.led_layout, robot_leds))
         for key, value in constants(self.options.scene.version).items():

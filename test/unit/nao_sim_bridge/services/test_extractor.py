@@ -38,6 +38,28 @@ def test_it_works_from_the_first_subscriber_to_the_last(extractor, done):
     assert done == ["start", "stop", "start"]
 
 
+def test_every_change_of_subscriptions_is_told(memory):
+    told = []
+    extractor = Extractor("ALTest", memory, lambda: told.append("start"), lambda: told.append("stop"), changed=told.append)
+    one, two = Subscription(100, 0.5), Subscription(200, 0.25)
+    extractor.subscribe("one", 100, 0.5)
+    extractor.subscribe("two", 200, 0.25)
+    extractor.updatePeriod("one", 50)
+    extractor.updatePrecision("one", 1.0)
+    extractor.unsubscribe("one")
+    extractor.unsubscribe("two")
+    assert told == [
+        "start",
+        {"one": one},
+        {"one": one, "two": two},
+        {"one": Subscription(50, 0.5), "two": two},
+        {"one": Subscription(50, 1.0), "two": two},
+        {"two": two},
+        {},
+        "stop",
+    ]
+
+
 def test_who_subscribes_twice_is_one_subscriber(extractor, done):
     extractor.subscribe("one", 100, 0.5)
     extractor.subscribe("one", 200, 0.75)

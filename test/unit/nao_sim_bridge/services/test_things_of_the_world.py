@@ -75,6 +75,7 @@ def test_an_image_comes_from_the_folder_for_recordings(robot, simulation):
     finally:
         path.unlink()
     assert "i" in simulation.objects()
+    assert picture(simulation).shape == (240, 320, 3), "also without the file"
     with pytest.raises(RuntimeError, match="is not inside"):
         simulation.placeObject("{name: j, image: ../../etc/passwd, position: [1.0, 0.0, 0.5]}")
     with pytest.raises(RuntimeError, match="no file 'nowhere.png'"):
