@@ -78,9 +78,9 @@ class Finder:
                 ball = self._look()
                 continue
             x, y = ball.position.x, ball.position.y
-            print(
-                f"the ball is {math.hypot(x, y):.2f} m away, {math.degrees(math.atan2(y, x)):.0f} degrees to the left"
-            )
+            turn = math.degrees(math.atan2(y, x))
+            side = "left" if turn >= 0.0 else "right"
+            print(f"the ball is {math.hypot(x, y):.2f} m away, {abs(turn):.0f} degrees to the {side}")
             if math.hypot(x, y) <= NEAR and ball.camera == "bottom":
                 return ball
             if math.hypot(x, y) > NEAR:

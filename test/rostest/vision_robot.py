@@ -131,7 +131,7 @@ class VisionRobot(unittest.TestCase):
             self.frames(camera, 2)
         began = rospy.get_time()
         self.robot.advance(4.0)
-        self.frames("top", int(3.0 * rate))
+        self.frames("top", int(2.0 * rate))
         length = rospy.get_time() - began
         videos = self.play(*(f("stopRecording", id=camera) for camera in CAMERAS)).recordings
         for video in videos:
@@ -142,7 +142,7 @@ class VisionRobot(unittest.TestCase):
             # A tick of the simulation is 1/120 s. A computer that is too slow leaves frames out, but moves none.
             steps = np.diff(times) * rate
             self.assertLess(np.abs(steps - np.round(steps)).max(), 0.2, times)
-            self.assertEqual(np.median(np.round(steps)), 1.0)
+            self.assertEqual(np.round(steps).min(), 1.0)
 
     def frames(self, ident, count):
         wait_until(
@@ -175,7 +175,7 @@ class VisionRobot(unittest.TestCase):
              "_autostart:=true", "_launchpath:=nao_library cameras.launch", "_record_dir:=own_files"],
         )  # fmt: skip
         try:
-            client = self.robot.action_client("own/NaoVision", NaoVisionAction)
+            client = self.robot.action_client("own/NaoVision", NaoVisionAction, limit=90.0)
             run = send(client, NaoVisionGoal([f("takePicture", timeout=120.0)])).wait(LIMIT)
             self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
             (picture,) = run.result.pictures

@@ -14,7 +14,7 @@ from ..stack import Stack
 from ..stats import Sample
 from ..timings import run_timings
 
-FRAMES = 60
+FRAMES = 30
 # s of wall time, of each look at something.
 LOOK = 3.0
 ROUNDS = 4
