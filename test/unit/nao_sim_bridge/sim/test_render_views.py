@@ -9,32 +9,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PIL import Image
+from seen import AWAY, BLUE, GREEN, MODEL, RED, STATE, UNTURNED, clear, middle, placed, shot, world
 
 from nao_sim_bridge.sim.cameras.places import CameraPlaces
-from nao_sim_bridge.sim.cameras.shot import Shot
 from nao_sim_bridge.sim.errors import UnknownName
-from nao_sim_bridge.sim.kinematics import matrix_quaternion, rpy_matrix
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.readings import Pose
-from nao_sim_bridge.sim.render import RenderState, RobotLook
+from nao_sim_bridge.sim.render import RobotLook
 from nao_sim_bridge.sim.render.engines import open_engine
 from nao_sim_bridge.sim.render.view import View
 from nao_sim_bridge.sim.shapes import Shape
-from nao_sim_bridge.sim.world import Part, World, WorldObject
+from nao_sim_bridge.sim.world import Part, WorldObject
 from nao_sim_bridge.sim.world_pictures import WorldPicture
-from nao_sim_bridge.sim.world_reader import read_world
-
-MODEL = load_model()
-UNTURNED = (0.0, 0.0, 0.0, 1.0)
-GREEN, RED, BLUE = (0.0, 0.9, 0.0), (0.9, 0.0, 0.0), (0.0, 0.0, 0.9)
-STATE = RenderState((0.0, 0.0, 0.333), UNTURNED, posture(MODEL, "Stand"), (0.0,) * 89)
-AWAY = replace(STATE, base_position=(-5.0, 0.0, 0.333))
-
-
-def world(*objects) -> World:
-    content = {"floor": {"friction": 1.0, "color": [0.7, 0.7, 0.7], "tile_color": [0.7, 0.7, 0.7]}}
-    return read_world({**content, "objects": list(objects)}, "test", "test.yaml")
 
 
 @pytest.fixture(scope="module", params=["opengl", "builtin"])
@@ -65,36 +50,9 @@ def engine(name):
         one.close()
 
 
-def placed(*entries, **changes):
-    """The state without the robot, with things of an otherwise empty world."""
-    return replace(AWAY, placed=world(*entries).objects, **changes)
-
-
-def shot(position=(0.0, 0.0, 0.5), rpy=(0.0, 0.0, 0.0), width=320, height=240, fov=(56.3, 43.7)):
-    """As the camera in the head takes it: X is ahead."""
-    hfov, vfov = (math.radians(angle) for angle in fov)
-    return Shot("V6", 0, position, matrix_quaternion(rpy_matrix(rpy)), hfov, vfov, width, height, 11)
-
-
 def from_head(state, camera=0):
     position, orientation = CameraPlaces(MODEL).in_world(state, camera)
     return View.of_shot(replace(shot(), position=position, orientation=orientation))
-
-
-def clear(picture, channel):
-    """(h, w) how much of one primary colour each pixel has beyond the others, 0..1; noise and greys have none."""
-    values = picture.astype(float)
-    others = np.max(np.delete(values, channel, axis=2), axis=2)
-    share = (values[..., channel] - others) / np.maximum(values[..., channel], 1.0)
-    return np.where(share > 0.15, share, 0.0)
-
-
-def middle(weights):
-    """Column and row of the middle, in pixels from the upper left corner."""
-    rows, columns = np.indices(weights.shape)
-    return float(((columns + 0.5) * weights).sum() / weights.sum()), float(
-        ((rows + 0.5) * weights).sum() / weights.sum()
-    )
 
 
 @pytest.mark.parametrize("size", [(160, 120), (320, 240), (640, 480)])

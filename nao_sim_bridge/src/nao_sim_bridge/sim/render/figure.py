@@ -28,7 +28,9 @@ from nao_sim_bridge.sim.visuals import visual_shape
 
 HEAD = ("HeadYaw", "HeadPitch")
 """Links that are in the way of the cameras in the head."""
-FAR_AWAY = (0.0, 0.0, -1000.0)
+FAR_AWAY = (-713.0, 1291.0, -977.0)
+"""Where hidden things are, m. In no straight direction: the engine takes seconds for what a camera has exactly beside
+it."""
 UNTURNED = (0.0, 0.0, 0.0, 1.0)
 
 
