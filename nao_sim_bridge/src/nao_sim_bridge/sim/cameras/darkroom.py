@@ -21,6 +21,8 @@ log = logging.getLogger("nao_sim.cameras")
 
 TIMEOUT = 30.0
 """Longest time for a picture, s of wall time; a busy machine may take a thousand times as long as an idle one."""
+CLOSING = 5.0
+"""How long the end waits for the thread, s of wall time."""
 KEPT = 4
 """How many pictures are kept for those who ask for the same a little later."""
 
@@ -79,13 +81,13 @@ class Darkroom:
         return self._kept[key]
 
     def close(self) -> None:
-        """Do what has been put, and end the thread."""
+        """Do what has been put, and end the thread; a picture that is late is not waited for."""
         with self._news:
             self._closed = True
             self._news.notify()
             thread = self._thread
         if thread is not None and thread is not threading.current_thread():
-            thread.join()
+            thread.join(CLOSING)
 
     def _run(self) -> None:
         while True:

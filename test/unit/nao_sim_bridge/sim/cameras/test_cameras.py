@@ -402,3 +402,23 @@ def test_many_threads_at_once(head):
         head.run()
     assert failures.empty(), failures.get()
     assert head.cameras.streams == () and head.cameras.rate(TOP) == head.cameras.rate(BOTTOM) == 0.0
+
+
+def test_the_cameras_of_an_older_robot(head_of):
+    head = head_of(version="V5")
+    stream = head.open(color_space=11)
+    head.pictures.color = (130, 122, 116)
+    head.run()
+    frame = head.take(stream)
+    assert np.degrees((frame.hfov, frame.vfov)) == pytest.approx((60.9, 47.6))
+    white_balance, automatic = 33, 12
+    seen = head.cameras.parameter(TOP, white_balance)
+    assert seen < 4600, "the light is warm"
+    head.cameras.set_parameter(TOP, automatic, 0)
+    assert head.cameras.parameter(TOP, white_balance) == seen
+    head.cameras.set_parameter(TOP, white_balance, 6500)
+    assert head.cameras.parameter(TOP, white_balance) == 6500
+    with pytest.raises(BadValue, match="resolution is 4"):
+        head.open(resolution=4)
+    with pytest.raises(BadValue, match="parameter is 40"):
+        head.cameras.parameter(TOP, 40)
