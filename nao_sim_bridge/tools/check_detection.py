@@ -30,11 +30,13 @@ from nao_sim_bridge.sim.landmarks import load_landmarks
 from nao_sim_bridge.sim.vision.ball import BallDetector
 from nao_sim_bridge.sim.vision.barcodes import BarcodeDetector
 from nao_sim_bridge.sim.vision.landmarks import LandmarkDetector
+from nao_sim_bridge.sim.world_cards import THICKNESS
 
 EYES = (-0.6, -1.6, 0.47)
 """Where the camera is, m: a standing robot's, with four metres of floor and a rug ahead."""
 FREE = (-1.3, 0.6)
 """There is floor ahead between these X, m: further out are a wall and a chair."""
+FRONT = THICKNESS / 2.0
 AHEAD = math.pi / 2.0
 BALL_DISTANCES = (0.3, 0.5, 0.75, 1.0, 1.5, 2.0)
 BALL_RADII = (0.03, 0.05)
@@ -218,7 +220,9 @@ class Checks:
         roll = self._random.uniform(-math.pi, math.pi)
         level = math.asin((view.position - place)[2] / distance)
         pitch, yaw = (-level, facing + side * math.radians(tilt)) if aside else (side * math.radians(tilt), facing)
-        mark = thing("target", place, landmark=number, rpy=[roll, pitch, yaw])
+        # What is printed on a card is on its front.
+        behind = FRONT * np.array((math.cos(pitch) * math.cos(yaw), math.cos(pitch) * math.sin(yaw), -math.sin(pitch)))
+        mark = thing("target", place - behind, landmark=number, rpy=[roll, pitch, yaw])
         image = self._stage.picture(view, [mark], QVGA, self._seed(), parameters)
         found = self._timed(tally, self._marks, image)
         tally.wanted += 1

@@ -68,7 +68,7 @@ class LandmarkCode:
             lens: Of the picture.
         """
         # Which end of a slanted disc is nearer cannot be told from its edge.
-        both = [slant for slant in ellipse.slants(lens) if np.linalg.norm(slant) >= LEAST_SLANT] or [None]
+        both = [slant if np.linalg.norm(slant) >= LEAST_SLANT else None for slant in ellipse.slants(lens)]
         readings = [reading for side in both for reading in self._read(grey, ellipse, side)]
         return max(readings, key=lambda reading: reading.quality, default=None)
 

@@ -24,6 +24,8 @@ LEAST_DARK = 0.2
 """Share of its box that is dark, at least: rim and hub of a slanted mark with many fans."""
 SHARES = np.linspace(0.82, 1.22, 21)
 """Where along the rays, as shares of the radius: from the black rim to the white card."""
+NEEDED = SHARES <= 1.1
+"""How much of the card has to be in the picture."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,7 @@ class LandmarkDetector:
         for _ in range(ROUNDS):
             places = ellipse.points(turns, SHARES)
             high = np.array(grey.shape[::-1]) - 1.0
-            if np.any(places < 0.5) or np.any(places > high + 0.5):
+            if np.any(places[:, NEEDED] < 0.5) or np.any(places[:, NEEDED] > high + 0.5):
                 return None  # not wholly in the picture
             values = sample(grey, places)
             dark, light = values[:, :8].min(axis=1), values[:, -8:].max(axis=1)
