@@ -22,7 +22,7 @@ class ImageClock:
 
     def __init__(self) -> None:
         """Begin a stream."""
-        self._latest: deque[tuple[float, float]] = deque()  # robot's time, and how much later it is in ROS time
+        self._latest: deque[tuple[float, float]] = deque()  # ROS time of arrival, and robot's time before that
         self._last = (0.0, 0.0)
 
     def restart(self) -> None:
@@ -43,8 +43,8 @@ class ImageClock:
         if robot < last_robot or now < last_ros:
             self._latest.clear()  # a clock was set back
         first = not self._latest
-        self._latest.append((robot, now - robot))
-        while len(self._latest) > LEAST and robot - self._latest[0][0] > WINDOW:
+        self._latest.append((now, now - robot))
+        while len(self._latest) > LEAST and now - self._latest[0][0] > WINDOW:
             self._latest.popleft()
         ros = robot + min(late for _, late in self._latest)
         if not first:

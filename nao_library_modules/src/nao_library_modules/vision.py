@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
-import socket
 from collections.abc import Sequence
 from typing import Any
 
 from nao_library_actions.msg import NaoVisionAction
 
 from .answers import Outcome
+from .extractor_use import subscriber_name
 from .nao_basic import NaoBasic
 from .vision_detect import TYPED, DetectionFunctions
 from .vision_faces import FaceFunctions
@@ -103,7 +102,7 @@ class NaoVision(
         self.active_camera = "top"
         self.seen = Seen()
         self.taken = Taken()
-        self.subscriber = re.sub(r"\W+", "_", f"NaoVision_{socket.gethostname()}{self._edge.namespace}").strip("_")
+        self.subscriber = subscriber_name("NaoVision", str(self._edge.namespace))
         self.frame_prefix = self._edge.frame_prefix()
         self._progress = (0, "", 0)
         self._took_over = False

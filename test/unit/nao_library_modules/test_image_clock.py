@@ -54,7 +54,7 @@ def test_a_robot_whose_time_goes_slower_is_followed():
         taken = number / 15.0
         arrived = 500.0 + taken / 0.5 + 0.02
         ros = clock.take(taken, arrived)
-        assert arrived - ros < 1.1
+        assert arrived - ros < 0.6
 
 
 def test_few_pictures_are_compared_as_well():
