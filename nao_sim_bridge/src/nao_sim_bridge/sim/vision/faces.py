@@ -19,6 +19,8 @@ FINDER, SECOND_OPINION = "haarcascade_frontalface_alt.xml", "haarcascade_frontal
 LEAST, STEP, AGREE = 20, 1.1, 3
 # The second cascade looks at a face enlarged to this width with some of its surroundings, px and share of the width.
 SECOND_WIDTH, SECOND_MARGIN = 96, 0.25
+# Nobody is blue or green, in whatever light: the most blue and green for each red, in the middle of a face.
+MOST_BLUE, MOST_GREEN = 1.15, 1.15
 # While faces are known, the whole picture is looked through this often only, s; in between, near them.
 WHOLE_PICTURE_EVERY = 0.3
 NEAR = 0.6
@@ -93,7 +95,7 @@ class FaceDetector:
         else:
             boxes = self._find(grey)
             self._whole_at = settings.time
-        boxes = sorted(boxes, key=lambda box: -box[2])
+        boxes = sorted((box for box in boxes if _has_skin(image, box)), key=lambda box: -box[2])
         if not settings.track:
             self._tracks.clear()
         numbers = self._tracks.follow(boxes, grey.shape, settings.time)
@@ -155,6 +157,14 @@ class FaceDetector:
 
 def _cascade(name: str) -> cv2.CascadeClassifier:
     return cv2.CascadeClassifier(cv2.data.haarcascades + name)
+
+
+def _has_skin(image: np.ndarray, box: Box) -> bool:
+    """Whether what is in a frame could have the colour of skin; a grey picture has."""
+    x, y, width, height = box
+    inner = image[round(y + 0.3 * height) : round(y + 0.8 * height), round(x + 0.25 * width) : round(x + 0.75 * width)]
+    blue, green, red = np.median(inner.reshape(-1, 3), axis=0) + 1.0
+    return bool(blue < MOST_BLUE * red and green < MOST_GREEN * red)
 
 
 def _overlap(one: Box, other: Box) -> bool:

@@ -35,6 +35,14 @@ def test_an_empty_wall_has_no_face(detector):
     assert [find(detector, wall(seed).clip(0, 255).astype(np.uint8), 0.1 * seed) for seed in range(5)] == [[]] * 5
 
 
+def test_nobody_is_blue(detector):
+    picture = face_picture("ben", 1.0)
+    assert len(find(detector, picture, track=False)) == 1
+    assert find(detector, np.ascontiguousarray(picture[:, :, ::-1]), track=False) == []
+    grey = np.repeat(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)[..., None], 3, axis=2)
+    assert len(find(detector, grey, track=False)) == 1
+
+
 def test_two_faces_are_two_the_larger_first(detector):
     picture = face_picture("anna", 1.2, place=(160, 240))
     picture = face_picture("hugo", 0.8, place=(460, 240), picture=picture)
