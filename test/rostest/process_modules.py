@@ -156,8 +156,10 @@ class ProcessModules(unittest.TestCase):
         said = []
         subscriber = rospy.Subscriber("speech", String, lambda message: said.append(message.data))
         self.addCleanup(subscriber.unregister)
+        self.link.publisher("speech", String)
+        wait_until(subscriber.get_num_connections, 20.0, "the publisher")
         text_to_speech("I am here.")
-        wait_until(lambda: said == ["I am here."], 20.0, "the sentence on the topic")
+        wait_until(lambda: "I am here." in said, 20.0, "the sentence on the topic")
         done = self.robot.value
         wait_until(lambda: done("ALTextToSpeech/CurrentSentence") == "I am here.", 20.0, "the sentence on the robot")
 
