@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Draws the pictures of README.md anew: the simulated robot standing, sitting, lying, waving, and in the lab.
+"""Draws the pictures of README.md anew: the simulated robot standing, sitting, lying, waving, and in rooms.
 
-And what it leaves behind when it walks: its footprints; and what its microphones hear of a dialogue.
+And what it leaves behind when it walks: its footprints; what its microphones hear of a dialogue; what its cameras see
+and what it recognises there.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import qi
 from readme_dialogue import Dialogue
+from readme_sight import draw_sight
 
 from nao_library_modules import dialogue_record
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
@@ -85,6 +87,9 @@ def draw(folder: Path) -> None:
     with Sitter(Scene(world="lab"), folder) as robot:
         robot.go_to("Stand")
         robot.save("lab", "room", *ROOM_SIZE)
+    with Sitter(Scene(world="gallery"), folder) as robot:
+        robot.go_to("Stand")
+        robot.save("gallery", "room", *ROOM_SIZE)
 
 
 def draw_walk(folder: Path) -> None:
@@ -117,6 +122,8 @@ def main() -> int:
     folder = parser.parse_args().folder
     folder.mkdir(parents=True, exist_ok=True)
     draw(folder)
+    draw_sight(folder / "sight.png")
+    print("sight.png", flush=True)
     draw_walk(folder)
     draw_dialogue(folder)
     return 0

@@ -8,6 +8,7 @@ be chosen by name:
   ball       red balls of 3 and 5 cm radius on the floor, also with half of them behind the edge of the picture
   light      the same in dim and in bright light and with the camera's settings changed
   landmarks  landmarks of 9 cm, facing the camera and slanted, in any rotation
+  red        boxes, cups and capsules as red as the ball: how often one is taken for it (no bound)
   codes      QR codes of 15 cm and barcodes of 20 cm (no bound)
   lab        a camera that looks around in the lab: no ball but its own, no mark, no code
 """
@@ -31,6 +32,7 @@ from nao_sim_bridge.sim.vision.ball import BallDetector
 from nao_sim_bridge.sim.vision.barcodes import BarcodeDetector
 from nao_sim_bridge.sim.vision.landmarks import LandmarkDetector
 from nao_sim_bridge.sim.world_cards import THICKNESS
+from nao_sim_bridge.sim.world_objects import BALL_RED
 
 EYES = (-0.6, -1.6, 0.47)
 """Where the camera is, m: a standing robot's, with four metres of floor and a rug ahead."""
@@ -150,6 +152,29 @@ class Checks:
                 for _ in range(self._count):
                     self._one_mark(tally, distance, tilt, {})
                 self._judge(f"landmark at {distance:.2f} m, tilt {tilt:2d} deg", tally)
+
+    def red(self) -> None:
+        """Red things that are no balls."""
+        draw = self._random.uniform
+        kinds = {
+            "cubes": lambda: {"box": [float(draw(0.04, 0.12))] * 3},
+            "boxes": lambda: {"box": draw(0.03, 0.15, 3).tolist()},
+            "cups": lambda: {"cylinder": [float(draw(0.025, 0.05)), float(draw(0.04, 0.12))]},
+            "capsules": lambda: {"capsule": [float(draw(0.02, 0.05)), float(draw(0.03, 0.1))]},
+        }
+        for name, shape in kinds.items():
+            tally = Tally()
+            for _ in range(self._count):
+                distance, alpha, beta = draw(0.4, 2.0), draw(-0.3, 0.3), draw(-0.2, 0.2)
+                view = self._view(distance, alpha, beta, draw(0.0, 0.3), lowest=0.1)
+                place, rpy = view.at(distance, alpha, beta), draw(-0.6, 0.6, 3).tolist()
+                red = thing("target", place, color=list(BALL_RED), rpy=rpy, **shape())
+                image = self._stage.picture(view, [red], QVGA, self._seed(), gone=["ball"])
+                found = self._timed(tally, self._ball, image)
+                tally.wrong += bool(found)
+                if found:
+                    self._keep(image, f"{name} at {distance:.2f} m: {found}")
+            self._judge(f"ball: {self._count} red {name}", tally, bounded=False)
 
     def codes(self) -> None:
         """Codes by kind and distance."""
@@ -289,13 +314,13 @@ class Checks:
         print(f"{what:42s} {tally.text()}{mark}", flush=True)
 
 
-PARTS = ("ball", "light", "landmarks", "codes", "lab")
+PARTS = ("ball", "light", "landmarks", "red", "codes", "lab")
 
 
 def options(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", metavar="part", help="ball, light, landmarks, codes, lab; all by default")
+    parser.add_argument("parts", nargs="*", metavar="part", help=f"{', '.join(PARTS)}; all by default")
     parser.add_argument("--count", type=int, default=40, help="pictures of each kind")
     parser.add_argument("--frames", type=int, default=200, help="pictures of the lab")
     parser.add_argument("--seed", type=int, default=1)

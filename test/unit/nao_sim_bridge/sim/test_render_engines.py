@@ -57,6 +57,17 @@ def test_without_opengl_the_built_in_engine_draws_and_one_warning_says_how_to_ge
     assert HELP in warning
 
 
+def test_a_driver_that_takes_its_process_with_it_is_done_without(tmp_path, monkeypatch, caplog):
+    (tmp_path / "moderngl.py").write_text("import os\nos._exit(7)\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with Renderer() as own:
+        assert own.start().engine.startswith("the built-in renderer")
+    (warning,) = warnings_of(caplog)
+    assert "ended with status 7" in warning
+    with pytest.raises(RenderError, match="ended with status 7"):
+        Renderer(engine="opengl").start()
+
+
 def test_who_wants_nothing_but_opengl_gets_an_error_without_it(no_opengl):
     with pytest.raises(RenderError, match=f"OpenGL: .*{HELP}"):
         Renderer(engine="opengl").start()

@@ -144,19 +144,34 @@ class Renderer:
 
     def _ensure_worker(self) -> ChildProcess:
         if self._worker is None:
-            worker = _process(f"pictures:{self._asked}", self._world_name, self._version)
-            try:
-                engine, complaint = worker.receive(START_TIMEOUT, "starting")
-            except RenderError:
-                worker.stop()
-                raise
+            worker, engine, complaint = self._start_worker()
             if self._engine is None:
                 if complaint:
                     log.warning("%s", complaint)
                 log.info("pictures are drawn by %s", engine)
-            self._worker, self._engine = worker, engine
-            self._sender = StateSender()
+            self._worker, self._engine, self._sender = worker, engine, StateSender()
         return self._worker
+
+    def _start_worker(self) -> tuple[ChildProcess, str, str | None]:
+        """A process that is ready, what draws in it, and what is to be complained of."""
+        try:
+            return self._start_with(self._asked)
+        except PictureRefused:
+            raise
+        except RenderError as error:
+            if self._asked != "auto":
+                raise
+            # A driver may take its process with it.
+            worker, engine, _ = self._start_with("builtin")
+            return worker, engine, f"pictures are drawn slowly, for with OpenGL there is an error: {error}"
+
+    def _start_with(self, engine: str) -> tuple[ChildProcess, str, str | None]:
+        worker = _process(f"pictures:{engine}", self._world_name, self._version)
+        try:
+            return (worker, *worker.receive(START_TIMEOUT, "starting"))
+        except RenderError:
+            worker.stop()
+            raise
 
 
 class Viewer:

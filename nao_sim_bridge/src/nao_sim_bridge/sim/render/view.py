@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 NEAR = 0.02
 """Nearer things are not drawn, m: a camera of the robot looks through the shell in front of it."""
 
+FEW_PIXELS = 160 * 120
+"""Pictures of a robot's camera that are no larger have smooth edges: there it matters most and costs least."""
+
 
 @dataclass(frozen=True, eq=False)
 class View:
@@ -71,6 +74,7 @@ class View:
             (math.tan(shot.hfov / 2.0), math.tan(shot.vfov / 2.0)),
             shot.width,
             shot.height,
+            samples=2 if shot.width * shot.height <= FEW_PIXELS else 1,
             from_head=True,
         )
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from seen_cards import OPTICS, card
@@ -52,6 +54,16 @@ def test_barcodes_are_read(detector, content, text, kind):
     (code,) = detector.detect(picture, OPTICS)
     assert (code.text, code.kind) == (text, kind)
     assert middle(code) == pytest.approx((320.0, 240.0), abs=40.0)
+
+
+@pytest.mark.parametrize("number", ["4006381333931", "5901234123457", "9780201379624"])
+def test_an_article_number_is_rather_not_read_than_wrongly(detector, number):
+    read = []
+    for turn in range(16):
+        distance, yaw = 0.3 + 0.02 * turn, 0.4 * math.sin(turn)
+        picture = card(WorldPicture("barcode", number), 0.2, distance, alpha=0.01 * turn, yaw=yaw, seed=turn)
+        read += [code.text for code in detector.detect(picture, OPTICS)]
+    assert set(read) == {number}
 
 
 def test_two_codes_come_from_left_to_right(detector):

@@ -12,7 +12,8 @@ from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.render.opengl.canvas import Canvases
 from nao_sim_bridge.sim.render.opengl.context import describe, open_context
 from nao_sim_bridge.sim.render.opengl.geometry import POSITION_FORMAT, VERTEX_FORMAT, VERTEX_NAMES
-from nao_sim_bridge.sim.render.opengl.items import CORE_WHITE, Items, spheres_in_sight
+from nao_sim_bridge.sim.render.opengl.items import Items, spheres_in_sight
+from nao_sim_bridge.sim.render.opengl.robot_rows import CORE_WHITE
 from nao_sim_bridge.sim.render.opengl.scene_block import BLOCK, camera_block, world_constants
 from nao_sim_bridge.sim.render.opengl.shaders import sources
 from nao_sim_bridge.sim.render.opengl.shadow_map import ShadowMap

@@ -10,21 +10,22 @@ import numpy as np
 
 from nao_sim_bridge.sim.appearance import Appearance
 from nao_sim_bridge.sim.errors import UnknownName
-from nao_sim_bridge.sim.kinematics import finger_transforms, link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.sim.kinematics import quaternion_matrix, transform
 from nao_sim_bridge.sim.meshes import tessellate
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.render.figure import HEAD
 from nao_sim_bridge.sim.render.opengl.geometry import COMMAND, Geometry, Piece
 from nao_sim_bridge.sim.render.opengl.looks import Look, robot_looks, thing_looks
-from nao_sim_bridge.sim.render.scene import RenderState, RobotLook
+from nao_sim_bridge.sim.render.opengl.robot_rows import RobotRows
+from nao_sim_bridge.sim.render.scene import RenderState
 from nao_sim_bridge.sim.shapes import Shape
 from nao_sim_bridge.sim.world import World, WorldObject
 from nao_sim_bridge.sim.world_builder import heaps_of_bumps, place_of
 from nao_sim_bridge.sim.world_pictures import WorldPicture
 
-CORE_WHITE = 0.12
-"""Share of white in the light of a lamp: a saturated colour alone looks like paint, not like light."""
+RUG = "rug"
+"""Frame of the looks of rugs, which throw no shadow."""
 RUG_HEIGHT = 0.0002
 """Of each rug over the one before it, m."""
 AT_HOME = 0.005
@@ -96,7 +97,7 @@ class Items:
         mine = slice(first_robot, first_robot + per_robot)
         self.of_head[mine] = [look.frame in HEAD for look in self._looks[mine]]
         self._robots = [
-            _Robot(model, appearance, self._looks[mine], slice(start, start + per_robot))
+            RobotRows(model, appearance, self._looks[mine], slice(start, start + per_robot))
             for start in range(first_robot, count, per_robot)
         ]
         self._centers = np.array([fine.center for fine, _ in self._pieces])
@@ -180,62 +181,6 @@ class Items:
             self._looks += looks
             self._pieces += self._pieces[first]
             self._starts += self._starts[first]
-
-
-RUG = "rug"
-
-
-class _Robot:
-    """Where the items of one robot are.
-
-    Args:
-        model: The robot.
-        appearance: Its looks.
-        looks: Of its items.
-        items: Their numbers.
-    """
-
-    def __init__(self, model: RobotModel, appearance: Appearance, looks: Sequence[Look], items: slice) -> None:
-        self._model = model
-        self._appearance = appearance
-        self._items = items
-        self._frames = list(dict.fromkeys(look.frame for look in looks))
-        self._frame_of_item = np.array([self._frames.index(look.frame) for look in looks])
-        self._lamps = np.array([look.lamp for look in looks])
-        self._hands = [(joint.parent_link, joint.name[0], i) for i, joint in enumerate(model.joints) if joint.is_hand]
-        self._posed: tuple | None = None
-        self._lit: tuple[float, ...] | None = None
-
-    def show(self, look: RobotLook, matrices: np.ndarray, glow: np.ndarray) -> None:
-        """Write where its items are, and their light."""
-        pose = (look.base_position, look.base_orientation, look.joint_positions)
-        if pose != self._posed:
-            matrices[self._items] = self._poses(look)[self._frame_of_item]
-            self._posed = pose
-        if look.led_values != self._lit:
-            glow[self._items] = self._light(look.led_values)
-            self._lit = look.led_values
-
-    def _poses(self, look: RobotLook) -> np.ndarray:
-        """(f, 3, 4) of all frames."""
-        base = transform(quaternion_matrix(look.base_orientation), look.base_position)
-        links = link_transforms(self._model, look.joint_positions)
-        poses = {name: base @ pose for name, pose in links.items()}
-        for wrist, side, index in self._hands:
-            for phalanx, pose in finger_transforms(self._model, look.joint_positions[index]).items():
-                poses[side + phalanx] = poses[wrist] @ pose
-        return np.array([poses[frame][:3] for frame in self._frames])
-
-    def _light(self, values: Sequence[float]) -> np.ndarray:
-        """(items, 4) glow of all items."""
-        light = np.zeros((len(self._lamps), 4))
-        colors = np.array([figure.lamp.rgb(values) for figure in self._appearance.lamps])
-        level = colors.max(axis=1)
-        full = colors / np.where(level > 0.0, level, 1.0)[:, None] * (1.0 - CORE_WHITE) + CORE_WHITE
-        of_lamp = self._lamps >= 0
-        light[of_lamp, :3] = full[self._lamps[of_lamp]]
-        light[of_lamp, 3] = level[self._lamps[of_lamp]]
-        return light
 
 
 def spheres_in_sight(centers: np.ndarray, radii: np.ndarray, tangents: tuple[float, float], near: float) -> np.ndarray:
