@@ -19,12 +19,12 @@ from typing import Mapping, Sequence
 from nao_library_modules.demo_support import (
     SOUND,
     Stack,
-    can_connect,
     count_green_pixels,
     loud_time,
     wait_until,
     write_table,
 )
+from nao_library_modules.own_stack import can_connect
 
 DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
 EYE_ANGLES = tuple(range(0, 360, 45))

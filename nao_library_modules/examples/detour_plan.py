@@ -4,7 +4,7 @@
 It walks straight to a place; when it is stopped it steps back and tries a way around, first on the right, then on the
 left.
 
-Needs a running robot, for example `roslaunch nao_library nao_sim.launch world:=obstacles`: a low wall stands between it
+Needs a running robot, for example `roslaunch nao_library nao_sim.launch world:=wall`: a low wall stands between it
 and the place. Ctrl-C ends it: the robot stops.
 """
 
@@ -34,9 +34,9 @@ from nao_library_modules.process_modules.registry import perform
 
 BACK = 0.15
 """m that it steps back from what stopped it."""
-ASIDE = 0.8
+ASIDE = 0.6
 """m that it goes around on each side of the straight way."""
-PAST = 0.6
+PAST = 0.9
 """m that it goes past the place where it was stopped."""
 
 

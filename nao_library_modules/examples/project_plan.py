@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs a plan in a simulator of its own, as fast as that goes, before it runs on the robot; and compares both runs.
 
-    project_plan.py detour_plan.py 1.6 -0.1 --world obstacles
+    project_plan.py detour_plan.py 1.6 -0.1 --world wall
 
 The plan is the program of an example, or of yours, that takes `--trace FILE`. When it fails in the simulator the robot
 does not move. The robot is what answers on this ROS master, for example

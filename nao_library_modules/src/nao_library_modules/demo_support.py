@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import socket
 import time
 from pathlib import Path
 from typing import Callable, Sequence
@@ -62,12 +61,6 @@ def wait_until(ready: Callable[[], bool], limit: float, what: str, going_on: Cal
         if time.monotonic() > give_up or not going_on():
             raise RuntimeError(f"{what} did not become ready within {limit:g} s")
         time.sleep(0.1)
-
-
-def can_connect(port: int) -> bool:
-    """Whether something listens on a port of this machine."""
-    with socket.socket() as probe:
-        return probe.connect_ex(("127.0.0.1", port)) == 0
 
 
 def write_table(rows: Sequence[tuple[str, str, bool]], path: Path) -> None:

@@ -6,9 +6,12 @@ import os
 import signal
 import socket
 import subprocess
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
+START_LIMIT = 90.0
+PERIOD = 0.05
 LIMITS = ((signal.SIGINT, 15.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0))
 
 
@@ -49,6 +52,23 @@ class OwnStack:
         """Whether roslaunch still runs."""
         return self._process.poll() is None
 
+    def wait_for_robot(self, limit: float = START_LIMIT) -> None:
+        """Wait until the simulated robot answers: parameters are set then, and nodes come up.
+
+        Args:
+            limit: s.
+
+        Raises:
+            TimeoutError: It does not, or roslaunch has ended.
+        """
+        deadline = time.monotonic() + limit
+        while not can_connect(self.nao_port):
+            if not self.alive() or time.monotonic() > deadline:
+                words = self.log.read_text(encoding="utf-8", errors="replace").strip().rpartition("\n")[2]
+                why = f"not there within {limit:g} s" if self.alive() else f"roslaunch has ended: {words}"
+                raise TimeoutError(f"the simulated robot does not come up: {why}")
+            time.sleep(PERIOD)
+
     def stop(self) -> None:
         """End everything that was started."""
         for number, limit in LIMITS:
@@ -64,6 +84,13 @@ class OwnStack:
 
     def __exit__(self, *_: object) -> None:
         self.stop()
+
+
+def can_connect(port: int) -> bool:
+    """Whether somebody listens on a port of this computer."""
+    with socket.socket() as probe:
+        probe.settimeout(1.0)
+        return probe.connect_ex(("127.0.0.1", port)) == 0
 
 
 def free_port() -> int:

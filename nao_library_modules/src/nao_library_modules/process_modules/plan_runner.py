@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import rospy
 from std_srvs.srv import Empty
 
 from .control import Branch, top_level
-from .failures import PlanFailure
+from .failures import LowLevelFailure, PlanFailure
 from .low_level import make_process_modules, this_robot
 from .plan_topic import PlanTopic
 from .registry import with_process_modules_running
@@ -19,6 +20,9 @@ from .tasks import Task
 from .trace import Trace, trace_of
 
 WAKE_UP = "wakeup"
+ROBOT_LIMIT = 60.0
+"""s to wait for the driver, and until it has reached the robot."""
+RETRY = 0.5
 
 
 class PlanRun:
@@ -77,9 +81,23 @@ class PlanRun:
 
 
 def wake_up() -> None:
-    """Have the robot stand with its motors on: what walks and moves needs that. Waits for the driver."""
-    rospy.wait_for_service(WAKE_UP)
-    rospy.ServiceProxy(WAKE_UP, Empty)()
+    """Have the robot stand with its motors on: what walks and moves needs that. Waits for the driver and the robot.
+
+    Raises:
+        LowLevelFailure: The robot cannot be reached, or does not stand up.
+    """
+    deadline = time.monotonic() + ROBOT_LIMIT
+    while True:
+        try:
+            rospy.wait_for_service(WAKE_UP, ROBOT_LIMIT)
+            rospy.ServiceProxy(WAKE_UP, Empty)()
+            return
+        except rospy.ServiceException as error:  # the driver has not reached the robot yet
+            if time.monotonic() > deadline:
+                raise LowLevelFailure(f"the robot does not wake up: {error}") from error
+        except rospy.ROSException as error:
+            raise LowLevelFailure(f"there is no service {rospy.resolve_name(WAKE_UP)}: is a driver running?") from error
+        time.sleep(RETRY)
 
 
 def run_and_tell(plan: Branch, name: str = "", trace: str = "", picture: str = "") -> int:

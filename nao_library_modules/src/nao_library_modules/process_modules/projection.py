@@ -39,11 +39,15 @@ def project(
         launch: Further arguments of nao_sim.launch, by name.
 
     Raises:
-        ProjectionFailed: It kept no trace.
+        ProjectionFailed: The simulator does not come up, or there is no trace.
     """
     with tempfile.TemporaryDirectory(prefix="projection_") as folder:
         given = {"world": world, "speed": AS_FAST_AS_POSSIBLE, "record_dir": folder, **(launch or {})}
         with OwnStack(Path(folder) / "stack.log", given) as stack:
+            try:
+                stack.wait_for_robot()  # a program that begins before has another time
+            except TimeoutError as error:
+                raise ProjectionFailed(str(error)) from error
             return run_program(program, arguments, stack.master_uri, Path(folder))
 
 

@@ -121,11 +121,18 @@ def _see_floor(floor: Floor, client: int) -> int:
         visualFramePosition=(0.0, 0.0, -extents[2]),
         physicsClientId=client,
     )
-    return _body([seen, *(_see_rug(rug, client) for rug in floor.rugs)], NOWHERE, floor.orientation, client)
+    return _body(
+        [seen, *(_see_rug(rug, number, client) for number, rug in enumerate(floor.rugs, 1))],
+        NOWHERE,
+        floor.orientation,
+        client,
+    )
 
 
-def _see_rug(rug: Rug, client: int) -> int:
-    shape = Shape("box", (*rug.size, RUG_THICKNESS), (*rug.center, RUG_THICKNESS / 2.0), (0.0, 0.0, rug.yaw))
+def _see_rug(rug: Rug, number: int, client: int) -> int:
+    # Each is higher than the one before it, on which it may lie.
+    height = number * RUG_THICKNESS
+    shape = Shape("box", (*rug.size, height), (*rug.center, height / 2.0), (0.0, 0.0, rug.yaw))
     return visual_shape(tessellate(shape).placed(shape), rug.color, client)
 
 

@@ -40,7 +40,9 @@ def test_it_works_from_the_first_subscriber_to_the_last(extractor, done):
 
 def test_every_change_of_subscriptions_is_told(memory):
     told = []
-    extractor = Extractor("ALTest", memory, lambda: told.append("start"), lambda: told.append("stop"), changed=told.append)
+    extractor = Extractor(
+        "ALTest", memory, lambda: told.append("start"), lambda: told.append("stop"), changed=told.append
+    )
     one, two = Subscription(100, 0.5), Subscription(200, 0.25)
     extractor.subscribe("one", 100, 0.5)
     extractor.subscribe("two", 200, 0.25)

@@ -6,8 +6,6 @@ from typing import Any
 
 from nao_sim_bridge.services.memory_store import MemoryStore
 
-NOTHING: list[Any] = []
-
 
 class Sight:
     """The event of one extractor. Used by its watching only, so in one thread at a time.
@@ -24,7 +22,7 @@ class Sight:
         self._event = event
         self._tell_end = tell_end
         self._something = False
-        memory.reset_event(event, NOTHING)
+        memory.reset_event(event, [])
 
     def show(self, value: list[Any]) -> None:
         """Something was seen."""
@@ -34,7 +32,7 @@ class Sight:
     def nothing(self) -> None:
         """Nothing was seen in a picture."""
         if self._something and self._tell_end:
-            self._memory.raise_event(self._event, NOTHING)
+            self._memory.raise_event(self._event, [])
         elif self._something:
-            self._memory.reset_event(self._event, NOTHING)
+            self._memory.reset_event(self._event, [])
         self._something = False

@@ -9,6 +9,7 @@ from nao_sim_bridge.sim.errors import SimulationError
 
 VERSION = 430
 """Draws of many things in one call came with it; software has more than that since years."""
+MOST_THREADS = 4
 # Names with their numbers, for the links without are part of packages for developers.
 LIBRARIES = {"libgl": "libGL.so.1", "libegl": "libEGL.so.1"}
 
@@ -22,8 +23,8 @@ def open_context() -> Any:
     """
     # Mesa tells on the standard error what it would have liked better than what it takes.
     os.environ.setdefault("EGL_LOG_LEVEL", "fatal")
-    # In software: one thread beside this one, so that a computer of two cores has one left for the simulation.
-    os.environ.setdefault("LP_NUM_THREADS", "1")
+    # In software: threads beside this one, which mostly waits for them. A core is left for the simulation.
+    os.environ.setdefault("LP_NUM_THREADS", str(max(1, min(MOST_THREADS, (os.cpu_count() or 1) - 1))))
     import moderngl
 
     try:

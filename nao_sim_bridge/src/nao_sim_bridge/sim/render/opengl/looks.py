@@ -47,10 +47,11 @@ class Look:
     coarse: Look | None = None
 
 
-def robot_looks(model: RobotModel, appearance: Appearance) -> list[Look]:
+@lru_cache(maxsize=2)
+def robot_looks(model: RobotModel, appearance: Appearance) -> tuple[Look, ...]:
     """One look a link and phalanx, and one a lamp."""
     fine, coarse = (_robot_looks(model, appearance, around) for around in (AROUND, COARSE))
-    return [replace(look, coarse=rough) for look, rough in zip(fine, coarse)]
+    return tuple(replace(look, coarse=rough) for look, rough in zip(fine, coarse))
 
 
 @lru_cache(maxsize=64)
