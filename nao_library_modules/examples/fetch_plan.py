@@ -12,11 +12,10 @@ import sys
 import rospy
 
 from nao_library_modules.process_modules import action_rules  # noqa: F401  what actions are in numbers
-from nao_library_modules.process_modules.control import do, par, seq
+from nao_library_modules.process_modules.control import do, par, seq, try_in_order
 from nao_library_modules.process_modules.designators.designator import Designator, a, action, an, location, object_, the
 from nao_library_modules.process_modules.designators.objects import BELIEFS
-from nao_library_modules.process_modules.failures import ObjectNowhereToBeFound, PerceptionObjectNotFound, fail
-from nao_library_modules.process_modules.handling import give, with_failure_handling
+from nao_library_modules.process_modules.failures import CompositeFailure, ObjectNowhereToBeFound, fail
 from nao_library_modules.process_modules.low_level import this_robot
 from nao_library_modules.process_modules.perception import go_to, perceive
 from nao_library_modules.process_modules.plan_runner import run_and_tell, wake_up
@@ -35,13 +34,15 @@ def know_the_lab() -> None:
 
 @def_plan
 def find_ball(ball: Designator) -> Designator:
-    """Look for the ball: first ahead, then all around."""
-
-    def look_around(_failure: PerceptionObjectNotFound) -> None:
-        perform(an(action, type="saying", text="Where is the ball?", wait=False))
-        give(perceive(ball, timeout=30.0, search=True))
-
-    return with_failure_handling(do(perceive, ball, timeout=3.0), {PerceptionObjectNotFound: look_around})
+    """Look for the ball: ahead; then all around, with the upper camera, then with the lower one, for the floor."""
+    return try_in_order(
+        do(perceive, ball, timeout=3.0),
+        lambda: seq(
+            do(perform, an(action, type="saying", text="Where is the ball?", wait=False)),
+            do(perceive, ball, timeout=20.0, search=True, camera="top"),
+        ),
+        do(perceive, ball, timeout=20.0, search=True, camera="bottom"),
+    )
 
 
 def fetch() -> str:
@@ -53,7 +54,7 @@ def fetch() -> str:
     )
     try:
         seen = find_ball(ball)
-    except PerceptionObjectNotFound as failure:
+    except CompositeFailure as failure:
         fail(ObjectNowhereToBeFound, f"no ball: {failure}")
     par(
         do(perform, an(action, type="pointing", at=seen)),

@@ -20,9 +20,12 @@ from ..clock import WallClock
 from .failures import CompositeFailure, PlanError, PlanFailure
 from .flow import Flow, here, set_here, uninterrupted, wait_until
 from .tasks import Task, TaskState, TaskTree, current_task, failed, failure_of
+from .telling import told
 
 log = logging.getLogger(__name__)
 
+LONGEST = 80
+"""Characters of an argument in the tree."""
 PATIENCE = 5.0
 """s after which it is told that a branch does not end."""
 
@@ -48,10 +51,12 @@ def do(function: Callable[..., Any], *arguments: Any, name: str = "", **keywords
         name: Of the task; that of the function if there is none.
         **keywords: Its arguments by name.
     """
-    told = ", ".join([*map(_shown, arguments), *(f"{key}={_shown(value)}" for key, value in keywords.items())])
+    given = [told(value, LONGEST) for value in arguments]
+    given += [f"{key}={told(value, LONGEST)}" for key, value in keywords.items()]
     # A plan makes a task of its own when it is called; the branch is that task already.
     body = getattr(function, "plan_body", function)
-    return Step(name or name_of(function), lambda: body(*arguments, **keywords), {"arguments": told} if told else {})
+    facts = {"arguments": ", ".join(given)} if given else {}
+    return Step(name or name_of(function), lambda: body(*arguments, **keywords), facts)
 
 
 def name_of(function: Callable[..., Any]) -> str:
@@ -318,8 +323,3 @@ def _predecessors(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]
         for name in ready:
             del open_names[name]
     return before
-
-
-def _shown(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 80 else f"{text[:77]}..."

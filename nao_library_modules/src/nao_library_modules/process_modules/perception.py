@@ -33,7 +33,7 @@ TRIES = 10
 
 
 def perceive(
-    desig: Designator, quantifier: str = "", *, timeout: float = 2.0, search: bool = False
+    desig: Designator, quantifier: str = "", *, timeout: float = 2.0, search: bool = False, camera: str = ""
 ) -> Designator | list[Designator]:
     """Look for the object that a designator describes, in a plan.
 
@@ -43,6 +43,7 @@ def perceive(
             of them; that of the designator if there is none.
         timeout: s to look.
         search: Whether the head turns to find it.
+        camera: top or bottom; empty for the active one.
 
     Returns:
         A designator that is equated to it and stands for what was seen; with "all" a list of designators.
@@ -59,7 +60,9 @@ def perceive(
         raise PlanError(f"perceive: {desig} is no object with a type")
 
     def body() -> Designator | list[Designator]:
-        looking = an(action, type="detecting", object=current_desig(desig), timeout=timeout, search=search)
+        looking = an(
+            action, type="detecting", object=current_desig(desig), timeout=timeout, search=search, camera=camera
+        )
         seen = [each for each in perform(looking) if each.position is not None]
         if not seen:
             raise PerceptionObjectNotFound(f"{desig} was seen, but not where it is", designator=desig)

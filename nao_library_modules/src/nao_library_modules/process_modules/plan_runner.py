@@ -75,9 +75,9 @@ class PlanRun:
         if self._trace_file is not None:
             self._trace_file.write_text(trace.to_json() + "\n", encoding="utf-8")
         if self._picture_file is not None:
-            from .trace_picture import draw  # Pillow takes its time
+            from .trace_picture import save  # Pillow takes its time
 
-            draw(trace).save(self._picture_file)
+            save(trace, self._picture_file)
 
 
 def wake_up() -> None:

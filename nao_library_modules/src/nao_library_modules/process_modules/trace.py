@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from typing import Any
 
 from .tasks import Task
+from .telling import cut, short_numbers, told
 
 MARKS = {
     "created": ".",
@@ -102,9 +102,9 @@ def record_of(task: Task, start: float = 0.0) -> Record:
         created=round(task.created - start, 6),
         began=_since(task.began, start),
         ended=_since(task.ended, start),
-        result=_short(repr(task.result)) if task.result is not None else "",
-        failure=_short(failure),
-        facts={name: _short(fact if isinstance(fact, str) else repr(fact)) for name, fact in task.facts.items()},
+        result=told(task.result, LONGEST) if task.result is not None else "",
+        failure=cut(short_numbers(failure), LONGEST),
+        facts={name: cut(fact if isinstance(fact, str) else repr(fact), LONGEST) for name, fact in task.facts.items()},
     )
 
 
@@ -123,7 +123,3 @@ def _told(record: Record) -> str:
 
 def _since(time: float | None, start: float) -> float | None:
     return None if time is None else round(time - start, 6)
-
-
-def _short(text: Any) -> str:
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."

@@ -26,7 +26,8 @@ COLORS = {
 LINE, TEXT, INDENT, MARGIN = 22, 13, 16, 14
 NAMES, BARS = 400, 560
 """Widths of the column of names and of that of bars, in pixels."""
-LONGEST_NAME = 58
+SHORTEST = 120
+"""Pixels; where a bar leaves less behind it, what came of the task stands before it."""
 MOST_LINES = 200
 FINE = 2
 """Drawn so many times larger and then reduced, for smooth edges."""
@@ -57,6 +58,17 @@ def draw(trace: Trace) -> Image.Image:
     return picture.resize(size, Image.LANCZOS)
 
 
+def save(trace: Trace, path: Path) -> None:
+    """Draw a trace into a PNG file.
+
+    Raises:
+        NaoError: It has no task.
+        OSError: The file cannot be written.
+    """
+    # A few colours are enough, and a third of the size.
+    draw(trace).quantize(64, dither=Image.Dither.NONE).save(path, optimize=True)
+
+
 def main(argv: list[str] | None = None) -> int:
     """Draw a trace that was kept as JSON."""
     parser = argparse.ArgumentParser(description=main.__doc__)
@@ -64,7 +76,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("picture", type=Path, help="PNG file to write")
     options = parser.parse_args(argv)
     try:
-        draw(Trace.from_json(options.trace.read_text(encoding="utf-8"))).save(options.picture)
+        save(Trace.from_json(options.trace.read_text(encoding="utf-8")), options.picture)
     except (OSError, ValueError, KeyError, TypeError, NaoError) as error:
         print(f"{options.trace}: {error}", file=sys.stderr)
         return 1
@@ -91,24 +103,18 @@ def _draw_task(pen: ImageDraw.ImageDraw, record: Record, depth: int, y: int, end
     x = MARGIN + depth * INDENT
     pen.ellipse([*_fine(x, middle - 4), *_fine(x + 8, middle + 4)], fill=color)
     arguments = record.facts.get("arguments", "")
-    pen.text(
-        _fine(x + 14, middle), _cut(f"{record.name}({arguments})" if arguments else record.name), INK, _font(), "lm"
-    )
-    # Long names do not run into the bars.
-    pen.rectangle([*_fine(NAMES + MARGIN - 8, y), *_fine(NAMES + MARGIN - 1, y + LINE)], fill=PAPER)
+    name = f"{record.name}({arguments})" if arguments else record.name
+    pen.text(_fine(x + 14, middle), _fitting(pen, name, NAMES + MARGIN - 12 - (x + 14)), INK, _font(), "lm")
     if record.began is None:
         return
     begin, stop = _x(record.began, end), _x(record.ended if record.ended is not None else end, end)
-    pen.rectangle([*_fine(NAMES + MARGIN - 1, y + 1), *_fine(NAMES + MARGIN - 1, y + 1)], fill=PAPER)
     pen.rounded_rectangle([*_fine(begin, y + 5), *_fine(max(stop, begin + 2), y + LINE - 5)], 3 * FINE, fill=color)
-    told = record.failure.partition(":")[0] if record.state == "failed" else record.result
-    if told:
-        told, width = _cut(told), 0
-        width = pen.textlength(told, _font()) / FINE
-        right = stop + 6 + width < NAMES + MARGIN + BARS
-        at, anchor = (stop + 6, "lm") if right else (begin - 6, "rm")
-        if right or begin - 6 - width > NAMES + MARGIN:
-            pen.text(_fine(at, middle), told, FAINT, _font(), anchor)
+    text = record.failure.partition(":")[0] if record.state == "failed" else record.result
+    room_after, room_before = NAMES + MARGIN + BARS - stop - 6, begin - 6 - NAMES - MARGIN
+    if text and room_after >= min(room_before, SHORTEST):
+        pen.text(_fine(stop + 6, middle), _fitting(pen, text, room_after), FAINT, _font(), "lm")
+    elif text:
+        pen.text(_fine(begin - 6, middle), _fitting(pen, text, room_before), FAINT, _font(), "rm")
 
 
 def _draw_legend(pen: ImageDraw.ImageDraw, y: int, left_out: int) -> None:
@@ -129,8 +135,13 @@ def _fine(x: float, y: float) -> tuple[float, float]:
     return x * FINE, y * FINE
 
 
-def _cut(text: str) -> str:
-    return text if len(text) <= LONGEST_NAME else f"{text[: LONGEST_NAME - 1]}…"
+def _fitting(pen: ImageDraw.ImageDraw, text: str, width: float) -> str:
+    """As much of a text as there is room for, in pixels of the picture."""
+    if pen.textlength(text, _font()) <= width * FINE:
+        return text
+    while text and pen.textlength(f"{text}…", _font()) > width * FINE:
+        text = text[:-1]
+    return f"{text}…" if text else ""
 
 
 def _font() -> ImageFont.ImageFont:

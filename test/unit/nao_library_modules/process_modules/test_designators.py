@@ -61,7 +61,7 @@ def test_solutions_are_worked_out_when_they_are_needed():
 
 
 def test_without_a_solution_it_says_so():
-    with pytest.raises(DesignatorError, match=r"a action \(type='counting'\): no solution"):
+    with pytest.raises(DesignatorError, match=r"an action \(type='counting'\): no solution"):
         of_numbers().reference()
 
 
@@ -121,7 +121,7 @@ def test_what_has_no_keys_is_an_error(given):
 
 def test_designators_are_told_as_they_are_written():
     desig = an(action, type="looking", target=a(location, near=the(object_, type="ball")))
-    told = "a action (type='looking', target=(a location (near=(the object (type='ball')))))"
+    told = "an action (type='looking', target=(a location (near=(the object (type='ball')))))"
     assert str(desig) == told
     assert all_(object_).quantifier == "all"
     with pytest.raises(PlanError, match="of kind 'thing': action, motion, location, object"):

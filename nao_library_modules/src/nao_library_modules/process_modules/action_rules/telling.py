@@ -28,6 +28,7 @@ def lighting(color: str, lights: Any) -> Command:
 def detecting(object: Designator, timeout: float, desig: Designator) -> Command:  # noqa: A002  the key's name
     """Resolve {type: detecting, object: {object: {type: ball}}}."""
     looked = {key: object[key] for key in ("name", "size") if key in object}
+    looked["camera"] = desig.get("camera", "")
     return command(VISION, "detect", type=object["type"], timeout=timeout, search=bool(desig.get("search")), **looked)
 
 

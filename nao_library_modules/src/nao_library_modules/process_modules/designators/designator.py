@@ -20,6 +20,7 @@ from typing import Any, Union
 import yaml
 
 from ..failures import DesignatorError, PlanError
+from ..telling import told
 
 KINDS = ("action", "motion", "location", "object")
 QUANTIFIERS = ("a", "the", "all")
@@ -168,7 +169,8 @@ class Designator:
 
     def __str__(self) -> str:
         inside = ", ".join(f"{key}={_shown(value)}" for key, value in self.description.items())
-        return f"{self.quantifier} {self.kind} ({inside})"
+        quantifier = "an" if self.quantifier == "a" and self.kind[0] in "ao" else self.quantifier
+        return f"{quantifier} {self.kind} ({inside})"
 
     __repr__ = __str__
 
@@ -316,4 +318,4 @@ def _by_rules(desig: Designator) -> Iterable[Any]:
 
 
 def _shown(value: Any) -> str:
-    return f"({value})" if isinstance(value, Designator) else repr(value)
+    return f"({value})" if isinstance(value, Designator) else told(value)

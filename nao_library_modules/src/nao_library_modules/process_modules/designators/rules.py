@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..failures import DesignatorError, PlanError
+from ..telling import told
 from .designator import KINDS, Designator, plain_key
 from .patterns import Mismatch, Pattern, as_pattern
 
@@ -40,7 +41,7 @@ class Command:
     arguments: Mapping[str, Any] = field(default_factory=dict)
 
     def __str__(self) -> str:
-        inside = ", ".join(f"{name}={value!r}" for name, value in self.arguments.items())
+        inside = ", ".join(f"{name}={told(value)}" for name, value in self.arguments.items())
         return f"{self.module}: {self.name}({inside})"
 
 

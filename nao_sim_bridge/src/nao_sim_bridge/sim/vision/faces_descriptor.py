@@ -19,9 +19,11 @@ from nao_sim_bridge.sim.vision.faces_points import Point, upright
 SMALL = (48, 56)
 CELL = 8
 DIRECTIONS = 8
+# How far from its middle the face counts, in halves of its width and height: at its rim it changes when the head turns.
+RIM = (0.8, 1.0)
 # A cell whose edges are all fainter than this, of 255 a pixel, says nothing.
 FAINT = 6.0
-SHARE_OF_EDGES = 0.6
+SHARE_OF_EDGES = 0.5
 """What the edges count; the tones count for the rest."""
 
 
@@ -63,7 +65,7 @@ def _edges(face: np.ndarray) -> np.ndarray:
     # As strong as the strong ones of the neighbourhood: light from one side does not count.
     around = cv2.blur(cells.sum(axis=-1), (3, 3), borderType=cv2.BORDER_REPLICATE)
     cells = np.sqrt(np.maximum(cells, 0.0) / (around + FAINT)[..., None])
-    return _unit(cells - cells.mean(axis=(0, 1)))
+    return _unit((cells - cells.mean(axis=(0, 1))) * _weights(cells.shape)[..., None])
 
 
 def _tones(face: np.ndarray) -> np.ndarray:
@@ -71,13 +73,20 @@ def _tones(face: np.ndarray) -> np.ndarray:
     brightness = logs.mean(axis=2)
     colour = np.stack((logs[..., 2] - logs[..., 1], logs[..., 0] - logs[..., 1]), axis=-1)
     cells = np.stack([_cells(brightness), *(_cells(colour[..., i]) for i in range(2))], axis=-1)
-    return _unit(cells - cells.mean(axis=(0, 1)))
+    weights = _weights(cells.shape)[..., None]
+    return _unit((cells - (cells * weights).sum(axis=(0, 1)) / weights.sum()) * weights)
 
 
 def _cells(values: np.ndarray) -> np.ndarray:
     """Means over overlapping cells."""
     means = cv2.blur(values, (CELL, CELL), borderType=cv2.BORDER_REPLICATE)
     return means[CELL // 2 :: CELL // 2, CELL // 2 :: CELL // 2]
+
+
+def _weights(shape: Tuple[int, ...]) -> np.ndarray:
+    """(rows, columns) of how much each cell counts."""
+    rows, columns = (np.linspace(-1.0, 1.0, count) for count in shape[:2])
+    return np.exp(-((columns[None, :] / RIM[0]) ** 2) - (rows[:, None] / RIM[1]) ** 2)
 
 
 def _unit(values: np.ndarray) -> np.ndarray:
