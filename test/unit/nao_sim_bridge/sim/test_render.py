@@ -192,7 +192,7 @@ def test_objects_of_the_world_are_seen_where_they_are(tmp_path):
     assert count(after[:, :80], 1) > 30 and count(after[:, 80:], 1) == 0
 
 
-def test_a_killed_process_is_an_error_once_and_then_started_again():
+def test_a_process_that_is_killed_before_its_first_picture_is_an_error_once_and_then_started_again():
     camera = preset_camera("front", load_model(), standing(), **SMALL)
     with Renderer() as own:
         own.start()
@@ -204,10 +204,23 @@ def test_a_killed_process_is_an_error_once_and_then_started_again():
         assert own.pid != first
 
 
+def test_who_wants_a_picture_does_not_notice_that_the_process_was_killed_after_an_earlier_one(caplog):
+    camera = preset_camera("front", load_model(), standing(), **SMALL)
+    with Renderer() as own:
+        before = own.render(standing(), camera)
+        first = own.pid
+        os.kill(first, signal.SIGKILL)
+        caplog.clear()
+        assert np.array_equal(own.render(standing(), camera), before)
+        assert own.pid != first
+    warnings = [record.getMessage() for record in caplog.records if record.levelname == "WARNING"]
+    assert warnings == ["picture: the picture process ended with status -9; it is started again"]
+
+
 def test_a_process_that_hangs_is_given_up_after_the_timeout():
     camera = preset_camera("front", load_model(), standing(), **SMALL)
     with Renderer() as own:
-        own.start()
+        own.render(standing(), camera)
         os.kill(own.pid, signal.SIGSTOP)
         with pytest.raises(RenderError, match="no answer .* within 0.2 s"):
             own.render(standing(), camera, timeout=0.2)

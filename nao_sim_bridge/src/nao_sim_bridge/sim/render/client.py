@@ -43,6 +43,9 @@ def _process(mode: str, world_name: str, version: str) -> ChildProcess:
 class Renderer:
     """Makes pictures in a process of its own. Any thread may ask; one picture is made at a time.
 
+    When a process that has made pictures ends by itself, the next one is asked for the same picture, once: who records
+    or looks does not notice.
+
     Args:
         world_name: Name or path of the world.
         version: Robot version.
@@ -62,6 +65,8 @@ class Renderer:
         self._engine: str | None = None
         self._worker: ChildProcess | None = None
         self._sender = StateSender()
+        self._proven = False  # the process has made a picture
+        self._late = False  # the last one was ended because it did not answer
         self._lock = threading.Lock()
 
     @property
@@ -134,13 +139,27 @@ class Renderer:
     def _ask(self, kind: str, state: RenderState, subject: Camera | Shot, timeout: float) -> tuple[Any, bytes]:
         """The answer to a request, and the bytes that follow it."""
         with self._lock:
-            worker = self._ensure_worker()
-            content = (self._sender.pack(state), subject)
             try:
-                return worker.ask(kind, content, timeout, "picture"), worker.receive_bytes("picture")
-            finally:
-                if worker.over:
-                    self._worker = None
+                return self._ask_once(kind, state, subject, timeout)
+            except PictureRefused:
+                raise
+            except RenderError as error:
+                # One that dies of its first picture would do so again; one that is late has had its time.
+                if not self._proven or self._worker is not None or self._late:
+                    raise
+                log.warning("%s; it is started again", error)
+            return self._ask_once(kind, state, subject, timeout)
+
+    def _ask_once(self, kind: str, state: RenderState, subject: Camera | Shot, timeout: float) -> tuple[Any, bytes]:
+        worker = self._ensure_worker()
+        content = (self._sender.pack(state), subject)
+        try:
+            answer = worker.ask(kind, content, timeout, "picture"), worker.receive_bytes("picture")
+        finally:
+            if worker.over:
+                self._worker, self._late = None, worker.late
+        self._proven = True
+        return answer
 
     def _ensure_worker(self) -> ChildProcess:
         if self._worker is None:
@@ -150,6 +169,7 @@ class Renderer:
                     log.warning("%s", complaint)
                 log.info("pictures are drawn by %s", engine)
             self._worker, self._engine, self._sender = worker, engine, StateSender()
+            self._proven = False
         return self._worker
 
     def _start_worker(self) -> tuple[ChildProcess, str, str | None]:
