@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from nao_sim_bridge.services.arguments import number
+from nao_sim_bridge.services.arguments import whole_number
 from nao_sim_bridge.sim.cameras.cameras import Cameras
 from nao_sim_bridge.sim.errors import BadValue
 
@@ -45,8 +45,8 @@ class VideoDeviceInputs:
 
 
 def _size(width: int, height: int) -> tuple[int, int]:
-    number(width, "width", 2, MOST_PIXELS)
-    number(height, "height", 2, MOST_PIXELS)
+    whole_number(width, "width", 2, MOST_PIXELS)
+    whole_number(height, "height", 2, MOST_PIXELS)
     if width * height > MOST_PIXELS:
         raise BadValue("width and height", (width, height), f"at most {MOST_PIXELS} pixels")
     return width, height
@@ -55,7 +55,9 @@ def _size(width: int, height: int) -> tuple[int, int]:
 def _picture(pixels: Any, width: int, height: int) -> np.ndarray:
     """(height, width, 3) RGB of its bytes."""
     expected = width * height * LAYERS
-    if not isinstance(pixels, (bytes, bytearray)) or len(pixels) != expected:
+    if not isinstance(pixels, (bytes, bytearray)):
+        raise BadValue("imageBuffer", pixels, f"{expected} raw bytes")
+    if len(pixels) != expected:
         raise BadValue(
             "length of imageBuffer", len(pixels), f"{expected}: {LAYERS} bytes (RGB) a pixel, {width}x{height}"
         )

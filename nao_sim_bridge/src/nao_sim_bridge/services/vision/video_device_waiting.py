@@ -7,6 +7,7 @@ from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.sim.cameras.cameras import CameraStream
 from nao_sim_bridge.sim.cameras.frame import Frame
+from nao_sim_bridge.sim.errors import SimulationError
 from nao_sim_bridge.sim.tasks import Task
 
 
@@ -35,7 +36,11 @@ class WaitingCall:
         """Ask the cameras; the task ends with what `change` makes of their frames."""
         task = self._task
         for index, stream in enumerate(streams):
-            ask = stream.ask(lambda answer, index=index: self._hear(index, answer))
+            try:
+                ask = stream.ask(lambda answer, index=index: self._hear(index, answer))
+            except SimulationError as error:
+                self.fail(error)  # what the other cameras were asked for is given up, too
+                break
             with self._lock:
                 self._asked.append((stream, ask))
         return task

@@ -112,6 +112,21 @@ def test_who_waits_for_a_frame_is_alive(subscribers, clock):
     assert subscribers.handles() == []
 
 
+def test_calls_that_are_too_many_are_refused_and_leave_nothing_behind(subscribers, cameras, clock):
+    handle = add(subscribers, "flood", TOP, BOTTOM)
+    cameras.streams[1].ask(lambda _: None)  # so that it is the second camera that refuses
+    waiting = [subscribers.ask(handle, "getImagesRemote", list) for _ in range(31)]
+    for _ in range(50):
+        refused = subscribers.ask(handle, "getImagesRemote", list)
+        with pytest.raises(BadValue, match="calls that wait for a frame is 33, allowed is at most 32"):
+            refused.result(0)
+    assert not any(task.finished for task in waiting)
+    for task in waiting:
+        task.request_kill()
+    clock.now += IDLE + 1.0
+    assert subscribers.handles() == []
+
+
 def test_all_of_a_name(subscribers, clock):
     for _ in range(3):
         add(subscribers)
