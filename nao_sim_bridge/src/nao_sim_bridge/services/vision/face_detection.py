@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from nao_sim_bridge.record_dir import ClientFiles
-from nao_sim_bridge.services.arguments import number
+from nao_sim_bridge.services.arguments import number, text
 from nao_sim_bridge.services.extractor import Extractor
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.services.vision.face_detection_learning import FaceLearner
@@ -27,6 +27,7 @@ NAME, EVENT = "ALFaceDetection", "FaceDetected"
 FPS, VGA = 10, 2
 """In VGA: in QVGA a face two metres away is no larger than the smallest that can be found."""
 DEFAULT_THRESHOLD = 0.4
+LONGEST_NAME = 200
 
 
 class ALFaceDetection:
@@ -145,7 +146,7 @@ def parts(service: ALFaceDetection, memory: MemoryStore, tables: CameraTables) -
 
 
 def _checked(name: str) -> str:
-    if not name.strip():
+    if not text(name, "name", LONGEST_NAME).strip():
         raise BadValue("name", name, "the name of somebody, not empty")
     return name
 

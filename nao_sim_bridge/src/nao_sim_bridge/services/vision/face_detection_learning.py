@@ -12,7 +12,7 @@ from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.vision.watching import BGR
 from nao_sim_bridge.sim.cameras.optics import Optics
 from nao_sim_bridge.sim.cameras.stream import CameraClosed
-from nao_sim_bridge.sim.errors import SimulationError
+from nao_sim_bridge.sim.errors import BadValue, SimulationError
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.sim.vision.faces import FaceSettings
 
@@ -23,6 +23,8 @@ PICTURES, RATE, VGA = 5, 10, 2
 LEAST_WIDTH = 24.0
 """Smaller faces are found but not learnt, px in a VGA picture: they show too little."""
 LOOK_AGAIN = 1.0
+MOST_WAITING = 16
+"""Calls that learn a face at the same time, that is one after the other."""
 
 
 class FaceLearner:
@@ -39,6 +41,8 @@ class FaceLearner:
         self._detector = detector
         self._camera = camera
         self._lock = threading.Lock()
+        self._count = threading.Lock()
+        self._waiting = 0
         self._closed = threading.Event()
 
     def look(self, learn: Callable[[np.ndarray], bool]) -> Task:
@@ -49,6 +53,9 @@ class FaceLearner:
 
         Returns:
             A task that ends with what `learn` answers, or with False when the pictures do not show exactly one face.
+
+        Raises:
+            BadValue: Too many calls wait for their turn.
         """
         cancelled = threading.Event()
 
@@ -57,6 +64,10 @@ class FaceLearner:
             asked.killed = asked.killed or not asked.finished
             asked.finish()
 
+        with self._count:
+            if self._waiting >= MOST_WAITING:
+                raise BadValue("calls that learn a face", self._waiting + 1, f"at most {MOST_WAITING}")
+            self._waiting += 1
         task = Task("learnFace", 0, ask=cancel)
 
         def run() -> None:
@@ -71,6 +82,9 @@ class FaceLearner:
                 if not isinstance(error, (SimulationError, NaoqiError, ValueError)):
                     log.exception("a face could not be learnt")
                 task.finish(error=error)
+            finally:
+                with self._count:
+                    self._waiting -= 1
 
         threading.Thread(target=run, name="learn a face", daemon=True).start()
         return task

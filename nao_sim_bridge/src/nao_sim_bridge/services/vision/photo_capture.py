@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from nao_sim_bridge.record_dir import ClientFiles
-from nao_sim_bridge.services.arguments import number
+from nao_sim_bridge.record_dir import LONGEST_PATH, ClientFiles
+from nao_sim_bridge.services.arguments import number, text, whole_number
 from nao_sim_bridge.services.vision.photo_capture_files import FORMATS, picture_files
 from nao_sim_bridge.services.vision.photo_capture_series import Photographer, PhotoSettings
 from nao_sim_bridge.sim.cameras.settings import CameraTables
@@ -42,8 +42,7 @@ class ALPhotoCapture:
 
     def takePictures(self, count: int, folder: str, name: str, overwrite: bool = True) -> Task:
         """Take pictures at the capture interval; the answer comes after the last one and is [[path, ...]]."""
-        if count < 1 or count > MOST_PICTURES:
-            raise BadValue("numberOfPictures", count, f"1 to {MOST_PICTURES}")
+        whole_number(count, "numberOfPictures", 1, MOST_PICTURES)
         return self._take(count, folder, name, overwrite).then(lambda paths: [paths])
 
     def halfPress(self) -> bool:
@@ -99,6 +98,8 @@ class ALPhotoCapture:
         return self._format
 
     def _take(self, count: int, folder: str, name: str, overwrite: bool) -> Task:
+        text(folder, "folderPath", LONGEST_PATH)
+        text(name, "fileName", LONGEST_PATH)
         paths = picture_files(self._files, folder, name, self._format, count, overwrite)
         return self._photographer.take(paths, self._settings)
 
@@ -109,6 +110,6 @@ def grey_or_color(color_space: int) -> int:
     Raises:
         BadValue: It is another one.
     """
-    if color_space not in COLOR_SPACES:
+    if not isinstance(color_space, int) or color_space not in COLOR_SPACES:
         raise BadValue("colorSpace", color_space, " or ".join(f"{i} ({text})" for i, text in COLOR_SPACES.items()))
     return color_space

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import posixpath
+import threading
 from pathlib import Path
 from typing import Callable
 
@@ -75,7 +76,8 @@ def save(path: Path, content: bytes, write: Callable[[Path, bytes], object] = Pa
     Raises:
         NaoqiError: It cannot be written; nothing is left of it, and what had the name before is still there.
     """
-    part = path.with_name(path.name + PART)
+    # Two threads may write pictures of the same name; the later one is the one that stays.
+    part = path.with_name(f"{path.name}.{threading.get_ident()}{PART}")
     try:
         write(part, content)
         os.replace(part, path)

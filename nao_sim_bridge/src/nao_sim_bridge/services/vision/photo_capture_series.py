@@ -11,13 +11,14 @@ from typing import Any, Callable, Sequence
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.vision.photo_capture_files import encoded, save
 from nao_sim_bridge.sim.cameras.stream import CameraClosed
-from nao_sim_bridge.sim.errors import SimulationError
+from nao_sim_bridge.sim.errors import BadValue, SimulationError
 from nao_sim_bridge.sim.tasks import Task
 
 log = logging.getLogger("nao_sim.photos")
 
 HIGHEST_RATE = 30.0
 """Pictures per second that a camera gives at most."""
+MOST_SERIES = 32
 LOOK_AGAIN = 1.0
 """How long a wait for a picture lasts before it is looked whether it is still wanted, s of wall time: a paused
 simulation takes none for hours."""
@@ -89,10 +90,15 @@ class Photographer:
         """Take one picture for each path; the task ends with the paths, as text, when all are written.
 
         When the task is killed, what has been taken stays.
+
+        Raises:
+            BadValue: Too many are being taken already.
         """
         with self._lock:
             if self._closed:
                 raise NaoqiError("the simulator ends")
+            if len(self._series) >= MOST_SERIES:
+                raise BadValue("series of pictures", len(self._series) + 1, f"at most {MOST_SERIES} at the same time")
             if self.keeps:
                 self._hold(settings)
             held = None

@@ -109,12 +109,13 @@ def red_parts(image: np.ndarray, dark: float) -> tuple[np.ndarray, np.ndarray]:
 
     Returns:
         (h, w) float32 arrays: the excess of red over the other colours, -255..255, which is mixed as light is at an
-        edge; and redness, that as a share of red, which is the same in light and shadow.
+        edge; and redness, that less what the others differ by (orange has more green than blue, as the robot's own
+        arms have), as a share of red, which is the same in light and shadow.
     """
     blue, green, red = cv2.split(image)
     red32 = red.astype(np.float32)
     excess = red32 - cv2.max(blue, green)
-    return excess, excess / np.maximum(red32, dark)
+    return excess, (excess - cv2.absdiff(green, blue)) / np.maximum(red32, dark)
 
 
 # --- inside ---------------------------------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from nao_sim_bridge.sim.vision.faces_descriptor import likeness
 MOST_PICTURES = 10
 """Pictures of one person at most."""
 # How alike two faces are that have nothing to do with each other, and two pictures of the same face: score 0 and 1.
-STRANGERS, SAME = 0.79, 0.95
+STRANGERS, SAME = 0.80, 0.95
 KEY = "person_{}"
 POLICIES = ("overwrite", "merge", "keep")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import cv2
 import pytest
 from fake_cameras import FakeCameras
@@ -9,7 +11,7 @@ from fake_cameras import FakeCameras
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.vision.photo_capture_files import picture_files, save
-from nao_sim_bridge.services.vision.photo_capture_series import Photographer, PhotoSettings
+from nao_sim_bridge.services.vision.photo_capture_series import MOST_SERIES, Photographer, PhotoSettings
 from nao_sim_bridge.sim.errors import BadValue
 
 SETTINGS = PhotoSettings(camera=1, resolution=0, color_space=0, interval=0.25)
@@ -82,6 +84,39 @@ def test_cameras_that_close_end_a_series_with_an_error(tmp_path, cameras, photog
 def full(path, content):
     path.write_bytes(content[: len(content) // 2])
     raise OSError(28, "No space left on device")
+
+
+def test_there_is_an_end_to_series_at_the_same_time(tmp_path, cameras, photographer, patience):
+    tasks = [photographer.take([tmp_path / f"{i}_{k}.png" for k in range(2)], SETTINGS) for i in range(MOST_SERIES)]
+    with pytest.raises(BadValue, match=f"series of pictures is {MOST_SERIES + 1}, allowed is at most {MOST_SERIES}"):
+        photographer.take([tmp_path / "more.png"], SETTINGS)
+    cameras.advance(0.3)
+    for task in tasks:
+        assert len(task.result(patience)) == 2
+    photographer.take([tmp_path / "more.png"], SETTINGS).result(patience)
+
+
+def test_two_who_write_the_same_picture_do_not_get_into_each_others_way(tmp_path):
+    path, both = tmp_path / "a.png", threading.Barrier(2)
+    failures = []
+
+    def write(target, content):
+        target.write_bytes(content)
+        both.wait(10.0)  # both are written before the first takes its name
+
+    def run(content):
+        try:
+            save(path, content, write)
+        except Exception as error:
+            failures.append(error)
+
+    threads = [threading.Thread(target=run, args=(content,)) for content in (b"one", b"other")]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert failures == [] and path.read_bytes() in (b"one", b"other")
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_a_full_disk_leaves_no_half_picture_and_what_was_there(tmp_path):

@@ -124,6 +124,15 @@ def test_cushions_are_no_balls(detector, width, height):
     assert len(detector.detect(shape(ellipse(width, width)), OPTICS)) == 1  # it is the outline that tells
 
 
+def test_a_round_thing_in_the_orange_of_the_robot_is_no_ball(detector):
+    """Its own forearm, as the lower camera sees it."""
+    orange = (16, 88, 200)
+    assert (
+        detector.detect(shape(lambda picture, color: cv2.circle(picture, (640, 480), 160, color, -1), orange), OPTICS)
+        == []
+    )
+
+
 def test_red_all_over_is_no_ball(detector):
     assert detector.detect(np.full((240, 320, 3), RED, np.uint8), OPTICS) == []
     noise = np.random.default_rng(1).integers(0, 256, (240, 320, 3)).astype(np.uint8)
