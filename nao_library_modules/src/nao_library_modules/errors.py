@@ -24,6 +24,17 @@ from .places import Place
 from .suggestion import did_you_mean
 
 
+LONGEST = 4000
+"""Characters of an error's text: a goal may hold texts of megabytes, and what was wrong goes to logs and clients."""
+
+
+def cut(text: str) -> str:
+    """A text without its middle where it is too long: its beginning says what was wrong, its end what is allowed."""
+    if len(text) <= LONGEST:
+        return text
+    return f"{text[: LONGEST // 2]} ... ({len(text)} characters) ... {text[-LONGEST // 3 :]}"
+
+
 class BadGoal(NaoError):  # noqa: N818  named like the errors of the proxy layer
     """A field of a function message has a value that the function cannot take.
 
@@ -77,7 +88,7 @@ class FunctionFailed(NaoError):  # noqa: N818  named like the errors of the prox
     def __init__(self, position: int, function: str, cause: Exception) -> None:
         """Put place and name before the text of the cause."""
         problem = str(cause) if isinstance(cause, NaoError) else f"{type(cause).__name__}: {cause}"
-        super().__init__(f"function {position} ({function}): {problem}")
+        super().__init__(cut(f"function {position} ({function}): {problem}"))
         self.position = position
         self.function = function
         self.cause = cause
