@@ -57,7 +57,8 @@ class Pictures:
             BadValue: The size is out of range.
             RenderError: The picture process failed.
         """
-        if not (1 <= width <= MAX_PIXELS and 1 <= height <= MAX_PIXELS):
+        whole = isinstance(width, int) and isinstance(height, int)
+        if not whole or not (1 <= width <= MAX_PIXELS and 1 <= height <= MAX_PIXELS):
             raise BadValue("picture size", (width, height), f"1 to {MAX_PIXELS} pixels each way")
         state = self.state()
         camera = preset_camera(view, self._simulation.model, state, width, height)

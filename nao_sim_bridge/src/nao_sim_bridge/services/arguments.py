@@ -17,6 +17,22 @@ def number(value: Any, field: str, low: float = -math.inf, high: float = math.in
     return float(value)
 
 
+def whole_number(value: Any, field: str, low: int, high: int) -> int:
+    """`value` as a whole number within [low, high]."""
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise BadValue(field, value, f"a whole number, {low} to {high}")
+    return value
+
+
+def text(value: Any, field: str, longest: int) -> str:
+    """`value` as a text of at most `longest` characters."""
+    if not isinstance(value, str):
+        raise BadValue(field, value, "a text")
+    if len(value) > longest:
+        raise BadValue(field, value[:40] + "...", f"{longest} characters at most")
+    return value
+
+
 def numbers(values: Any, field: str, low: float = -math.inf, high: float = math.inf) -> list[float]:
     """A list of finite numbers within [low, high]."""
     if not isinstance(values, (list, tuple)):

@@ -32,6 +32,7 @@ class ChildProcess:
         process: The process.
         pipe: This side of the pipe.
         over: Whether it failed or was ended: nothing can be asked any more.
+        late: Whether it was ended because an answer did not come in time.
 
     Args:
         module: Full name of the module that is run; it gets the number of its pipe as the first argument.
@@ -54,7 +55,7 @@ class ChildProcess:
         self._name = name
         self._failed = failed
         self._refused = refused
-        self.over = False
+        self.over = self.late = False
         here, there = Pipe(duplex=True)
         paths = [str(SOURCES), os.environ.get("PYTHONPATH", "")]
         try:
@@ -94,6 +95,7 @@ class ChildProcess:
         """
         try:
             if not self.pipe.poll(timeout):
+                self.late = True
                 self.kill()
                 raise self._failed(f"{what}: no answer of the {self._name} within {timeout:g} s")
             kind, content = self.pipe.recv()

@@ -15,6 +15,14 @@ from __future__ import annotations
 import difflib
 from typing import Any, Iterable
 
+LONGEST = 300
+
+
+def shortened(value: Any) -> str:
+    """A value as error texts show it: what a client sends may have megabytes."""
+    shown = repr(value)
+    return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]}... ({len(shown)} characters)"
+
 
 class SimulationError(RuntimeError):
     """Root of everything the simulation core raises on purpose."""
@@ -48,7 +56,7 @@ class UnknownName(SimulationError):
         self.name = name
         self.close = difflib.get_close_matches(str(name), list(known), n=3, cutoff=0.5)
         hint = f": did you mean {' or '.join(repr(c) for c in self.close)}?" if self.close else ""
-        super().__init__(f"unknown {kind} {name!r}{hint}")
+        super().__init__(f"unknown {kind} {shortened(name)}{hint}")
 
 
 class BadValue(SimulationError):
@@ -64,7 +72,7 @@ class BadValue(SimulationError):
         self.field = field
         self.value = value
         self.allowed = allowed
-        super().__init__(f"{field} is {value!r}, allowed is {allowed}")
+        super().__init__(f"{field} is {shortened(value)}, allowed is {allowed}")
 
 
 class NotAllowed(SimulationError):

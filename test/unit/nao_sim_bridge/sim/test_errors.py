@@ -38,3 +38,10 @@ def test_a_config_error_names_the_place():
     error = errors.ConfigError("physics.json: motor", "missing 'gain'")
     assert (error.where, error.problem) == ("physics.json: motor", "missing 'gain'")
     assert str(error) == "physics.json: motor: missing 'gain'"
+
+
+def test_values_of_megabytes_are_shortened():
+    text = str(errors.BadValue("name", "x" * 1000000, "a short one"))
+    assert text.startswith("name is 'xxx") and text.endswith("xxx... (1000002 characters), allowed is a short one")
+    assert len(text) < 400
+    assert len(str(errors.UnknownName("joint", "x" * 1000000, ["HeadYaw"]))) < 400
