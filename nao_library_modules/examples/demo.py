@@ -2,8 +2,8 @@
 """Plays a demonstration on a simulated NAO and checks every step against what the robot reports.
 
 Starts simulator and action servers on a ROS master of its own, wakes the robot up, sends the lights through their paces
-as goals, has it walk to a table meanwhile, has it greet and hear itself, and leaves pictures, sound, a table and the
-log of the stack in the output folder.
+as goals, has it find a ball, walk to a table meanwhile, greet and hear itself, and leaves pictures, sound, a table and
+the log of the stack in the output folder.
 The exit status tells whether all of it went as asked.
 """
 
@@ -34,6 +34,10 @@ STEP_LIMIT = 30.0
 # m. The near edge of the table is 0.6 m ahead of where the robot starts.
 TO_THE_TABLE = 0.45
 GREETING = "Hello! I am a NAO that lives in a simulator. Welcome to the laboratory."
+# Where the ball lies from where the robot starts, and its radius, m.
+BALL, BALL_RADIUS = (0.30, -0.55), 0.05
+# What its own camera sees of it.
+EYES_PICTURE = "own_eyes.png"
 # What the robot listens for while it greets, and the word of its own that it should hear.
 WORDS, OWN_WORD = ("hello", "goodbye", "laboratory", "elephant", "umbrella"), "laboratory"
 # How long the greeting lasts at least, s.
@@ -193,6 +197,30 @@ class Demonstration:
         report = f"{seconds:.1f} s of speech in {SOUND}; it heard {', '.join(words[:1]) or 'nothing'}"
         self._report("greet, and hear itself", report, seconds > GREETING_TIME and words[:1] == [OWN_WORD])
 
+    def find_ball(self) -> None:
+        """Look for the ball that lies in the room, and take a picture with its own eyes when it sees it."""
+        import actionlib
+        import rospy
+
+        import nao_library_actions.msg as actions
+        from nao_library_msgs.msg import VisionFunction
+
+        client = actionlib.SimpleActionClient("NaoVision", actions.NaoVisionAction)
+        if not client.wait_for_server(rospy.Duration(START_LIMIT)):
+            raise RuntimeError("the server NaoVision did not come up")
+        look = VisionFunction(function="lookFor", str_param="ball", size=BALL_RADIUS, timeout=STEP_LIMIT)
+        photo = VisionFunction(function="takePicture", str_param=EYES_PICTURE, overwrite=True)
+        client.send_goal_and_wait(actions.NaoVisionGoal([look, photo]), rospy.Duration(2 * STEP_LIMIT))
+        result = client.get_result()
+        if result is None or not result.objects or not (self._output / EYES_PICTURE).exists():
+            told = client.get_goal_status_text() or "it saw no ball"
+            self._report("look for the ball", told, False)
+            return
+        where = result.objects[0].position
+        report = f"a ball at x {where.x:.2f} m, y {where.y:.2f} m from its feet, seen in {EYES_PICTURE}"
+        off = max(abs(where.x - BALL[0]), abs(where.y - BALL[1]))
+        self._report("look for the ball", report, off < 0.05)
+
     def begin_walk(self) -> None:
         """Send the goal that walks to the table and waves; lights can go on meanwhile."""
         from nao_library_actions.msg import NaoMotionGoal
@@ -284,6 +312,7 @@ def play_all(stack: Stack, output: Path) -> list[tuple[str, str, bool]]:
     demonstration = Demonstration(stack, output)
     demonstration.wake_up()
     demonstration.picture("before", "front", green_eyes=False)
+    demonstration.find_ball()
     for number, step in enumerate(steps(), 1):
         if step.walking:
             demonstration.begin_walk()

@@ -7,6 +7,7 @@ Needs a running robot in the lab: `roslaunch nao_library nao_sim.launch world:=l
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 
 import rospy
@@ -25,6 +26,8 @@ from nao_library_modules.process_modules.space import Point3
 
 BALL_RADIUS = 0.05
 """m, of the ball in the lab."""
+AHEAD = math.radians(30.0)
+"""What is nearer to straight ahead than that is in front of the robot."""
 
 
 def know_the_lab() -> None:
@@ -34,15 +37,23 @@ def know_the_lab() -> None:
 
 @def_plan
 def find_ball(ball: Designator) -> Designator:
-    """Look for the ball: ahead; then all around, with the upper camera, then with the lower one, for the floor."""
+    """Look for the ball: ahead, on the floor to the right, to the left, and then all around for what is farther away."""
     return try_in_order(
-        do(perceive, ball, timeout=3.0),
+        do(perceive, ball, timeout=2.0),
         lambda: seq(
             do(perform, an(action, type="saying", text="Where is the ball?", wait=False)),
-            do(perceive, ball, timeout=20.0, search=True, camera="top"),
+            do(turn_and_look, ball, -math.pi / 2.0),
         ),
-        do(perceive, ball, timeout=20.0, search=True, camera="bottom"),
+        do(turn_and_look, ball, math.pi),
+        do(perceive, ball, timeout=20.0, search=True, camera="top"),
     )
+
+
+@def_plan
+def turn_and_look(ball: Designator, turn: float) -> Designator:
+    """Turn, rad to the left, and look at the floor: its shoulders hide what lies beside the robot, however it looks."""
+    perform(an(action, type="going", target=[0.0, 0.0, turn, "base_footprint"]))
+    return perceive(ball, timeout=8.0, search=True, camera="bottom")
 
 
 def fetch() -> str:
@@ -61,8 +72,11 @@ def fetch() -> str:
         do(perform, an(action, type="looking", target=seen)),
     )
     place = this_robot().point_in(seen.reference().position, "base_footprint")
-    side = "left" if place.y > 0.0 else "right"
-    words = f"There is the ball, {place.distance_to((0.0, 0.0, 0.0)):.1f} metres away, on my {side}."
+    if abs(place.y) < place.x * math.tan(AHEAD):
+        where = "in front of me"
+    else:
+        where = "on my left" if place.y > 0.0 else "on my right"
+    words = f"There is the ball, {math.hypot(place.x, place.y):.1f} metres away, {where}."
     seq(do(perform, an(action, type="saying", text=words)), do(perform, an(action, type="standing")))
     return words
 

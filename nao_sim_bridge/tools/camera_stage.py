@@ -22,6 +22,10 @@ from nao_sim_bridge.sim.world_objects import read_object
 
 BGR = 13
 QVGA, VGA = (320, 240), (640, 480)
+EYES = (-0.6, -1.6, 0.47)
+"""Where the camera is in the lab, m: a standing robot's, with four metres of floor and a rug ahead."""
+AHEAD = math.pi / 2.0
+"""Heading of a camera there that looks along the free floor, rad."""
 OUT_OF_SIGHT = (-60.0, 0.0, 0.3)
 """Where the robot is whose eyes these are not: a camera stands alone here."""
 

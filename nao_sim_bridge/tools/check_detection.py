@@ -19,13 +19,13 @@ import argparse
 import math
 import sys
 import time
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Mapping, Sequence
 
 import cv2
 import numpy as np
-from camera_stage import QVGA, VGA, Stage, Viewpoint, thing
+from camera_stage import AHEAD, EYES, QVGA, VGA, Stage, Viewpoint, thing
+from detection_tally import Tally
 
 from nao_sim_bridge.sim.landmarks import load_landmarks
 from nao_sim_bridge.sim.vision.ball import BallDetector
@@ -34,12 +34,9 @@ from nao_sim_bridge.sim.vision.landmarks import LandmarkDetector
 from nao_sim_bridge.sim.world_cards import THICKNESS
 from nao_sim_bridge.sim.world_objects import BALL_RED
 
-EYES = (-0.6, -1.6, 0.47)
-"""Where the camera is, m: a standing robot's, with four metres of floor and a rug ahead."""
 FREE = (-1.3, 0.6)
 """There is floor ahead between these X, m: further out are a wall and a chair."""
 FRONT = THICKNESS / 2.0
-AHEAD = math.pi / 2.0
 BALL_DISTANCES = (0.3, 0.5, 0.75, 1.0, 1.5, 2.0)
 BALL_RADII = (0.03, 0.05)
 BEARING = 2.0
@@ -63,38 +60,6 @@ LIGHTS: Mapping[str, Mapping[int, int]] = {
 }
 MOST_OF = 0.98
 """Share that has to be found within the bounds of distance."""
-
-
-@dataclass
-class Tally:
-    """What came of many pictures of a kind.
-
-    Attributes:
-        wanted: Pictures.
-        found: In how many the thing was found.
-        wrong: Findings that were something else.
-        bearings: By how much bearings were off, degrees.
-        distances: By how much distances were off, as shares.
-        times: Processor time of a picture, s.
-    """
-
-    wanted: int = 0
-    found: int = 0
-    wrong: int = 0
-    bearings: list[float] = field(default_factory=list)
-    distances: list[float] = field(default_factory=list)
-    times: list[float] = field(default_factory=list)
-
-    def text(self) -> str:
-        """The figures in a line."""
-        parts = [f"found {self.found:3d} of {self.wanted:3d}", f"wrong {self.wrong}"]
-        if self.bearings:
-            parts.append(f"bearing off {np.mean(self.bearings):.2f} mean, {max(self.bearings):.2f} most, deg")
-        if self.distances:
-            mean, most = 100 * np.mean(self.distances), 100 * max(self.distances)
-            parts.append(f"distance off {mean:.1f} mean, {most:.1f} most, %")
-        parts.append(f"{1000 * np.mean(self.times):.1f} ms")
-        return ", ".join(parts)
 
 
 class Checks:

@@ -20,16 +20,13 @@ from typing import Mapping, Sequence
 
 import cv2
 import numpy as np
-from camera_stage import VGA, Stage, Viewpoint, thing
+from camera_stage import AHEAD, EYES, VGA, Stage, Viewpoint, thing
 
 from nao_sim_bridge.sim.faces import load_faces
 from nao_sim_bridge.sim.vision.face_memory import FaceMemory
 from nao_sim_bridge.sim.vision.faces import FaceDetector, FaceSettings, SeenFace
 from nao_sim_bridge.sim.world import WorldObject
 
-EYES = (-0.6, -1.6, 0.47)
-"""Where the camera is, m: a standing robot's, with four metres of floor and a rug ahead."""
-AHEAD = math.pi / 2.0
 DISTANCES = (0.5, 0.75, 1.0, 1.5, 2.0)
 TURNS = (0.0, 0.13, 0.26)
 PEOPLE = tuple(load_faces())

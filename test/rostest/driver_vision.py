@@ -37,7 +37,8 @@ class DriverVision(unittest.TestCase):
         cls.learn = cls.service("nao_vision/face_detection/learn_face", LearnFace)
         cls.forget = cls.service("nao_vision/face_detection/forget_person", LearnFace)
         cls.sensitivity = cls.service("nao_vision/movement_detection_sensitivity", VisionMotionSensitivity)
-        wait_until(lambda: cls.answer(cls.switches["landmark_detection/enable"]) == "", LIMIT, "nao_vision and the robot")
+        enable = cls.switches["landmark_detection/enable"]
+        wait_until(lambda: cls.answer(enable) == "", LIMIT, "nao_vision and the robot")
 
     @staticmethod
     def service(name, kind):

@@ -9,15 +9,9 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 from typing import Any, Protocol
 
-from .audio_checks import (
-    DEVICE_PARAMETERS,
-    check_device_setting,
-    require_file,
-    require_known,
-    require_number,
-    require_text,
-)
+from .audio_checks import DEVICE_PARAMETERS, check_device_setting, require_file
 from .errors import BadGoal
+from .field_checks import require_known, require_number, require_text
 
 MICROPHONES = ("left", "right", "front", "rear")
 """In the order in which NAOqi has them in recordings."""

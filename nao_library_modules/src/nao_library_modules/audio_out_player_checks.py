@@ -7,9 +7,10 @@ from collections.abc import Callable
 from typing import Any, Protocol
 from urllib.parse import urlsplit
 
-from .audio_checks import CONTROL, require_file, require_number, require_text, require_whole
+from .audio_checks import require_file
 from .audio_out_files import LoadedSounds
 from .errors import BadGoal
+from .field_checks import CONTROL, require_number, require_text, require_whole
 from .suggestion import did_you_mean
 
 SOUND_FILES = (".wav", ".ogg", ".flac", ".mp3")

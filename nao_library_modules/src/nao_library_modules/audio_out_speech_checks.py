@@ -6,16 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Protocol
 
-from .audio_checks import (
-    DEVICE_PARAMETERS,
-    check_device_setting,
-    require_file,
-    require_known,
-    require_number,
-    require_text,
-)
+from .audio_checks import DEVICE_PARAMETERS, check_device_setting, require_file
 from .audio_out_voices import Voices
 from .errors import BadGoal
+from .field_checks import require_known, require_number, require_text
 
 SPEED, PITCH = (50.0, 400.0), (50.0, 200.0)
 """%, 100 is normal."""

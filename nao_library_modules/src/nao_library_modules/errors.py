@@ -23,7 +23,6 @@ from naoqi.errors import NaoError
 from .places import Place
 from .suggestion import did_you_mean
 
-
 LONGEST = 4000
 """Characters of an error's text: a goal may hold texts of megabytes, and what was wrong goes to logs and clients."""
 

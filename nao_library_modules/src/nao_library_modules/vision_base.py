@@ -11,8 +11,6 @@ from .vision_files import VisionFiles
 from .vision_taken import Taken
 from .vision_threads import VisionThreads
 
-VIDEO = "ALVideoDevice"
-
 
 class VisionBase:
     """To be mixed into NaoBasic.

@@ -7,6 +7,8 @@ import re
 from .errors import BadGoal
 from .suggestion import did_you_mean
 
+VIDEO = "ALVideoDevice"
+"""NAOqi's module for the cameras."""
 CAMERAS = {"top": 0, "bottom": 1}
 """Name -> NAOqi's number."""
 OPTICAL_FRAMES = {"top": "CameraTop_optical_frame", "bottom": "CameraBottom_optical_frame"}

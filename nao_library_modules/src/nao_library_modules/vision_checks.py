@@ -9,8 +9,8 @@ import re
 from pathlib import Path
 from typing import Any, Dict, Protocol, Tuple
 
-from .audio_checks import CONTROL, require_known, require_number, require_text
 from .errors import BadGoal
+from .field_checks import CONTROL, require_known, require_number, require_text
 from .vision_cameras import camera_name
 from .vision_files import VisionFiles
 from .vision_pictures import LARGEST, PICTURE_TYPES
@@ -18,8 +18,9 @@ from .vision_threads import MOST_THREADS, VisionThreads, taken, too_many, unknow
 from .vision_video import CODECS, VIDEO_TYPES, codec_name, known_codecs
 
 LONGEST_WAIT = 3600.0
+"""s of ROS time that any wait may take."""
 DEFAULT_TIMEOUT = 10.0
-"""s to wait for a frame, where a message leaves it to us."""
+"""s to wait for a frame, or for something to be seen, where a message leaves it to us."""
 HIGHEST_RATE = 1000.0
 LONGEST_ID = 64
 MOST_PICTURES = 10000

@@ -14,6 +14,7 @@ from .extractor_use import Events
 from .image_clock import ImageClock
 from .memory_functions import MEMORY
 from .vision_cameras import RESOLUTIONS
+from .vision_checks import DEFAULT_TIMEOUT
 from .vision_detect_cameras import ROBOT, TORSO, CameraAccess
 from .vision_detect_events import (
     BALL,
@@ -36,8 +37,6 @@ from .vision_results import Seen, seen_messages
 log = logging.getLogger(__name__)
 
 MOVEMENT_KEY = "MovementDetection/MovementInfo"
-DEFAULT_TIMEOUT = 10.0
-"""s that functions wait for something to be seen, where a message leaves it to us."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,7 @@ class Wanted:
     def picks(self, sight: Sight) -> Sight | None:
         """A sight as it counts; None if it does not."""
         if sight.kind == FACE and sight.confidence < self.confidence:
-            sight = _unnamed(sight)
+            sight = replace(sight, name="")
         elif sight.confidence < self.confidence:
             return None
         return None if self.name and sight.name != self.name else sight
@@ -216,11 +215,6 @@ class DetectionBase(CameraAccess):
 def timeout_of(timeout: float) -> float:
     """How long a function waits, s."""
     return timeout or DEFAULT_TIMEOUT
-
-
-def _unnamed(sight: Sight) -> Sight:
-
-    return replace(sight, name="")
 
 
 def _size(resolution: int) -> tuple[int, int]:

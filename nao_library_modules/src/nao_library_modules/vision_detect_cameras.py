@@ -9,10 +9,9 @@ from naoqi.errors import NaoError, UnknownMethod
 
 from .extractor_use import ExtractorUse
 from .motion_facts import MOTION
-from .vision_cameras import CAMERAS
+from .vision_cameras import CAMERAS, VIDEO
 from .vision_detect_events import CAMERA_FRAMES, Lens, Pose, Region, Sight
 
-VIDEO = "ALVideoDevice"
 TORSO, ROBOT = 0, 2
 """NAOqi's FRAME_TORSO and FRAME_ROBOT."""
 

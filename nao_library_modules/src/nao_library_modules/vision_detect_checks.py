@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from .audio_checks import require_number, require_text
 from .errors import BadGoal
+from .field_checks import require_number, require_text
 from .vision_cameras import CAMERAS, camera_name
+from .vision_checks import LONGEST_WAIT
 from .vision_detect_events import BALL, CODE, FACE, LANDMARK
 
-LONGEST = 3600.0
-"""s, of waits."""
 MOST_LOOKS = 1000
 LARGEST = 100.0
 """m."""
@@ -31,7 +30,7 @@ def camera_index(camera: str) -> int | None:
 def require_look(camera: str, timeout: float, confidence: float) -> None:
     """A camera, a wait, a least confidence."""
     camera_index(camera)
-    require_number("timeout", timeout, 0.0, LONGEST, f"up to {LONGEST:g} s, or 0 for the default")
+    require_number("timeout", timeout, 0.0, LONGEST_WAIT, f"up to {LONGEST_WAIT:g} s, or 0 for the default")
     require_number("confidence", confidence, 0.0, 1.0)
 
 
@@ -122,7 +121,8 @@ def check_tracking(
     """What is followed, how long, how fast."""
     require_look(camera, timeout, confidence)
     require_size(size)
-    require_number("duration", duration, 0.0, LONGEST, f"up to {LONGEST:g} s, or 0: until the goal is preempted")
+    until = f"up to {LONGEST_WAIT:g} s, or 0: until the goal is preempted"
+    require_number("duration", duration, 0.0, LONGEST_WAIT, until)
     require_number("speed", speed, 0.0, 1.0, "0..1 of the top speed, or 0 for a moderate one")
 
 

@@ -12,8 +12,8 @@ from typing import BinaryIO
 
 from naoqi.errors import NaoError
 
-from .audio_checks import CONTROL, LONGEST_NAME
 from .errors import BadGoal
+from .field_checks import CONTROL, LONGEST_NAME
 from .suggestion import did_you_mean
 
 DEFAULT_RECORD_DIR = "~/.ros/nao_recordings"

@@ -124,6 +124,9 @@ class Recording(FrameThread):
         except OSError as error:
             raise FileTrouble(self._path, error) from error
         finally:
+            if self._video is not None and not self._video.frames:
+                self._video = None
+                self._path.unlink(missing_ok=True)  # the disk was full before there was anything to be seen
             self._files.done(self._path)
 
     def _fill(self, report: VisionThread) -> None:

@@ -15,16 +15,17 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .audio_checks import require_number
 from .errors import BadGoal
+from .field_checks import require_number
 from .function_chain import checked_by
-from .vision_base import VIDEO, VisionBase
+from .vision_base import VisionBase
 from .vision_cameras import (
     CAMERAS,
     FRAME_RATES,
     OPTICAL_FRAMES,
     PARAMETERS,
     RESOLUTIONS,
+    VIDEO,
     camera_name,
     parameter_number,
     resolution_name,

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import logging
+from array import array
 from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
 from typing import Any, BinaryIO
 
 import av
@@ -12,6 +14,7 @@ import numpy as np
 
 from naoqi.errors import NaoError
 
+from .vision_fragments import keep_what_is_whole
 from .vision_pictures import fitted
 from .vision_times import VideoTimes
 
@@ -96,7 +99,9 @@ class _Output:
         self._file = file
 
     def write(self, data: bytes) -> int:
-        """Write, as files do."""
+        """Write, as files do; nothing more after an error, or there would be a hole."""
+        if self.error is not None:
+            raise self.error
         try:
             return self._file.write(data)
         except OSError as error:
@@ -133,9 +138,10 @@ class VideoFile:
         self.width, self.height = max(2, width - width % 2), max(2, height - height % 2)
         self.frames = self.dropped = 0
         self.began = 0.0
-        self._last = self._period = 0.0
+        self._places = array("d")  # of the frames, s after the first
         self._ticks = TICKS[file_type]
         self._times = VideoTimes(1.0 / self._ticks)
+        self._kind = file_type
         self._file = file
         self._output = _Output(file)
         self._held: Any = None  # the latest packet: only the next one tells how long its frame lasts
@@ -159,7 +165,12 @@ class VideoFile:
     @property
     def duration(self) -> float:
         """Length in s."""
-        return self._last + self._period if self.frames else 0.0
+        return self._places[-1] + self._period if self.frames else 0.0
+
+    @property
+    def _period(self) -> float:
+        """How long the last frame is shown, s: as the one before it."""
+        return self._places[-1] - self._places[-2] if self.frames > 1 else 0.0
 
     def write(self, picture: np.ndarray, stamp: float) -> bool:
         """Add a frame.
@@ -187,16 +198,14 @@ class VideoFile:
         frame.pts = round(time * self._ticks)
         frame.time_base = Fraction(1, self._ticks)
         self._encode(frame)
-        if self.frames:
-            self._period = time - self._last
-        else:
+        if not self.frames:
             self.began = stamp
-        self._last = time
+        self._places.append(time)
         self.frames += 1
         return True
 
     def close(self) -> None:
-        """End the video and the file.
+        """End the video and the file. Of a video that could not be written to its end, what can be played is kept.
 
         Raises:
             VideoTrouble: If its end cannot be written.
@@ -212,9 +221,19 @@ class VideoFile:
                 self._container.close()
             self._file.close()  # which may write what was kept back
         except (av.error.FFmpegError, OSError) as error:
+            self._close_quietly()
+            self._keep_what_can_be_played()
             raise self._trouble(error) from error
         finally:
             self._close_quietly()
+
+    def _keep_what_can_be_played(self) -> None:
+        try:
+            self.frames = keep_what_is_whole(Path(self._file.name), self._kind)
+        except OSError as error:
+            log.warning("%s stays as it is: %s", self._file.name, error)
+            return
+        del self._places[self.frames :]
 
     def _encode(self, frame: Any) -> None:
         try:

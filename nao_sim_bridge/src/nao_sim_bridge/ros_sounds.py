@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import Callable
 
 import rospy
 from geometry_msgs.msg import Point
@@ -18,6 +18,7 @@ from nao_library_msgs.srv import (
     RemoveSoundResponse,
 )
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.task_success import success_of
 from nao_sim_bridge.world_sounds_control import WorldSoundsControl
 
 
@@ -61,11 +62,4 @@ def _listed(point: Point) -> list[float]:
 
 
 def _success(begin: Callable[[], Task]) -> tuple[bool, str]:
-    """Wait for what `begin` starts, and for what that leads to; (True, "") or (False, what was wrong)."""
-    try:
-        task: Any = begin()
-        while isinstance(task, Task):
-            ended, task = task, task.result()
-    except (RuntimeError, ValueError, OSError) as error:
-        return False, str(error)
-    return (False, "it was silenced before its end") if ended.killed else (True, "")
+    return success_of(begin, "it was silenced before its end")

@@ -18,6 +18,7 @@ from nao_library_msgs.srv import (
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.rotations import roll_pitch_yaw
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.task_success import success_of
 from nao_sim_bridge.things_control import ThingsControl
 
 SHAPES = ("box", "sphere", "ball", "cylinder", "capsule")
@@ -102,11 +103,4 @@ def _turn(pose: Pose) -> list[float]:
 
 
 def _success(begin: Callable[[], Task]) -> tuple[bool, str]:
-    """Wait for what `begin` starts, and for what that leads to; (True, "") or (False, what was wrong)."""
-    try:
-        task: Any = begin()
-        while isinstance(task, Task):
-            ended, task = task, task.result()
-    except (RuntimeError, ValueError, OSError) as error:
-        return False, str(error)
-    return (False, "it was stopped on its way") if ended.killed else (True, "")
+    return success_of(begin, "it was stopped on its way")

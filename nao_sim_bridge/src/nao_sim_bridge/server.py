@@ -168,8 +168,8 @@ class SimulatorServer:
         """Leave the network and end the simulation."""
         self.ended.set()
         self._audio.close()
+        self.vision.close()  # before what has files to complete, and needs the pictures that are drawn
         self._pictures_taken.close()
-        self.vision.close()
         self._video.close()
         self.sounds.close()
         self.broker.close()

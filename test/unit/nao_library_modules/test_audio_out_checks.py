@@ -10,8 +10,9 @@ from fake_audio_out import FakeAnimatedSpeech, FakeAudioDevice, FakePlayer, Fake
 from genpy import Duration
 
 from nao_library_actions.msg import NaoAudioOutGoal
-from nao_library_modules.audio_checks import require_file, require_whole
+from nao_library_modules.audio_checks import require_file
 from nao_library_modules.errors import BadGoal
+from nao_library_modules.field_checks import require_whole
 from nao_library_msgs.msg import AudioOutFunction
 
 NAN, INFINITE = math.nan, math.inf

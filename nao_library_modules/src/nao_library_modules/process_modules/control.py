@@ -156,7 +156,7 @@ def par(*branches: Branch) -> list[Any]:
     """All at once; the answers of all, in order. Fails with the first failure, and ends the others then."""
 
     def body() -> list[Any]:
-        return _all_of(_start(map(_as_step, branches)))
+        return _all_of(_Started(map(_as_step, branches)))
 
     return subtask(Step("par", body))
 
@@ -258,10 +258,6 @@ class _Started:
             for task in self.tasks:
                 while not task.join(PATIENCE):
                     log.warning("the task %s was evaporated %g s ago and does not end", task.path, PATIENCE)
-
-
-def _start(steps: Iterable[Step]) -> _Started:
-    return _Started(steps)
 
 
 def _all_of(started: _Started) -> list[Any]:

@@ -65,7 +65,7 @@ class Flow:
             Evaporated: A task of this thread is to end.
             Interrupted: It is suspended, and inside of `retry_after_suspension`.
         """
-        self._wait(lambda: True, None)
+        self._wait(lambda: True, None, waits=False)
 
     def wait(self, condition: Callable[[], Any], fluents: Iterable[AnyFluent], timeout: float | None) -> bool:
         """See `wait_until`."""
@@ -78,11 +78,17 @@ class Flow:
             for fluent in fluents:
                 fluent.unlisten(self.wake)
 
-    def _wait(self, condition: Callable[[], Any], timeout: float | None) -> bool:
+    def _wait(self, condition: Callable[[], Any], timeout: float | None, waits: bool = True) -> bool:
         while True:
             # Cleared before the look: what changes after it is seen in the next round.
             self._signal.clear()
-            if not self.deaf and self._pauses():
+            try:
+                paused = not self.deaf and self._pauses()
+            except Interrupted:
+                if waits and condition():
+                    return True  # it is done: nothing to begin again, and the task pauses when it goes on
+                raise
+            if paused:
                 self._signal.wait(None)  # type: ignore[arg-type]
                 continue
             if condition():

@@ -24,6 +24,7 @@ from .tasks import Task, current_task
 
 Kinds = Union[Type[PlanFailure], Tuple[Type[PlanFailure], ...]]
 COUNTERS = "retry counters"
+HANDLING = "handling"
 
 
 class _Retry(BaseException):
@@ -64,12 +65,15 @@ def with_failure_handling(body: Branch, handlers: Mapping[Kinds, Callable[[PlanF
                 handler = next((each for kinds, each in handlers.items() if isinstance(failure, kinds)), None)
                 if handler is None:
                     raise
+                current_task().scope[HANDLING] = True
                 try:
                     handler(failure)
                 except _Retry:
                     continue
                 except _Give as given:
                     return given.value
+                finally:
+                    del current_task().scope[HANDLING]
                 raise
 
     return subtask(Step("with_failure_handling", handled))
@@ -77,11 +81,13 @@ def with_failure_handling(body: Branch, handlers: Mapping[Kinds, Callable[[PlanF
 
 def retry() -> NoReturn:
     """In a handler: run the body again."""
+    _check_handling("retry")
     raise _Retry
 
 
 def give(value: Any = None) -> NoReturn:
     """In a handler: answer for the body."""
+    _check_handling("give")
     raise _Give(value)
 
 
@@ -110,9 +116,11 @@ def do_retry(counter: str, before: Callable[[], Any] | None = None) -> None:
         before: What to do before.
     """
     entry = _counter(counter)
-    if entry[0] <= 0:
-        return
-    entry[0] -= 1
+    _check_handling("do_retry")
+    with current_task().tree.lock:  # branches beside each other may share it
+        if entry[0] <= 0:
+            return
+        entry[0] -= 1
     if before is not None:
         before()
     retry()
@@ -127,6 +135,16 @@ def reset_counter(counter: str) -> None:
     """Let it try as often as at the beginning."""
     entry = _counter(counter)
     entry[0] = entry[1]
+
+
+def _check_handling(what: str) -> None:
+    """Signals that no handler waits for would leave the plan."""
+    task: Task | None = current_task()
+    while task is not None:
+        if HANDLING in task.scope:
+            return
+        task = task.parent
+    raise PlanError(f"{what} outside of a handler: see with_failure_handling")
 
 
 def _counter(name: str) -> list[int]:

@@ -72,6 +72,7 @@ class ProcessModule:
         asynchronous: Whether it does several things at once.
         clock: Whose time its waits have; set before it runs.
         observers: Called with each task of what it does whenever that has changed.
+        watchers: Called with each request when it is over, in the thread that ended it.
     """
 
     name = ""
@@ -84,11 +85,14 @@ class ProcessModule:
         self.result = Fluent(f"result of {self.name}")
         self.clock: Any = WallClock()
         self.observers: list[Callable[[Task], None]] = []
+        self.watchers: list[Callable[[Request], None]] = []
         self._lock = threading.Lock()
         self._waiting: deque[Request] = deque()
         self._running: list[Request] = []
         self._work = threading.Event()
         self._ending = False
+        self._left = threading.Event()
+        self._own_thread = True
         self._thread: threading.Thread | None = None
 
     # --- what a module is made of -------------------------------------------------------------------------------------
@@ -128,6 +132,8 @@ class ProcessModule:
             if self._thread is not None:
                 raise ProcessModuleRunning(f"the process module {self.name} runs already")
             self._ending = False
+            self._left.clear()
+            self._own_thread = True
             self._thread = threading.Thread(target=self.run, name=f"process module {self.name}", daemon=True)
         self._thread.start()
         return self
@@ -145,28 +151,19 @@ class ProcessModule:
             self._ending = True
         self.cancel()
         self._work.set()
-        thread.join()
+        self._left.wait()
+        if self._own_thread:  # others lead a life of their own after pm_run
+            thread.join()
         with self._lock:
-            self._thread = None
+            if self._thread is thread:
+                self._thread = None
 
     def run(self) -> None:
         """The event loop, in the thread that calls; it ends with `stop`."""
-        self.on_started()
-        self.status.value = ModuleState.WAITING
-        workers: list[threading.Thread] = []
         try:
-            while not self._ending:
-                self._work.wait()
-                self._work.clear()
-                for request in self._due():
-                    workers = [worker for worker in workers if worker.is_alive()]
-                    workers.append(self._begin(request))
+            self._serve()
         finally:
-            for worker in workers:
-                worker.join()
-            self._refuse_all()
-            self.status.value = ModuleState.OFFLINE
-            self.on_stopped()
+            self._left.set()
 
     def submit(self, request: Request) -> None:
         """Have a request carried out when its turn comes."""
@@ -192,9 +189,27 @@ class ProcessModule:
             root.evaporate("cancelled")
         for each in dropped:
             each.failure = TaskEvaporatedFailure(f"{self.name}: {each.command}", "cancelled before it began")
-            each.over.value = True
+            self._tell(each)
 
     # --- inside -------------------------------------------------------------------------------------------------------
+
+    def _serve(self) -> None:
+        self.on_started()
+        self.status.value = ModuleState.WAITING
+        workers: list[threading.Thread] = []
+        try:
+            while not self._ending:
+                self._work.wait()
+                self._work.clear()
+                for request in self._due():
+                    workers = [worker for worker in workers if worker.is_alive()]
+                    workers.append(self._begin(request))
+        finally:
+            for worker in workers:
+                worker.join()
+            self._refuse_all()
+            self.status.value = ModuleState.OFFLINE
+            self.on_stopped()
 
     def _due(self) -> list[Request]:
         """Requests whose turn it is."""
@@ -245,7 +260,7 @@ class ProcessModule:
         if idle:
             self.status.value = ModuleState.FAILED if failed else ModuleState.WAITING
         self.result.value = request
-        request.over.value = True
+        self._tell(request)
         self._work.set()
 
     def _refuse_all(self) -> None:
@@ -253,7 +268,12 @@ class ProcessModule:
             left, self._waiting = list(self._waiting), deque()
         for request in left:
             request.failure = ProcessModuleNotRunning(f"the process module {self.name} was stopped")
-            request.over.value = True
+            self._tell(request)
+
+    def _tell(self, request: Request) -> None:
+        for watch in tuple(self.watchers):
+            watch(request)
+        request.over.value = True
 
 
 class AsynchronousProcessModule(ProcessModule):
@@ -268,6 +288,8 @@ def pm_run(module: ProcessModule) -> None:
         if module._thread is not None:
             raise ProcessModuleRunning(f"the process module {module.name} runs already")
         module._ending = False
+        module._left.clear()
+        module._own_thread = False
         module._thread = threading.current_thread()
     try:
         module.run()

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Union
 
-from .control import Step, par, subtask
+from .control import Step, subtask
 from .designators.designator import Designator, current_desig
 from .designators.rules import Command
 from .failures import (
@@ -25,8 +25,9 @@ from .failures import (
     UnknownProcessModule,
 )
 from .flow import wait_until
+from .fluents import Fluent
 from .goals import Occasion, holds
-from .process_module import ModuleState, ProcessModule, execute_on
+from .process_module import ModuleState, ProcessModule, Request, execute_on
 
 log = logging.getLogger(__name__)
 
@@ -35,7 +36,6 @@ Named = Union[ProcessModule, str]
 _lock = threading.Lock()
 _modules: dict[str, ProcessModule] = {}
 _aliases: dict[str, str] = {}
-_started: list[Callable[[ProcessModule], None]] = []
 
 
 def register_process_module(module: ProcessModule) -> ProcessModule:
@@ -97,14 +97,17 @@ def wait_for_process_module_running(name: Named, timeout: float | None = None) -
 def with_process_module_aliases(**aliases: str) -> Iterator[None]:
     """Other names for modules, by alias, while a block lasts."""
     with _lock:
-        kept = dict(_aliases)
+        kept = {alias: _aliases.get(alias) for alias in aliases}
         _aliases.update(aliases)
     try:
         yield
     finally:
-        with _lock:
-            _aliases.clear()
-            _aliases.update(kept)
+        with _lock:  # only these: plans beside this one have theirs
+            for alias, before in kept.items():
+                if before is None:
+                    _aliases.pop(alias, None)
+                else:
+                    _aliases[alias] = before
 
 
 @contextmanager
@@ -240,24 +243,22 @@ def monitor_process_module(module: Named, *desigs: Union[Designator, Command]) -
         PlanFailure: What it failed with.
     """
     target = get_process_module(module)
-    before = target.result.value
+    ended = Fluent(f"what {target.name} has done", None)
 
-    def over() -> bool:
-        request = target.result.value
-        if request is None or request is before:
-            return False
-        return not desigs or any(each is request.designator or each is request.command for each in desigs)
+    def watch(request: Request) -> None:
+        # The first counts, however soon another one follows.
+        if not desigs or any(each is request.designator or each is request.command for each in desigs):
+            ended.update(lambda first: first or request)
 
-    wait_until(over, [target.result])
-    request = target.result.value
+    target.watchers.append(watch)
+    try:
+        wait_until(lambda: ended.value is not None, [ended])
+    finally:
+        target.watchers.remove(watch)
+    request = ended.value
     if request.failure is not None:
         raise request.failure
     return request.result
-
-
-def perform_all(desigs: Iterable[Designator]) -> list[Any]:
-    """Do what several designators describe, at once."""
-    return par(*(Step(f"perform {desig}", lambda desig=desig: perform(desig)) for desig in desigs))
 
 
 def _command_of(desig: Designator) -> Command:

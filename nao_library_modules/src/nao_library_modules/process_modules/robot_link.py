@@ -23,6 +23,8 @@ from .space import Point3, turned
 
 STATE_LIMIT = 5.0
 """s to wait for the first joint states, and for frames."""
+OLDEST = 10.0
+"""s that joint states may be late; what is older is of a clock that was set back."""
 ROBOT = "base_footprint"
 TORSO = "torso"
 
@@ -46,6 +48,7 @@ class RobotLink:
         self._clients: dict[str, PlanActionClient] = {}
         self._publishers: dict[str, rospy.Publisher] = {}
         self._lock = threading.Lock()
+        self._known_since = 0.0
         self._chains: dict[str, Chain] = {}
         self._buffer = tf2_ros.Buffer()
         self._listener = tf2_ros.TransformListener(self._buffer)
@@ -74,6 +77,10 @@ class RobotLink:
         if not wait_until(lambda: self.joints.value, [self.joints], STATE_LIMIT):
             raise LowLevelFailure(f"no joint states on {rospy.resolve_name('joint_states')}: is a driver running?")
         return self.joints.value
+
+    def learn(self, state: JointState) -> None:
+        """Take joint states that something else told, as the result of an action: they may be ahead of the topic."""
+        self._take(state, told=True)
 
     def chain(self, base: str, tip: str) -> Chain:
         """Joints between two links, out of the robot description.
@@ -130,4 +137,14 @@ class RobotLink:
         return self._buffer.lookup_transform_core(target, source, rospy.Time()).transform
 
     def _on_joints(self, message: JointState) -> None:
-        self.joints.value = dict(zip(message.name, message.position))
+        self._take(message, told=False)
+
+    def _take(self, state: JointState, told: bool) -> None:
+        stamp, angles = state.header.stamp.to_sec(), dict(zip(state.name, state.position))
+        with self._lock:
+            if told:
+                self._known_since = stamp
+            elif 0.0 < self._known_since - stamp < OLDEST:  # from before what is known; a clock set back is older
+                return
+            # Within the lock: neither takes the place of what is newer.
+            self.joints.update(lambda known: angles if not told else {**known, **angles} if known else known)

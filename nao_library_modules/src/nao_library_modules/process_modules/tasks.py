@@ -229,8 +229,6 @@ class Task:
         Raises:
             PlanError: It is not suspended.
         """
-        if self._suspensions == 0:
-            raise PlanError(f"the task {self.path} is not suspended")
         self._change_suspensions(-1, reason)
 
     @property
@@ -283,8 +281,11 @@ class Task:
 
     def _change_suspensions(self, by: int, reason: str) -> None:
         with self.tree.lock:
+            if self._suspensions + by < 0:
+                raise PlanError(f"the task {self.path} is not suspended")
             self._suspensions += by
-            self.reason = reason
+            if not self._evaporating:  # why it ends says more
+                self.reason = reason
             changed = [task for task in self if task._flow is not None and not task.state.over]
             for task in changed:
                 task.status.value = TaskState.SUSPENDED if task.suspended else TaskState.RUNNING

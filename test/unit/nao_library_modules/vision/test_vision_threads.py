@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import threading
+from pathlib import Path
 
 import pytest
 from fake_vision import compressed, image, number_of, numbered, numbered_image, wait_for
@@ -387,6 +388,22 @@ def test_a_full_disk_ends_a_recording_and_nothing_else(recording, stream, send, 
     assert one.report().state == "failed"
     assert (one.video.frames, one.video.error) == (5, one.report().error)
     assert read(one.video.path) == list(range(5))
+
+
+def test_a_disk_that_is_full_from_the_start_leaves_no_file(recording, send, monkeypatch):
+    one = recording()
+    path = Path(one.report().path)
+    assert path.exists()
+
+    def write(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(vision_recorder.VideoFile, "write", write)
+    send(1)
+    wait_for(lambda: one.report().state == "failed")
+    one.stop()
+    assert (one.video.path, one.video.frames) == ("", 0) and not path.exists()
+    assert one.video.error.endswith("walk.mp4 cannot be written: the disk is full")
 
 
 def test_a_recording_that_failed_can_be_started_again(recording, send, monkeypatch):

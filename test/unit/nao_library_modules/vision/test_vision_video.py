@@ -36,7 +36,7 @@ def read(path):
         frames = [
             (float(f.pts * f.time_base), number_of(f.to_ndarray(format="bgr24"))) for f in container.decode(video=0)
         ]
-        return [time for time, _ in frames], [number for _, number in frames], container.duration / 1e6
+        return [time for time, _ in frames], [number for _, number in frames], (container.duration or 0) / 1e6
 
 
 EVERY = [(kind, codec) for kind in ("mp4", "avi") for codec in known_codecs(kind)]
@@ -141,6 +141,42 @@ def test_a_full_disk_is_an_error_of_the_file(tmp_path, kind, codec):
     with pytest.raises(OSError, match="No space left"):
         video.close()
     assert file.closed
+
+
+@pytest.mark.parametrize("kind, codec", EVERY)
+def test_what_was_written_before_the_disk_was_full_can_be_played(tmp_path, kind, codec):
+    path = tmp_path / f"video.{kind}"
+    file = SmallDisk(str(path), "x")
+    file.room = 150_000
+    video = VideoFile(file, kind, codec, 64, 48)
+    noise = np.random.default_rng(2).integers(0, 60, (48, 64, 3), dtype=np.uint8)
+    written = 0
+    with pytest.raises(OSError, match="No space left"):
+        for k in range(10000):
+            video.write(np.roll(numbered(k % 10) + noise, k, axis=0), k / 10.0)
+            written += 1
+    with pytest.raises(OSError, match="No space left"):
+        video.close()
+    times, _, length = read(path)
+    assert 0 < video.frames == len(times) < written
+    assert codec not in ("h264", "mpeg4") or kind == "avi" or video.frames % 30 == 0
+    assert times == pytest.approx([k / 10.0 for k in range(video.frames)], abs=1e-3)
+    assert video.duration == pytest.approx(video.frames / 10.0)
+    assert kind == "avi" or length == pytest.approx(video.duration, abs=0.11)
+    assert path.stat().st_size <= file.room
+
+
+def test_a_disk_that_is_full_from_the_start_leaves_no_frames(tmp_path):
+    path = tmp_path / "video.mp4"
+    file = SmallDisk(str(path), "x")
+    file.room = 100
+    video = VideoFile(file, "mp4", "h264", 64, 48)
+    with pytest.raises(OSError, match="No space left"):
+        for k in range(1000):
+            video.write(numbered(k % 20), k / 10.0)
+    with pytest.raises(OSError, match="No space left"):
+        video.close()
+    assert (video.frames, video.duration, path.stat().st_size) == (0, 0.0, 0)
 
 
 def test_codecs_have_several_names():

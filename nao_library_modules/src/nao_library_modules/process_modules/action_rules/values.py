@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
@@ -36,22 +37,18 @@ def a_point() -> Pattern:
             value = [*(value.get(axis, 0.0) for axis in "xyz"), *([value["frame"]] if "frame" in value else [])]
         if isinstance(value, str) or not isinstance(value, Sequence) or not 3 <= len(value) <= 4:
             raise Mismatch
-        try:
-            x, y, z = map(float, value[:3])
-        except (TypeError, ValueError):
-            raise Mismatch from None
-        return Point3(x, y, z, *map(str, value[3:]))
+        return Point3(*_finite(value[:3]), *map(str, value[3:]))
 
     return Pattern("a point [x, y, z] in m, in the torso frame or with the name of a frame behind it", take)
 
 
 def a_position() -> Pattern:
-    """As the head's target in older plans: two numbers, a point on the floor level of the eyes; or a point."""
+    """As the head's target in older plans: two numbers, a point at the height of the eyes; or a point."""
     point = a_point()
 
     def take(value: Any) -> Point3:
         if not isinstance(value, (str, Mapping)) and isinstance(value, Sequence) and len(value) == 2:
-            return Point3(*map(float, value), EYES)
+            return Point3(*_finite(value), EYES)
         return point.take(value)
 
     return Pattern(f"two numbers [x, y] in m, at the height of the eyes, or {point.wanted}", take)
@@ -67,16 +64,30 @@ def a_place() -> Pattern:
             return value[0], str(value[1])
         if isinstance(value, Mapping) and {"x", "y"} <= set(value) <= {"x", "y", "yaw", "frame"}:
             listed = [value["x"], value["y"], value.get("yaw", 0.0)]
-            return Place(*map(float, listed)), str(value.get("frame", ODOM))
+            return Place(*_finite(listed)), str(value.get("frame", ODOM))
         if isinstance(value, str) or not isinstance(value, Sequence) or not 2 <= len(value) <= 4:
             raise Mismatch
         *listed, frame = value if isinstance(value[-1], str) else (*value, ODOM)
-        try:
-            return Place(*map(float, [*listed, 0.0][:3])), frame
-        except (TypeError, ValueError):
-            raise Mismatch from None
+        if not 2 <= len(listed) <= 3:
+            raise Mismatch
+        return Place(*_finite([*listed, 0.0][:3])), frame
 
     return Pattern("a place [x, y, yaw] in m and rad, in odom or with the name of a frame behind it", take)
+
+
+def _finite(values: Sequence[Any]) -> list[float]:
+    """The values as numbers.
+
+    Raises:
+        Mismatch: One is none, or not finite.
+    """
+    try:
+        found = [float(value) for value in values]
+    except (TypeError, ValueError):
+        raise Mismatch from None
+    if not all(map(math.isfinite, found)):
+        raise Mismatch
+    return found
 
 
 def points_of(desig: Designator) -> Iterator[Point3]:

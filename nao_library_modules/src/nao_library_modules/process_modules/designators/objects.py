@@ -22,7 +22,6 @@ from .rules import rule
 
 SAME = 0.15
 """m; a thing that is seen this near to where one of its type and name was is that one."""
-KEPT_KEYS = ("type", "name", "position", "size", "yaw", "where")
 
 
 @dataclass(frozen=True)

@@ -233,6 +233,7 @@ class Manipulation(RobotModule):
         if not end.succeeded:
             raise failure(f"{', '.join(angles) if len(angles) < 7 else 'the body'}: {end}", status=end.status)
         state = end.result.goal_position
+        self.robot.learn(state)
         return dict(zip(state.name, state.position))
 
 

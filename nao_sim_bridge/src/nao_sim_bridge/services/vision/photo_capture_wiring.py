@@ -38,5 +38,5 @@ class PictureModules:
 
     def close(self) -> None:
         """Complete the film that is recorded, and take no more photos; blocking."""
+        self.photographer.close()  # first: the last frames of the film need not wait for photos
         self.recorder.close()
-        self.photographer.close()

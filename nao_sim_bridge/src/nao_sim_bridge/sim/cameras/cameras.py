@@ -230,10 +230,6 @@ class Cameras:
         with self.lock:
             self._replaced[self.tables.camera(camera)] = picture
 
-    def use_renderer(self, renderer: CapturesPictures) -> None:
-        """Have pictures drawn by another renderer from now on."""
-        self._darkroom.renderer = renderer
-
     def close(self) -> None:
         """Everybody who waits gets CameraClosed, and nobody sees anything any more."""
         with self.lock:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from typing import Any, Mapping, Tuple
+from typing import Any, Callable, Mapping, Tuple
 
 from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim.config import check_keys, read_json
@@ -174,11 +174,10 @@ class CameraTables:
             raise BadValue("fps", fps, f"up to {self.most_fps} frames a second, above 0")
 
 
-def _known(field: str, number: Any, table: Mapping[int, Any], text: Any) -> bool:
+def _known(field: str, number: Any, table: Mapping[int, Any], text: Callable[[Any], str]) -> None:
     if isinstance(number, bool) or not isinstance(number, int) or number not in table:
         listed = ", ".join(f"{key} ({text(value)})" if text(value) else str(key) for key, value in table.items())
         raise BadValue(field, number, f"one of {listed}")
-    return True
 
 
 def _ids(table: Mapping[int, Any]) -> str:

