@@ -7,8 +7,9 @@ from collections import deque
 WINDOW = 1.0
 """s over which the quickest picture tells how the clocks go together. A simulated robot's clock may go slower than ROS
 time, when the computer has too much to do: the shorter, the sooner that is noticed."""
-LEAST = 3
-"""Pictures that are compared however few there are."""
+LEAST, OLDEST = 3, 5.0
+"""Pictures that are compared however few there are in that time, unless they are older than so many s: after a pause
+the clocks may go together otherwise."""
 STEP = 1e-6
 """Least time between two pictures, s."""
 
@@ -44,7 +45,7 @@ class ImageClock:
             self._latest.clear()  # a clock was set back
         first = not self._latest
         self._latest.append((now, now - robot))
-        while len(self._latest) > LEAST and now - self._latest[0][0] > WINDOW:
+        while now - self._latest[0][0] > (WINDOW if len(self._latest) > LEAST else OLDEST):
             self._latest.popleft()
         ros = robot + min(late for _, late in self._latest)
         if not first:

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from statistics import median
-from typing import Tuple
+from typing import List, Tuple
 
 from .audio_in_events import turned
 from .vision_detect_events import BALL, CODE, FACE, LANDMARK, Lens, Pose, Region, Sight
@@ -138,6 +138,12 @@ CLOCKS_AGREE = 5.0
 """s between a picture's time and ours; more is another clock. In simulated time ours may also be a little late."""
 
 
+NEAR = 0.3
+"""m; what was seen so near to the same place, but never twice in one picture, is one thing: detectors begin to count
+anew when the head turns."""
+Group = List[Tuple[int, Sighting]]
+
+
 def merged(pictures: Sequence[Sequence[Sighting]]) -> list[Sighting]:
     """What several pictures show, each thing once: the median of all numbers, the name that it had most often.
 
@@ -145,13 +151,33 @@ def merged(pictures: Sequence[Sequence[Sighting]]) -> list[Sighting]:
         pictures: What each shows, the oldest first.
 
     Returns:
-        In the order in which they were seen first; time is that of the last picture.
+        Those with a name first, then those that were seen most often, then those that were seen first; time is that of
+        the last picture.
     """
-    things: dict[tuple[str, str], list[Sighting]] = {}
-    for picture in pictures:
+    things: dict[tuple[str, str], Group] = {}
+    for number, picture in enumerate(pictures):
         for sighting in picture:
-            things.setdefault((sighting.sight.kind, sighting.sight.key), []).append(sighting)
-    return [_middle(sightings) for sightings in things.values()]
+            things.setdefault((sighting.sight.kind, sighting.sight.key), []).append((number, sighting))
+    groups: list[Group] = []
+    for group in things.values():
+        known = next((other for other in groups if _one_thing(other, group)), None)
+        if known is None:
+            groups.append(group)
+        else:
+            known[:] = sorted([*known, *group], key=lambda entry: entry[0])
+    found = [_middle([sighting for _, sighting in group]) for group in groups]
+    return sorted(found, key=lambda each: (not each.sight.name, -each.looks))
+
+
+def _one_thing(one: Group, other: Group) -> bool:
+    """Whether two groups of sightings are of one thing."""
+    if one[0][1].sight.kind != other[0][1].sight.kind or {n for n, _ in one} & {n for n, _ in other}:
+        return False
+    first, second = ({s.sight.name for _, s in group if s.sight.name} for group in (one, other))
+    if first and second and not first & second:
+        return False
+    places = [_vector([s.in_robot for _, s in group]) for group in (one, other)]
+    return math.dist(*places) < NEAR
 
 
 def _middle(sightings: list[Sighting]) -> Sighting:

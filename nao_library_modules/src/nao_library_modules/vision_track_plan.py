@@ -9,7 +9,7 @@ from typing import Tuple
 
 from .gaze import load_head, look_at
 from .motion_facts import JointLimits
-from .vision_detect_events import BALL, CAMERA_FRAMES
+from .vision_detect_events import BALL, CAMERA_FRAMES, FACE
 from .vision_detect_space import Sighting
 
 Angles = Tuple[float, float]
@@ -17,8 +17,8 @@ Angles = Tuple[float, float]
 
 YAWS = (0.0, 0.8, 1.6, 2.0, -0.8, -1.6, -2.0)
 """rad: a camera sees 0.98 rad, so that pictures overlap."""
-PITCHES = {BALL: (0.2, 0.45)}
-"""rad, positive downwards: a ball lies on the floor."""
+PITCHES = {BALL: (0.2, 0.45), FACE: (0.0, -0.35, -0.65)}
+"""rad, positive downwards: a ball lies on the floor, and people who come near are high above the robot."""
 USUAL_PITCHES = (0.0, -0.4, 0.3)
 REACTION = 0.2
 """s in which the head is to get to where it should look: less is quicker, more is smoother."""
@@ -63,7 +63,14 @@ def fraction(angle: float, ranges: Sequence[JointLimits], most: float) -> float:
 
 
 def travel_time(start: Angles, end: Angles, ranges: Sequence[JointLimits], share: float) -> float:
-    """How long the head takes from some angles to others with a share of its top speed, s."""
+    """How long the head takes from some angles to others, s.
+
+    Args:
+        start: HeadYaw and HeadPitch, rad.
+        end: Likewise.
+        ranges: Of both joints.
+        share: Of their top speeds, 0..1.
+    """
     return max(abs(b - a) / (joint.max_speed * share) for a, b, joint in zip(start, end, ranges))
 
 

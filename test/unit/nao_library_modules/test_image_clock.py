@@ -61,3 +61,12 @@ def test_few_pictures_are_compared_as_well():
     clock = ImageClock()
     times = [clock.take(float(number), 100.0 + number + late) for number, late in enumerate((0.1, 0.5, 0.3))]
     assert times == pytest.approx([100.1, 101.1, 102.1])
+
+
+def test_what_was_before_a_break_is_forgotten():
+    """A simulation that stood still: its clock is behind by the break, and three old pictures do not hide that."""
+    clock = ImageClock()
+    for number in range(3):
+        clock.take(number / 10.0, 500.0 + number / 10.0 + 0.02)
+    assert clock.take(0.4, 520.4) == pytest.approx(520.4, abs=0.001)
+    assert clock.take(0.5, 520.5) == pytest.approx(520.5, abs=0.001)

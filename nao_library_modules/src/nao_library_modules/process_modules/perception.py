@@ -69,9 +69,9 @@ def perceive(
         if wanted == "the" and len(seen) > 1:
             raise AmbiguousPerception(desig, f"{len(seen)} were seen that fit")
         if wanted in ("all", "currently-visible"):
-            return [_designator_of(_believe(each, desig)) for each in seen]
+            return [_designator_of(_believe(each, desig), each, desig) for each in seen]
         best = max(seen, key=lambda each: each.confidence)
-        return equate(desig, _designator_of(_believe(best, desig)))
+        return equate(desig, _designator_of(_believe(best, desig), best, desig))
 
     return subtask(Step(f"perceive {desig}", body))
 
@@ -154,6 +154,7 @@ def _believe(seen: Any, desig: Designator) -> KnownObject:
     return BELIEFS.saw(desig["type"], seen.name, seen.position, seen.time, **facts)
 
 
-def _designator_of(thing: KnownObject) -> Designator:
-    description = {"type": thing.type, "name": thing.name, **thing.facts}
+def _designator_of(thing: KnownObject, seen: Any, desig: Designator) -> Designator:
+    """It says what the asked one said, and the name that was seen: not what the thing is called in the beliefs."""
+    description = {**desig.description, **({"name": seen.name} if seen.name else {})}
     return Designator(object_, description, resolve=lambda _: [thing])

@@ -106,8 +106,10 @@ class Things:
             NotAllowed: The robot is there.
         """
         taken = {FLOOR, *self.things}
-        if thing.name in taken or not 1 <= len(thing.name) <= LONGEST_NAME:
-            raise BadValue("name", thing.name, f"1 to {LONGEST_NAME} characters, and none of {_listed(taken)}")
+        if thing.name in taken:
+            raise BadValue("name", thing.name, f"one that is free (remove that thing, or move it); taken: {_listed(taken)}")
+        if not 1 <= len(thing.name) <= LONGEST_NAME:
+            raise BadValue("name", thing.name, f"1 to {LONGEST_NAME} characters")
         if len(self.placed) >= MOST_PLACED:
             raise BadValue("number of placed things", len(self.placed) + 1, f"{MOST_PLACED} at most")
         if len(thing.touched) > MOST_PARTS:

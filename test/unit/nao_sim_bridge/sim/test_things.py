@@ -175,7 +175,7 @@ def test_equal_commands_give_equal_runs(bench):
 @pytest.mark.parametrize(
     "entry, message",
     [
-        ({"name": "table"}, r"name is 'table', allowed is 1 to 64 characters, and none of ball, .*wall_right"),
+        ({"name": "table"}, r"name is 'table', allowed is one that is free .*; taken: ball, .*wall_right"),
         ({"name": "floor"}, "name is 'floor'"),
         ({"name": "x" * 65}, "1 to 64 characters"),
         ({"ball": 11.0, "position": [50, 0, 0]}, "size is 11.0, allowed is 10 m at most"),
