@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterator
 
 import rospy
 
-from nao_library_modules.process_modules import action_rules  # noqa: F401  what actions are in numbers
 from nao_library_modules.process_modules.control import do, par
 from nao_library_modules.process_modules.designators.designator import action, an
 from nao_library_modules.process_modules.designators.patterns import number, text

@@ -17,7 +17,6 @@ import sys
 import rospy
 
 from nao_library_modules.places import Place
-from nao_library_modules.process_modules import action_rules  # noqa: F401  what actions are in numbers
 from nao_library_modules.process_modules.control import do, seq, try_each_in_order
 from nao_library_modules.process_modules.designators.designator import action, an
 from nao_library_modules.process_modules.failures import (

@@ -16,7 +16,13 @@ from nao_library_modules.process_modules import action_rules  # noqa: F401  what
 from nao_library_modules.process_modules.control import do, par, seq, try_in_order
 from nao_library_modules.process_modules.designators.designator import Designator, a, action, an, location, object_, the
 from nao_library_modules.process_modules.designators.objects import BELIEFS
-from nao_library_modules.process_modules.failures import CompositeFailure, ObjectNowhereToBeFound, fail
+from nao_library_modules.process_modules.failures import (
+    CompositeFailure,
+    ObjectNowhereToBeFound,
+    PtuGoalUnreachable,
+    fail,
+)
+from nao_library_modules.process_modules.handling import give, with_failure_handling
 from nao_library_modules.process_modules.low_level import this_robot
 from nao_library_modules.process_modules.perception import go_to, perceive
 from nao_library_modules.process_modules.plan_runner import run_and_tell, wake_up
@@ -37,7 +43,7 @@ def know_the_lab() -> None:
 
 @def_plan
 def find_ball(ball: Designator) -> Designator:
-    """Look for the ball: ahead, on the floor to the right, to the left, and then all around for what is farther away."""
+    """Look for the ball: ahead, on the floor to the right, to the left, then all around for what is farther away."""
     return try_in_order(
         do(perceive, ball, timeout=2.0),
         lambda: seq(
@@ -56,6 +62,17 @@ def turn_and_look(ball: Designator, turn: float) -> Designator:
     return perceive(ball, timeout=8.0, search=True, camera="bottom")
 
 
+@def_plan
+def look_at(thing: Designator) -> None:
+    """Look at a thing, or, if it is too near to the feet for that, as far down as the head turns."""
+
+    def as_far_as_it_goes(failure: PtuGoalUnreachable) -> None:
+        give(perform(an(action, type="moving-joints", angles=dict(zip(("HeadYaw", "HeadPitch"), failure.nearest)))))
+
+    looking = do(perform, an(action, type="looking", target=thing))
+    with_failure_handling(looking, {PtuGoalUnreachable: as_far_as_it_goes})
+
+
 def fetch() -> str:
     """Go to the table, find the ball, point at it, and say where it is."""
     table, ball = the(object_, type="table"), a(object_, type="ball", size=BALL_RADIUS)
@@ -67,10 +84,7 @@ def fetch() -> str:
         seen = find_ball(ball)
     except CompositeFailure as failure:
         fail(ObjectNowhereToBeFound, f"no ball: {failure}")
-    par(
-        do(perform, an(action, type="pointing", at=seen)),
-        do(perform, an(action, type="looking", target=seen)),
-    )
+    par(do(perform, an(action, type="pointing", at=seen)), do(look_at, seen))
     place = this_robot().point_in(seen.reference().position, "base_footprint")
     if abs(place.y) < place.x * math.tan(AHEAD):
         where = "in front of me"

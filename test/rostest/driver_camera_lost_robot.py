@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """The robot is late, dies while somebody looks through its cameras, and comes back: pictures and detections go on."""
 
-import os
-import subprocess
 import sys
 import unittest
 from pathlib import Path
@@ -19,14 +17,13 @@ from naoqi import ALProxy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
 from camera_fixture import LIMIT, Look  # noqa: E402
+from mortal_simulator import PORT, MortalSimulator  # noqa: E402
 
-PORT = int(os.environ.get("NAO_PORT", "9559"))
 BRIGHTNESS = 0
 
 
-class DriverCameraLostRobot(unittest.TestCase):
+class DriverCameraLostRobot(MortalSimulator, unittest.TestCase):
     def setUp(self):
-        self.simulator = None
         self.addCleanup(self.kill)
         self.reports = {}
         rospy.Subscriber("/diagnostics", DiagnosticArray, self.note, queue_size=100)
@@ -39,15 +36,6 @@ class DriverCameraLostRobot(unittest.TestCase):
 
     def note(self, message):
         self.reports.update((status.name, status.message) for status in message.status)
-
-    def start(self):
-        self.simulator = subprocess.Popen([sys.executable, "-m", "nao_sim_bridge", "--port", str(PORT)])
-
-    def kill(self):
-        if self.simulator is not None:
-            self.simulator.kill()
-            self.simulator.wait()
-            self.simulator = None
 
     def proxy(self, name):
         return ALProxy(name, "127.0.0.1", PORT)

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """The robot is late, dies while joints move, and comes back: the driver says so, and goes on."""
 
-import os
-import subprocess
 import sys
 import time
 import unittest
+from pathlib import Path
 
 import rospy
 import rostest
@@ -19,7 +18,8 @@ from nao_library_actions.msg import BodyPoseAction, BodyPoseGoal, JointTrajector
 from nao_sim_bridge.testing import send, wait_until
 from naoqi import ALProxy
 
-PORT = int(os.environ.get("NAO_PORT", "9559"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from mortal_simulator import PORT, MortalSimulator  # noqa: E402
 
 
 def trajectory(time_from_start, angle):
@@ -29,9 +29,8 @@ def trajectory(time_from_start, angle):
     return goal
 
 
-class DriverLostRobot(unittest.TestCase):
+class DriverLostRobot(MortalSimulator, unittest.TestCase):
     def setUp(self):
-        self.simulator = None
         self.addCleanup(self.kill)
         self.trajectories = self.client("joint_trajectory", JointTrajectoryAction)
         self.poses = self.client("body_pose", BodyPoseAction)
@@ -40,15 +39,6 @@ class DriverLostRobot(unittest.TestCase):
         client = SimpleActionClient(name, action)
         self.assertTrue(client.wait_for_server(Duration(30)), name)
         return client
-
-    def start(self):
-        self.simulator = subprocess.Popen([sys.executable, "-m", "nao_sim_bridge", "--port", str(PORT)])
-
-    def kill(self):
-        if self.simulator is not None:
-            self.simulator.kill()
-            self.simulator.wait()
-            self.simulator = None
 
     def wait_until_it_works(self):
         easy = trajectory(0.1, 0.0)

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """The robot is late, dies while it talks, and comes back: the nodes of its sound say so, and go on."""
 
-import os
-import subprocess
 import sys
 import time
 import unittest
+from pathlib import Path
 
 import rospy
 import rostest
@@ -20,14 +19,15 @@ from nao_library_msgs.srv import GetAudioMasterVolume
 from nao_sim_bridge.testing import send, wait_until
 from naoqi import ALProxy
 
-PORT = int(os.environ.get("NAO_PORT", "9559"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from mortal_simulator import PORT, MortalSimulator  # noqa: E402
+
 LIMIT = 30.0
 LONG = "This story takes longer than the robot lives, and nobody will ever know how it ends. " * 4
 
 
-class DriverSpeechLostRobot(unittest.TestCase):
+class DriverSpeechLostRobot(MortalSimulator, unittest.TestCase):
     def setUp(self):
-        self.simulator = None
         self.addCleanup(self.kill)
         self.speech = SimpleActionClient("speech_action", SpeechWithFeedbackAction)
         self.assertTrue(self.speech.wait_for_server(rospy.Duration(LIMIT)))
@@ -38,15 +38,6 @@ class DriverSpeechLostRobot(unittest.TestCase):
         rospy.Subscriber("nao_audio/audio_source_localization", AudioSourceLocalization)
         rospy.Subscriber("/rosout", Log, lambda log: self.complaints.append(log.msg))
         self.volume = rospy.ServiceProxy("nao_audio/get_master_volume", GetAudioMasterVolume)
-
-    def start(self):
-        self.simulator = subprocess.Popen([sys.executable, "-m", "nao_sim_bridge", "--port", str(PORT)])
-
-    def kill(self):
-        if self.simulator is not None:
-            self.simulator.kill()
-            self.simulator.wait()
-            self.simulator = None
 
     def say(self, text):
         return send(self.speech, SpeechWithFeedbackGoal(text))

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 """The robot is late, dies while it walks, and comes back: nao_walker says so, and walks again when told to."""
 
-import os
-import subprocess
 import sys
 import threading
 import time
 import unittest
+from pathlib import Path
 
 import rospy
 import rostest
@@ -18,13 +17,14 @@ from nao_sim_bridge.testing import wait_until
 from naoqi import ALProxy
 from naoqi.errors import NaoError
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from mortal_simulator import PORT, MortalSimulator  # noqa: E402
+
 LIMIT = 60.0
-PORT = int(os.environ.get("NAO_PORT", "9559"))
 
 
-class DriverWalkerLostRobot(unittest.TestCase):
+class DriverWalkerLostRobot(MortalSimulator, unittest.TestCase):
     def setUp(self):
-        self.simulator = None
         self.addCleanup(self.kill)
         for name in ("cmd_pose_srv", "stop_walk_srv"):
             rospy.wait_for_service(name, 30.0)
@@ -33,17 +33,11 @@ class DriverWalkerLostRobot(unittest.TestCase):
 
     def start(self):
         """Start a simulator, and have its robot stand up."""
-        self.simulator = subprocess.Popen([sys.executable, "-m", "nao_sim_bridge", "--port", str(PORT)])
+        super().start()
         self.motion = ALProxy("ALMotion", "127.0.0.1", PORT, lazy=True)
         self.motion.connection.wait_connected(30.0)
         wait_until(lambda: self.succeeds(self.stop), LIMIT, "nao_walker and the robot")
         wait_until(lambda: self.succeeds(self.motion.wakeUp), LIMIT, "a robot that is awake")
-
-    def kill(self):
-        if self.simulator is not None:
-            self.simulator.kill()
-            self.simulator.wait()
-            self.simulator = None
 
     @staticmethod
     def succeeds(call):

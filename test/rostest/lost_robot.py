@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 """The robot is late, dies in the middle of a goal, and comes back: goals abort clearly, the node goes on."""
 
-import os
 import signal
-import subprocess
 import sys
 import time
 import unittest
+from pathlib import Path
 
 import actionlib
 import rosgraph
@@ -22,15 +21,16 @@ from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.testing import send, wait_until
 from naoqi import ALProxy
 
-PORT = os.environ.get("NAO_PORT", "9559")
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from mortal_simulator import PORT, MortalSimulator  # noqa: E402
+
 HALF = LedFunction(function="setIntensity", lights=["Brain0"], i_values=[0.5])
 BRAIN0 = "Device/SubDeviceList/Head/Led/Front/Right/1/Actuator/Value"
 LONG = LedFunction(function="fade", lights=["Brain0"], i_values=[0.0], duration=100.0)
 
 
-class LostRobot(unittest.TestCase):
+class LostRobot(MortalSimulator, unittest.TestCase):
     def setUp(self):
-        self.simulator = None
         self.addCleanup(self.kill)
         self.level = None
         # One subscriber that stays: a new one each time would see whichever of the many nodes speaks first.
@@ -38,16 +38,6 @@ class LostRobot(unittest.TestCase):
         self.addCleanup(diagnostics.unregister)
         self.client = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
         self.assertTrue(self.client.wait_for_server(Duration(30)))
-
-    def start(self):
-        self.simulator = subprocess.Popen([sys.executable, "-m", "nao_sim_bridge", "--port", PORT])
-
-    def kill(self):
-        if self.simulator is not None:
-            self.simulator.send_signal(signal.SIGCONT)
-            self.simulator.kill()
-            self.simulator.wait()
-            self.simulator = None
 
     def play(self, *functions):
         return send(self.client, NaoLedGoal(list(functions)))
@@ -57,7 +47,7 @@ class LostRobot(unittest.TestCase):
 
     def wait_for_the_fade(self):
         """Until the robot has begun to fade: the light is a little darker than HALF."""
-        memory = ALProxy("ALMemory", "127.0.0.1", int(PORT))
+        memory = ALProxy("ALMemory", "127.0.0.1", PORT)
         wait_until(lambda: 0.4 < memory.getData(BRAIN0) < 0.4999, 20.0, "the fade")
 
     def read_level(self, message):
@@ -72,7 +62,7 @@ class LostRobot(unittest.TestCase):
     def test_robot_that_is_late_dies_and_comes_back(self):
         early = self.play(HALF).wait()
         self.assertEqual(early.state, GoalStatus.ABORTED)
-        self.assertIn(PORT, early.text)
+        self.assertIn(str(PORT), early.text)
         node = rosnode.get_api_uri(rosgraph.Master("/lost_robot_test"), "/nao_lights")
         self.wait_for_level(DiagnosticStatus.ERROR)
 

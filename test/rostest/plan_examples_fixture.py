@@ -24,11 +24,19 @@ def start(name, *arguments):
 
 
 class PlanExampleTest(unittest.TestCase):
-    """Runs examples on the simulated robot, and looks at what came of it."""
+    """Runs examples on the simulated robot, and looks at what came of it.
+
+    Attributes:
+        servers: That are waited for before the first example: name of the action, and its class.
+    """
+
+    servers = {}
 
     @classmethod
     def setUpClass(cls):
         cls.robot = SimulatedRobot()
+        for name, kind in cls.servers.items():
+            cls.robot.action_client(name, kind, limit=90.0)
 
     def setUp(self):
         self.robot.reset()

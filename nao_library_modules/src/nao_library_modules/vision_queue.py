@@ -55,6 +55,12 @@ class FrameQueue:
             self.take()
             self.dropped += 1
 
+    def drop_all(self) -> None:
+        """Let nobody have those that wait."""
+        while self:
+            self.take()
+            self.dropped += 1
+
     def take(self) -> Frame:
         """Remove the oldest one; there must be one."""
         frame = self._frames.popleft()

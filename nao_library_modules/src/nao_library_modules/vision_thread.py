@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from typing import Any
 
 from nao_library_msgs.msg import VisionThread
@@ -143,6 +144,26 @@ class FrameThread:
             if self._state == "running":
                 self._state = "stopped"
         self._finish()
+
+    def let_go(self) -> None:
+        """Take no frames any more, without waiting for anything; `stop` has to follow."""
+        with self._changed:
+            if self._state == "running":
+                self._state = "stopped"
+            self._ended = self._ended or self._clock.now()
+            self._changed.notify_all()
+
+    def wait_until(self, deadline: float) -> None:
+        """Wait for those that have come to be passed on; what has no time before then is dropped.
+
+        Args:
+            deadline: As `time.monotonic`, s.
+        """
+        worker = self._worker
+        if worker is not None:
+            worker.join(max(0.0, deadline - time.monotonic()))
+            with self._changed:
+                self._queue.drop_all()
 
     def _wait_for_the_last(self) -> None:
         """Wait until frames come that are newer than this moment; with the condition held."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from typing import Union
 
 from .errors import BadGoal
@@ -14,6 +15,8 @@ from .vision_stream import Stream
 log = logging.getLogger(__name__)
 
 MOST_THREADS = 100
+CLOSING = 2.0
+"""How long the end of the server waits for frames that have come and are not written yet, s of wall-clock time."""
 
 AnyThread = Union[Stream, Recording]
 
@@ -68,12 +71,22 @@ class VisionThreads:
             self._threads.pop(ident, None)
 
     def close(self) -> None:
-        """Stop all of them: files are complete afterwards."""
+        """Stop all of them: files are complete afterwards.
+
+        They end together, and soon: who ends the node is not patient, and what is killed has no complete file.
+        """
         with self._lock:
             self._closed = True
-        for thread in self.known.values():
-            if thread.runs:
-                log.info("%s %r ends with the server", thread.kind, thread.ident)
+        threads = list(self.known.values())
+        running = [thread for thread in threads if thread.runs]
+        for thread in threads:
+            thread.let_go()
+        for thread in running:
+            log.info("%s %r ends with the server", thread.kind, thread.ident)
+        deadline = time.monotonic() + CLOSING
+        for thread in threads:
+            thread.wait_until(deadline)
+        for thread in threads:
             thread.stop(at_once=True)
 
 

@@ -77,7 +77,7 @@ def entry_of(request: PlaceObject) -> dict[str, Any]:
     else:
         entry[request.kind] = request.content
         if len(size) > 1:
-            raise BadValue("size", size, f"one number for a {request.kind}")
+            raise BadValue("size", size, f"one number for a {request.kind[:40]}")
         if size:
             entry[SIZE_KEY.get(request.kind, "size")] = size[0]
     if color:

@@ -14,7 +14,7 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 from sensor_msgs.srv import SetCameraInfo, SetCameraInfoResponse
 from std_msgs.msg import Header
 
-from naoqi.errors import NaoError, RobotUnreachable
+from naoqi.errors import NaoError
 
 from ..health import Report
 from ..robot_frames import tf_prefix
@@ -25,7 +25,7 @@ from .camera_infos import CameraInfos
 from .camera_settings import TUNINGS, changed_tunings, fields_of, settled, stream_settings
 from .camera_stream import CameraStream
 from .camera_subscriber import ANSWER_LIMIT, DEVICE
-from .camera_tuning import CameraTuning
+from .camera_tuning import NO_ANSWER, CameraTuning
 from .image_compression import FORMATS, JPEG, compress
 from .image_messages import from_info, header_of, to_compressed, to_image, to_info
 from .node import name_for_robot, publish
@@ -148,13 +148,13 @@ class CameraTopics:
         """Have robot and parameters say the same; called in the thread of the demand, before pictures come.
 
         Raises:
-            RobotUnreachable: If the robot is gone.
+            NaoError: One of `NO_ANSWER`: this is tried again then.
         """
         camera = self.camera
         try:
             fov = self._ask("getHorizontalFOV", camera), self._ask("getVerticalFOV", camera)
             self._infos[camera].set_fov(*fov)
-        except RobotUnreachable:
+        except NO_ANSWER:
             raise
         except NaoError as error:
             rospy.logwarn("the robot does not tell what its %s covers: %s", CAMERA_NAMES[camera], error)

@@ -7,12 +7,15 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from naoqi.errors import NaoError, RobotUnreachable
+from naoqi.errors import CallTimeout, NaoError, RobotUnreachable, UnknownModule
 
 from .camera_formats import CAMERA_NAMES
 from .camera_settings import TUNINGS
 
 log = logging.getLogger(__name__)
+
+NO_ANSWER = (RobotUnreachable, UnknownModule, CallTimeout)
+"""A robot that is gone, still starting, or busy: nothing is known about its camera then, and asking again may help."""
 
 
 class CameraTuning:
@@ -55,7 +58,7 @@ class CameraTuning:
         """Set everything that was chosen; what the camera refuses is told in the log.
 
         Raises:
-            RobotUnreachable: If the robot is gone.
+            NaoError: One of `NO_ANSWER`.
         """
         with self._lock:
             for name in TUNINGS:
@@ -63,7 +66,7 @@ class CameraTuning:
                     continue
                 try:
                     self._set(camera, self._possible(camera, {name: self._chosen[name]}))
-                except RobotUnreachable:
+                except NO_ANSWER:
                     raise
                 except NaoError as error:
                     log.warning("%s", error)
@@ -72,7 +75,7 @@ class CameraTuning:
         """Name -> value of all that the camera has.
 
         Raises:
-            RobotUnreachable: If the robot is gone.
+            NaoError: One of `NO_ANSWER`.
         """
         values = {}
         with self._lock:
@@ -81,7 +84,7 @@ class CameraTuning:
                     continue
                 try:
                     value = self._ask("getParameter", camera, tuning.id)
-                except RobotUnreachable:
+                except NO_ANSWER:
                     raise
                 except NaoError as error:
                     log.debug("%s has no %s: %s", CAMERA_NAMES[camera], name, error)
@@ -113,7 +116,7 @@ class CameraTuning:
         """Least and greatest value; None, and one warning, if the camera does not have the parameter."""
         try:
             lowest, highest = self._ask("getParameterRange", camera, TUNINGS[name].id)[:2]
-        except RobotUnreachable:
+        except NO_ANSWER:
             raise
         except NaoError as error:
             if (camera, name) not in self._told:

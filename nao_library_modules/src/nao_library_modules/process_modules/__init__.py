@@ -1,1 +1,154 @@
-"""Process modules and plans on a NAO: designators, rules, modules, goals and CRAM's plan language."""
+"""Process modules and plans on a NAO: designators, rules, modules, goals and CRAM's plan language.
+
+What plans are written with can be imported from here. What needs ROS is in `low_level`, `plan_runner`, `modules` and
+`robot_link`.
+"""
+
+from __future__ import annotations
+
+from .control import (
+    do,
+    par,
+    par_loop,
+    partial_order,
+    pursue,
+    seq,
+    subtask,
+    top_level,
+    try_all,
+    try_each_in_order,
+    try_in_order,
+)
+from .designators.designator import (
+    Designator,
+    a,
+    action,
+    all_,
+    an,
+    current_desig,
+    desig_equal,
+    designator,
+    equate,
+    first_desig,
+    location,
+    motion,
+    object_,
+    the,
+)
+from .designators.objects import BELIEFS
+from .designators.rules import Command, command, rule
+from .failures import CompositeFailure, PlanError, PlanFailure, SimplePlanFailure, fail
+from .flow import checkpoint, retry_after_suspension, sleep, uninterrupted, wait_until
+from .fluents import Fluent, fl_and, fl_eq, fl_funcall, fl_not, fl_or, fl_value_changed, pulsed
+from .goals import ANY, achieve, declare_goal, def_goal, holds
+from .handling import do_retry, get_counter, give, reset_counter, retry, with_failure_handling, with_retry_counters
+from .perception import at_location, examine, go_to, perceive
+from .plans import def_plan, def_top_level_plan
+from .policies import Policy, timeout_policy, with_policy
+from .process_module import AsynchronousProcessModule, ProcessModule, pm_cancel, pm_run, pm_status
+from .registry import (
+    available_process_module,
+    matching_process_module,
+    monitor_process_module,
+    perform,
+    pm_execute,
+    pm_execute_matching,
+    with_process_module_aliases,
+    with_process_modules_running,
+)
+from .space import Point3
+from .tasks import Task, TaskState, current_task
+from .trace import Trace, trace_of
+from .waiting import wait_for, whenever
+
+__all__ = [
+    "ANY",
+    "BELIEFS",
+    "AsynchronousProcessModule",
+    "Command",
+    "CompositeFailure",
+    "Designator",
+    "Fluent",
+    "PlanError",
+    "PlanFailure",
+    "Point3",
+    "Policy",
+    "ProcessModule",
+    "SimplePlanFailure",
+    "Task",
+    "TaskState",
+    "Trace",
+    "a",
+    "achieve",
+    "action",
+    "all_",
+    "an",
+    "at_location",
+    "available_process_module",
+    "checkpoint",
+    "command",
+    "current_desig",
+    "current_task",
+    "declare_goal",
+    "def_goal",
+    "def_plan",
+    "def_top_level_plan",
+    "desig_equal",
+    "designator",
+    "do",
+    "do_retry",
+    "equate",
+    "examine",
+    "fail",
+    "first_desig",
+    "fl_and",
+    "fl_eq",
+    "fl_funcall",
+    "fl_not",
+    "fl_or",
+    "fl_value_changed",
+    "get_counter",
+    "give",
+    "go_to",
+    "holds",
+    "location",
+    "matching_process_module",
+    "monitor_process_module",
+    "motion",
+    "object_",
+    "par",
+    "par_loop",
+    "partial_order",
+    "perceive",
+    "perform",
+    "pm_cancel",
+    "pm_execute",
+    "pm_execute_matching",
+    "pm_run",
+    "pm_status",
+    "pulsed",
+    "pursue",
+    "reset_counter",
+    "retry",
+    "retry_after_suspension",
+    "rule",
+    "seq",
+    "sleep",
+    "subtask",
+    "the",
+    "timeout_policy",
+    "top_level",
+    "trace_of",
+    "try_all",
+    "try_each_in_order",
+    "try_in_order",
+    "uninterrupted",
+    "wait_for",
+    "wait_until",
+    "whenever",
+    "with_failure_handling",
+    "with_policy",
+    "with_process_module_aliases",
+    "with_process_modules_running",
+    "with_retry_counters",
+]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -19,8 +20,10 @@ from .fluents import Fluent
 
 log = logging.getLogger(__name__)
 
-SERVER_LIMIT = 10.0
-"""s to wait for a server."""
+SERVER_LIMIT = 20.0
+"""s of the computer to wait for a server: simulated time may run so fast that a node is not up within much of it."""
+LOOK_PERIOD = 0.5
+"""s of the plan's clock after which is looked how long that was."""
 CANCEL_LIMIT = 5.0
 """s that a server may take to end a goal that was cancelled."""
 
@@ -96,7 +99,10 @@ class PlanActionClient:
         Raises:
             ActionlibActionTimedOut: There is none.
         """
-        if not wait_until(lambda: self._there.value, [self._there], timeout):
+        deadline = time.monotonic() + timeout
+        while not wait_until(lambda: self._there.value, [self._there], LOOK_PERIOD):
+            if time.monotonic() < deadline:
+                continue
             where = rospy.resolve_name(self.name)
             raise ActionlibActionTimedOut(f"there is no server for {where} after {timeout:g} s", action=self.name)
 

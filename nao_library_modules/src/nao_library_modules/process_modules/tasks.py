@@ -143,11 +143,10 @@ class Task:
             result = self._body()
             flow.check()
         except Evaporated as signal:
-            if signal.task is not self:
-                self._end(TaskState.EVAPORATED, reason=signal.task.reason)
-                raise
-            self._end(TaskState.EVAPORATED)
-            if self.parent is not None and self.parent._evaporating:
+            self._end(TaskState.EVAPORATED, reason=signal.task.reason)
+            # Looked at now, not when the signal came: a task above may have been evaporated meanwhile.
+            above = flow.tasks[:-1] if self.parent is None else [*flow.tasks[:-1], self.parent]
+            if any(task.evaporating for task in above):
                 raise
             raise TaskEvaporatedFailure(self.path, self.reason) from None
         except BaseException as error:

@@ -140,7 +140,15 @@ def box(edges: tuple[float, ...]) -> Mesh:
 
 
 def ring_sector(inner: float, outer: float, thickness: float, degrees: float, around: int = AROUND) -> Mesh:
-    """A flat ring about Z, or a piece of it centred on X; with inner radius 0 a disc or cylinder."""
+    """A flat ring about Z, or a piece of it centred on X.
+
+    Args:
+        inner: Inner radius, m; 0 for a disc or cylinder.
+        outer: Outer radius, m.
+        thickness: Along Z, m.
+        degrees: How much of the ring, 360 for all of it.
+        around: Corners of a whole ring.
+    """
     steps = max(2, round(around * degrees / 360.0))
     angles = np.radians(np.linspace(-degrees / 2.0, degrees / 2.0, steps + 1))
     radial = np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=1)

@@ -107,7 +107,8 @@ class Things:
         """
         taken = {FLOOR, *self.things}
         if thing.name in taken:
-            raise BadValue("name", thing.name, f"one that is free (remove that thing, or move it); taken: {_listed(taken)}")
+            allowed = f"one that is free (remove that thing, or move it); taken: {_listed(taken)}"
+            raise BadValue("name", thing.name, allowed)
         if not 1 <= len(thing.name) <= LONGEST_NAME:
             raise BadValue("name", thing.name, f"1 to {LONGEST_NAME} characters")
         if len(self.placed) >= MOST_PLACED:

@@ -25,7 +25,19 @@ def entries(content: Mapping, key: str, where: str) -> list[tuple[str, Any]]:
 def number(
     entry: Mapping, key: str, where: str, default: float, lowest: float = 0.0, highest: float = math.inf
 ) -> float:
-    """A number of an entry, within its limits."""
+    """A number of an entry.
+
+    Args:
+        entry: What the file holds.
+        key: Where the number is in it.
+        where: Place of the entry, for error texts.
+        default: The number where there is no such key.
+        lowest: The least it may be.
+        highest: The most it may be.
+
+    Raises:
+        WorldError: It is no number, or out of these limits.
+    """
     value = float(vector([entry.get(key, default)], f"{where}.{key}", 1, WorldError)[0])
     if not lowest <= value <= highest:
         upper = f"..{highest:g}" if highest != math.inf else " or more"

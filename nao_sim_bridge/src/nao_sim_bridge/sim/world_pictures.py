@@ -22,6 +22,8 @@ CODE128 = "code128:"
 LONGEST_QR, LONGEST_BARCODE = 300, 40
 MOST_PIXELS = 2048
 """Edge of a picture, at most: larger files are made smaller."""
+LARGEST_FILE = 50_000_000
+"""Pixels of a picture file, at most: a small file may fill the memory when it is unpacked."""
 KEPT = 64
 GREY = 128
 ASPECTS = {"landmark": 1.0, "qr": 1.0, "face": 0.8, "poster": 0.75, "pattern": 1.0}
@@ -158,8 +160,10 @@ def _read_file(path: str) -> np.ndarray:
     try:
         with Image.open(path) as image:
             image.draft("RGB", (MOST_PIXELS, MOST_PIXELS))
+            if image.width * image.height > LARGEST_FILE:
+                raise ValueError(f"it has {image.width}x{image.height} pixels, more than {LARGEST_FILE}")
             image = image.convert("RGB")
             image.thumbnail((MOST_PIXELS, MOST_PIXELS))
             return np.array(image)
-    except (OSError, ValueError, Image.DecompressionBombError) as error:
+    except Exception as error:  # formats have errors of their own for broken files, a SyntaxError among them
         raise BadValue("picture file", path, f"a picture: {error}") from error

@@ -7,7 +7,7 @@ import logging
 import pytest
 
 from nao_library_modules.driver.camera_tuning import CameraTuning
-from naoqi.errors import NaoError, RobotError, RobotUnreachable
+from naoqi.errors import CallTimeout, NaoError, RobotError, RobotUnreachable, UnknownModule
 
 BRIGHTNESS, CONTRAST, GAIN, AUTO_EXPOSITION, AUTO_WHITE, EXPOSURE = 0, 1, 6, 11, 12, 17
 RANGES = {
@@ -26,11 +26,11 @@ class Device:
     def __init__(self):
         self.values = {BRIGHTNESS: 5, CONTRAST: 32, GAIN: 16, AUTO_EXPOSITION: 1, AUTO_WHITE: 1, EXPOSURE: 40}
         self.sets = []
-        self.gone = False
+        self.silence = None
 
     def __call__(self, method, camera, number, *value):
-        if self.gone:
-            raise RobotUnreachable("10.0.0.7", 9559, "not there")
+        if self.silence is not None:
+            raise self.silence
         if number not in self.values:
             raise RobotError("ALVideoDevice", method, f"no parameter {number}")
         if method == "getParameterRange":
@@ -106,12 +106,22 @@ def test_reading_tells_what_the_camera_has(device):
     }
 
 
-def test_a_lost_robot_is_no_camera_that_lacks_something(device):
+@pytest.mark.parametrize(
+    "silence",
+    [
+        RobotUnreachable("10.0.0.7", 9559, "not there"),
+        UnknownModule("ALVideoDevice", "10.0.0.7:9559", [], ["ALMemory"]),
+        CallTimeout("ALVideoDevice", "getParameter", 5.0),
+    ],
+    ids=["lost", "still starting", "busy"],
+)
+def test_a_robot_that_does_not_answer_is_no_camera_that_lacks_something(device, silence):
     tuning = CameraTuning(device, {"contrast": 60})
-    device.gone = True
+    device.silence = silence
     for call in (lambda: tuning.read(0), lambda: tuning.set_again(0)):
-        with pytest.raises(RobotUnreachable):
+        with pytest.raises(type(silence)):
             call()
-    device.gone = False
+    device.silence = None
     tuning.set_again(0)
     assert device.sets == [(0, CONTRAST, 60)]
+    assert tuning.read(0)["contrast"] == 60

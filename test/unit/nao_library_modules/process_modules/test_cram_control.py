@@ -261,6 +261,36 @@ def test_ending_twice_is_ending_once(beside):
     assert ended == [True] and "much later" not in plan.root.reason
 
 
+def test_a_task_above_that_is_ended_while_one_below_ends_is_ended_too(beside):
+    """The signal names the lower one; the upper one is what ends in the end, and as a failure of the plan."""
+    waiting = Fluent("waiting", False)
+
+    def body():
+        try:
+            waiting.value = True
+            forever()
+        finally:
+            plan.root.evaporate("all of it")
+
+    plan = beside(lambda: subtask(do(body, name="below")))
+    seen(waiting)
+    plan.root.find("below").evaporate("only this")
+    with pytest.raises(TaskEvaporatedFailure, match="all of it"):
+        plan.ended()
+
+
+def test_why_a_task_ended_stays_when_it_is_woken_afterwards(beside):
+    waiting = Fluent("waiting", False)
+    plan = beside(lambda: (setattr(waiting, "value", True), forever()))
+    seen(waiting)
+    plan.root.suspend("a pause")
+    plan.root.evaporate("why it ended")
+    plan.root.wake_up("woken too late")
+    with pytest.raises(TaskEvaporatedFailure, match="why it ended"):
+        plan.ended()
+    assert plan.root.reason == "why it ended"
+
+
 def test_an_end_in_the_middle_of_a_protected_part_counts_afterwards(beside):
     inside, go, after = Fluent("inside", False), Fluent("go", False), []
 
@@ -615,7 +645,7 @@ def test_failures_of_branches_are_handled_around_their_par():
     assert ended == ["walk"] * 3 and len(tries) == 3
 
 
-def test_a_hundred_thousand_retries_need_no_deeper_stack():
+def test_thousands_of_retries_need_no_deeper_stack():
     tries = [0]
 
     def body():

@@ -1,4 +1,4 @@
-"""Process modules where they meet plans: cancelled in each state, suspended, several inputs at once, watched, renamed."""
+"""Process modules where they meet plans: cancelled in each state, suspended, several inputs, watched, renamed."""
 
 from __future__ import annotations
 

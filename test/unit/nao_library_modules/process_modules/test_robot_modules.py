@@ -378,6 +378,14 @@ def test_what_is_not_seen_is_a_failure(robot):
             top_level(lambda: perceive(a("object", name="Anna")))
 
 
+@pytest.mark.parametrize("size, wanted", [(0.05, 0.05), ([0.1, 0.1, 0.1], 0.0)])
+def test_a_detector_is_told_one_length_and_no_box(robot, size, wanted):
+    robot.seen = [seen("ball", 1.0)]
+    with with_process_modules_running(Vision(robot)):
+        top_level(lambda: perform(an(action, type="detecting", object=a("object", type="ball", size=size))))
+    assert sent(robot, "NaoVision")[0].functions[0].size == wanted
+
+
 # --- numbers ----------------------------------------------------------------------------------------------------------
 
 

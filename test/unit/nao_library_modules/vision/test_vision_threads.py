@@ -10,7 +10,7 @@ import pytest
 from fake_vision import compressed, image, number_of, numbered, numbered_image, wait_for
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
-from nao_library_modules import vision_queue, vision_recorder
+from nao_library_modules import vision_queue, vision_recorder, vision_threads
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.vision_camera_info import info_topic
 from nao_library_modules.vision_files import VisionFiles
@@ -491,6 +491,42 @@ def test_ten_streams_and_ten_recordings_at_once(topics, clock, files, send):
         list(range(50))
     ] * 10
     assert topics.count(CAMERA) == 0
+
+
+def test_at_the_end_of_the_server_what_has_no_time_is_dropped_and_files_are_complete(
+    topics, clock, files, send, monkeypatch
+):
+    monkeypatch.setattr(vision_threads, "CLOSING", 0.1)
+    may_go_on = threading.Event()
+    write = vision_recorder.VideoFile.write
+
+    def slow(self, picture, stamp):
+        if self.frames:
+            may_go_on.wait(30.0)
+        return write(self, picture, stamp)
+
+    monkeypatch.setattr(vision_recorder.VideoFile, "write", slow)
+    threads = VisionThreads()
+    recordings = [
+        Recording(
+            f"r{number}", CAMERA, 0.0, topics, clock, files, VideoWish(files.folder / f"{number}.mp4", "mp4", "h264")
+        )
+        for number in range(3)
+    ]
+    for one in recordings:
+        threads.add(one)
+        one.start()
+    send(8)
+    wait_for(lambda: all(len(one._queue) == 6 for one in recordings))  # one is written, one is being written
+    closing = threading.Thread(target=threads.close)
+    closing.start()
+    wait_for(lambda: all(one.report().dropped == 6 for one in recordings))
+    may_go_on.set()
+    closing.join(30.0)
+    assert not closing.is_alive()
+    for number, one in enumerate(recordings):
+        assert (one.report().state, one.video.frames, one.video.dropped) == ("stopped", 2, 6)
+        assert read(files.folder / f"{number}.mp4") == [0, 1]
 
 
 def test_the_table_knows_its_threads(topics, clock):

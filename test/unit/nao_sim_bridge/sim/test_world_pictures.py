@@ -107,6 +107,24 @@ def test_a_file_that_is_no_picture_is_told(tmp_path):
         aspect(WorldPicture("file", str(path)))
 
 
+def test_a_file_that_is_broken_inside_is_told(tmp_path):
+    path = tmp_path / "broken.png"
+    Image.fromarray(np.random.default_rng(1).integers(0, 255, (20, 30, 3), dtype=np.uint8)).save(path)
+    content = path.read_bytes()
+    length_at = content.index(b"IDAT") - 4
+    path.write_bytes(content[:length_at] + (100).to_bytes(4, "big") + content[length_at + 4 :])
+    with pytest.raises(BadValue, match="a picture: broken PNG file"):
+        aspect(WorldPicture("file", str(path)))
+
+
+def test_a_file_that_would_fill_the_memory_is_refused_before_it_is_unpacked(tmp_path):
+    path = tmp_path / "bomb.png"
+    Image.new("1", (8000, 8000)).save(path)
+    assert path.stat().st_size < 100_000
+    with pytest.raises(BadValue, match="a picture: it has 8000x8000 pixels, more than 50000000"):
+        aspect(WorldPicture("file", str(path)))
+
+
 def test_a_file_that_has_vanished_meanwhile_is_grey_and_nobody_goes_blind(tmp_path, caplog):
     path = tmp_path / "small.png"
     Image.new("RGB", (30, 20), (200, 10, 10)).save(path)

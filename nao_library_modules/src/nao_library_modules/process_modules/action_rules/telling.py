@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import Any
 
 from ..designators.designator import Designator, action
@@ -27,8 +28,12 @@ def lighting(color: str, lights: Any) -> Command:
 @rule(BOTH, type="detecting", object=described("object"), timeout=number(0.0, 3600.0, "s").or_else(2.0))
 def detecting(object: Designator, timeout: float, desig: Designator) -> Command:  # noqa: A002  the key's name
     """Resolve {type: detecting, object: {object: {type: ball}}}."""
-    looked = {key: object[key] for key in ("name", "size") if key in object}
-    looked["camera"] = desig.get("camera", "")
+    looked = {"camera": desig.get("camera", "")}
+    if "name" in object:
+        looked["name"] = object["name"]
+    # A detector wants one length, as NaoVision has it; of what is known of a thing, `size` is the box around it.
+    if isinstance(object.get("size"), Real):
+        looked["size"] = float(object["size"])
     return command(VISION, "detect", type=object["type"], timeout=timeout, search=bool(desig.get("search")), **looked)
 
 

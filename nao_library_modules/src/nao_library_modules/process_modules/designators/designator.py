@@ -70,6 +70,7 @@ class Designator:
         self._solutions: Iterator[Any] | None = None
         self._found: list[Any] = []
         self._place = 0
+        self._following: Designator | None = None
 
     # --- description --------------------------------------------------------------------------------------------------
 
@@ -127,15 +128,21 @@ class Designator:
             return self._found[self._place]
 
     def next_solution(self) -> Designator | None:
-        """A designator of the same thing whose reference is the next solution; None if there is none."""
+        """A designator of the same thing whose reference is the next solution; None if there is none.
+
+        Always the same one: branches that ask beside each other go on with one designator.
+        """
         with self._lock:
+            if self._following is not None:
+                return self._following
             if not self._has(self._place + 1):
                 return None
             following = self.copy()
             following._solutions, following._found = self._solutions, self._found
             following._lock, following._place = self._lock, self._place + 1
             following.reference()
-        equate(self, following)
+            equate(self, following)
+            self._following = following
         return following
 
     def solutions(self) -> Iterator[Any]:
@@ -154,7 +161,8 @@ class Designator:
 
     def _has(self, place: int) -> bool:
         if self._solutions is None:
-            self._solutions = iter(self._resolve(self) if self._resolve is not None else _by_rules(self))
+            solutions = iter(self._resolve(self) if self._resolve is not None else _by_rules(self))
+            self._solutions = itertools.islice(solutions, len(self._found), None)
         while len(self._found) <= place:
             try:
                 self._found.append(next(self._solutions))

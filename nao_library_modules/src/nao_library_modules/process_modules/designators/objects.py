@@ -79,7 +79,15 @@ class Beliefs:
         return known
 
     def saw(self, type: str, name: str, position: Point3, time: float, **facts: Any) -> KnownObject:  # noqa: A002
-        """Take a thing as seen: one that is known already has moved there, else it is a new one."""
+        """Take a thing as seen: one that is known already has moved there, else it is a new one.
+
+        Args:
+            type: Such as ball.
+            name: That it is known by; empty if it has none: the type is made one.
+            position: Where it is.
+            time: When it was seen, s.
+            **facts: What else was seen of it, by key.
+        """
         with self._lock:
             known = self._same(type, name, position)
             if known is None:

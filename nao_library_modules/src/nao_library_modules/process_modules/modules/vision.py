@@ -16,6 +16,7 @@ from .robot_module import RobotModule
 ACTION = "NaoVision"
 ODOM = "odom"
 MARGIN = 10.0
+"""s that the server may take beyond what it was given to look."""
 DETECTORS = {
     "ball": "detectBall",
     "face": "detectFaces",

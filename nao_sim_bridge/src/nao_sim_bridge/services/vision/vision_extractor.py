@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Mapping
+from typing import Any, Callable
 
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.vision.watching import MOST_FPS, Watching
@@ -19,15 +19,12 @@ class VisionExtractor:
     Args:
         watching: The eyes of the module.
         tables: What the cameras can do.
-        parameters: What takes the value of a parameter of `setParameter`, by its name, beside `pause` and `resolution`.
     """
 
-    def __init__(
-        self, watching: Watching, tables: CameraTables, parameters: Mapping[str, Callable[[Any], None]] = {}
-    ) -> None:
+    def __init__(self, watching: Watching, tables: CameraTables) -> None:
         self.watching = watching
         self._tables = tables
-        self._parameters = {"pause": self.pause, "resolution": self.setResolution, **parameters}
+        self._parameters: dict[str, Callable[[Any], Any]] = {"pause": self.pause, "resolution": self.setResolution}
 
     def getActiveCamera(self) -> int:
         """Camera that it looks through: 0 top, 1 bottom."""

@@ -110,7 +110,14 @@ def _where_any(mask: np.ndarray) -> tuple[slice, slice]:
 
 
 def arch(half_width: float, middle: float, ends: float, count: int = 9) -> list[tuple[float, float]]:
-    """Points of a parabola from left to right: its height at the middle and at both ends."""
+    """Points of a parabola from left to right, in the units of the arguments.
+
+    Args:
+        half_width: From the middle to each end.
+        middle: Height at the middle.
+        ends: Height at both ends.
+        count: How many points.
+    """
     steps = np.linspace(-1.0, 1.0, count)
     return [(float(half_width * t), float(middle + (ends - middle) * t * t)) for t in steps]
 
