@@ -211,6 +211,7 @@ class Demonstration:
         look = VisionFunction(function="lookFor", str_param="ball", size=BALL_RADIUS, timeout=STEP_LIMIT)
         photo = VisionFunction(function="takePicture", str_param=EYES_PICTURE, overwrite=True)
         client.send_goal_and_wait(actions.NaoVisionGoal([look, photo]), rospy.Duration(2 * STEP_LIMIT))
+        self._motion.angleInterpolation("Head", [0.0, 0.0], 0.8, True)
         result = client.get_result()
         if result is None or not result.objects or not (self._output / EYES_PICTURE).exists():
             told = client.get_goal_status_text() or "it saw no ball"
