@@ -12,7 +12,6 @@ import sys
 
 import rospy
 
-from nao_library_modules.process_modules import action_rules  # noqa: F401  what actions are in numbers
 from nao_library_modules.process_modules.control import do, par, seq, try_in_order
 from nao_library_modules.process_modules.designators.designator import Designator, a, action, an, location, object_, the
 from nao_library_modules.process_modules.designators.objects import BELIEFS

@@ -12,9 +12,9 @@ evaporated, and the construct waits until it has ended: nothing of a construct r
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Union
+from typing import Any, Callable, Union
 
 from ..clock import WallClock
 from .failures import CompositeFailure, PlanError, PlanFailure

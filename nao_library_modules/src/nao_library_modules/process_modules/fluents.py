@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import operator
 import threading
-from collections.abc import Callable, Iterable
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, Callable
 
 from .failures import PlanError
 

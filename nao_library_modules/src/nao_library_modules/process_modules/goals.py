@@ -18,9 +18,8 @@ achieve(gripper_open("left"))                # or, as plans of old were written:
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Callable
 
 from .control import Step, name_of, subtask
 from .failures import GoalNotAchieved, PlanError

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,8 @@ WAKE_UP = "wakeup"
 ROBOT_LIMIT = 60.0
 """s to wait for the driver, and until it has reached the robot."""
 RETRY = 0.5
+END_LIMIT = 10.0
+"""s that a plan may take to end when its node ends."""
 
 
 class PlanRun:
@@ -43,6 +46,7 @@ class PlanRun:
         self._robot = robot or this_robot()
         self._trace_file, self._picture_file = trace_file, picture_file
         self._root: Task | None = None
+        self._over = threading.Event()
         self.trace: Trace | None = None
 
     def run(self, body: Branch, name: str = "") -> Any:
@@ -55,13 +59,32 @@ class PlanRun:
         rospy.on_shutdown(self._end)
         try:
             with with_process_modules_running(*make_process_modules(self._robot)):
-                observers = [self._see, topic]
-                return top_level(body, name=name, clock=self._robot.clock, observers=observers)
+                return self._run_beside(body, name, topic)
         finally:
             topic.close()
             if self._root is not None:
                 self.trace = trace_of(self._root)
                 self._keep(self.trace)
+
+    def _run_beside(self, body: Branch, name: str, topic: PlanTopic) -> Any:
+        """Run the plan in a thread of its own: signals come to the main one, which then waits for the plan's end."""
+        outcome: list[Any] = []
+        errors: list[BaseException] = []
+
+        def work() -> None:
+            try:
+                outcome.append(top_level(body, name=name, clock=self._robot.clock, observers=[self._see, topic]))
+            except BaseException as error:
+                errors.append(error)
+            finally:
+                self._over.set()
+
+        thread = threading.Thread(target=work, name="plan", daemon=True)
+        thread.start()
+        thread.join()
+        if errors:
+            raise errors[0]
+        return outcome[0]
 
     def _see(self, task: Task) -> None:
         if self._root is None:
@@ -70,6 +93,8 @@ class PlanRun:
     def _end(self) -> None:
         if self._root is not None:
             self._root.evaporate("the node ends")
+            # Behind this, topics are closed, and nobody would be told that a goal has ended.
+            self._over.wait(END_LIMIT)
 
     def _keep(self, trace: Trace) -> None:
         if self._trace_file is not None:

@@ -14,8 +14,8 @@ from __future__ import annotations
 import itertools
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, Union
+from collections.abc import Callable, Iterator
+from typing import Any, Iterable, Mapping, Union
 
 import yaml
 

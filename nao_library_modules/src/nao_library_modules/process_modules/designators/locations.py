@@ -14,10 +14,10 @@ from __future__ import annotations
 import enum
 import math
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any
+from typing import Any, Callable, Iterable
 
 from ...places import Place, wrapped
 from ..failures import DesignatorError
