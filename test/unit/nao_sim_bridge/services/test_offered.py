@@ -712,7 +712,9 @@ def test_a_method_answers(prepared, module, method):
         prepared.advance(0.1)
     begun = prepared.now.time
     if (module, method) in BEFORE:
+        prepared.advance(0.25)  # what the method before has begun is over
         getattr(prepared, module).call(*BEFORE[module, method])
+        prepared.advance(0.25)  # and what this begins has begun: a film has a picture
     future = prepared.post(module, method, *(prepared.loaded if a is LOADED else a for a in CALLS[module][method]))
     prepared.handed_over(module)
     while future.isRunning() and prepared.now.time < begun + LONGEST:

@@ -50,11 +50,9 @@ def test_without_opengl_the_built_in_engine_draws_and_one_warning_says_how_to_ge
         picture = own.render(AWAY, AHEAD)
         assert own.engine.startswith("the built-in renderer")
         os.kill(own.pid, signal.SIGKILL)
-        with pytest.raises(RenderError):
-            own.render(AWAY, AHEAD)
         assert np.array_equal(own.render(AWAY, AHEAD), picture)
-    (warning,) = warnings_of(caplog)
-    assert HELP in warning
+    help_once, again = warnings_of(caplog)
+    assert HELP in help_once and "is started again" in again
 
 
 def test_a_driver_that_takes_its_process_with_it_is_done_without(tmp_path, monkeypatch, caplog):
@@ -118,8 +116,6 @@ def test_what_was_placed_is_there_again_after_the_process_has_died(renderer):
     state = placed(BALL)
     before = renderer.render(state, AHEAD)
     os.kill(renderer.pid, signal.SIGKILL)
-    with pytest.raises(RenderError, match="ended with status -9"):
-        renderer.render(state, AHEAD)
     assert np.array_equal(renderer.render(state, AHEAD), before)
     assert not np.array_equal(renderer.render(AWAY, AHEAD), before)
 

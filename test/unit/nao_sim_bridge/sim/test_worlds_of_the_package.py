@@ -43,7 +43,7 @@ def edges(name, world="lab"):
 
 
 def test_the_worlds_that_there_are():
-    assert set(WORLDS) == {"empty", "gallery", "lab", "obstacles", "party", "slope_3deg", "uneven"}
+    assert set(WORLDS) == {"empty", "gallery", "lab", "obstacles", "party", "slope_3deg", "uneven", "wall"}
     assert all(load_world(name).description for name in WORLDS)
 
 
