@@ -537,7 +537,7 @@ CALLS = {
         "getResolution": (),
         "getVideoFormat": (),
         "isRecording": (),
-        "setCameraID": (0,),
+        "setCameraID": (1,),  # the other one has been stopped above
         "setColorSpace": (13,),
         "setFrameRate": (15.0,),
         "setResolution": (1,),
@@ -598,6 +598,7 @@ BEFORE = {
     ("ALSpeechRecognition", "setWordListAsVocabulary"): ("pause", True),
     ("ALAudioPlayer", "unloadSoundSet"): ("loadSoundSet", "nao_library"),
     ("ALVideoDevice", "stopVideo"): ("recordVideo", "Looker_0", "stopped.bin", 10, 1),
+    ("ALVideoRecorder", "stopRecording"): ("isRecording",),
 }
 OF_A_SUBSCRIBER = ("getMyPeriod", "getMyPrecision", "unsubscribe", "updatePeriod", "updatePrecision")
 for extractor in [module for module, calls in CALLS.items() if "getSubscribersInfo" in calls]:
