@@ -82,6 +82,7 @@ class CameraTopics:
         defaults = {field.name: field.default for field in fields}
         subscriber = f"{name_for_robot()}_{part}" if part else name_for_robot()
         self._tuning = CameraTuning(self._ask, {})
+        self._choices = 0
         stream = stream_settings(defaults, camera)
         self._stream = CameraStream(robot, subscriber, stream, RosClock(), self._show, self._prepare)
         self._server = serve(fields, self._changed, part)
@@ -159,7 +160,11 @@ class CameraTopics:
         except NaoError as error:
             rospy.logwarn("the robot does not tell what its %s covers: %s", CAMERA_NAMES[camera], error)
         self._tuning.set_again(camera)
-        shown = self._tuning.read(camera)
+        while True:
+            choices = self._choices
+            shown = self._tuning.read(camera)
+            if choices == self._choices:
+                break  # else somebody has chosen meanwhile, and what was read may be older than that
         self._shown.update(shown)
         if any(self._config[name] != value for name, value in shown.items()):
             update(self._server, shown)
@@ -180,6 +185,7 @@ class CameraTopics:
             self._infos[stream.camera].set_url(url)
         self._stream.change(stream)
         if changed:
+            self._choices += 1
             connected = self._robot.connection.state == "connected"
             try:
                 self._tuning.choose(stream.camera, changed, connected)
