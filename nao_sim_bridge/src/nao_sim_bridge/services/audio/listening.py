@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import threading
 from typing import Any, Callable, Mapping
 
 from nao_sim_bridge.services.arguments import number
 from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.services.switch import Switch
 from nao_sim_bridge.sim.sound.ears import Ears, Listener, MicrophoneBlock
 
 Hear = Callable[[MicrophoneBlock], None]
 
 
-class Listening:
+class Listening(Switch):
     """Opens and closes the ears of one module. Any thread.
 
     Args:
@@ -22,47 +22,21 @@ class Listening:
     """
 
     def __init__(self, ears: Ears, name: str, begin: Callable[[], Hear]) -> None:
+        super().__init__()
         self._ears = ears
         self._name = name
         self._begin = begin
-        self._lock = threading.Lock()
-        self._wanted = False
-        self._paused = False
         self._listener: Listener | None = None
-
-    @property
-    def paused(self) -> bool:
-        """Whether it hears nothing although somebody is subscribed."""
-        return self._paused
 
     @property
     def hears(self) -> bool:
         """Whether it hears."""
         return self._listener is not None
 
-    def start(self) -> None:
-        """Somebody is subscribed."""
-        with self._lock:
-            self._wanted = True
-            self._update()
-
-    def stop(self) -> None:
-        """Nobody is subscribed."""
-        with self._lock:
-            self._wanted = False
-            self._update()
-
-    def pause(self, paused: bool) -> None:
-        """Hear nothing for a while, or go on."""
-        with self._lock:
-            self._paused = paused
-            self._update()
-
     def _update(self) -> None:
-        hear = self._wanted and not self._paused
-        if hear and self._listener is None:
+        if self._works and self._listener is None:
             self._listener = self._ears.listen(self._name, self._begin(), wants="48k4")
-        elif not hear and self._listener is not None:
+        elif not self._works and self._listener is not None:
             self._listener.close()
             self._listener = None
 

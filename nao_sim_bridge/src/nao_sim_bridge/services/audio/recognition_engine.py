@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import logging
-import threading
 from typing import Any, Callable, Mapping
 
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.memory_store import MemoryStore
+from nao_sim_bridge.services.switch import Switch
 from nao_sim_bridge.sim.hearing.listening import Hypothesis, Listening, Recognised
 from nao_sim_bridge.sim.hearing.recogniser import Recogniser
 from nao_sim_bridge.sim.hearing.voice_activity import SpeechChange
@@ -28,7 +28,7 @@ HOLD_LAG = 0.25
 """With more unheard sound than this, s, time that runs faster than the wall clock waits."""
 
 
-class RecognitionEngine:
+class RecognitionEngine(Switch):
     """Recognises what the front microphone hears while it is wanted and not paused.
 
     Methods may be called from any thread; events are raised in the recogniser's.
@@ -48,13 +48,11 @@ class RecognitionEngine:
         on_listen: Callable[[bool], float],
         accepts: Callable[[Hypothesis], bool],
     ) -> None:
+        super().__init__()
         self._simulation = simulation
         self._memory = memory
         self._on_listen = on_listen
         self._accepts = accepts
-        self._lock = threading.RLock()
-        self._wanted = False
-        self._paused = False
         self._listener: Listener | None = None
         self._deaf_until = 0.0
         self._speech = False
@@ -78,24 +76,11 @@ class RecognitionEngine:
         """Whether time should wait for it."""
         return self._recogniser.lag > HOLD_LAG
 
-    def start(self) -> None:
-        """Somebody wants to know what is said."""
-        with self._lock:
-            self._wanted = True
-            self._update()
-
     def stop(self) -> None:
         """Nobody wants to know any more."""
         with self._lock:
-            self._wanted = False
-            self._update()
+            super().stop()
             self._memory.raise_event(STATUS, "Stop")
-
-    def pause(self, paused: bool) -> None:
-        """Stop listening for a while, or go on."""
-        with self._lock:
-            self._paused = paused
-            self._update()
 
     def check_paused(self, what: str) -> None:
         """Refuse what must not be changed while the engine listens.
@@ -134,7 +119,7 @@ class RecognitionEngine:
     # --- inside ---------------------------------------------------------------------------------------------------
 
     def _update(self) -> None:
-        runs = self._wanted and not self._paused
+        runs = self._works
         if runs == self.runs:
             return
         if runs:

@@ -9,6 +9,7 @@ from typing import Any, Callable, Mapping, Protocol
 
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.extractor import DEFAULT_PERIOD_MS, Subscription
+from nao_sim_bridge.services.switch import Switch
 from nao_sim_bridge.sim.cameras.cameras import CameraClosed, Cameras, CameraStream
 from nao_sim_bridge.sim.cameras.frame import Frame
 from nao_sim_bridge.sim.cameras.optics import Optics
@@ -39,7 +40,7 @@ class DetectorHandle(Protocol):
         """Forget what earlier pictures showed."""
 
 
-class Watching:
+class Watching(Switch):
     """Looks through a camera for one module: every picture that is due goes to its detector, in a thread of its own.
 
     It looks at most as often as the frame rate says, and no sooner after a picture than the period of its subscribers
@@ -72,29 +73,22 @@ class Watching:
         resolution: int = QVGA,
         fps: int = MOST_FPS,
     ) -> None:
+        super().__init__()
         self._cameras = cameras
         self._name = name
         self._detector = detector
         self._on_result = on_result
         self._settings = settings
         self._on_stop = on_stop
-        self._lock = threading.RLock()
         self._camera = camera
         self._resolution = resolution
         self._fps = fps
         self._fps_of: dict[str, int] = {}  # subscribers with a rate of their own
         self._subscribers: frozenset[str] = frozenset()
         self._period = DEFAULT_PERIOD_MS / 1000.0
-        self._wanted = False
-        self._paused = False
         self._stream: CameraStream | None = None
         self._thread: threading.Thread | None = None
         self._failed = False
-
-    @property
-    def paused(self) -> bool:
-        """Whether it looks at nothing although somebody is subscribed."""
-        return self._paused
 
     @property
     def looks(self) -> bool:
@@ -119,18 +113,6 @@ class Watching:
 
     # --- for the extractor ------------------------------------------------------------------------------------------
 
-    def start(self) -> None:
-        """Somebody is subscribed."""
-        with self._lock:
-            self._wanted = True
-            self._update()
-
-    def stop(self) -> None:
-        """Nobody is subscribed; results of nothing that is still being looked at come after this."""
-        with self._lock:
-            self._wanted = False
-            self._update()
-
     def changed(self, subscriptions: Mapping[str, Subscription]) -> None:
         """Who is subscribed now, and what they ask for."""
         with self._lock:
@@ -140,12 +122,6 @@ class Watching:
             self._set_stream_rate()
 
     # --- for the module ---------------------------------------------------------------------------------------------
-
-    def pause(self, paused: bool) -> None:
-        """Look at nothing for a while, or go on."""
-        with self._lock:
-            self._paused = paused
-            self._update()
 
     def set_camera(self, camera: int) -> None:
         """Look through another camera."""
@@ -181,10 +157,9 @@ class Watching:
     # --- inside -----------------------------------------------------------------------------------------------------
 
     def _update(self) -> None:
-        look = self._wanted and not self._paused
-        if look and self._stream is None:
+        if self._works and self._stream is None:
             self._begin()
-        elif not look and self._stream is not None:
+        elif not self._works and self._stream is not None:
             self._end()
 
     def _begin(self) -> None:
