@@ -8,19 +8,19 @@ from nao_sim_bridge.record_dir import LONGEST_PATH, ClientFiles
 from nao_sim_bridge.services.arguments import number, text, whole_number
 from nao_sim_bridge.services.vision.photo_capture_files import FORMATS, picture_files
 from nao_sim_bridge.services.vision.photo_capture_series import Photographer, PhotoSettings
+from nao_sim_bridge.services.vision.picture_settings import PictureSettings
 from nao_sim_bridge.sim.cameras.settings import CameraTables
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.tasks import Task
 
 NAME = "ALPhotoCapture"
 VGA = 2
-COLOR_SPACES = {0: "grey", 13: "BGR"}
 BGR = 13
 MOST_PICTURES = 10000
 LONGEST_INTERVAL_MS = 3600000
 
 
-class ALPhotoCapture:
+class ALPhotoCapture(PictureSettings):
     """ALPhotoCapture as the simulated robot offers it.
 
     Args:
@@ -30,10 +30,9 @@ class ALPhotoCapture:
     """
 
     def __init__(self, photographer: Photographer, files: ClientFiles, tables: CameraTables) -> None:
+        super().__init__(tables, PhotoSettings(camera=0, resolution=VGA, color_space=BGR, interval=0.2))
         self._photographer = photographer
         self._files = files
-        self._tables = tables
-        self._settings = PhotoSettings(camera=0, resolution=VGA, color_space=BGR, interval=0.2)
         self._format = "jpg"
 
     def takePicture(self, folder: str, name: str, overwrite: bool = True) -> Task:
@@ -63,24 +62,6 @@ class ALPhotoCapture:
     def isHalfPressEnabled(self) -> bool:
         return self._photographer.keeps
 
-    def setCameraID(self, camera: int) -> None:
-        self._settings = replace(self._settings, camera=self._tables.camera(camera))
-
-    def getCameraID(self) -> int:
-        return self._settings.camera
-
-    def setResolution(self, resolution: int) -> None:
-        self._settings = replace(self._settings, resolution=self._tables.resolution(resolution).id)
-
-    def getResolution(self) -> int:
-        return self._settings.resolution
-
-    def setColorSpace(self, color_space: int) -> None:
-        self._settings = replace(self._settings, color_space=grey_or_color(color_space))
-
-    def getColorSpace(self) -> int:
-        return self._settings.color_space
-
     def setCaptureInterval(self, interval: int) -> None:
         """Time between the pictures of a series, ms; a camera gives no more than its highest rate."""
         milliseconds = number(interval, "captureInterval", 1, LONGEST_INTERVAL_MS)
@@ -102,14 +83,3 @@ class ALPhotoCapture:
         text(name, "fileName", LONGEST_PATH)
         paths = picture_files(self._files, folder, name, self._format, count, overwrite)
         return self._photographer.take(paths, self._settings)
-
-
-def grey_or_color(color_space: int) -> int:
-    """One of the two colour spaces that files of pictures and films are made from.
-
-    Raises:
-        BadValue: It is another one.
-    """
-    if not isinstance(color_space, int) or color_space not in COLOR_SPACES:
-        raise BadValue("colorSpace", color_space, " or ".join(f"{i} ({text})" for i, text in COLOR_SPACES.items()))
-    return color_space

@@ -9,7 +9,7 @@ from typing import Any
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.arguments import number
 from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.services.vision.photo_capture import grey_or_color
+from nao_sim_bridge.services.vision.picture_settings import PictureSettings
 from nao_sim_bridge.services.vision.video_recorder_file import FORMATS
 from nao_sim_bridge.services.vision.video_recorder_recording import FilmSettings, VideoRecorder
 from nao_sim_bridge.sim.cameras.settings import CameraTables
@@ -24,7 +24,7 @@ ENDING = ".avi"
 MOST_FPS, MOST_FPS_VGA, ABOVE_FPS_MJPG = 30.0, 15.0, 2.0
 
 
-class ALVideoRecorder:
+class ALVideoRecorder(PictureSettings):
     """ALVideoRecorder as the simulated robot offers it.
 
     Args:
@@ -34,10 +34,10 @@ class ALVideoRecorder:
     """
 
     def __init__(self, recorder: VideoRecorder, files: ClientFiles, tables: CameraTables) -> None:
+        first = FilmSettings(camera=0, resolution=QVGA, color_space=BGR, rate=15.0, kind="MJPG")
+        super().__init__(tables, first)
         self._recorder = recorder
         self._files = files
-        self._tables = tables
-        self._settings = FilmSettings(camera=0, resolution=QVGA, color_space=BGR, rate=15.0, kind="MJPG")
 
     def startRecording(self, folder: str, name: str, overwrite: bool = True) -> Task:
         """Record from now on, with the present settings."""
@@ -62,25 +62,10 @@ class ALVideoRecorder:
     def isRecording(self) -> bool:
         return self._recorder.records
 
-    def setCameraID(self, camera: int) -> None:
-        self._settings = replace(self._settings, camera=self._tables.camera(camera))
-
-    def getCameraID(self) -> int:
-        return self._settings.camera
-
     def setResolution(self, resolution: int) -> None:
         if resolution not in RESOLUTIONS:
             raise BadValue("resolution", resolution, "0 (160x120), 1 (320x240) or 2 (640x480)")
-        self._settings = replace(self._settings, resolution=resolution)
-
-    def getResolution(self) -> int:
-        return self._settings.resolution
-
-    def setColorSpace(self, color_space: int) -> None:
-        self._settings = replace(self._settings, color_space=grey_or_color(color_space))
-
-    def getColorSpace(self) -> int:
-        return self._settings.color_space
+        super().setResolution(resolution)
 
     def setFrameRate(self, rate: Any) -> None:
         """Frames a second, 1 to 30; in VGA no more than 15 are recorded."""
