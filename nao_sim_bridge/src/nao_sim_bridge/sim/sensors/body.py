@@ -8,6 +8,7 @@ from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.readings import Contact, FootForces
 from nao_sim_bridge.sim.sensors.contacts import Presses
 from nao_sim_bridge.sim.sensors.feet import FootSensors
+from nao_sim_bridge.sim.sensors.motors import Motors
 from nao_sim_bridge.sim.sensors.touch import TouchSensors
 from nao_sim_bridge.sim.settings import Settings
 
@@ -17,6 +18,7 @@ class BodySensors:
 
     Attributes:
         touch_names: Names of all touch sensors.
+        motors: What the motors draw.
 
     Args:
         model: The robot.
@@ -28,7 +30,7 @@ class BodySensors:
         self._feet = {side: FootSensors(model, side) for side in "LR"}
         self._ankles = {side: links[f"{side.lower()}_ankle"] for side in "LR"}
         self._touch = TouchSensors(model, lambda name: links.get(model.link(name).alt_name, -1))
-        self._amps_per_torque = tuple(_amps_per_torque(model, joint.name, settings) for joint in model.joints)
+        self.motors = Motors(model, settings)
         self.touch_names = self._touch.names
 
     def foot_forces(self, side: str, presses: Presses) -> FootForces:
@@ -51,14 +53,4 @@ class BodySensors:
 
     def currents(self, torques: Sequence[float]) -> Tuple[float, ...]:
         """Current in A, absolute, of each motor from its torque in N m."""
-        return tuple(abs(torque) * amps for torque, amps in zip(torques, self._amps_per_torque))
-
-
-def _amps_per_torque(model: RobotModel, joint: str, settings: Settings) -> float:
-    """A per N m at the joint: the torque constant is the voltage over the no-load speed of the motor."""
-    kind = joint[1:] if joint[0] in "LR" else joint
-    for motor in model.motors:
-        if kind in motor.gear_ratio_of:
-            efficiency = motor.gear_ratio_of[kind] * settings.motor.gear_efficiency
-            return motor.no_load_speed / settings.battery.voltage_v / efficiency
-    raise KeyError(f"no motor drives {joint}")
+        return self.motors.currents(torques)

@@ -25,6 +25,9 @@ class Press(NamedTuple):
     force: float
 
 
+# Share of a push along the Z axis from which on it comes from below.
+FROM_BELOW = 0.5
+
 Presses = Dict[int, List[Press]]
 
 
@@ -49,6 +52,22 @@ def in_link_frames(contacts: Sequence[Contact], poses: Mapping[int, Pose]) -> Pr
             )
         )
     return presses
+
+
+def not_from_below(contacts: Sequence[Contact], poses: Mapping[int, Pose]) -> list[Contact]:
+    """Contacts but those that push along the Z axis of their link; without the work of turning them into its frame."""
+    up: dict[int, tuple[float, float, float]] = {}
+    kept = []
+    for contact in contacts:
+        link = contact[0]
+        axis = up.get(link)
+        if axis is None:
+            x, y, z, w = poses[link].orientation
+            axis = up[link] = (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))
+        normal = contact[2]
+        if normal[0] * axis[0] + normal[1] * axis[1] + normal[2] * axis[2] <= FROM_BELOW:
+            kept.append(contact)
+    return kept
 
 
 def _axes(pose: Pose) -> tuple:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Sequence
 
 from nao_sim_bridge.sim.readings import BodyReadings
@@ -15,11 +16,13 @@ class InertialUnit:
     Args:
         place: (3,) of the accelerometer in the torso frame, m.
         gravity: m/s2.
+        heading: Of the robot when it was started, rad: headings count from there.
     """
 
-    def __init__(self, place: Sequence[float], gravity: float) -> None:
+    def __init__(self, place: Sequence[float], gravity: float, heading: float = 0.0) -> None:
         self._place = tuple(float(p) for p in place)
         self._gravity = gravity
+        self._heading = heading
         self._velocity: Vector3 | None = None
 
     def reset(self) -> None:
@@ -36,4 +39,7 @@ class InertialUnit:
         ax, ay, az = ((v - b) / dt for v, b in zip(velocity, before))
         # An accelerometer feels what holds it up, so gravity counts upwards.
         felt = rotate_back(turn, (ax, ay, az + self._gravity))
-        return Imu(felt, rotate_back(turn, body.angular_velocity), roll_pitch_yaw(turn))
+        angles = roll_pitch_yaw(turn)
+        if self._heading:
+            angles = (angles[0], angles[1], math.remainder(angles[2] - self._heading, 2.0 * math.pi))
+        return Imu(felt, rotate_back(turn, body.angular_velocity), angles)

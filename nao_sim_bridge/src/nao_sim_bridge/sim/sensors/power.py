@@ -1,9 +1,11 @@
-"""Motor heat and battery charge, which follow from the currents the motors draw."""
+"""Motor heat and battery charge, which follow from the currents and speeds of the motors."""
 
 from __future__ import annotations
 
-from typing import Callable, Sequence
+from typing import Callable, Sequence, Tuple
 
+from nao_sim_bridge.sim.battery import Battery
+from nao_sim_bridge.sim.sensors.motors import Work
 from nao_sim_bridge.sim.settings import Settings
 
 # Heat and charge change slowly: the currents are looked at this often, in s.
@@ -11,43 +13,47 @@ PERIOD = 0.1
 
 
 class PowerSystem:
-    """Motor temperatures and the battery, cold and full at the start.
+    """Temperatures of motors and head, and the battery; cold and full at the start.
 
     Attributes:
         temperatures: (26,) motor temperatures, degC.
-        charge: Of the battery, 0..1.
-        current: That the battery gives, A.
+        head: Temperature of the computer in the head, degC.
+        battery: The battery.
 
     Args:
-        motors: How many motors there are.
+        heat_capacities: (26,) of the motors, J/K.
         settings: Heat and charge figures.
+        tells_plugged: Whether the battery's board reports that a charger is there.
     """
 
-    def __init__(self, motors: int, settings: Settings) -> None:
+    def __init__(self, heat_capacities: Sequence[float], settings: Settings, tells_plugged: bool = False) -> None:
         self._settings = settings
-        self.temperatures: tuple[float, ...] = (settings.motor.ambient_c,) * motors
-        self.charge = 1.0
-        self.current = settings.battery.idle_current_a
+        self._capacities = tuple(heat_capacities)
+        ambient = settings.motor.ambient_c
+        self.temperatures: Tuple[float, ...] = (ambient,) * len(self._capacities)
+        self.head = ambient
+        self.battery = Battery(settings.battery, ambient, tells_plugged)
         self._elapsed = 0.0
 
     def warm_up(self, motor: int, celsius: float) -> None:
         """Put a motor to a temperature, degC."""
         self.temperatures = (*self.temperatures[:motor], celsius, *self.temperatures[motor + 1 :])
 
-    def advance(self, read_currents: Callable[[], Sequence[float]], dt: float) -> None:
-        """Let `dt` s pass; `read_currents()` gives the motors' currents in A when they are needed."""
+    def advance(self, read_work: Callable[[], Work], dt: float) -> None:
+        """Let `dt` s pass; `read_work()` gives what the motors do when it is needed."""
         self._elapsed += dt
         if self._elapsed < PERIOD:
             return
-        motor, battery = self._settings.motor, self._settings.battery
-        currents = read_currents()
+        motor, head = self._settings.motor, self._settings.head
+        work, dt = read_work(), self._elapsed
+        ambient, cooling = motor.ambient_c, motor.cooling_per_s
         self.temperatures = tuple(
-            warmth
-            + self._elapsed
-            * (motor.heating_k_per_a2_s * amps * amps - motor.cooling_per_s * (warmth - motor.ambient_c))
-            for warmth, amps in zip(self.temperatures, currents)
+            [
+                warmth + dt * (watts / capacity - cooling * (warmth - ambient))
+                for warmth, watts, capacity in zip(self.temperatures, work.losses, self._capacities)
+            ]
         )
-        self.current = battery.idle_current_a + sum(currents)
-        drawn = self.current * self._elapsed / (3600.0 * battery.capacity_ah)
-        self.charge = max(0.0, self.charge - drawn)
+        self.head += dt * (ambient + head.warmth_k - self.head) / head.time_constant_s
+        draw = self._settings.battery.idle_w + self._settings.battery.driver_w * work.stiff + work.drawn
+        self.battery.advance(draw, dt)
         self._elapsed = 0.0

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Callable, Sequence
+import math
+from typing import Callable, Iterable, List, Sequence
 
 from nao_sim_bridge.sim.model import Place, RobotModel
 from nao_sim_bridge.sim.sensors.contacts import Press, Presses
 
 # A contact this near to the middle of a sensor presses it, in m: the sensors are about 4 cm wide.
 REACH = 0.022
+# A finger between two sensors of one part touches both when it is this much nearer to one of them at most, in m.
+OVERLAP = 0.001
 # Bumpers are pressed from the front or the side, not by the floor under the sole.
 BUMPER_MAX_UPWARD = 0.5
 # The two bumpers of a foot meet at the tip: what hits less than this beside it, in m, presses both.
 BUMPER_OVERLAP = 0.008
 
-Area = Callable[[Press], bool]
+Felt = Callable[[Press], Iterable[str]]
 
 
 class TouchSensors:
@@ -27,35 +30,43 @@ class TouchSensors:
 
     def __init__(self, model: RobotModel, link_of: Callable[[str], int]) -> None:
         self.names = tuple(place.name for place in model.touch)
-        self._areas: dict[int, list[tuple[str, Area]]] = {}
-        bumpers = [place for place in model.touch if "/Bumper/" in place.name]
-        for place in model.touch:
-            pair = [bumper for bumper in bumpers if bumper.parent_link == place.parent_link]
-            area = _toes(place, pair) if place in pair else _surroundings(place)
-            self._areas.setdefault(link_of(place.parent_link), []).append((place.name, area))
+        self._felt: dict[int, Felt] = {}
+        for link in {place.parent_link for place in model.touch}:
+            places = [place for place in model.touch if place.parent_link == link]
+            bumpers = all("/Bumper/" in place.name for place in places)
+            self._felt[link_of(link)] = _toes(places) if bumpers else _pads(places)
 
     def read(self, presses: Presses) -> frozenset[str]:
         """Names of the pressed sensors."""
         return frozenset(
             name
-            for link in self._areas.keys() & presses.keys()
-            for name, holds in self._areas[link]
-            if any(map(holds, presses[link]))
+            for link in self._felt.keys() & presses.keys()
+            for press in presses[link]
+            for name in self._felt[link](press)
         )
 
 
-def _surroundings(sensor: Place) -> Area:
-    sx, sy, sz = map(float, sensor.position)
-    return lambda at: (at.x - sx) ** 2 + (at.y - sy) ** 2 + (at.z - sz) ** 2 <= REACH * REACH
+def _pads(places: Sequence[Place]) -> Felt:
+    """Sensors side by side, each a little larger than the place that is nearer to it than to the others."""
+    middles = [(place.name, *map(float, place.position)) for place in places]
+
+    def felt(at: Press) -> List[str]:
+        distances = [(math.dist((at.x, at.y, at.z), middle), name) for name, *middle in middles]
+        limit = min(REACH, min(distances)[0] + OVERLAP)
+        return [name for distance, name in distances if distance <= limit]
+
+    return felt
 
 
-def _toes(bumper: Place, pair: Sequence[Place]) -> Area:
-    """The shell round one half of the toes, from a little behind the middle of the bumper to the tip of the foot."""
-    rear = float(bumper.position[0]) - REACH
+def _toes(pair: Sequence[Place]) -> Felt:
+    """The shell round the toes, from a little behind the middle of the bumpers to the tip; each has its side of it."""
+    rear = min(float(place.position[0]) for place in pair) - REACH
     tip = sum(float(place.position[1]) for place in pair) / len(pair)
-    side = 1.0 if bumper.position[1] > tip else -1.0
+    sides = [(place.name, 1.0 if place.position[1] > tip else -1.0) for place in pair]
 
-    def holds(at: Press) -> bool:
-        return at.x >= rear and side * (at.y - tip) >= -BUMPER_OVERLAP and abs(at.upward) <= BUMPER_MAX_UPWARD
+    def felt(at: Press) -> List[str]:
+        if abs(at.upward) > BUMPER_MAX_UPWARD or at.x < rear:
+            return []
+        return [name for name, side in sides if side * (at.y - tip) >= -BUMPER_OVERLAP]
 
-    return holds
+    return felt
