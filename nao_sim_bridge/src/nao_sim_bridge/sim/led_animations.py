@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from typing import Iterable, Sequence
 
+from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.leds import LedKeyframe
 from nao_sim_bridge.sim.leds_layout import LedLayout
 
@@ -13,6 +14,8 @@ Color = Sequence[float]
 # Seconds that one colour of an animation stays; the maker publishes none of these figures.
 RANDOM_STEP = 0.25
 RASTA_STEP = 0.4
+# So many colours of one animation are worked out when it begins, while the robot waits: more than an hour of them.
+MOST_STEPS = 15000
 RASTA_COLORS: tuple[Color, ...] = ((0.0, 1.0, 0.0), (1.0, 1.0, 0.0), (1.0, 0.0, 0.0))
 COLOR_NAMES: dict[str, Color] = {
     "white": (1.0, 1.0, 1.0),
@@ -94,6 +97,12 @@ def ear_angle(layout: LedLayout, degrees: float, duration: float, leave_on: bool
 
 
 def _steps(duration: float, step: float) -> list[float]:
-    """Times 0, step, 2 step, ... below `duration`."""
+    """Times 0, step, 2 step, ... below `duration`.
+
+    Raises:
+        BadValue: There would be too many of them.
+    """
+    if duration > MOST_STEPS * step:
+        raise BadValue("duration", duration, f"{MOST_STEPS * step:g} s at most, with a new colour each {step:g} s")
     count = max(1, int(duration / step + 0.999999))
     return [k * step for k in range(count)]

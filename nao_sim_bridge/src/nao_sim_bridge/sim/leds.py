@@ -86,6 +86,10 @@ class LedBank:
         self._ends[task] = end
         return task
 
+    def busy(self, indices: Iterable[int]) -> bool:
+        """Whether an animation runs on one of the devices."""
+        return any(index in self._fades for index in indices)
+
     def tick(self, now: float) -> None:
         """Advance all fades to time `now` (s) and end the tasks whose time has come."""
         if not self._ends:

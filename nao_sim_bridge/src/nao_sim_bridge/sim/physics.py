@@ -1,98 +1,126 @@
-"""The PyBullet world with one NAO in it: motors in, raw readings out. Nothing here knows NAOqi.
+"""A NAO in a PyBullet world: motors in, raw readings out. Nothing here knows NAOqi.
 
 Whoever calls this owns the world: one thread only. Readings are plain tuples in ALMotion's Body order.
 """
 
 from __future__ import annotations
 
-import os
-import tempfile
-from typing import Mapping, Sequence
+from functools import partial
+from typing import Callable, Mapping, Sequence
 
 import pybullet
 
-from nao_sim_bridge.sim.collision import LOAD_FLAGS, apart
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.motion.joints import JointCommands
+from nao_sim_bridge.sim.physics_body import (
+    JOINT_NAME,
+    LINK_NAME,
+    couple_hips,
+    index_by,
+    keep_apart,
+    limit_speeds,
+    load_robot,
+    load_torso,
+    set_friction,
+)
+from nao_sim_bridge.sim.physics_world import PhysicsWorld
+from nao_sim_bridge.sim.places import ORIGIN, RobotPlace, places_around
 from nao_sim_bridge.sim.readings import BodyReadings, Contact, JointReadings, Pose
 from nao_sim_bridge.sim.rotations import Vector3
 from nao_sim_bridge.sim.settings import Settings
-from nao_sim_bridge.sim.urdf import physics_urdf
 from nao_sim_bridge.sim.world import FLOOR, World
-from nao_sim_bridge.sim.world_bodies import WorldBodies
 
-# Columns of PyBullet's joint info and contact point tuples.
-JOINT_NAME, LINK_NAME, PARENT_FRAME_POSITION = 1, 12, 14
+# Columns of PyBullet's contact point tuples.
 BODY_B, LINK_A, POSITION_ON_A, NORMAL_ON_B, DISTANCE, NORMAL_FORCE = 2, 3, 5, 7, 8, 9
 NO_PUSHES: Mapping[str, Vector3] = {}
 # From the torso's origin no part of the robot is further away than this, m.
 REACH = 0.6
+# How far somebody looks who points at something, m.
+SIGHT = 50.0
+HIT_FRACTION = 2
 
 
 class Physics:
-    """A world, a free NAO, and gravity.
+    """A free NAO in a world with gravity, alone or among others.
 
     Attributes:
+        shared: The world that it is in.
         client: PyBullet's physics client.
         bodies: The floor and the things of the world.
         robot: PyBullet's body id of the NAO.
+        start: Where on the floor it starts.
         links: Link name to PyBullet's index; the torso is -1.
 
     Args:
         model: The robot.
-        world: What else there is.
+        world: What else there is; or a world that there is already, and that others may be in.
         settings: Time step, gains, friction.
         angles: (26,) joint angles to start with, rad (hands 0..1).
         pitch: Of the torso at the start, rad, for a robot that is not on its feet; see `place`.
         payload: Mass that the torso carries besides its own, at its centre of mass, kg.
+        place: Where on the floor it starts.
     """
 
     def __init__(
         self,
         model: RobotModel,
-        world: World,
+        world: World | PhysicsWorld,
         settings: Settings,
         angles: Sequence[float],
         pitch: float | None = None,
         payload: float = 0.0,
+        place: RobotPlace = ORIGIN,
     ) -> None:
         self._model = model
         self._settings = settings
-        self._floor = world.floor
-        self.client = pybullet.connect(pybullet.DIRECT)
-        pybullet.setGravity(0, 0, -settings.gravity_m_s2, physicsClientId=self.client)
-        pybullet.setPhysicsEngineParameter(
-            fixedTimeStep=settings.time_step_s,
-            numSolverIterations=settings.solver_iterations,
-            deterministicOverlappingPairs=1,
-            physicsClientId=self.client,
-        )
-        self.bodies = WorldBodies(world, self.client)
-        self.robot = self._load_robot()
-        self.links = self._index(LINK_NAME)
-        joints = self._index(JOINT_NAME)
+        self.shared = world if isinstance(world, PhysicsWorld) else PhysicsWorld(world, settings)
+        self._floor = self.shared.world.floor
+        self.client = self.shared.client
+        self.bodies = self.shared.bodies
+        self.robot = load_robot(self.client, model)
+        self.shared.robots.append(self.robot)
+        self.links = index_by(self.client, self.robot, LINK_NAME)
+        joints = index_by(self.client, self.robot, JOINT_NAME)
         self._indices = [joints[j.name] for j in model.joints]
         self._travel = model.simulated_hand.travel
         self._hands = [i for i, j in enumerate(model.joints) if j.is_hand]
         self._torques = [float(j.max_torque) for j in model.joints]
         self._position_gains = [settings.motor.position_gain] * len(self._indices)
         self._velocity_gains = [settings.motor.velocity_gain] * len(self._indices)
-        self._efforts: Sequence[float] = ()
-        self._limp: list[int] = []
-        self._forces: list[float] = []
-        self._keep_apart()
-        self._set_friction()
-        self._load_torso(payload)
-        self._limit_speeds()
-        self._couple_hips(joints)
+        self._forget_efforts()
+        keep_apart(self.client, self.robot, model, self.links)
+        set_friction(self.client, self.robot, settings.contact, self.links)
+        load_torso(self.client, self.robot, payload)
+        speeds = self._to_engine_speeds([j.max_velocity for j in model.joints])
+        limit_speeds(self.client, self.robot, dict(zip(self._indices, speeds)))
+        couple_hips(self.client, self.robot, joints, settings.motor.coupling_force_n)
         local_position, local_orientation = pybullet.getDynamicsInfo(self.robot, -1, physicsClientId=self.client)[3:5]
         self._torso_to_com = (local_position, local_orientation)
         self._com_to_torso = pybullet.invertTransform(local_position, local_orientation)
-        self.place(angles, pitch=pitch)
+        self.start = place
+        self.restart(angles, pitch)
+
+    def restart(self, angles: Sequence[float], pitch: float | None = None) -> None:
+        """Put the robot to where it started, at rest; what its motors were told is forgotten."""
+        self._forget_efforts()
+        self.place(angles, self.start.yaw, (self.start.x, self.start.y), pitch)
+
+    def restart_beside_others(self, angles: Sequence[float], pitch: float | None = None) -> None:
+        """As `restart`, but where something is there, at the nearest place around that is free, if there is one."""
+        for x, y in places_around(self.start):
+            self._forget_efforts()
+            self.place(angles, self.start.yaw, (x, y), pitch)
+            if not self.inside():
+                return
+        self.restart(angles, pitch)
+
+    def inside(self) -> dict[str, float]:
+        """How deep the robot is in what is there, m; see `PhysicsWorld.inside`."""
+        return self.shared.inside(self.robot)
 
     def close(self) -> None:
-        """Free the engine's memory; the object is of no use afterwards."""
-        pybullet.disconnect(physicsClientId=self.client)
+        """Free the engine's memory; the object, and all others in its world, are of no use afterwards."""
+        self.shared.close()
 
     # --- moving ---------------------------------------------------------------------------------------------------
 
@@ -154,6 +182,11 @@ class Physics:
             physicsClientId=self.client,
         )
 
+    def _forget_efforts(self) -> None:
+        self._efforts: Sequence[float] = ()
+        self._limp: list[int] = []
+        self._forces: list[float] = []
+
     def _take_efforts(self, efforts: Sequence[float]) -> None:
         """Work out from efforts (26, 0..1) what stays the same until they change."""
         self._efforts = efforts
@@ -162,11 +195,12 @@ class Physics:
         self._forces = [torque * max(effort, least) for torque, effort in zip(self._torques, efforts)]
 
     def step(self, pushes: Mapping[str, Vector3] = NO_PUSHES) -> None:
-        """Advance by one tick while `pushes` (link name -> force in N, in world) act on the links' centres of mass."""
-        for _ in range(self._settings.steps_per_tick):
-            for link, force in pushes.items():
-                self._push(link, force)
-            pybullet.stepSimulation(physicsClientId=self.client)
+        """Advance the world by one tick while `pushes` act on links of this robot; see `pushing`."""
+        self.shared.step(self.pushing(pushes))
+
+    def pushing(self, pushes: Mapping[str, Vector3]) -> Sequence[Callable[[], None]]:
+        """What `PhysicsWorld.step` calls for pushes: link name -> force in N, in world, on its centre of mass."""
+        return [partial(self._push, link, force) for link, force in pushes.items()]
 
     def _push(self, link: str, force: Vector3) -> None:
         index = self.links.get(link, -1)
@@ -220,103 +254,16 @@ class Physics:
         )
         return Pose(state[4], state[5])
 
-    def nearest_hits(self, start: Vector3, ends: Sequence[Vector3]) -> list[float]:
-        """Share 0..1 of the way from `start` to each of `ends` that is free; the robot itself does not count."""
-        hits = pybullet.rayTestBatch([start] * len(ends), list(ends), physicsClientId=self.client)
-        return [1.0 if hit[0] == self.robot else hit[2] for hit in hits]
+    def pose_of(self, name: str) -> Pose:
+        """As `link_pose`; of any other name that of the torso."""
+        return self.link_pose(name) if name in self.links else self.read_body().pose
 
-    # --- building -------------------------------------------------------------------------------------------------
+    def free_sight(self, eye: Vector3, direction: Vector3) -> float:
+        """How far a line of sight goes before it meets something, m."""
+        end = [a + SIGHT * b for a, b in zip(eye, direction)]
+        return SIGHT * pybullet.rayTest(eye, end, physicsClientId=self.client)[0][HIT_FRACTION]
 
-    def _load_robot(self) -> int:
-        descriptor, path = tempfile.mkstemp(suffix=".urdf")
-        try:
-            with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-                file.write(physics_urdf(self._model))
-            return pybullet.loadURDF(path, flags=LOAD_FLAGS, physicsClientId=self.client)
-        finally:
-            os.remove(path)
-
-    def _index(self, column: int) -> dict[str, int]:
-        count = pybullet.getNumJoints(self.robot, physicsClientId=self.client)
-        infos = [pybullet.getJointInfo(self.robot, i, physicsClientId=self.client) for i in range(count)]
-        return {info[column].decode(): info[0] for info in infos}
-
-    def _keep_apart(self) -> None:
-        """Leave out the pairs of links that never touch each other: neighbours overlap at their joint."""
-        for first, second in apart(self._model):
-            indices = (self.links.get(first, -1), self.links.get(second, -1))
-            pybullet.setCollisionFilterPair(self.robot, self.robot, *indices, 0, physicsClientId=self.client)
-
-    def _set_friction(self) -> None:
-        contact = self._settings.contact
-        for index in [-1, *self.links.values()]:
-            pybullet.changeDynamics(
-                self.robot,
-                index,
-                lateralFriction=contact.body_friction,
-                linearDamping=0.0,
-                angularDamping=0.0,
-                jointDamping=0.0,
-                physicsClientId=self.client,
-            )
-        for foot in ("l_ankle", "r_ankle"):
-            # Without friction anchors a standing robot creeps tens of degrees a minute.
-            pybullet.changeDynamics(
-                self.robot,
-                self.links[foot],
-                lateralFriction=contact.sole_friction,
-                frictionAnchor=1,
-                contactStiffness=contact.sole_stiffness,
-                contactDamping=contact.sole_damping,
-                physicsClientId=self.client,
-            )
-
-    def _load_torso(self, payload: float) -> None:
-        if payload == 0.0:
-            return
-        mass, _, inertia = pybullet.getDynamicsInfo(self.robot, -1, physicsClientId=self.client)[:3]
-        # With a mass alone the engine would take a new inertia from the collision shapes.
-        pybullet.changeDynamics(
-            self.robot, -1, mass=mass + payload, localInertiaDiagonal=inertia, physicsClientId=self.client
-        )
-
-    def _limit_speeds(self) -> None:
-        """Keep the motors to their top speeds: without, one that lags catches up at any speed its torque allows.
-
-        Only the call for one joint takes a limit; the engine keeps it when `drive` sets everything else anew.
-        """
-        speeds = self._to_engine_speeds([j.max_velocity for j in self._model.joints])
-        for index, speed in zip(self._indices, speeds):
-            pybullet.setJointMotorControl2(
-                self.robot,
-                index,
-                pybullet.POSITION_CONTROL,
-                targetPosition=0.0,
-                force=0.0,
-                maxVelocity=speed,
-                physicsClientId=self.client,
-            )
-
-    def _couple_hips(self, joints: Mapping[str, int]) -> None:
-        """Both HipYawPitch joints turn with one motor: a gear of ratio 1 between the two."""
-        gear = pybullet.createConstraint(
-            self.robot,
-            joints["LHipYawPitch"],
-            self.robot,
-            joints["RHipYawPitch"],
-            pybullet.JOINT_GEAR,
-            (0, 1, 0),
-            (0, 0, 0),
-            (0, 0, 0),
-            physicsClientId=self.client,
-        )
-        pybullet.changeConstraint(
-            gear,
-            gearRatio=-1,
-            erp=0.2,
-            maxForce=self._settings.motor.coupling_force_n,
-            physicsClientId=self.client,
-        )
+    # --- inside ---------------------------------------------------------------------------------------------------
 
     def _clearance(self) -> float:
         """Height of the lowest point of the body over the floor, m; below 2 m of it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Callable
 
 from nao_sim_bridge.sim.external_collision import ExternalCollision
+from nao_sim_bridge.sim.faults import Faults
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.motion.engine import MotionEngine
 from nao_sim_bridge.sim.motion.idle import Idle
@@ -34,8 +35,9 @@ class Reflexes:
         external_collision: Slows arms down before what the sonars see.
         smart_stiffness: Saves torque while the robot keeps still.
         idle: Moves chains that nobody else moves.
-        diagnosis_enabled: Whether chains with motors that are too hot are put to rest.
-        wake_forbidden: Whether the robot must not wake up before its legs have cooled down.
+        diagnosis_enabled: Whether chains with motors that are too hot, or broken, are put to rest.
+        wake_forbidden: Why the robot must not wake up now; empty when it may.
+        faults: What is broken; None while nothing can be.
         switches: Of `SWITCHES`, those of whoever walks among them.
 
     Args:
@@ -58,7 +60,8 @@ class Reflexes:
         self.smart_stiffness = SmartStiffness([joint.max_torque for joint in model.joints])
         self.idle = Idle(model, joints, self._reference, lambda: self._recognised().family == STANDING)
         self.diagnosis_enabled = True
-        self.wake_forbidden = False
+        self.wake_forbidden = ""
+        self.faults: Faults | None = None
         self.switches = dict(SWITCHES)
         self._ticks = 0
 
@@ -84,7 +87,11 @@ class Reflexes:
         joints = self._joints
         still = self.smart_stiffness.shares(joints.changed, sensed.positions, sensed.torques, dt)
         hot = heat_shares(sensed.temperatures)
-        joints.share_efforts(tuple(map(min, still, hot)) if still and hot else still or hot)
+        shares = tuple(map(min, still, hot)) if still and hot else still or hot
+        broken = self.faults.motors if self.faults is not None else ()
+        if broken:
+            shares = tuple(0.0 if i in broken else (shares[i] if shares else 1.0) for i in range(len(joints.names)))
+        joints.share_efforts(shares)
 
     def _recognised(self) -> Recognition:
         sensed = self._snapshot()

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import random
-from dataclasses import dataclass
-from typing import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Iterable, Mapping, Sequence
 
 from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.faults import Faults
 from nao_sim_bridge.sim.led_animations import power_on
 from nao_sim_bridge.sim.leds import LedBank
 from nao_sim_bridge.sim.leds_layout import LedLayout
@@ -15,7 +16,8 @@ from nao_sim_bridge.sim.motion.engine import MotionEngine
 from nao_sim_bridge.sim.motion.joints import JointCommands
 from nao_sim_bridge.sim.motion.whole_body import WholeBody
 from nao_sim_bridge.sim.odometry import Odometry
-from nao_sim_bridge.sim.physics import Physics
+from nao_sim_bridge.sim.physics import NO_PUSHES, Physics
+from nao_sim_bridge.sim.pointing import pointed_at
 from nao_sim_bridge.sim.readings import Contact, Pose
 from nao_sim_bridge.sim.reflexes import Reflexes
 from nao_sim_bridge.sim.rotations import Vector3
@@ -26,6 +28,7 @@ from nao_sim_bridge.sim.sensors.inertial import InertialUnit
 from nao_sim_bridge.sim.sensors.noise_settings import load_noise
 from nao_sim_bridge.sim.sensors.power import PowerSystem
 from nao_sim_bridge.sim.sensors.sonar import Sonars
+from nao_sim_bridge.sim.sensors.surroundings import PhysicalSurroundings
 from nao_sim_bridge.sim.settings import Settings
 from nao_sim_bridge.sim.snapshot import Imu, Snapshot
 from nao_sim_bridge.sim.stability import Stability
@@ -55,6 +58,8 @@ class SimulatedRobot:
         locomotion: Walks.
         reflexes: What protects the robot from itself, from obstacles and from heat, and moves idle chains.
         leds: The LEDs.
+        power: Heat of the motors, and the battery.
+        faults: What is broken.
         random: The only source of chance, so that a seed decides everything.
         getting_up: True while a move runs that takes the robot off its feet or back on them: leaning is no fall then.
 
@@ -97,13 +102,17 @@ class SimulatedRobot:
         self.leds.set(power_on(leds))
         self._sensors = BodySensors(model, settings, physics.links)
         self._physics = physics
-        self._imu = InertialUnit(model.imu["Accelerometer"].position, settings.gravity_m_s2)
+        self._imu = InertialUnit(model.imu["Accelerometer"].position, settings.gravity_m_s2, physics.start.yaw)
         self._imperfection = self._imperfect(scene)
         self._odometry: Odometry | None = None
-        self._sonars = Sonars(model)
-        self._power = PowerSystem(len(model.joints), settings)
+        self._sonars = Sonars(model, PhysicalSurroundings(physics.client, physics.robot))
+        self.power = PowerSystem(self._sensors.motors.heat_capacities, settings, model.version != "V6")
+        self.power.battery.plug(scene.charger)
+        self.faults = Faults(model, self._sensors.touch_names)
+        self.reflexes.faults = self.faults
         self._pushes: list[_Push] = []
         self._fingers: frozenset[str] = frozenset()
+        self._pointed: frozenset[str] = frozenset()
         self._link_names = {index: name for name, index in physics.links.items()}
         self.getting_up = False
         self._measured = tuple(angles)
@@ -133,7 +142,7 @@ class SimulatedRobot:
         """
         if joint not in self.model.joint_index:
             raise UnknownName("joint", joint, self.model.joint_index)
-        self._power.warm_up(self.model.joint_index[joint], celsius)
+        self.power.warm_up(self.model.joint_index[joint], celsius)
 
     def link_name(self, index: int) -> str:
         """Name of the link that a contact names by its index."""
@@ -157,8 +166,21 @@ class SimulatedRobot:
                 raise UnknownName("touch sensor", name, self._sensors.touch_names)
         self._fingers = wanted
 
+    def point_at(self, ray: tuple[Vector3, Vector3] | None) -> None:
+        """Touch the sensor that a line of sight meets, and let go of the one before; None: let go.
+
+        Args:
+            ray: Eye (m) and unit vector, in world.
+        """
+        self._pointed = frozenset() if ray is None else pointed_at(self.model, self._physics, *ray)
+
     def act(self) -> None:
-        """First half of a tick: LEDs, motion and motors up to its end, then physics."""
+        """First half of a tick for a robot that is alone: LEDs, motion and motors up to its end, then physics."""
+        self.command()
+        self._physics.step(self.take_pushes())
+
+    def command(self) -> None:
+        """First half of a tick: LEDs, motion and motors up to its end, before the step of physics."""
         self._ticks += 1
         now = self.time
         self.leds.tick(now)
@@ -177,11 +199,14 @@ class SimulatedRobot:
         if self.joints.changed:
             self._physics.drive(self.joints)
             self.joints.changed = False
+
+    def take_pushes(self) -> Mapping[str, Vector3]:
+        """Forces on links in the coming step of physics, N, in world, by link."""
         if not self._pushes:
-            self._physics.step()
-            return
-        self._physics.step({push.link: push.force for push in self._pushes})
-        self._pushes = [push for push in self._pushes if push.until > now + 1e-9]
+            return NO_PUSHES
+        forces = {push.link: push.force for push in self._pushes}
+        self._pushes = [push for push in self._pushes if push.until > self.time + 1e-9]
+        return forces
 
     def sense(self, tick: int, now: float) -> Snapshot:
         """Second half of a tick: read every sensor."""
@@ -191,7 +216,8 @@ class SimulatedRobot:
         contacts = self._physics.read_contacts()
         imu = self._imu.read(body, self._dt)
         link_poses = {link: self._pose_of(link, body.pose) for link in {contact.link for contact in contacts}}
-        self._power.advance(lambda: self._sensors.currents(joints.torques), self._dt)
+        work = self._sensors.motors.work
+        self.power.advance(lambda: work(joints.torques, joints.velocities, self.joints.efforts), self._dt)
         if self._imperfection is not None:
             joints, imu, contacts, link_poses = self._imperfection.of(Felt(joints, imu, contacts, link_poses))
         self._sensed = Snapshot(
@@ -200,7 +226,7 @@ class SimulatedRobot:
             positions=joints.positions,
             velocities=joints.velocities,
             torques=joints.torques,
-            temperatures=self._power.temperatures,
+            temperatures=self.power.temperatures,
             commands=self.joints.commands,
             stiffnesses=self.joints.stiffnesses,
             torso=body.pose,
@@ -208,18 +234,30 @@ class SimulatedRobot:
             angular_velocity=body.angular_velocity,
             imu=imu,
             odometry=self._reckon(joints.positions, imu, contacts),
-            sonars=self._sonars.read(self.time, body.pose, self._physics.nearest_hits),
-            battery_charge=self._power.charge,
-            battery_current=self._power.current,
+            sonars=self._sonars.read(self.time, body.pose),
+            echoes=self._sonars.echoes,
+            head_temperature=self.power.head,
+            battery=self.power.battery.reading,
             objects=self._physics.bodies.read(),
             placed=self._physics.bodies.placed,
             gone=self._physics.bodies.gone,
             contacts=contacts,
             link_poses=link_poses,
-            fingers=self._fingers,
+            fingers=self._fingers | self._pointed,
             sensors=self._sensors,
         )
+        if self.faults.sensors:
+            self._sensed = self.faults.spoil(self._sensed)
         return self._sensed
+
+    def shoot_sonars(self) -> Snapshot | None:
+        """What is sensed now, with sonars that have just measured; None before the first tick."""
+        if self._sensed is None:
+            return None
+        self._sonars.reset()
+        sonars = self._sonars.read(self.time, self._physics.read_body().pose)
+        now = replace(self._sensed, sonars=sonars, echoes=self._sonars.echoes)
+        return self.faults.spoil(now) if self.faults.sensors else now
 
     def _imperfect(self, scene: Scene) -> Imperfection | None:
         """What spoils and delays the readings; None when nothing does."""

@@ -31,7 +31,7 @@ class SimulationRunner:
     """Runs a simulation in its own thread.
 
     Args:
-        simulation: What to run; from `start` on it belongs to the thread.
+        simulation: What to run, with all robots of its world; from `start` on they belong to the thread.
         speed: Simulated seconds per wall second; `FASTEST` (infinity) for as fast as possible.
         paused: Start without time passing.
         on_end: Called in the thread when it has ended, by `stop` or because the simulation failed.
@@ -57,7 +57,7 @@ class SimulationRunner:
         self._pace_wall = 0.0
         self._pace_time = 0.0
         simulation.task_ids.ask = self._kill_later
-        simulation.wake = self._notify
+        simulation.shared.wake = self._notify
         self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
 
     # --- from any thread ------------------------------------------------------------------------------------------
@@ -242,10 +242,7 @@ class SimulationRunner:
 
     def _hold(self) -> float:
         """As `_delay` for time that runs faster than the wall clock and is due: it waits for slower work."""
-        for waits in self._simulation.holds:
-            if waits():
-                return HOLD_LOOK
-        return 0.0
+        return HOLD_LOOK if self._simulation.shared.holds() else 0.0
 
     def _restart_pace(self) -> None:
         self._pace_wall = time.monotonic()

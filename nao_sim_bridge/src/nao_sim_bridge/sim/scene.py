@@ -24,6 +24,7 @@ class Scene:
         payload: Mass that the torso carries besides its own, at its centre of mass, kg; the robot does not know of it.
         sensor_noise: Scale of the sensors' errors: 0 for none, 1 for those of a real robot.
         sensor_delay: How late joint angles, inertial unit and foot forces arrive, s, rounded to ticks.
+        charger: Whether the charger is plugged in from the start, so that the robot does not tire.
 
     Raises:
         BadValue: A number is not in its range.
@@ -37,6 +38,7 @@ class Scene:
     payload: float = 0.0
     sensor_noise: float = 0.0
     sensor_delay: float = 0.0
+    charger: bool = False
 
     def __post_init__(self) -> None:
         for name in ("friction", "payload", "sensor_noise", "sensor_delay"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any, Mapping
+from typing import Any, Mapping, Tuple
 
 from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim.config import check_keys, read_json, section
@@ -22,8 +22,10 @@ class MotorSettings:
     coupling_force_n: float
     gear_efficiency: float
     ambient_c: float
-    heating_k_per_a2_s: float
     cooling_per_s: float
+    big_motor: str
+    big_heat_capacity_j_per_k: float
+    small_heat_capacity_j_per_k: float
 
 
 @dataclass(frozen=True)
@@ -37,12 +39,42 @@ class ContactSettings:
 
 
 @dataclass(frozen=True)
+class HeadSettings:
+    """How the computer in the head warms up: by so much over the room, with this time constant; when it is hot."""
+
+    warmth_k: float
+    time_constant_s: float
+    hot_c: float
+    critical_c: float
+
+
+@dataclass(frozen=True)
 class BatterySettings:
-    """The battery and what the robot draws at rest."""
+    """The battery, its charger, what the robot draws besides its motors, and when it counts as low (0..1).
+
+    `cell_rest_voltages` has pairs of charge, 0..1, and voltage of a cell that gives and takes nothing, V. The charger
+    gives its full current up to `taper_from_charge`, from there on less and less, down to `least_taper` of it, and from
+    `full_charge` on no more than the robot draws. From `hot_c` on the battery raises its alarm.
+    """
 
     voltage_v: float
     capacity_ah: float
-    idle_current_a: float
+    cells: int
+    resistance_ohm: float
+    cell_spread_v: float
+    cell_rest_voltages: Tuple[Tuple[float, float], ...]
+    heat_capacity_j_per_k: float
+    cooling_w_per_k: float
+    idle_w: float
+    driver_w: float
+    hot_c: float
+    charge_current_a: float
+    full_charge: float
+    taper_from_charge: float
+    least_taper: float
+    low_charge: float
+    nearly_empty_charge: float
+    empty_charge: float
 
 
 @dataclass(frozen=True)
@@ -55,6 +87,7 @@ class Settings:
     gravity_m_s2: float
     motor: MotorSettings
     contact: ContactSettings
+    head: HeadSettings
     battery: BatterySettings
 
     @property
@@ -72,6 +105,6 @@ def load_settings() -> Settings:
     content: Mapping[str, Any] = read_json(config_file(FILE))
     names = [f.name for f in fields(Settings)]
     check_keys(content, FILE, names, ["_meta"])
-    sections = {"motor": MotorSettings, "contact": ContactSettings, "battery": BatterySettings}
+    sections = {"motor": MotorSettings, "contact": ContactSettings, "head": HeadSettings, "battery": BatterySettings}
     values = {n: section(sections[n], content[n], f"{FILE}: {n}") if n in sections else content[n] for n in names}
     return Settings(**values)

@@ -10,10 +10,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Mapping, Tuple
 
+from nao_sim_bridge.sim.battery import BatteryReading
 from nao_sim_bridge.sim.readings import Contact, FootForces, Pose
 from nao_sim_bridge.sim.rotations import Vector3, rotate_back
 from nao_sim_bridge.sim.sensors.body import BodySensors
-from nao_sim_bridge.sim.sensors.contacts import Presses, in_link_frames
+from nao_sim_bridge.sim.sensors.contacts import Presses, in_link_frames, not_from_below
 from nao_sim_bridge.sim.world import WorldObject
 
 
@@ -24,7 +25,7 @@ class Imu:
     Attributes:
         accelerometer: Proper acceleration in the torso frame, m/s2; (0, 0, 9.81) when upright and at rest.
         gyroscope: Angular velocity in the torso frame, rad/s.
-        angles: Roll, pitch and yaw of the torso in world, rad.
+        angles: Roll, pitch and yaw of the torso in world, rad; yaw counts from where the robot looked at the start.
     """
 
     accelerometer: Vector3
@@ -50,9 +51,10 @@ class Snapshot:
         angular_velocity: True angular velocity of the torso in world, rad/s.
         imu: The inertial unit.
         odometry: Pose of the torso as the robot itself reckons it, in the frame where it stood at the start.
-        sonars: Echo distances left and right, m.
-        battery_charge: 0..1.
-        battery_current: A, positive while it discharges.
+        sonars: Distances of the first echoes left and right, m.
+        echoes: All echoes left and right, m, nearest first; none when nothing echoes. A new tuple with each shot.
+        head_temperature: Of the computer in the head, degC.
+        battery: What the battery's board tells; a new one whenever it changes.
         objects: True poses of things that can be moved, were placed, or were put elsewhere, by name.
         placed: Things that were added to those of the world.
         gone: Names of things of the world that were taken away.
@@ -76,8 +78,9 @@ class Snapshot:
     imu: Imu
     odometry: Pose
     sonars: Tuple[float, ...]
-    battery_charge: float
-    battery_current: float
+    echoes: Tuple[Tuple[float, ...], ...]
+    head_temperature: float
+    battery: BatteryReading
     objects: Mapping[str, Pose]
     placed: Tuple[WorldObject, ...]
     gone: frozenset
@@ -104,7 +107,11 @@ class Snapshot:
     @cached_property
     def touched(self) -> frozenset:
         """Names of touch sensors, bumpers and buttons that something presses."""
-        return self.fingers | self.sensors.touched(self._presses)
+        # No touch sensor looks down, and nearly all contacts are those of soles with the floor.
+        contacts = not_from_below(self.contacts, self.link_poses)
+        if not contacts:
+            return self.fingers
+        return self.fingers | self.sensors.touched(in_link_frames(contacts, self.link_poses))
 
     @cached_property
     def currents(self) -> Tuple[float, ...]:

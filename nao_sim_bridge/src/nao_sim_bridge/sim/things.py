@@ -23,7 +23,7 @@ from nao_sim_bridge.sim.tasks import Task, TaskIds
 from nao_sim_bridge.sim.world import FLOOR, MOST_PARTS, World, WorldObject
 
 if TYPE_CHECKING:
-    from nao_sim_bridge.sim.physics import Physics
+    from nao_sim_bridge.sim.physics_world import PhysicsWorld
     from nao_sim_bridge.sim.world_bodies import WorldBodies
 
 MOST_PLACED = 64
@@ -39,7 +39,7 @@ NOBODY: frozenset[str] = frozenset()
 
 
 class Things:
-    """What is in the world besides the floor and the robot. Simulation thread only, but for `placed` and `gone`.
+    """What is in the world besides the floor and the robots. Simulation thread only, but for `placed` and `gone`.
 
     A reset puts everything to where the world file says: what was placed goes, what was removed is back.
 
@@ -55,7 +55,7 @@ class Things:
         self._ids = task_ids
         self._now = now
         self._changed = changed
-        self._physics: Physics | None = None
+        self._physics: PhysicsWorld | None = None
         self._glides: dict[str, tuple[Glide, Task]] = {}
 
     @property
@@ -73,7 +73,7 @@ class Things:
         """Everything that is there, by name."""
         return self._bodies.things
 
-    def begin(self, physics: Physics) -> None:
+    def begin(self, physics: PhysicsWorld) -> None:
         """Start all over with the bodies of a new physics."""
         self.stop()
         self._physics = physics
@@ -199,7 +199,7 @@ class Things:
             task.kill()
 
     def _refuse_in_robot(self, name: str) -> None:
-        depth = self._bodies.depth_in(name, self._physics.robot)
+        depth = max(self._bodies.depth_in(name, robot) for robot in self._physics.robots)
         if depth > DEEPEST:
             raise NotAllowed(f"{name!r} cannot be there: it would be {depth:.3f} m inside the robot")
 

@@ -1,7 +1,7 @@
 """Worlds: what surrounds the robot, the same for the physics and for pictures.
 
-A world file (YAML) has `floor`, and may have `description`, `light`, `background`, `objects` and `sounds`; the readers
-(`world_reader.py`, `world_sounds.py`) say what each of them may hold.
+A world file (YAML) has `floor`, and may have `description`, `light`, `background`, `objects`, `sounds` and `robots`;
+the readers (`world_reader.py`, `world_sounds.py`) say what each of them may hold.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import yaml
 
 from nao_sim_bridge.paths import world_directory
 from nao_sim_bridge.sim.errors import ConfigError
+from nao_sim_bridge.sim.places import RobotPlace
 from nao_sim_bridge.sim.rotations import Quaternion, Vector3, from_roll_pitch_yaw
 from nao_sim_bridge.sim.shapes import Shape
 from nao_sim_bridge.sim.world_pictures import WorldPicture
@@ -188,6 +189,7 @@ class World:
         background: Colours behind everything.
         objects: Everything else.
         sounds: What is to be heard.
+        robots: Where the robots start, the first one first; others stand where they are told to.
     """
 
     name: str
@@ -197,6 +199,7 @@ class World:
     background: Background
     objects: tuple[WorldObject, ...]
     sounds: tuple[WorldSound, ...] = ()
+    robots: tuple[RobotPlace, ...] = ()
 
 
 def world_names() -> tuple[str, ...]:

@@ -6,7 +6,8 @@ maybe `yaw`) and `bumps` (see `world_bumps.py`). `light` may have `direction`, `
 have `top`, `horizon` and `haze`.
 
 Objects are read by `world_objects.py`; on a slope all places count from the floor: z is along its normal.
-`sounds` are read by `world_sounds.py`.
+`sounds` are read by `world_sounds.py`. `robots` says where the first, the second... robot starts: a list of `position`,
+[x, y] of its torso, and maybe `yaw`.
 """
 
 from __future__ import annotations
@@ -18,14 +19,15 @@ from typing import Any
 import numpy as np
 
 from nao_sim_bridge.sim.config import check_keys, vector
-from nao_sim_bridge.sim.errors import ConfigError
+from nao_sim_bridge.sim.errors import BadValue, ConfigError
+from nao_sim_bridge.sim.places import RobotPlace
 from nao_sim_bridge.sim.world import FLOOR, Background, Floor, Light, Rug, World, WorldError
 from nao_sim_bridge.sim.world_bumps import read_bumps
 from nao_sim_bridge.sim.world_entries import GREY, color, entries, number
 from nao_sim_bridge.sim.world_objects import read_object
 from nao_sim_bridge.sim.world_sounds import read_sounds
 
-SECTIONS = ("description", "light", "background", "objects", "sounds")
+SECTIONS = ("description", "light", "background", "objects", "sounds", "robots")
 FLOOR_OPTIONS = ("color", "tile_color", "tile_size", "slope_deg", "rugs", "bumps")
 # Steeper than this no sole holds, deg.
 MAX_SLOPE = 30.0
@@ -65,7 +67,17 @@ def read_world(content: Any, name: str, where: str, folder: Path | None = None) 
         background=_read_background(content.get("background", {}), f"{where}: background"),
         objects=objects,
         sounds=sounds,
+        robots=tuple(_read_place(entry, place) for place, entry in entries(content, "robots", where)),
     )
+
+
+def _read_place(entry: Any, where: str) -> RobotPlace:
+    check_keys(entry, where, ("position",), ("yaw",), WorldError)
+    x, y = vector(entry["position"], f"{where}.position", 2, WorldError).tolist()
+    try:
+        return RobotPlace(x, y, number(entry, "yaw", where, 0.0, lowest=-math.inf))
+    except BadValue as error:
+        raise WorldError(where, str(error)) from error
 
 
 def _read_floor(entry: Any, where: str) -> Floor:

@@ -39,7 +39,7 @@ class WorldSounds:
         self._riding: list[WorldSound] = []
         self._next = math.inf
         if self._made:
-            simulation.sound.after_reset.append(self.begin)
+            simulation.shared.after_reset.append(self.begin)
             simulation.after_tick.append(self._look)
 
     def begin(self) -> None:

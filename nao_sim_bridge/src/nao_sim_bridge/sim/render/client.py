@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import threading
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from nao_sim_bridge.sim.render.wire import StateSender
 
 if TYPE_CHECKING:
     from nao_sim_bridge.sim.cameras.shot import Shot
+    from nao_sim_bridge.sim.render.pointer import Ray
 
 START_TIMEOUT = 60.0
 """s; building the robot takes well below one, but a busy machine may need long to start an interpreter."""
@@ -197,6 +198,10 @@ class Renderer:
 class Viewer:
     """A window that mirrors the simulation, in a process of its own. States are shown at up to 30 Hz.
 
+    Attributes:
+        on_pointer: Called in `show` with the line of sight through the mouse while its button is pressed, and with None
+            when it is released.
+
     Args:
         world_name: Name or path of the world.
         version: Robot version.
@@ -208,6 +213,7 @@ class Viewer:
         self._worker: ChildProcess | None = None
         self._sender = StateSender()
         self._drawing = False
+        self.on_pointer: Callable[[Ray | None], None] = lambda _: None
 
     def start(self) -> Viewer:
         """Open the window.
@@ -236,9 +242,12 @@ class Viewer:
             raise RenderError("window: it is not open")
         pipe = self._worker.pipe
         try:
-            if self._drawing and pipe.poll():
-                pipe.recv()
-                self._drawing = False
+            while pipe.poll():
+                kind, content = pipe.recv()
+                if kind == "pointer":
+                    self.on_pointer(content)
+                else:
+                    self._drawing = False
             if not self._drawing:
                 pipe.send(("show", self._sender.pack(state)))
                 self._drawing = True

@@ -86,7 +86,10 @@ class Camera:
 
 @dataclass(frozen=True)
 class _View:
-    """A preset: eye and target in the frame of what it follows ("body", "head"; "world" follows nothing), m."""
+    """A preset: eye and target in the frame of what it follows, m.
+
+    "body", "head"; "world" follows nothing; "robots" is the middle of all robots, with a metre as long as all need.
+    """
 
     follows: str
     eye: Vector3
@@ -99,12 +102,14 @@ PRESETS: Mapping[str, _View] = {
     "three_quarter": _View("body", (0.86, 0.52, 0.22), (0.0, 0.0, -0.05), 38.0),
     "side": _View("body", (0.02, 1.05, 0.06), (0.02, 0.0, -0.045), 38.0),
     "back": _View("body", (-1.0, -0.3, 0.2), (0.0, 0.0, -0.05), 38.0),
+    "stage": _View("body", (1.2, 0.57, 0.27), (0.0, 0.0, 0.01), 38.0),
     "far": _View("body", (2.4, 1.5, 0.9), (0.0, 0.0, -0.1), 38.0),
     "room": _View("world", (-2.1, -3.0, 2.8), (0.95, 0.03, 0.0), 42.0),
+    "robots": _View("robots", (1.15, -2.55, 1.2), (0.0, 0.0, 0.15), 38.0),
     "face": _View("head", (0.36, 0.09, 0.07), (0.0, 0.0, 0.056), 26.0),
 }
 """Views by name. Those of the body turn with its heading only, the view of the face with the head; that of the room
-stays where it is."""
+stays where it is, and that of the robots shows all of them."""
 
 
 def preset_camera(
@@ -137,6 +142,8 @@ def preset_camera(
         frame = _upright(base)
     if view.follows == "world":
         frame = np.eye(4)
+    if view.follows == "robots":
+        frame = _around_all(state)
     eye, target = (frame @ np.append(point, 1.0) for point in (view.eye, view.target))
     up = frame[:3, 2] if view.follows == "head" else np.array((0.0, 0.0, 1.0))
     return Camera(
@@ -148,6 +155,16 @@ def preset_camera(
         height=height,
         supersampling=supersampling,
     )
+
+
+def _around_all(state: RenderState) -> np.ndarray:
+    """The middle of all robots on the floor, enlarged until they fit into a circle of 1 m around it."""
+    places = np.array([look.base_position[:2] for look in (state, *state.others)])
+    center = (places.min(axis=0) + places.max(axis=0)) / 2.0
+    reach = float(np.linalg.norm(places - center, axis=1).max())
+    frame = np.diag([max(reach + 0.1, 0.6)] * 3 + [1.0])
+    frame[:2, 3] = center
+    return frame
 
 
 def _upright(base: np.ndarray) -> np.ndarray:

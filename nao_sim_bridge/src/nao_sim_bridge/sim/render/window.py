@@ -1,4 +1,4 @@
-"""A PyBullet window that mirrors states which come over a pipe."""
+"""A PyBullet window that mirrors states which come over a pipe, and tells where the mouse is pressed in it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from multiprocessing.connection import Connection
 import pybullet
 
 from nao_sim_bridge.sim.errors import SimulationError
+from nao_sim_bridge.sim.render.pointer import Pointer
 from nao_sim_bridge.sim.render.stage import Stage
 from nao_sim_bridge.sim.render.wire import StateReceiver
 from nao_sim_bridge.sim.world import World
@@ -19,7 +20,7 @@ class Window:
     """The window and the robot in it; one thread only.
 
     Args:
-        pipe: Where ("show", state) comes from.
+        pipe: Where ("show", state) comes from; ("shown", None) and ("pointer", ray or None) go back.
         world: Floor and objects.
         version: Robot version.
 
@@ -34,6 +35,7 @@ class Window:
             raise SimulationError("PyBullet could not open a window on this display")
         pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_GUI, 0, physicsClientId=self._client)
         pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_RENDERING, 0, physicsClientId=self._client)
+        self._pointer = Pointer(self._client)
         self._stage = Stage(world, version, self._client, floor=True, paint_lamps=True)
         pybullet.resetDebugVisualizerCamera(0.85, 60.0, -14.0, (0.0, 0.0, 0.28), physicsClientId=self._client)
         lamp = [5.0 * part for part in world.light.direction]
@@ -44,6 +46,8 @@ class Window:
         """Show what comes, at most thirty times a second, until the pipe or the window is closed."""
         states = StateReceiver()
         while pybullet.isConnected(self._client):
+            for ray in self._pointer.news():
+                self._pipe.send(("pointer", ray))
             # Without news, look now and then whether somebody has closed the window.
             if not self._pipe.poll(PERIOD):
                 continue

@@ -37,7 +37,7 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def _quiet_import() -> Any:
+def quiet_import() -> Any:
     """PyBullet, without the line it prints on import."""
     sys.stderr.flush()
     kept, silence = os.dup(2), os.open(os.devnull, os.O_WRONLY)
@@ -53,7 +53,7 @@ def _quiet_import() -> Any:
 
 def _open_pictures(pipe: Connection, engine: str, world_name: str, version: str) -> tuple[Any, Any]:
     """Build what draws; returns what serves the pipe, and what draws with a complaint about it or None."""
-    _quiet_import()
+    quiet_import()
     import cv2
 
     from nao_sim_bridge.sim.render.engines import open_engine
@@ -98,7 +98,7 @@ def _capture(drawing: Any, state: Any, shot: Any) -> tuple[None, Any]:
 
 def _open_window(pipe: Connection, world_name: str, version: str) -> Any:
     """Open the window; returns what serves the pipe."""
-    _quiet_import()
+    quiet_import()
     from nao_sim_bridge.sim.render.window import Window
     from nao_sim_bridge.sim.world import load_world
 

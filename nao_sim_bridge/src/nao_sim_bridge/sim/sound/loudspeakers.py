@@ -10,6 +10,7 @@ from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.sound.envelope import Envelope
 from nao_sim_bridge.sim.sound.playing import Mark, Playing
 from nao_sim_bridge.sim.sound.samples import RATE, Sound, frame_at
+from nao_sim_bridge.sim.sound.sources import LONGEST_WAY
 from nao_sim_bridge.sim.sound.timeline import Timeline
 from nao_sim_bridge.sim.sound.track import RAMP
 from nao_sim_bridge.sim.tasks import TaskIds
@@ -150,6 +151,10 @@ class Loudspeakers:
         mixed = self.mixed(first, last)
         return Sound(np.zeros((last - first, 2), np.float32) if mixed is None else mixed)
 
+    def sounds(self, first: int, last: int) -> bool:
+        """Whether anything may sound from frame `first` to `last`; never False when something does."""
+        return bool(self._players) and any(not player.over_before(first) for player in self._players)
+
     def mixed(self, first: int, last: int) -> np.ndarray | None:
         """(last - first, 2) from frame `first` to `last`; None when nothing plays."""
         out = None
@@ -171,6 +176,7 @@ class Loudspeakers:
         self._master.set(self._timeline.now, (self._volume / 100.0 if on else 0.0,))
 
     def _forget(self, before: int) -> None:
+        before -= LONGEST_WAY  # another robot hears it later
         kept = tuple(player for player in self._players if not player.over_before(before))
         if len(kept) != len(self._players):
             self._players = kept

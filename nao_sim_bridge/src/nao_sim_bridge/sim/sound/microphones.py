@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from functools import partial
+from typing import Callable, Sequence
 
 import numpy as np
 
@@ -12,9 +14,10 @@ from nao_sim_bridge.sim.sound.loudspeakers import Loudspeakers, checked_past
 from nao_sim_bridge.sim.sound.noise import Background
 from nao_sim_bridge.sim.sound.poses import PoseTrack
 from nao_sim_bridge.sim.sound.propagation import FixedWays, arrivals, at_places, between_knots
+from nao_sim_bridge.sim.sound.robot_voice import RobotVoice
 from nao_sim_bridge.sim.sound.samples import RATE, Sound
 from nao_sim_bridge.sim.sound.settings import SoundSettings
-from nao_sim_bridge.sim.sound.sources import LONGEST_WAY, SourcePlaying, Sources, Stint
+from nao_sim_bridge.sim.sound.sources import LONGEST_WAY, Sources
 from nao_sim_bridge.sim.sound.timeline import Timeline
 
 GUARD = 96
@@ -32,6 +35,7 @@ class Microphones:
         sources: In the world.
         frames_per_tick: Length of a tick.
         seed: Of the background noise.
+        others: Voices of the other robots.
 
     Raises:
         ConfigError: The settings name a microphone that the robot does not have.
@@ -46,11 +50,13 @@ class Microphones:
         sources: Sources,
         frames_per_tick: int,
         seed: int,
+        others: Callable[[], Sequence[RobotVoice]] = tuple,
     ) -> None:
         self._settings = settings
         self._timeline = timeline
         self._loudspeakers = loudspeakers
         self._sources = sources
+        self._others = others
         self._tick = frames_per_tick
         by_name = {place.name: place for place in model.microphones}
         missing = [name for name in settings.order if name not in by_name]
@@ -123,7 +129,8 @@ class Microphones:
         out = self._background.between(first, last)
         self._add_loudspeakers(out, first, last)
         sources = [source for source in self._sources.sounding if not source.over_before(first - LONGEST_WAY)]
-        if sources:
+        voices = [voice for voice in self._others() if not voice.silent(first - LONGEST_WAY, last)]
+        if sources or voices:
             # Knots of the movement are the ticks, whoever asks for which part of time.
             ticks = np.arange(first // self._tick, -(-last // self._tick) + 1)
             newest = self._timeline.now // self._tick
@@ -131,7 +138,10 @@ class Microphones:
             microphones = self.poses.at(int(knots[0]), int(knots[-1])).place(self.places)[knots - knots[0]]
             for source in sources:
                 for stint in source.stints:
-                    self._add_source(out, source, stint, ticks * self._tick, microphones, first, last)
+                    dry = partial(source.dry, stint)
+                    self._add_source(out, stint.at, dry, ticks * self._tick, microphones, first, last)
+            for voice in voices:
+                self._add_source(out, voice.at, voice.dry, ticks * self._tick, microphones, first, last)
         return out
 
     def _add_loudspeakers(self, out: np.ndarray, first: int, last: int) -> None:
@@ -151,17 +161,17 @@ class Microphones:
     def _add_source(
         self,
         out: np.ndarray,
-        source: SourcePlaying,
-        stint: Stint,
+        at: Callable[[np.ndarray], np.ndarray],
+        dry: Callable[[int, int], np.ndarray | None],
         knots: np.ndarray,
         microphones: np.ndarray,
         first: int,
         last: int,
     ) -> None:
-        given_off, distances = arrivals(microphones, knots, stint.at, self._per_meter)
+        given_off, distances = arrivals(microphones, knots, at, self._per_meter)
         skip = first - int(knots[0])
         places = between_knots(given_off, self._tick, skip, last - first)
-        heard = at_places(lambda a, b: source.dry(stint, a, b), places)
+        heard = at_places(dry, places)
         if heard is None:
             return
         weaker = 1.0 / np.maximum(distances, self._settings.near_field_m)

@@ -1,4 +1,4 @@
-"""All sound of one simulation."""
+"""All sound of one robot: what it plays and what it hears."""
 
 from __future__ import annotations
 
@@ -6,14 +6,12 @@ from typing import Callable
 
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.sound.air import Air
 from nao_sim_bridge.sim.sound.ears import Ears
 from nao_sim_bridge.sim.sound.loudspeakers import Loudspeakers
 from nao_sim_bridge.sim.sound.microphones import Microphones
+from nao_sim_bridge.sim.sound.robot_voice import RobotVoice
 from nao_sim_bridge.sim.sound.samples import RATE
-from nao_sim_bridge.sim.sound.settings import SoundSettings, load_sound_settings
-from nao_sim_bridge.sim.sound.sources import Sources
-from nao_sim_bridge.sim.sound.timeline import Timeline
-from nao_sim_bridge.sim.tasks import TaskIds
 
 
 class SoundWorld:
@@ -22,41 +20,41 @@ class SoundWorld:
     Attributes:
         settings: Levels.
         loudspeakers: Of the robot.
-        sources: Sounds in the world.
+        sources: Sounds in the world, which other robots may hear, too.
         microphones: Of the robot.
         ears: Listeners.
         timeline: The clock of sound.
-        after_reset: Called in the simulation thread at the end of each reset: world and robot are at the start again.
+        numbers: For the names of sounds of the world that nobody named.
 
     Args:
         model: The robot.
-        tick_s: Length of a tick, s.
-        ids: Source of the tasks' numbers.
+        air: Around it.
         seed: Of the background noise.
         released: Called when time that waited for ears need not wait any more.
-        settings: None for those of the file.
     """
 
-    def __init__(
-        self,
-        model: RobotModel,
-        tick_s: float,
-        ids: TaskIds,
-        seed: int,
-        released: Callable[[], None] = lambda: None,
-        settings: SoundSettings | None = None,
-    ) -> None:
-        self.settings = settings or load_sound_settings()
-        self._tick_s = tick_s
-        self.timeline = Timeline(self.settings.keep_s)
-        self.loudspeakers = Loudspeakers(self.timeline, ids)
-        self.sources = Sources(self.timeline, ids, self.settings)
+    def __init__(self, model: RobotModel, air: Air, seed: int, released: Callable[[], None] = lambda: None) -> None:
+        self.settings = air.settings
+        self.timeline = air.timeline
+        self.loudspeakers = Loudspeakers(self.timeline, air.ids)
+        self.sources = air.sources
+        self.numbers = air.numbers
         self.microphones = Microphones(
-            model, self.settings, self.timeline, self.loudspeakers, self.sources, round(tick_s * RATE), seed
+            model,
+            self.settings,
+            self.timeline,
+            self.loudspeakers,
+            self.sources,
+            air.frames_per_tick,
+            seed,
+            lambda: [voice for voice in air.voices if voice is not self._voice],
         )
         self.ears = Ears(self.timeline, self.microphones, released)
         self._poses = self.microphones.poses
-        self.after_reset: list[Callable[[], None]] = []
+        self._voice = RobotVoice(
+            model, self.settings, self.timeline, self.loudspeakers, self._poses, air.frames_per_tick
+        )
+        air.voices += (self._voice,)
 
     @property
     def time(self) -> float:
@@ -67,23 +65,17 @@ class SoundWorld:
         """The robot has been put into the world; at the start and at each reset."""
         if not self._poses.knows(snapshot.tick):  # else a reset, from the next tick on: what is past stays
             self._poses.record(snapshot.tick, snapshot)
-        for call in self.after_reset:
-            call()
 
-    def tick(self, snapshot: Snapshot) -> None:
-        """A tick has passed."""
+    def record(self, snapshot: Snapshot) -> None:
+        """A tick has passed: where the head is at its end. `Air.tick` follows when all robots have done that."""
         self._poses.record(snapshot.tick, snapshot)
-        frame = round(snapshot.tick * self._tick_s * RATE)
-        self.timeline.tick(frame)
-        if frame >= self.ears.due:
+
+    def hear(self) -> None:
+        """After `Air.tick`: let those who listen hear what can be heard now."""
+        if self.timeline.now >= self.ears.due:
             self.ears.wake()
 
-    def stop_all(self) -> None:
-        """End everything that sounds."""
-        self.loudspeakers.stop_all()
-        self.sources.clear()
-
     def close(self) -> None:
-        """End everything that sounds, and all listeners."""
-        self.stop_all()
+        """End everything that the robot plays, and all listeners."""
+        self.loudspeakers.stop_all()
         self.ears.close()

@@ -40,7 +40,7 @@ class Animator:
         self._home: dict[int, float] = {}
         self._planned: list[tuple[float, PlannedGesture]] = []
         simulation.after_tick.append(self._tick)
-        simulation.sound.after_reset.append(self.forget)
+        simulation.after_reset.append(self.forget)
 
     # --- looking --------------------------------------------------------------------------------------------------
 

@@ -82,7 +82,7 @@ class Speaker:
         self._talks: deque[_Talk] = deque()
         simulation.after_tick.append(self._tick)
         simulation.holds.append(self.waits_for_sound)
-        simulation.sound.after_reset.append(self.stop_all)
+        simulation.after_reset.append(self.stop_all)
         studio.released = lambda: simulation.wake()
 
     def say(self, items: Sequence[Item], style: Style, name: str = "say") -> Task:

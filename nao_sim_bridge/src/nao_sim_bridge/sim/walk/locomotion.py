@@ -1,7 +1,7 @@
 """Walking as a robot does it for whoever asks: begin, change on the way, end; what protects it; where it is.
 
 A walk is a task of the motion engine that holds both legs from the first to the last tick. What callers wait for (a
-place reached, steps made, a stop) are tasks of their own that this one settles. Simulation thread only.
+place reached, steps made, a stop) are tasks of their own that it settles, see `waits`. Simulation thread only.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from nao_sim_bridge.sim.walk.settings import load_walk_settings
 from nao_sim_bridge.sim.walk.steps_course import Placement, StepsCourse
 from nao_sim_bridge.sim.walk.target_course import TargetCourse
 from nao_sim_bridge.sim.walk.velocity_course import VelocityCourse
+from nao_sim_bridge.sim.walk.waits import WalkWaits
 from nao_sim_bridge.sim.walk.walk_guard import WalkGuard
 from nao_sim_bridge.sim.walk.walker import Readings, Walker
 from nao_sim_bridge.sim.walk.whereabouts import foot_on_ground, frame_from, robot_on_ground
@@ -89,7 +90,7 @@ class Locomotion:
         self._joints = joints
         self._motion = motion
         self._stability = stability
-        self._ids = task_ids
+        self._waits = WalkWaits(task_ids, self._drop_goal)
         self._snapshot = snapshot
         self._settings = load_walk_settings()
         self._body = WalkingBody(model)
@@ -103,8 +104,6 @@ class Locomotion:
         self._to_begin = False
         self._hindered = False
         self._measured_step = False
-        self._goal: Task | None = None
-        self._waiting: list[Task] = []
         self._commands: dict[int, float] = {}
         self._obstructed = False
 
@@ -182,9 +181,9 @@ class Locomotion:
             MoveRefused: The robot cannot walk now.
         """
         course = self._course
-        if self.active and isinstance(course, StepsCourse) and self._goal is not None and not course.reached:
+        if self.active and isinstance(course, StepsCourse) and self._waits.goal is not None and not course.reached:
             course.add(steps, clear)
-            return self._goal
+            return self._waits.goal
         return self._set_goal("setFootSteps", StepsCourse(self._settings, gait, steps))
 
     def stop(self) -> Task:
@@ -200,12 +199,7 @@ class Locomotion:
 
     def until_finished(self, name: str = "waitUntilMoveIsFinished") -> Task:
         """A task that ends when no walk runs any more."""
-        task = self._ids.make(name)
-        if self.active:
-            self._waiting.append(task)
-        else:
-            task.finish()
-        return task
+        return self._waits.for_the_end(name, self.active)
 
     # --- where it is ----------------------------------------------------------------------------------------------
 
@@ -291,27 +285,25 @@ class Locomotion:
         self._start(name, VelocityCourse(self._settings, gait, rate, self._rate()))
 
     def _set_goal(self, name: str, course: Course) -> Task:
-        goal = self._ids.make(name, on_kill=lambda task: self._drop_goal(task))
+        goal = self._waits.make_goal(name)
         self._start(name, course)
-        self._goal = goal
+        self._waits.goal = goal
         return goal
 
-    def _drop_goal(self, goal: Task) -> None:
+    def _drop_goal(self) -> None:
         """Somebody has cancelled what the walk was for: it ends on two feet."""
-        if goal is self._goal:
-            self._goal = None
-            if self.active:
-                self._stop_course()
+        if self.active:
+            self._stop_course()
 
     def _start(self, name: str, course: Course) -> None:
         if not self.active:
             self._begin(name, course)
             return
-        self._end_goal(False)
+        self._waits.end_goal(False)
         self._change_course(course)
 
     def _stop_course(self) -> None:
-        self._end_goal(False)
+        self._waits.end_goal(False)
         if self._walker is None or not self._walker.plan.walking:
             self._to_begin = False  # it has not made a step yet, or makes none any more
             return
@@ -382,15 +374,7 @@ class Locomotion:
         reached = not job.killed and self._course is not None and self._course.reached
         self._job = self._walker = self._course = None
         self._stability.walk = None
-        self._end_goal(reached)
-        waiting, self._waiting = self._waiting, []
-        for task in waiting:
-            task.finish()
-
-    def _end_goal(self, reached: bool) -> None:
-        goal, self._goal = self._goal, None
-        if goal is not None:
-            goal.finish(reached)
+        self._waits.end_all(reached)
 
     def _look_ahead(self, now: Snapshot) -> None:
         """End a walk that leads into an obstacle which the sonars see."""

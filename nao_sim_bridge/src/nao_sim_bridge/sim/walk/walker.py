@@ -91,6 +91,7 @@ class Walker:
         com, _ = body.center_of_mass(self._upper, body.leg_pose(commands))
         self._com_in_torso = com
         self._in_air = 0.0
+        self._unsettled = 1.0
         # How far commands are from flat soles and bent knees at the start, rad by index; None before the first tick.
         self._off: Dict[int, float] | None = None
 
@@ -112,7 +113,8 @@ class Walker:
         plan.advance(dt, self._landed(readings.loads, dt))
         measured = body.leg_pose(readings.positions)
         begun = self._begun()
-        self.feedback.update(plan, measured, self._upper, readings.tilt, readings.gyro, dt, begun)
+        counts = begun * self._share_that_counts()
+        self.feedback.update(plan, measured, self._upper, readings.tilt, readings.gyro, dt, counts)
         feet = {side: plan.foot(side) for side in (LEFT, RIGHT)}
         turn = self._torso_turn(middle(feet[LEFT].pose, feet[RIGHT].pose).yaw, begun)
         shift, offset = self.feedback.shift, turned(turn, self._com_in_torso)
@@ -150,8 +152,16 @@ class Walker:
         """How far the walk's stance is taken, 0..1."""
         if self.plan.phase is not Phase.STANCE:
             return 1.0
-        share = min(self.plan.time / self._settings.stance_time, 1.0)
-        return share * share * (3.0 - 2.0 * share)
+        return _eased(self.plan.time / self._settings.stance_time)
+
+    def _share_that_counts(self) -> float:
+        """How much of the answers counts, 0..1: less and less at the end, for what is left of them the robot keeps."""
+        plan, settings = self.plan, self._settings
+        if plan.phase is Phase.SETTLE:
+            self._unsettled = 1.0 - _eased((plan.time - settings.settle_time) / settings.stand_time)
+        elif plan.phase is not Phase.STAND:
+            self._unsettled = 1.0
+        return self._unsettled
 
     def _torso_turn(self, yaw: float, begun: float) -> Matrix:
         settings, plan = self._settings, self.plan
@@ -180,6 +190,12 @@ class Walker:
         angles.update(zip(indices[LEFT][1:], left))
         angles.update(zip(indices[RIGHT][1:], right))
         return angles
+
+
+def _eased(share: float) -> float:
+    """From 0 to 1 with neither jump nor kink."""
+    share = min(max(share, 0.0), 1.0)
+    return share * share * (3.0 - 2.0 * share)
 
 
 def _stance(body: WalkingBody, upper: Vector, angles: Sequence[float]) -> _Stance:

@@ -1,0 +1,143 @@
+"""What robots share: the world with its physics and its things, time, sound in the air, and what draws.
+
+No thread and no wall clock: whoever calls `tick` minds both.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Callable
+
+from nao_sim_bridge.sim.physics_world import PhysicsWorld
+from nao_sim_bridge.sim.places import ORIGIN, RobotPlace
+from nao_sim_bridge.sim.render.client import Renderer
+from nao_sim_bridge.sim.render.scene import RobotLook
+from nao_sim_bridge.sim.scene import Scene
+from nao_sim_bridge.sim.settings import Settings, load_settings
+from nao_sim_bridge.sim.sound.air import Air
+from nao_sim_bridge.sim.tasks import TaskIds
+from nao_sim_bridge.sim.things import Things
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.sim.simulation import Simulation
+
+
+class SharedWorld:
+    """One world for one robot or more. Each of them is a `Simulation`, and joins when it is made.
+
+    Attributes:
+        scene: What it started with.
+        settings: Of the physics.
+        world: Floor, things, sounds.
+        robots: Those that are in it, in the order of their numbers.
+        physics: The engine; replaced at a reset.
+        task_ids: Source of the numbers of all tasks.
+        things: What is in the world and may come, move and go; a reset puts it to where the world file says.
+        air: What sounds, and the clock of sound; it stays at a reset.
+        renderer: What draws, for all robots.
+        ticks: Since the start; it never goes back.
+        after_reset: Called at the end of each reset: world and robots are at the start again.
+        wake: To be called, from any thread, when time need not wait any more for what a robot holds it for; set by
+            who lets time pass.
+
+    Args:
+        scene: World, version of all robots, friction.
+        settings: None for those of the file.
+        renderer: What draws: "auto", "opengl" or "builtin"; see `Renderer`.
+    """
+
+    def __init__(self, scene: Scene, settings: Settings | None = None, renderer: str = "auto") -> None:
+        self.scene = scene
+        self.settings = settings or load_settings()
+        self.world = scene.load_world(self.settings.contact.sole_friction)
+        self.robots: list[Simulation] = []
+        self.physics: PhysicsWorld | None = None
+        self.ticks = 0
+        self.after_reset: list[Callable[[], None]] = []
+        self.task_ids = TaskIds()
+        self.wake: Callable[[], None] = lambda: None
+        self.air = Air(self.task_ids, self.settings.tick_s)
+        self.renderer = Renderer(scene.world, scene.version, renderer)
+        self.things = Things(self.world, self.task_ids, lambda: self.time, self._look_again)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self.ticks * self.settings.tick_s
+
+    @property
+    def next_place(self) -> RobotPlace:
+        """Where the world has the next robot that joins: at the origin when it does not say."""
+        places = self.world.robots[len(self.robots) :]
+        return places[0] if places else ORIGIN
+
+    def holds(self) -> bool:
+        """Whether time that runs faster than the wall clock should wait for one of the robots."""
+        for robot in self.robots:
+            for waits in robot.holds:
+                if waits():
+                    return True
+        return False
+
+    def join(self, robot: Simulation) -> None:
+        """Take a robot in, before time passes, and let it begin."""
+        self.robots.append(robot)
+        if self.physics is None:
+            self.physics = PhysicsWorld(self.world, self.settings)
+            self.things.begin(self.physics)
+        robot.begin(self.physics)
+
+    def reset(self) -> None:
+        """Put all robots and the world to where they started; running tasks are killed, time goes on."""
+        for robot in self.robots:
+            robot.end_tasks()
+        self.air.stop_all()
+        self.physics.close()
+        self.physics = PhysicsWorld(self.world, self.settings)
+        self.things.begin(self.physics)
+        for robot in self.robots:
+            robot.begin(self.physics)
+        for call in self.after_reset:
+            call()
+
+    def tick(self) -> None:
+        """Advance by one tick: things, LEDs, motion, motors, physics, sensors, sound, cameras, in this order.
+
+        Each of them for all robots: none is a tick ahead of what it sees, hears and touches of another.
+        """
+        self.ticks += 1
+        self.things.tick()
+        robots = self.robots
+        pushes: list[Callable[[], None]] = []
+        for robot in robots:
+            pushes += robot.act()
+        self.physics.step(pushes)
+        for robot in robots:
+            robot.sense()
+        self.air.tick(self.ticks)
+        for robot in robots:
+            robot.perceive()
+        for robot in robots:
+            for look in robot.after_tick:
+                look(robot.snapshot)
+
+    def looks_beside(self, robot: Simulation) -> tuple[RobotLook, ...]:
+        """What all robots but one look like at the last tick. Any thread."""
+        return tuple(other.look() for other in self.robots if other is not robot)
+
+    def close(self) -> None:
+        """Free the engine; nothing sounds or is heard or seen any more."""
+        self.air.stop_all()
+        for robot in self.robots:
+            robot.close_senses()
+        self.renderer.close()
+        self.things.stop()
+        if self.physics is not None:
+            for robot in self.robots:
+                robot.end_tasks()
+            self.physics.close()
+            self.physics = None
+
+    def _look_again(self) -> None:
+        """Let the last snapshots have the things that there are now, as time may stand still."""
+        for robot in self.robots:
+            robot.look_again()
