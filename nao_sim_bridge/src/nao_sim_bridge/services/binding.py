@@ -11,13 +11,14 @@ from __future__ import annotations
 import inspect
 import logging
 import threading
-from functools import partial
+from functools import partial, wraps
 from typing import Any, Callable, Iterable, Sequence
 
 import qi
 
 from nao_sim_bridge.services.api import Method, Overload, module_methods, qi_type
 from nao_sim_bridge.services.common import CommonModule
+from nao_sim_bridge.services.wire_types import fitted, fitted_to
 from nao_sim_bridge.sim.tasks import Task
 
 log = logging.getLogger("nao_sim.services")
@@ -26,6 +27,9 @@ log = logging.getLogger("nao_sim.services")
 NATIVE = frozenset({"isStatsEnabled", "clearStats", "isTraceEnabled"})
 # Characters of an error text; what is between its ends is left out when somebody sent a book as a name.
 LONGEST_ERROR = 1200
+# The answer where something else was raised than what is raised on purpose.
+DEFECT = "a defect of the simulator, whose log tells more"
+PACKAGE = __name__.partition(".")[0]
 
 
 def make_service(module: str, parts: Sequence[Any], broker: Any) -> Any:
@@ -33,7 +37,8 @@ def make_service(module: str, parts: Sequence[Any], broker: Any) -> Any:
 
     Args:
         module: NAOqi name, a key of the API table.
-        parts: Objects whose methods do the work; those with the names of the table are published.
+        parts: Objects whose methods do the work; those with the names of the table are published. One with an attribute
+            `signals` publishes these libqi signals, by name.
         broker: What the methods that every module has need to know: its `name` and `unregister(module)`.
     """
     table = module_methods(module)
@@ -45,12 +50,40 @@ def make_service(module: str, parts: Sequence[Any], broker: Any) -> Any:
         target = _find(name, [*parts, common])
         if target is None:
             continue
-        common.targets[name] = target
+        target = common.targets[name] = _checked(method, target)
         for position, overload in enumerate(method.overloads):
             attribute = name if position == 0 else f"{name}_{position}"
             body[attribute] = _bound(module, method, overload, target)
     body["pCall"] = _bound_any(module, "pCall", common.pCall)
-    return type(module, (), body)()
+    service = type(module, (), body)()
+    for part in parts:
+        for name, signal in getattr(part, "signals", {}).items():
+            setattr(service, name, signal)
+    return service
+
+
+def typed(module: str, returns: Any, types: Sequence[Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """For methods of a service that is no NAOqi module: as qi.bind, but arguments of other types are refused.
+
+    Args:
+        module: Name of the service.
+        returns: Type of the answer, as for qi.bind.
+        types: Types of the parameters after `self`, as for qi.bind.
+    """
+
+    def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
+        names = list(inspect.signature(method).parameters)[1:]
+
+        def checked(*args: Any) -> Any:
+            return method(args[0], *fitted_to(names, [str(kind) for kind in types], args[1:]))
+
+        @wraps(method)
+        def published(*args: Any) -> Any:
+            return answer(module, method.__name__, checked, args)
+
+        return qi.bind(returns, types)(published)
+
+    return decorate
 
 
 def offered(module: str, parts: Sequence[Any]) -> tuple[list[str], list[str]]:
@@ -73,7 +106,7 @@ def answer(module: str, method: str, call: Callable[..., Any], args: Iterable[An
     try:
         result = call(*args)
     except Exception as error:
-        return _failed(_text(module, method, error))
+        return _failed(_text(f"{module}::{method}", error))
     if isinstance(result, Task):
         return as_future(result, f"{module}::{method}")
     return result
@@ -102,7 +135,7 @@ def _settle(promise: Any, cancelled: threading.Event, label: str, done: Task) ->
     # Not a closure that names itself: such a cycle would keep the promise until the next garbage collection, and a
     # promise with a value that is still there when the interpreter ends makes libqi abort the process.
     if done.error is not None:
-        promise.setError(_shortened(f"{label} {done.error}"))
+        promise.setError(_text(label, done.error))
     elif isinstance(done.value, Task):
         done.value.add_done_callback(partial(_settle, promise, cancelled, label))
     elif done.killed and cancelled.is_set():
@@ -125,6 +158,13 @@ def _bound(module: str, method: Method, overload: Overload, target: Callable[...
     return published
 
 
+def _checked(method: Method, target: Callable[..., Any]) -> Callable[..., Any]:
+    def checked(*args: Any) -> Any:
+        return target(*fitted(method, args))
+
+    return checked
+
+
 def _bound_any(module: str, name: str, target: Callable[..., Any]) -> Callable[..., Any]:
     def published(self: Any, *args: Any) -> Any:
         return answer(module, name, target, args)
@@ -139,10 +179,18 @@ def _failed(text: str) -> Any:
     return promise.future()
 
 
-def _text(module: str, method: str, error: Exception) -> str:
-    if not isinstance(error, (RuntimeError, ValueError, TypeError, KeyError)):
-        log.error("%s::%s failed", module, method, exc_info=error)
-    return _shortened(f"{module}::{method} {error}")
+def _text(label: str, error: Exception) -> str:
+    if _on_purpose(error):
+        return _shortened(f"{label} {error}")
+    log.error("%s failed", label, exc_info=error)
+    # What Python says about its own objects is of no use to a client.
+    return f"{label} {DEFECT}"
+
+
+def _on_purpose(error: Exception) -> bool:
+    """Whether an error is one of ours, of libqi or of the system: its text is written for those who read it."""
+    kind = type(error)
+    return kind.__module__.startswith(PACKAGE) or kind is RuntimeError or isinstance(error, OSError)
 
 
 def _shortened(text: str) -> str:

@@ -9,7 +9,7 @@ from typing import Any, Callable, Mapping
 
 from nao_sim_bridge.services.api import Method
 from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.tasks import Task
 
 VERSION = "2.8.5"
@@ -70,8 +70,11 @@ class CommonModule:
         """All ways to call a method."""
         return self._method(name).usage()
 
-    def pCall(self, name: str, *args: Any) -> int:
-        """Call a method without waiting; the id returned is for `wait`, `isRunning` and `stop`."""
+    def pCall(self, *call: Any) -> int:
+        """Call a method, its name and its arguments, without waiting; the id is for `wait`, `isRunning` and `stop`."""
+        if not call or not isinstance(call[0], str):
+            raise BadValue("method", call[0] if call else None, "the name of a method, and its arguments after it")
+        name, *args = call
         self._method(name)
         result = self.targets[name](*args)
         with self._lock:

@@ -1,4 +1,4 @@
-"""The events of ALMotion about chains that are kept limp because their motors are too hot."""
+"""The events of ALMotion about chains that are kept limp: a motor is too hot or broken, or the battery is empty."""
 
 from __future__ import annotations
 
@@ -34,7 +34,10 @@ class DiagnosisEvents:
             changed = sorted(disabled ^ self._told)
             self._told = disabled
             self._memory.raise_event(DEVICES, [["Body" if n == LEGS else n, n in disabled] for n in changed])
-            self._memory.raise_event(FEATURES, [[f"{name}Stiffness", name in disabled] for name in changed])
+            features = [[f"{name}Stiffness", name in disabled] for name in changed]
+            if LEGS in changed:
+                features.append(["Move", LEGS in disabled])
+            self._memory.raise_event(FEATURES, features)
 
     def _rested(self) -> None:
         if self._memory.get(AWAKE):

@@ -14,6 +14,7 @@ from nao_sim_bridge.services.arguments import number
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.tasks import Task
 
 DEFAULT_PERIOD_MS = 30
 DEFAULT_PRECISION = 0.0
@@ -34,12 +35,14 @@ class Extractor:
         module: NAOqi name of the module.
         memory: Where its events are declared.
         start: Called when the first subscriber comes; when it raises, nobody is subscribed and the caller gets the
-            error.
+            error. A task that it returns is what everybody waits for who subscribes before it has ended. Should it end
+            with an error, who waits gets it but is subscribed, until `unsubscribe`.
         stop: Called when the last subscriber has gone.
         events: Names of the events that it raises.
         keys: Names of the keys that it writes and that are no events.
         default: What a subscriber gets that asks for nothing.
         changed: Called with the subscriptions by name whenever they have changed, before `stop` when nobody is left.
+        by_events: Who subscribes to one of its events in ALMemory is a subscriber, too, as long as that lasts.
 
     `start`, `stop` and `changed` are called in the caller's thread, one at a time and in turn. None may call back here.
     """
@@ -54,6 +57,7 @@ class Extractor:
         keys: Sequence[str] = (),
         default: Subscription = Subscription(),
         changed: Callable[[Mapping[str, Subscription]], Any] = lambda _: None,
+        by_events: bool = False,
     ) -> None:
         self._start = start
         self._stop = stop
@@ -62,11 +66,17 @@ class Extractor:
         self._default = default
         self._changed = changed
         self._subscriptions: dict[str, Subscription] = {}
+        self._started: Any = None
         self._lock = threading.Lock()
         for event in events:
             memory.declare_event(event, module)
+            if by_events:
+                memory.watch_subscribers(event, self._follow)
+        self._listening: dict[str, frozenset[str]] = {}
+        self._followed: set[str] = set()
+        self._following = threading.Lock()
 
-    def subscribe(self, name: str, *asked: Any) -> None:
+    def subscribe(self, name: str, *asked: Any) -> Task | None:
         """Work for `name` from now on; who is subscribed already changes what it asks for."""
         subscription = self._default
         if not name:
@@ -75,8 +85,10 @@ class Extractor:
             subscription = Subscription(_period(asked[0]), _precision(asked[1]))
         with self._lock:
             if not self._subscriptions:
-                self._start()
+                self._started = self._start()
+            started = self._started
             self._set(name, subscription)
+        return started if isinstance(started, Task) and not started.finished else None
 
     def unsubscribe(self, name: str) -> None:
         """Work for `name` no longer."""
@@ -132,6 +144,19 @@ class Extractor:
     def getOutputNames(self) -> list[str]:
         """Events and keys."""
         return [*self._events, *self._keys]
+
+    def _follow(self, event: str, modules: Sequence[str]) -> None:
+        """Subscribe the modules that listen to events, and unsubscribe those that do no more."""
+        with self._following:
+            self._listening[event] = frozenset(modules)
+            wanted = frozenset().union(*self._listening.values())
+            for name in sorted(wanted - self._followed - set(self._all())):
+                self._followed.add(name)
+                self.subscribe(name)
+            for name in sorted(self._followed - wanted):
+                self._followed.discard(name)
+                if name in self._all():  # it may have unsubscribed itself
+                    self.unsubscribe(name)
 
     def _set(self, name: str, subscription: Subscription) -> None:
         self._subscriptions[name] = subscription

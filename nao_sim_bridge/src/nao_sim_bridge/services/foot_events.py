@@ -26,7 +26,7 @@ class FootEvents:
 
     def __call__(self, snapshot: Snapshot) -> None:
         """Look at the robot."""
-        touches = max(snapshot.left_foot.total, snapshot.right_foot.total) > CONTACT_LOAD
+        touches = max(snapshot.foot_loads) > CONTACT_LOAD
         if touches == self._touches:
             self._differs_since = None
             return

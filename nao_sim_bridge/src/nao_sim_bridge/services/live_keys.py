@@ -9,6 +9,8 @@ import re
 from typing import Any, Callable, Mapping
 
 from nao_sim_bridge.paths import config_file
+from nao_sim_bridge.services.battery_keys import READERS as BATTERY
+from nao_sim_bridge.services.battery_keys import battery_reader
 from nao_sim_bridge.sim.config import read_json
 from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.leds_layout import LedLayout
@@ -16,7 +18,6 @@ from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.readings import FootForces
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.sensors.heat import heat_status
-from nao_sim_bridge.sim.sensors.sonar import NO_ECHO
 from nao_sim_bridge.sim.snapshot import Snapshot
 
 FILE = "naoqi_memory_keys.json"
@@ -35,8 +36,6 @@ CORNERS = ("FrontLeft", "FrontRight", "RearLeft", "RearRight")
 AXES = {"X": 0, "Y": 1, "Z": 2}
 # A foot touches the ground from this load on, in N.
 CONTACT_LOAD = 3.0
-# The computer in the head: warms up from the room's temperature to this, in degC, with this time constant in s.
-HEAD_AMBIENT, HEAD_WARM, HEAD_TIME = 27.0, 58.0, 400.0
 
 
 def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_values: Callable[[], tuple]) -> dict:
@@ -73,7 +72,7 @@ def _snapshot_keys(model: RobotModel) -> dict[str, Read]:
         for suffix in tables["joints"]["suffixes"]:
             keys[f"{prefix}{joint}/{suffix}"] = JOINT_SUFFIXES[suffix](model.joint_index[joint])
     for group, entry in tables["devices"].items():
-        if not group.startswith("led_"):
+        if not group.startswith("led_") and group != "sonar":  # `sonar.py` knows when these are measured
             for key in entry["keys"]:
                 keys[prefix + key] = _device_reader(key)
     for key in tables["older_or_extra"]["keys"]:
@@ -119,12 +118,6 @@ def _vector(field: str, axis: str) -> Read:
     return lambda s: getattr(s.imu, field)[index]
 
 
-def _sonar(side: str, echo: str) -> Read:
-    index = 0 if side == "Left" else 1
-    # One echo is simulated: the first. Further ones read as "no echo"; 0 would be an error of the sensor.
-    return (lambda s: s.sonars[index]) if not echo else (lambda s: NO_ECHO)
-
-
 _PATTERNS: tuple[tuple[str, Callable[..., Read]], ...] = (
     (r"([LR])Foot/FSR/(FrontLeft|FrontRight|RearLeft|RearRight)/Sensor/Value", _corner),
     (r"([LR])Foot/FSR/TotalWeight/Sensor/Value", _total),
@@ -134,18 +127,9 @@ _PATTERNS: tuple[tuple[str, Callable[..., Read]], ...] = (
     (r"InertialSensor/Accelerometer([XYZ])/Sensor/Value", lambda a: _vector("accelerometer", a)),
     (r"InertialSensor/Acc([XYZ])/Sensor/Value", lambda a: _vector("accelerometer", a)),
     (r"InertialSensor/Angle([XYZ])/Sensor/Value", lambda a: _vector("angles", a)),
-    (r"US/(Left|Right)/Sensor/Value(\d?)", _sonar),
-    (r"US/Sensor/Value", lambda: lambda s: min(s.sonars)),
-    # Both sonars measure all the time: two captures, both transmitters, periodic.
-    (r"US/Actuator/Value", lambda: lambda s: 68.0),
     (r"((?:[LR]Foot/Bumper|[LR]Hand/Touch|Head/Touch|ChestBoard/Button).*?)/Sensor/Value", _touch),
-    (r"Battery/Charge/Sensor/Value", lambda: lambda s: s.battery_charge),
-    (r"Battery/Current/Sensor/Value", lambda: lambda s: -s.battery_current),
-    (r"Battery/Temperature/Sensor/Value", lambda: lambda s: 27.0 + 4.0 * s.battery_current),
-    (r"Battery/Charge/Sensor/Status", lambda: lambda s: 0),
-    (r"Battery/Charge/Sensor/RemainingCapacity", lambda: lambda s: round(2900 * s.battery_charge)),
-    (r"Battery/Charge/Sensor/FullChargeCapacity", lambda: lambda s: 2900),
-    (r"Head/Temperature/Sensor/Value", lambda: _head_temperature),
+    (rf"Battery/({'|'.join(BATTERY)})", battery_reader),
+    (r"Head/Temperature/Sensor/Value", lambda: lambda s: s.head_temperature),
 )
 
 _MODULE_KEYS: dict[str, Read] = {
@@ -155,7 +139,3 @@ _MODULE_KEYS: dict[str, Read] = {
     "leftFootTotalWeight": lambda s: s.left_foot.total / GRAVITY,
     "rightFootTotalWeight": lambda s: s.right_foot.total / GRAVITY,
 }
-
-
-def _head_temperature(snapshot: Snapshot) -> float:
-    return HEAD_WARM - (HEAD_WARM - HEAD_AMBIENT) * 2.0 ** (-snapshot.time / HEAD_TIME)

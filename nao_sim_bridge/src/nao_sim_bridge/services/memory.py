@@ -75,6 +75,8 @@ class ALMemory:
         self._store.insert(_name(key), value)
 
     def insertListData(self, pairs: Any) -> None:
+        if not isinstance(pairs, (list, tuple)):
+            raise NaoqiError(f"list is {pairs!r}, allowed is [[key, value], ...]")
         for pair in pairs:
             if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not isinstance(pair[0], str):
                 raise NaoqiError(f"list holds {pair!r}, allowed is [[key, value], ...]")

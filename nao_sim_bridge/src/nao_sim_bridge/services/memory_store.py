@@ -51,6 +51,7 @@ class MemoryStore:
         self._subscribers: dict[str, dict[str, tuple[Subscriber, str]]] = {}
         self._listeners: dict[str, list[Callable[[Any], None]]] = {}
         self._changes: dict[str, list[Callable[[Any], None]]] = {}
+        self._watchers: dict[str, Callable[[str, list[str]], None]] = {}
 
     # --- data -----------------------------------------------------------------------------------------------------
 
@@ -196,6 +197,7 @@ class MemoryStore:
             if entry.kind == DATA:
                 entry.kind = kind
             self._subscribers.setdefault(name, {})[module] = (callback, message)
+        self._tell_watcher(name)
 
     def unsubscribe(self, name: str, module: str) -> None:
         """End a subscription.
@@ -208,12 +210,19 @@ class MemoryStore:
                 known = ", ".join(self.subscribers(name)) or "nobody"
                 raise NaoqiError(f"module {module!r} is not subscribed to {name!r}; subscribed is {known}")
             del self._subscribers[name][module]
+        self._tell_watcher(name)
 
     def forget_module(self, module: str) -> None:
         """End every subscription of a module that is gone."""
         with self._lock:
-            for modules in self._subscribers.values():
-                modules.pop(module, None)
+            left = [name for name, modules in self._subscribers.items() if modules.pop(module, None)]
+        for name in left:
+            self._tell_watcher(name)
+
+    def watch_subscribers(self, name: str, watcher: Callable[[str, list[str]], None]) -> None:
+        """Call `watcher(name, modules)` outside the lock when somebody has subscribed to an event or left it."""
+        with self._lock:
+            self._watchers[name] = watcher
 
     def subscribers(self, name: str) -> list[str]:
         """Modules subscribed to an event."""
@@ -227,6 +236,11 @@ class MemoryStore:
             self._listeners.setdefault(name, []).append(listener)
 
     # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _tell_watcher(self, name: str) -> None:
+        watcher = self._watchers.get(name)
+        if watcher is not None:
+            watcher(name, self.subscribers(name))
 
     def _write(self, key: str, value: Any, kind: str) -> None:
         now = self._clock()

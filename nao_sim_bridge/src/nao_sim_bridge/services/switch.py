@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import threading
+from abc import ABC, abstractmethod
 
 
-class Switch:
+class Switch(ABC):
     """Begins to work when somebody wants it, and ends when nobody does or it is paused. Any thread may call.
 
     Who inherits it writes `_update`, which is called under the lock whenever `_works` may have changed.
@@ -44,6 +45,6 @@ class Switch:
             self._paused = paused
             self._update()
 
+    @abstractmethod
     def _update(self) -> None:
         """Begin or end to work."""
-        raise NotImplementedError

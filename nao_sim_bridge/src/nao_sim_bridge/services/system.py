@@ -4,36 +4,50 @@ from __future__ import annotations
 
 import os
 import shutil
-from pathlib import Path
 from typing import Any, Callable
 
+from nao_sim_bridge.services.arguments import whole_number
 from nao_sim_bridge.services.common import VERSION
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.memory_store import MemoryStore
+from nao_sim_bridge.services.time_zone import TimeZone
 
 NAME_CHANGED = "ALSystem/RobotNameChanged"
 MIB = 1024 * 1024
-ZONES = Path("/usr/share/zoneinfo")
+# Pixels.
+ICON_SIZE, SMALLEST_ICON, LARGEST_ICON = 128, 16, 1024
+AS_AT_START = "puts robot and world to where they started"
 
 
 class ALSystem:
     """ALSystem as the simulated robot offers it.
 
-    What would flash the robot's disk or change its users (upgrade, factoryReset, changePassword...) is not offered:
-    a simulation has neither.
+    What would flash the robot's disk or change its users is refused, with what to do instead: a simulation has neither.
 
     Args:
         memory: Where events go.
         reboot: Puts robot and world to the start.
         shutdown: Ends the simulator.
+        icon: Draws a PNG picture of the robot, so many pixels wide and high.
+        name: Of the robot, until somebody gives it another one.
+        zone: What its clock shows.
     """
 
-    def __init__(self, memory: MemoryStore, reboot: Callable[[], Any], shutdown: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        memory: MemoryStore,
+        reboot: Callable[[], Any],
+        shutdown: Callable[[], None],
+        icon: Callable[[int], bytes] = lambda size: b"",
+        name: str = "nao",
+        zone: TimeZone | None = None,
+    ) -> None:
         self._memory = memory
         self._reboot = reboot
         self._shutdown = shutdown
-        self._name = "nao"
-        self._timezone = os.environ.get("TZ", "UTC") or "UTC"
+        self._icon = icon
+        self._name = name
+        self._zone = zone or TimeZone()
         memory.declare_event(NAME_CHANGED, "ALSystem")
 
     def robotName(self) -> str:
@@ -56,14 +70,10 @@ class ALSystem:
         return [["name", self._name], ["version", VERSION], ["simulated", True], ["cpus", os.cpu_count() or 1]]
 
     def timezone(self) -> str:
-        return self._timezone
+        return self._zone.name
 
     def setTimezone(self, name: str) -> bool:
-        parts = Path(name).parts
-        if not parts or ".." in parts or not ZONES.joinpath(*parts).is_file() or Path(name).is_absolute():
-            return False
-        self._timezone = name
-        return True
+        return self._zone.change(name)
 
     def freeMemory(self) -> int:
         return os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // MIB
@@ -80,3 +90,21 @@ class ALSystem:
 
     def shutdown(self) -> None:
         self._shutdown()
+
+    def robotIcon(self, size: int = ICON_SIZE) -> bytes:
+        return self._icon(whole_number(size, "size", SMALLEST_ICON, LARGEST_ICON))
+
+    def setRobotIcon(self, _file: Any) -> int:
+        raise NaoqiError("the icon of a simulated robot is its picture; what it looks like is in its model")
+
+    def appBackupInfo(self) -> list:
+        return []  # there are no applications to back up
+
+    def changePassword(self, _old: str, _new: str) -> None:
+        raise NaoqiError("a simulated robot has no users and needs no password")
+
+    def factoryReset(self, _image: str, _checksum: str) -> None:
+        raise NaoqiError(f"a simulated robot has no disk to flash; reboot, or NaoSimulation.reset, {AS_AT_START}")
+
+    def upgrade(self, _image: str, _checksum: str) -> None:
+        raise NaoqiError(f"a simulated robot has no system image; it offers what NAOqi {VERSION} does")

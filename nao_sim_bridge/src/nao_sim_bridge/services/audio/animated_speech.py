@@ -12,7 +12,7 @@ from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
-from nao_sim_bridge.sim.speech.animations import load_animations, read_animations
+from nao_sim_bridge.sim.speech.animations import AnimationLibrary, read_animations
 from nao_sim_bridge.sim.speech.animator import Animator
 from nao_sim_bridge.sim.speech.body_language import CONTEXTUAL, DISABLED, MODES
 from nao_sim_bridge.sim.speech.speaker import Speaker
@@ -35,6 +35,8 @@ class ALAnimatedSpeech:
         settings: The voice that clients have chosen.
         files: Where files of clients are.
         call: For texts that call methods.
+        animator: Moves arms and head.
+        library: The animations that it knows.
     """
 
     def __init__(
@@ -47,6 +49,8 @@ class ALAnimatedSpeech:
         settings: VoiceSettings,
         files: ClientFiles,
         call: Caller,
+        animator: Animator,
+        library: AnimationLibrary,
     ) -> None:
         self._simulation = simulation
         self._runner = runner
@@ -56,8 +60,8 @@ class ALAnimatedSpeech:
         self._settings = settings
         self._files = files
         self._call = call
-        self._animator = Animator(simulation)
-        self._library = load_animations()
+        self._animator = animator
+        self._library = library
         self._chance = random.Random(simulation.scene.seed)
         self._mode = CONTEXTUAL
         memory.declare_event(END, "ALAnimatedSpeech")

@@ -21,6 +21,7 @@ from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.tasks import Task
 
 OUTPUT_RATE, INPUT_SIZE = "outputSampleRate", "inputBufferSize"
+# Frames that clients get at once; the first is about a block.
 INPUT_SIZES = (8192, 16384)
 UNKNOWN = -1
 INPUTS, OUTPUTS = ("microphones",), ("loudspeakers",)
@@ -154,6 +155,7 @@ class ALAudioDevice:
     def setParameter(self, name: str, value: int) -> Task | None:
         if name == INPUT_SIZE:
             self._input_size = _one_of(value, name, INPUT_SIZES)
+            self._clients.set_at_once(self._input_size // INPUT_SIZES[0])
             return None
         if name != OUTPUT_RATE:
             raise UnknownName("parameter", name, (OUTPUT_RATE, INPUT_SIZE))

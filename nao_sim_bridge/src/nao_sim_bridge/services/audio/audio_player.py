@@ -213,6 +213,6 @@ def _volume_and_pan(values: Any) -> tuple[float, float]:
 
 
 def _position(position: float, sound: Sound) -> float:
-    if not 0.0 <= position <= sound.duration:
+    if not 0.0 <= number(position, "position") <= sound.duration:
         raise BadValue("position", position, f"0 to {sound.duration:g}, the length of the sound in s")
-    return number(position, "position")
+    return float(position)

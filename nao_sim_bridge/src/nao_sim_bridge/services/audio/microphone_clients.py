@@ -6,7 +6,10 @@ import logging
 import threading
 import time
 from collections import deque
-from typing import Any, Callable
+from dataclasses import replace
+from typing import Any, Callable, Sequence
+
+import numpy as np
 
 from nao_sim_bridge.services.audio.microphone_formats import MicrophoneFormat
 from nao_sim_bridge.services.errors import NaoqiError
@@ -38,6 +41,7 @@ class MicrophoneClients:
         self._lock = threading.Lock()
         self._formats: dict[str, MicrophoneFormat] = {}
         self._clients: dict[str, _Client] = {}
+        self._at_once = 1
         self._closed = False
 
     def prefer(self, module: str, wanted: MicrophoneFormat) -> None:
@@ -66,6 +70,7 @@ class MicrophoneClients:
             client = self._clients[module] = _Client(
                 module, remote, self._service, self._ears, self._gone, self._released
             )
+            client.at_once = self._at_once
             muted = self._closed
         if not muted:
             client.listen(wanted)
@@ -109,6 +114,13 @@ class MicrophoneClients:
             else:
                 client.listen(wanted)
 
+    def set_at_once(self, blocks: int) -> None:
+        """How many blocks of 170 ms a module gets with each call."""
+        with self._lock:
+            self._at_once = blocks
+            for client in self._clients.values():
+                client.at_once = blocks
+
     def close(self) -> None:
         """Call nobody any more."""
         with self._lock:
@@ -136,6 +148,9 @@ class _Client:
     ) -> None:
         self.module = module
         self.lost = 0
+        self.at_once = 1
+        # Of the listener that counts: blocks that are to be sent together with the next ones.
+        self._begun: list[Any] = []
         self._remote = remote
         self._service = service
         self._ears = ears
@@ -163,23 +178,26 @@ class _Client:
 
     def listen(self, wanted: MicrophoneFormat) -> None:
         """Begin to hear in this format."""
-        self.silence()
+        begun = self.silence()
         listener = self._ears.listen(
-            self.module, lambda block: self._hear(wanted, block), wants=wanted.wants, channel=wanted.channel_name
+            self.module, lambda block: self._hear(wanted, begun, block), wants=wanted.wants, channel=wanted.channel_name
         )
         with self._news:
-            if not self._ended:
+            if self._begun is begun and not self._ended:
                 self._listener = listener
                 return
         listener.close()
 
-    def silence(self) -> None:
-        """Hear nothing more; blocks that wait are dropped."""
+    def silence(self) -> list[Any]:
+        """Hear nothing more; blocks that wait are dropped. Answers where a new listener puts its blocks."""
         with self._news:
             listener, self._listener = self._listener, None
+            # Not cleared: the old listener may be about to bring a block of another format, which counts no more.
+            begun = self._begun = []
             self._blocks.clear()
         if listener is not None:
             listener.close()
+        return begun
 
     def end(self) -> None:
         """End the thread; a call that is under way is not waited for."""
@@ -188,11 +206,17 @@ class _Client:
             self._news.notify()
         self.silence()
 
-    def _hear(self, wanted: MicrophoneFormat, block: Any) -> None:
-        """A new block; in the thread of the ears."""
+    def _hear(self, wanted: MicrophoneFormat, begun: list[Any], block: Any) -> None:
+        """A new block for the listener that has begun these; in the thread of the ears."""
         with self._news:
-            if self._ended:
+            if self._ended or begun is not self._begun:
                 return
+            begun.append(block)
+            if len(begun) < self.at_once:
+                return
+            together = begun.copy()
+            begun.clear()
+            block = _joined(together)
             if len(self._blocks) >= WAITING:
                 self._blocks.popleft()
                 self.lost += 1
@@ -238,6 +262,13 @@ class _Client:
         except RuntimeError:
             return False
         return True
+
+
+def _joined(blocks: Sequence[Any]) -> Any:
+    """Blocks that follow each other as one."""
+    if len(blocks) == 1:
+        return blocks[0]
+    return replace(blocks[0], samples=np.concatenate([block.samples for block in blocks]))
 
 
 def _warn_of_text(module: str, remote: Any) -> None:

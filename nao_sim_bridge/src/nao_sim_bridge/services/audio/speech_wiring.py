@@ -13,6 +13,8 @@ from nao_sim_bridge.services.audio.voice_settings import VoiceSettings
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.speech.animations import load_animations
+from nao_sim_bridge.sim.speech.animator import Animator
 from nao_sim_bridge.sim.speech.speaker import Speaker
 from nao_sim_bridge.sim.speech.studio import Studio
 from nao_sim_bridge.sim.tasks import Task
@@ -26,6 +28,8 @@ class SpeechModules:
     Attributes:
         studio: Makes the sound.
         speaker: The mouth.
+        animator: Moves arms and head through gestures.
+        library: The gestures.
 
     Args:
         simulation: Whose voice it is.
@@ -41,17 +45,32 @@ class SpeechModules:
         self._broker = broker
         self.studio = Studio()
         self.speaker = Speaker(simulation, self.studio)
+        self.animator = Animator(simulation)
+        self.library = load_animations()
         self._settings = VoiceSettings(self.studio.engines)
         events = SpeechEvents(memory)
         self.speaker.listeners.append(events)
         self._text_to_speech = ALTextToSpeech(self.speaker, self.studio, self._settings, events, runner, files)
         self._animated_speech = ALAnimatedSpeech(
-            simulation, runner, memory, self.speaker, self.studio, self._settings, files, self._call
+            simulation,
+            runner,
+            memory,
+            self.speaker,
+            self.studio,
+            self._settings,
+            files,
+            self._call,
+            self.animator,
+            self.library,
         )
 
     def modules(self) -> dict[str, list[Any]]:
         """The modules by name, as `make_service` wants them."""
         return {"ALTextToSpeech": [self._text_to_speech], "ALAnimatedSpeech": [self._animated_speech]}
+
+    def say(self, text: str, animated: bool = False) -> Task:
+        """Say a text as a client has it said, with gestures or without."""
+        return (self._animated_speech if animated else self._text_to_speech).say(text)
 
     def begin(self) -> None:
         """Have the engines ready for the first text."""

@@ -15,7 +15,7 @@ def joint_names(names: Any, model: RobotModel) -> list[str]:
 
     Raises:
         UnknownName: A name is neither a joint nor a chain.
-        BadValue: `names` is no string and no list, or empty.
+        BadValue: `names` is no string and no list, or empty, or holds something else than strings.
     """
     if isinstance(names, str):
         names = [names]
@@ -23,6 +23,8 @@ def joint_names(names: Any, model: RobotModel) -> list[str]:
         raise BadValue("names", names, "a joint, a chain, or a list of them")
     found: list[str] = []
     for name in names:
+        if not isinstance(name, str):
+            raise BadValue("names", name, "the name of a joint or of a chain")
         if name in model.joint_index:
             found.append(name)
         elif name in model.chains and all(n in model.joint_index for n in model.chains[name]):

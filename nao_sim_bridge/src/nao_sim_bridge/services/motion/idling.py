@@ -57,7 +57,7 @@ def _pairs(config: Any) -> dict[str, float]:
         raise BadValue("pConfig", config, 'pairs such as [["Bpm", 12.0], ["Amplitude", 0.5]]')
     given = {}
     for name, value in config:
-        if name not in LIMITS:
+        if not isinstance(name, str) or name not in LIMITS:
             raise UnknownName("breath parameter", name, LIMITS)
         given[name] = number(value, name, *LIMITS[name])
     return given

@@ -61,7 +61,7 @@ class Wake(MotionPart):
 
         def start() -> Task:
             if awake and self._robot.reflexes.wake_forbidden:
-                raise NaoqiError("the motors of the legs are too hot, the robot wakes up when they have cooled down")
+                raise NaoqiError(self._robot.reflexes.wake_forbidden)
             self._memory.raise_event(f"ALMotion/Stiffness/{name}Started", True)
             if awake:
                 self._set_awake(True)

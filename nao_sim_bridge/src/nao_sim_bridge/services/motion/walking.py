@@ -19,6 +19,8 @@ from nao_sim_bridge.sim.walk.locomotion import Locomotion
 ARM_GROUPS = {"LArm": ("LArm",), "RArm": ("RArm",), "Arms": ("LArm", "RArm")}
 # Shares of a speed may be beyond 1 by this: rounding of single precision.
 ROUNDING = 1e-6
+# No place is farther away, and no velocity higher, in m, rad and s: with more, sums would leave what numbers can be.
+MOST = 1e6
 
 
 class WalkPart(MotionPart):
@@ -165,7 +167,8 @@ def _control_points(points: Any) -> list[FootPose]:
 
 
 def _three(x: Any, y: Any, theta: Any) -> tuple[float, float, float]:
-    return number(x, "x"), number(y, "y"), number(theta, "theta")
+    x, y, theta = (number(v, name, -MOST, MOST) for v, name in ((x, "x"), (y, "y"), (theta, "theta")))
+    return x, y, theta
 
 
 def _share(value: Any, field: str, least: float) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from nao_sim_bridge.services.arguments import number
+from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.extractor import Extractor
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.services.vision.vision_extractor import VisionExtractor
@@ -19,7 +20,6 @@ NAME = "ALMovementDetection"
 DETECTED, NONE, INFO = (f"MovementDetection/{name}" for name in ("MovementDetected", "NoMovement", "MovementInfo"))
 FPS = 10
 DEFAULT_SENSITIVITY, DEFAULT_DEPTH = 0.8, 0.3
-LARGEST_DEPTH = 10.0
 
 
 class ALMovementDetection:
@@ -44,7 +44,6 @@ class ALMovementDetection:
     def __init__(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess) -> None:
         self._memory = memory
         self._sensitivity = DEFAULT_SENSITIVITY
-        self._depth = DEFAULT_DEPTH
         self._detector = vision.detector("movement")
         self.watching = Watching(
             simulation.cameras, NAME, self._detector, self._on_result, settings=self._settings, fps=FPS
@@ -61,12 +60,11 @@ class ALMovementDetection:
     def getColorSensitivity(self) -> float:
         return self._sensitivity
 
-    def setDepthSensitivity(self, sensitivity: float) -> None:
-        """Kept and answered; the robot has no depth camera."""
-        self._depth = number(sensitivity, "sensitivity", 0.0, LARGEST_DEPTH)
+    def setDepthSensitivity(self, _sensitivity: float) -> None:
+        raise NaoqiError("a NAO has no depth camera; setColorSensitivity is for those it has")
 
     def getDepthSensitivity(self) -> float:
-        return self._depth
+        return DEFAULT_DEPTH
 
     def _settings(self, frame: Frame) -> MovementSettings:
         return MovementSettings(self._sensitivity, frame.time, frame.camera, tuple(frame.pose_in_robot))

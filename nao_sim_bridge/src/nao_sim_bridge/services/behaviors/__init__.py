@@ -1,0 +1,1 @@
+"""NAOqi's modules that play behaviours and animations."""

@@ -1,0 +1,1 @@
+"""ALTracker of the simulated robot."""
