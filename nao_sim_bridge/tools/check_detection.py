@@ -26,6 +26,7 @@ import cv2
 import numpy as np
 from camera_stage import AHEAD, EYES, QVGA, VGA, Stage, Viewpoint, thing
 from detection_tally import Tally
+from measurement import StageChecks, command_line, measure, parse
 
 from nao_sim_bridge.sim.landmarks import load_landmarks
 from nao_sim_bridge.sim.vision.ball import BallDetector
@@ -62,11 +63,8 @@ MOST_OF = 0.98
 """Share that has to be found within the bounds of distance."""
 
 
-class Checks:
+class Checks(StageChecks):
     """All measurements on one stage.
-
-    Attributes:
-        misses: Figures that miss their bounds.
 
     Args:
         stage: The lab.
@@ -77,13 +75,9 @@ class Checks:
     """
 
     def __init__(self, stage: Stage, count: int, frames: int, seed: int, folder: Path | None = None) -> None:
-        self.misses: list[str] = []
-        self._stage = stage
-        self._count = count
-        self._frames = frames
+        super().__init__(stage, count, frames, seed)
         self._folder = folder
         self._kept = 0
-        self._random = np.random.default_rng(seed)
         self._ball, self._marks, self._codes = BallDetector(), LandmarkDetector(), BarcodeDetector()
 
     def ball(self) -> None:
@@ -156,9 +150,7 @@ class Checks:
         tallies = {name: Tally() for name in ("ball", "landmark", "code")}
         own = thing("ball", (0.30, -0.55, 0.05), ball=0.05)
         for number in range(self._frames):
-            # Anywhere on the floor in the middle of the room, looking anywhere, as with a head that turns.
-            place = (self._random.uniform(-1.2, 0.4), self._random.uniform(-1.6, 1.6), self._random.uniform(0.25, 0.5))
-            view = Viewpoint(place, self._random.uniform(-math.pi, math.pi), self._random.uniform(-0.3, 0.8))
+            view = self._anywhere()
             image = self._stage.picture(view, size=VGA if number % 4 == 0 else QVGA, seed=number)
             alpha, beta = view.direction_of(own.position)
             for name, detector in zip(tallies, (self._ball, self._marks, self._codes)):
@@ -267,16 +259,10 @@ class Checks:
             cv2.imwrite(str(path), image)
             print(f"  {path.name}: {what}")
 
-    def _seed(self) -> int:
-        return int(self._random.integers(1 << 30))
-
     def _judge(self, what: str, tally: Tally, bounded: bool = True) -> None:
         good = tally.wrong == 0 and tally.found >= MOST_OF * tally.wanted
         good = good and max(tally.bearings, default=0.0) <= BEARING
-        mark = "" if not bounded else "  ok" if good else "  MISSED"
-        if bounded and not good:
-            self.misses.append(what)
-        print(f"{what:42s} {tally.text()}{mark}", flush=True)
+        self._tell(what, tally.text(), good if bounded else None)
 
 
 PARTS = ("ball", "light", "landmarks", "red", "codes", "lab")
@@ -284,38 +270,25 @@ PARTS = ("ball", "light", "landmarks", "red", "codes", "lab")
 
 def options(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", metavar="part", help=f"{', '.join(PARTS)}; all by default")
-    parser.add_argument("--count", type=int, default=40, help="pictures of each kind")
-    parser.add_argument("--frames", type=int, default=200, help="pictures of the lab")
+    parser = command_line(__doc__ or "", PARTS, count=40)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--engine", default="auto", help="auto, opengl or builtin")
     parser.add_argument(
         "--keep", type=Path, metavar="FOLDER", help="write pictures there that are not as they should be"
     )
-    chosen = parser.parse_args(arguments)
-    for part in chosen.parts:
-        if part not in PARTS:
-            parser.error(f"no part {part}; there are {', '.join(PARTS)}")
+    chosen = parse(parser, PARTS, arguments)
     if chosen.keep is not None and not chosen.keep.is_dir():
         parser.error(f"--keep is {chosen.keep}, which is no folder")
-    for name in ("count", "frames"):
-        if getattr(chosen, name) < 1:
-            parser.error(f"--{name} is {getattr(chosen, name)}, allowed is 1 or more")
     return chosen
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure."""
     chosen = options(arguments)
-    cv2.setNumThreads(1)
-    with Stage("lab", chosen.engine) as stage:
-        checks = Checks(stage, chosen.count, chosen.frames, chosen.seed, chosen.keep)
-        for part in chosen.parts or PARTS:
-            getattr(checks, part)()
-    for what in checks.misses:
-        print(f"misses its bound: {what}")
-    return 1 if checks.misses else 0
+    return measure(
+        Stage("lab", chosen.engine),
+        lambda stage: Checks(stage, chosen.count, chosen.frames, chosen.seed, chosen.keep),
+        chosen.parts,
+    )
 
 
 if __name__ == "__main__":

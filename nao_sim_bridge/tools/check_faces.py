@@ -12,15 +12,14 @@ Parts can be chosen by name:
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 import time
 from typing import Mapping, Sequence
 
-import cv2
 import numpy as np
 from camera_stage import AHEAD, EYES, VGA, Stage, Viewpoint, thing
+from measurement import StageChecks, command_line, measure, parse
 
 from nao_sim_bridge.sim.faces import load_faces
 from nao_sim_bridge.sim.vision.face_memory import FaceMemory
@@ -42,11 +41,8 @@ FOUND, NAMED = 0.95, 0.8
 called by another's name."""
 
 
-class Checks:
+class Checks(StageChecks):
     """All measurements on one stage.
-
-    Attributes:
-        misses: Figures that miss their bounds.
 
     Args:
         stage: The lab.
@@ -55,11 +51,7 @@ class Checks:
     """
 
     def __init__(self, stage: Stage, count: int, frames: int) -> None:
-        self.misses: list[str] = []
-        self._stage = stage
-        self._count = count
-        self._frames = frames
-        self._random = np.random.default_rng(1)
+        super().__init__(stage, count, frames, seed=1)
         self._detector = FaceDetector()
         self._times: list[float] = []
 
@@ -75,7 +67,7 @@ class Checks:
                     ]
                     share, more = np.mean([count > 0 for count in counts]), sum(count > 1 for count in counts)
                     good = None if kind == "person" else share >= FOUND and not more
-                    self._judge(f"{kind} at {distance} m, turned {turn} rad", f"found {share:.2f}, more {more}", good)
+                    self._tell(f"{kind} at {distance} m, turned {turn} rad", f"found {share:.2f}, more {more}", good)
         print(f"{1000 * np.median(self._times):.1f} ms of a processor for a whole VGA picture")
 
     def names(self) -> None:
@@ -96,11 +88,9 @@ class Checks:
         """No faces where there are none."""
         wrong = 0
         for number in range(self._frames):
-            place = (self._random.uniform(-1.2, 0.4), self._random.uniform(-1.6, 1.6), self._random.uniform(0.25, 0.5))
-            view = Viewpoint(place, self._random.uniform(-math.pi, math.pi), self._random.uniform(-0.3, 0.8))
-            image = self._stage.picture(view, size=VGA, seed=number)
+            image = self._stage.picture(self._anywhere(), size=VGA, seed=number)
             wrong += len(self._detect(image))
-        self._judge("the lab", f"{wrong} faces in {self._frames} pictures", wrong == 0)
+        self._tell("the lab", f"{wrong} faces in {self._frames} pictures", wrong == 0)
 
     def _call(
         self, memory: FaceMemory, kind: str, light: str, parameters: Mapping[int, int], distance: float, turn: float
@@ -119,7 +109,7 @@ class Checks:
         bounded = kind == "face" and not turn and light != "dark"
         good = share >= NAMED and not wrong if bounded else None
         text = f"right {right}, wrong {wrong}, not known {unknown}, strangers who stay so {strangers}"
-        self._judge(f"{kind}, {light}, {distance} m, turned {turn} rad", text, good)
+        self._tell(f"{kind}, {light}, {distance} m, turned {turn} rad", text, good)
 
     def _look(
         self, kind: str, name: str, distance: float, turn: float, parameters: Mapping[int, int] | None = None
@@ -127,8 +117,7 @@ class Checks:
         """What is found in a picture of somebody."""
         view = Viewpoint(EYES, AHEAD + self._random.uniform(-0.2, 0.2), self._random.uniform(-0.1, 0.1))
         shown, view = self._somebody(kind, name, distance, turn, view)
-        seed = int(self._random.integers(1 << 30))
-        return self._detect(self._stage.picture(view, [shown], VGA, seed, parameters))
+        return self._detect(self._stage.picture(view, [shown], VGA, self._seed(), parameters))
 
     def _somebody(
         self, kind: str, name: str, distance: float, turn: float, view: Viewpoint
@@ -152,40 +141,14 @@ class Checks:
     def _sides(self, turn: float) -> Sequence[int]:
         return [1 if number % 2 else -1 for number in range(max(1, self._count // len(PEOPLE)))] if turn else [1, 1]
 
-    def _judge(self, what: str, figures: str, good: bool | None) -> None:
-        if good is False:
-            self.misses.append(what)
-        print(f"{what:48s} {figures}{'' if good is None else '  ok' if good else '  MISSED'}", flush=True)
-
 
 PARTS = ("found", "names", "lab")
 
 
-def options(arguments: Sequence[str] | None = None) -> argparse.Namespace:
-    """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", metavar="part", help="found, names, lab; all by default")
-    parser.add_argument("--count", type=int, default=16, help="pictures of each kind")
-    parser.add_argument("--frames", type=int, default=200, help="pictures of the lab")
-    parser.add_argument("--engine", default="auto", help="auto, opengl or builtin")
-    chosen = parser.parse_args(arguments)
-    for part in chosen.parts:
-        if part not in PARTS:
-            parser.error(f"no part {part}; there are {', '.join(PARTS)}")
-    return chosen
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure."""
-    chosen = options(arguments)
-    cv2.setNumThreads(1)
-    with Stage("lab", chosen.engine) as stage:
-        checks = Checks(stage, chosen.count, chosen.frames)
-        for part in chosen.parts or PARTS:
-            getattr(checks, part)()
-    for what in checks.misses:
-        print(f"misses its bound: {what}")
-    return 1 if checks.misses else 0
+    chosen = parse(command_line(__doc__ or "", PARTS, count=16), PARTS, arguments)
+    return measure(Stage("lab", chosen.engine), lambda stage: Checks(stage, chosen.count, chosen.frames), chosen.parts)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from typing import Callable
 
 import numpy as np
 import soundfile
+from dance_music import dance_music
 
 from nao_sim_bridge.paths import sounds_directory
 
@@ -85,6 +86,18 @@ def applause(random: np.random.Generator) -> np.ndarray:
         first = round(begin * RATE)
         total[first : first + length] += random.uniform(0.3, 1.0) * burst
     return total
+
+
+@sound
+def dance_100(random: np.random.Generator) -> np.ndarray:
+    """Music for the dance, 100 beats a minute."""
+    return dance_music(100.0, RATE, random)
+
+
+@sound
+def dance_120(random: np.random.Generator) -> np.ndarray:
+    """Music for the dance, 120 beats a minute."""
+    return dance_music(120.0, RATE, random)
 
 
 def seconds(duration: float) -> np.ndarray:

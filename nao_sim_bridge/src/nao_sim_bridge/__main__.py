@@ -8,7 +8,7 @@ import signal
 import sys
 
 from nao_sim_bridge.cli import parse, server_options
-from nao_sim_bridge.server import SimulatorServer
+from nao_sim_bridge.robots_server import open_server
 from nao_sim_bridge.sim.errors import SimulationError
 
 
@@ -19,7 +19,7 @@ def main() -> int:
         level=logging.DEBUG if arguments.verbose else logging.INFO, format="[nao_sim] %(levelname)s %(message)s"
     )
     try:
-        server = SimulatorServer(server_options(arguments))
+        server = open_server(server_options(arguments))
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: server.ended.set())
         server.start()

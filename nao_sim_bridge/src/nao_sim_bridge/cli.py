@@ -9,7 +9,9 @@ from typing import Sequence
 
 from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR
 from nao_sim_bridge.server import ServerOptions
+from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.model import VERSIONS
+from nao_sim_bridge.sim.places import MOST_ROBOTS, RobotPlace, parse_places
 from nao_sim_bridge.sim.postures import load_postures
 from nao_sim_bridge.sim.render.client import ENGINES
 from nao_sim_bridge.sim.simulation import Scene
@@ -43,6 +45,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
         "--sensor-noise", type=_amount, default=0.0, help="errors of the sensors: 0 none, 1 as those of a real robot"
     )
     options.add_argument("--sensor-delay", type=_amount, default=0.0, help="how late readings of sensors arrive, s")
+    options.add_argument("--charger", action="store_true", help="the charger is plugged in from the start")
     options.add_argument(
         "--record-dir", type=Path, default=DEFAULT_RECORD_DIR, help="folder for pictures, recordings and other files"
     )
@@ -61,6 +64,19 @@ def parser(prog: str) -> argparse.ArgumentParser:
         default="auto",
         help="what draws what the cameras see: opengl, builtin (slower), or auto: OpenGL where it can be had",
     )
+    options.add_argument(
+        "--robots",
+        type=_robots,
+        default=1,
+        help=f"how many robots there are, up to {MOST_ROBOTS}, on as many ports: nao1, nao2...",
+    )
+    options.add_argument(
+        "--places",
+        type=_places,
+        default="",
+        metavar="X,Y,HEADING;...",
+        help="where they stand, in m and deg; empty: where the world says, or on a circle, facing each other",
+    )
     options.add_argument("--paused", action="store_true", help="start without time passing")
     options.add_argument("--verbose", action="store_true", help="log more")
     return options
@@ -77,6 +93,7 @@ def server_options(arguments: argparse.Namespace) -> ServerOptions:
         payload=arguments.payload,
         sensor_noise=arguments.sensor_noise,
         sensor_delay=arguments.sensor_delay,
+        charger=arguments.charger,
     )
     return ServerOptions(
         scene,
@@ -89,6 +106,8 @@ def server_options(arguments: argparse.Namespace) -> ServerOptions:
         arguments.sound_file,
         arguments.sound_card,
         arguments.renderer,
+        robots=arguments.robots,
+        places=arguments.places,
     )
 
 
@@ -123,6 +142,19 @@ def _amount(text: str) -> float:
     if not 0.0 <= amount < math.inf:
         raise argparse.ArgumentTypeError(f"{text!r} is not an amount: a number of 0 or more")
     return amount
+
+
+def _robots(text: str) -> int:
+    if not text.isdigit() or not 1 <= int(text) <= MOST_ROBOTS:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of robots: 1 to {MOST_ROBOTS}")
+    return int(text)
+
+
+def _places(text: str) -> tuple[RobotPlace, ...]:
+    try:
+        return parse_places(text) if text.strip() else ()
+    except BadValue as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def _port(text: str) -> int:

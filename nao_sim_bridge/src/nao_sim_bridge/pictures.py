@@ -8,8 +8,9 @@ import threading
 
 from PIL import Image
 
-from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.errors import BadValue, SimulationStopped
 from nao_sim_bridge.sim.render.client import RenderError, Viewer
+from nao_sim_bridge.sim.render.pointer import Ray
 from nao_sim_bridge.sim.render.scene import RenderState, preset_camera
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
@@ -47,6 +48,7 @@ class Pictures:
             snapshot.objects,
             snapshot.placed,
             snapshot.gone,
+            self._simulation.shared.looks_beside(self._simulation),
         )
 
     def png(self, view: str, width: int, height: int) -> bytes:
@@ -67,12 +69,13 @@ class Pictures:
         return buffer.getvalue()
 
     def open_window(self) -> None:
-        """Show the simulation in a window from now on.
+        """Show the simulation in a window from now on; a click on a robot touches the sensor that is there.
 
         Raises:
             RenderError: There is no display.
         """
         self._viewer = Viewer(self._simulation.scene.world, self._simulation.scene.version).start()
+        self._viewer.on_pointer = self._on_pointer
         threading.Thread(target=self._mirror, args=(self._viewer,), name="window", daemon=True).start()
 
     def close(self) -> None:
@@ -80,6 +83,18 @@ class Pictures:
         self._closing.set()
         if self._viewer is not None:
             self._viewer.close()
+
+    def _on_pointer(self, ray: Ray | None) -> None:
+        """The mouse touches what it points at as long as its button is pressed."""
+
+        def point() -> None:
+            for robot in self._simulation.shared.robots:
+                robot.robot.point_at(ray)
+
+        try:
+            self._runner.execute(point, "point")
+        except SimulationStopped:
+            pass  # and with it all touches
 
     def _mirror(self, viewer: Viewer) -> None:
         while not self._closing.wait(WINDOW_PERIOD):

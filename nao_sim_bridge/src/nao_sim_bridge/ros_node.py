@@ -7,6 +7,7 @@ import sys
 import rospy
 
 from nao_sim_bridge.cli import parser, server_options
+from nao_sim_bridge.robots_server import RobotsServer, open_server
 from nao_sim_bridge.ros_side import RosSide
 from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.errors import SimulationError
@@ -28,8 +29,10 @@ VALUES = (
     "record_dir",
     "sound_file",
     "publish_clock",
+    "robots",
+    "places",
 )
-SWITCHES = ("gui", "paused", "verbose", "sound_card")
+SWITCHES = ("gui", "paused", "verbose", "sound_card", "charger")
 
 
 def main() -> int:
@@ -41,7 +44,7 @@ def main() -> int:
     rospy.init_node("nao_sim", disable_signals=False)
     try:
         parsed = options.parse_args([*_from_parameters(options), *arguments])
-        server = SimulatorServer(server_options(parsed))
+        server = open_server(server_options(parsed))
         rospy.on_shutdown(server.ended.set)
         server.start()
     except (SimulationError, RuntimeError) as error:
@@ -49,9 +52,8 @@ def main() -> int:
         return 1
     wants_clock = {"auto": parsed.speed != 1.0, "true": True, "false": False}[parsed.publish_clock]
     # Before the services: who waits for these may ask for it.
-    rospy.set_param("~bound_port", server.broker.port)
-    ros_side = RosSide(server, wants_clock)
-    rospy.loginfo("simulated NAO ready on port %d, world %s, speed %g", server.broker.port, parsed.world, parsed.speed)
+    ros_side, ready = _ros_side(server, wants_clock)
+    rospy.loginfo("%s, world %s, speed %g", ready, parsed.world, parsed.speed)
     failed = False
     while not server.ended.wait(0.5):
         failed = not server.runner.running
@@ -63,11 +65,24 @@ def main() -> int:
     return int(failed)
 
 
+def _ros_side(server: SimulatorServer | RobotsServer, wants_clock: bool) -> tuple[RosSide, str]:
+    """The ROS side of one robot or several, and what to say of them; their ports are parameters then."""
+    if isinstance(server, SimulatorServer):
+        rospy.set_param("~bound_port", server.broker.port)
+        return RosSide(server, wants_clock), f"simulated NAO ready on port {server.broker.port}"
+    several = dict(zip(server.names, server.servers))
+    for name, one in several.items():
+        rospy.set_param(f"{name}/nao_sim/bound_port", one.broker.port)
+    ports = ", ".join(f"{name} on port {one.broker.port}" for name, one in several.items())
+    return RosSide(server.servers[0], wants_clock, several), f"simulated NAOs ready: {ports}"
+
+
 def _from_parameters(options) -> list[str]:
     """Command line words for the node's private parameters that are set."""
     words: list[str] = []
     for name in VALUES:
         value = rospy.get_param(f"~{name}", None)
         if value is not None:
-            words += ["--" + name.replace("_", "-"), str(value).lower() if isinstance(value, bool) else str(value)]
+            # In one word: a value may begin with a minus sign.
+            words.append(f"--{name.replace('_', '-')}={str(value).lower() if isinstance(value, bool) else value}")
     return words + [f"--{name.replace('_', '-')}" for name in SWITCHES if rospy.get_param(f"~{name}", False)]

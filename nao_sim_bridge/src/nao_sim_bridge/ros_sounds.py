@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Callable
-
-import rospy
 from geometry_msgs.msg import Point
 
 from nao_library_msgs.srv import (
     MoveSound,
+    MoveSoundRequest,
     MoveSoundResponse,
     PersonSays,
+    PersonSaysRequest,
     PersonSaysResponse,
     PlaceSound,
+    PlaceSoundRequest,
     PlaceSoundResponse,
     RemoveSound,
+    RemoveSoundRequest,
     RemoveSoundResponse,
 )
+from nao_sim_bridge.ros_success import success_service
 from nao_sim_bridge.sim.tasks import Task
-from nao_sim_bridge.task_success import success_of
 from nao_sim_bridge.world_sounds_control import WorldSoundsControl
+
+KILLED = "it was silenced before its end"
 
 
 class RosSounds:
@@ -34,32 +37,26 @@ class RosSounds:
     def __init__(self, sounds: WorldSoundsControl) -> None:
         self._sounds = sounds
         self._services = [
-            rospy.Service("~place_sound", PlaceSound, self._on_place),
-            rospy.Service("~move_sound", MoveSound, self._on_move),
-            rospy.Service("~remove_sound", RemoveSound, self._on_remove),
-            rospy.Service("~person_says", PersonSays, self._on_person),
+            success_service("~place_sound", PlaceSound, PlaceSoundResponse, self._place, KILLED),
+            success_service("~move_sound", MoveSound, MoveSoundResponse, self._move, KILLED),
+            success_service("~remove_sound", RemoveSound, RemoveSoundResponse, self._remove, KILLED),
+            success_service("~person_says", PersonSays, PersonSaysResponse, self._person_says, KILLED),
         ]
 
-    def _on_place(self, request: PlaceSound) -> PlaceSoundResponse:
+    def _place(self, request: PlaceSoundRequest) -> Task:
         position, level = _listed(request.position), float(request.level_db)
-        add = lambda: self._sounds.add(request.name, request.sound, position, level, request.loop)  # noqa: E731
-        return PlaceSoundResponse(*_success(add))
+        return self._sounds.add(request.name, request.sound, position, level, request.loop)
 
-    def _on_move(self, request: MoveSound) -> MoveSoundResponse:
-        return MoveSoundResponse(*_success(lambda: self._sounds.move(request.name, _listed(request.position))))
+    def _move(self, request: MoveSoundRequest) -> Task:
+        return self._sounds.move(request.name, _listed(request.position))
 
-    def _on_remove(self, request: RemoveSound) -> RemoveSoundResponse:
-        return RemoveSoundResponse(*_success(lambda: self._sounds.remove(request.name)))
+    def _remove(self, request: RemoveSoundRequest) -> Task:
+        return self._sounds.remove(request.name)
 
-    def _on_person(self, request: PersonSays) -> PersonSaysResponse:
+    def _person_says(self, request: PersonSaysRequest) -> Task:
         position, level = _listed(request.position), float(request.level_db)
-        say = lambda: self._sounds.person_says(request.text, position, request.voice, level)  # noqa: E731
-        return PersonSaysResponse(*_success(say))
+        return self._sounds.person_says(request.text, position, request.voice, level)
 
 
 def _listed(point: Point) -> list[float]:
     return [point.x, point.y, point.z]
-
-
-def _success(begin: Callable[[], Task]) -> tuple[bool, str]:
-    return success_of(begin, "it was silenced before its end")

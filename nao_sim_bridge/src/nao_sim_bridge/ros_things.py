@@ -2,30 +2,35 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import Any
 
-import rospy
 from geometry_msgs.msg import Pose
 
 from nao_library_msgs.srv import (
     MoveObject,
+    MoveObjectRequest,
     MoveObjectResponse,
     PlaceObject,
+    PlaceObjectRequest,
     PlaceObjectResponse,
     RemoveObject,
+    RemoveObjectRequest,
     RemoveObjectResponse,
 )
+from nao_sim_bridge.ros_success import success_service
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.rotations import roll_pitch_yaw
 from nao_sim_bridge.sim.tasks import Task
-from nao_sim_bridge.task_success import success_of
 from nao_sim_bridge.things_control import ThingsControl
 
 SHAPES = ("box", "sphere", "ball", "cylinder", "capsule")
 SINGLE = ("sphere", "ball")
 """Shapes that a world file describes by one number."""
+BALL_RADIUS = 0.03
+"""m, of NAO's red ball: what a ball has that is given no size."""
 SIZE_KEY = {"person": "height"}
 COLOR_KEY = {"person": "clothes"}
+KILLED = "it was stopped on its way"
 
 
 class RosThings:
@@ -40,38 +45,35 @@ class RosThings:
     def __init__(self, things: ThingsControl) -> None:
         self._things = things
         self._services = [
-            rospy.Service("~place_object", PlaceObject, self._on_place),
-            rospy.Service("~move_object", MoveObject, self._on_move),
-            rospy.Service("~remove_object", RemoveObject, self._on_remove),
+            success_service("~place_object", PlaceObject, PlaceObjectResponse, self._place, KILLED),
+            success_service("~move_object", MoveObject, MoveObjectResponse, self._move, KILLED),
+            success_service("~remove_object", RemoveObject, RemoveObjectResponse, self._remove, KILLED),
         ]
 
-    def _on_place(self, request: PlaceObject) -> PlaceObjectResponse:
-        def place() -> Task:
-            if not request.description:
-                return self._things.place(entry_of(request))
-            if request.kind or request.name:
-                raise BadValue("description", request.description[:40], "empty when there is a name or a kind")
-            return self._things.place_described(request.description)
+    def _place(self, request: PlaceObjectRequest) -> Task:
+        if not request.description:
+            return self._things.place(entry_of(request))
+        if request.kind or request.name:
+            raise BadValue("description", request.description[:40], "empty when there is a name or a kind")
+        return self._things.place_described(request.description)
 
-        return PlaceObjectResponse(*_success(place))
+    def _move(self, request: MoveObjectRequest) -> Task:
+        position, turn = _position(request.pose), _turn(request.pose)
+        return self._things.move(request.name, position, turn, request.time.to_sec(), request.wait)
 
-    def _on_move(self, request: MoveObject) -> MoveObjectResponse:
-        move = lambda: self._things.move(  # noqa: E731
-            request.name, _position(request.pose), _turn(request.pose), request.time.to_sec(), request.wait
-        )
-        return MoveObjectResponse(*_success(move))
-
-    def _on_remove(self, request: RemoveObject) -> RemoveObjectResponse:
-        return RemoveObjectResponse(*_success(lambda: self._things.remove(request.name)))
+    def _remove(self, request: RemoveObjectRequest) -> Task:
+        return self._things.remove(request.name)
 
 
-def entry_of(request: PlaceObject) -> dict[str, Any]:
+def entry_of(request: PlaceObjectRequest) -> dict[str, Any]:
     """The entry of a world file that the fields of a request stand for."""
     entry: dict[str, Any] = {"name": request.name, "position": _position(request.pose)}
     turn = _turn(request.pose)
     if turn:
         entry["rpy"] = turn
     size, color = list(request.size), list(request.color)
+    if request.kind == "ball":
+        size = size or [BALL_RADIUS]
     if request.kind in SHAPES:
         entry[request.kind] = size[0] if request.kind in SINGLE and len(size) == 1 else size
     else:
@@ -100,7 +102,3 @@ def _turn(pose: Pose) -> list[float]:
     if length == 0.0:
         return []
     return list(roll_pitch_yaw([value / length for value in (turn.x, turn.y, turn.z, turn.w)]))
-
-
-def _success(begin: Callable[[], Task]) -> tuple[bool, str]:
-    return success_of(begin, "it was stopped on its way")

@@ -10,6 +10,9 @@ from pathlib import Path
 from typing import Any, Sequence
 
 from nao_sim_bridge.broker import Broker
+from nao_sim_bridge.film_control import FilmControl
+from nao_sim_bridge.hands_control import HandsControl
+from nao_sim_bridge.health_control import HealthControl
 from nao_sim_bridge.paths import sounds_directory
 from nao_sim_bridge.pictures import Pictures
 from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR, ClientFiles, unused
@@ -19,11 +22,13 @@ from nao_sim_bridge.services.audio import sound_detection, sound_localization
 from nao_sim_bridge.services.audio.speech_recognition import RecognitionModule
 from nao_sim_bridge.services.audio.speech_wiring import SpeechModules
 from nao_sim_bridge.services.audio.wiring import AudioModules
+from nao_sim_bridge.services.behaviors.wiring import BehaviorModules
 from nao_sim_bridge.services.binding import make_service
+from nao_sim_bridge.services.body_modules import BodyModules
 from nao_sim_bridge.services.diagnosis_events import DiagnosisEvents
 from nao_sim_bridge.services.fall_events import FallEvents
-from nao_sim_bridge.services.foot_events import FootEvents
 from nao_sim_bridge.services.leds import ALLeds
+from nao_sim_bridge.services.life.wiring import LifeModules
 from nao_sim_bridge.services.live_keys import constants, live_keys
 from nao_sim_bridge.services.memory import ALMemory
 from nao_sim_bridge.services.memory_store import MemoryStore
@@ -32,11 +37,15 @@ from nao_sim_bridge.services.nao_simulation import NAME as NAO_SIMULATION
 from nao_sim_bridge.services.nao_simulation import NaoSimulation
 from nao_sim_bridge.services.posture import ALRobotPosture
 from nao_sim_bridge.services.posture_events import PostureEvents
+from nao_sim_bridge.services.senses_wiring import SenseModules
 from nao_sim_bridge.services.system import ALSystem
+from nao_sim_bridge.services.time_zone import TimeZone
 from nao_sim_bridge.services.vision import video_device
 from nao_sim_bridge.services.vision.photo_capture_wiring import PictureModules
 from nao_sim_bridge.services.vision.wiring import VisionModules
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.places import RobotPlace
+from nao_sim_bridge.sim.robot_runner import RobotRunner
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Scene, Simulation
 from nao_sim_bridge.sim.tasks import Task
@@ -66,6 +75,9 @@ class ServerOptions:
         sound_file: Name in `record_dir` of a WAV for everything that the loudspeakers play; empty for none.
         sound_card: Let it be heard on this computer, too; only at speed 1.
         renderer: What draws: "auto", "opengl" or "builtin"; see `Renderer`.
+        name: What the robot is called.
+        robots: How many there are in the world; with more than one the port is that of the first.
+        places: Where they stand; empty for where the world says, or else the usual places.
     """
 
     scene: Scene = field(default_factory=Scene)
@@ -78,6 +90,9 @@ class ServerOptions:
     sound_file: str = ""
     sound_card: bool = False
     renderer: str = "auto"
+    name: str = "nao"
+    robots: int = 1
+    places: tuple[RobotPlace, ...] = ()
 
 
 class SimulatorServer:
@@ -94,26 +109,56 @@ class SimulatorServer:
         vision: What it recognises in its pictures.
         sounds: Sounds of the world.
         things: Things of the world.
+        hands: What touches the robot.
+        health: Charger, temperatures, broken devices.
+        film: Films of the robot.
         ended: Set when a client shut the robot down or the simulation failed.
+
+    Args:
+        options: How it is started.
+        simulation: A robot in a world that is there already; None for one of its own.
+        runner: Its view of the thread of that world.
     """
 
-    def __init__(self, options: ServerOptions) -> None:
+    def __init__(
+        self, options: ServerOptions, simulation: Simulation | None = None, runner: RobotRunner | None = None
+    ) -> None:
         self.options = options
         self.ended = threading.Event()
-        self.simulation = Simulation(options.scene, renderer=options.renderer)
-        self.runner = SimulationRunner(self.simulation, options.speed, options.paused, on_end=self.ended.set)
+        self.simulation = simulation or _alone(options)
+        self.runner = runner or SimulationRunner(self.simulation, options.speed, options.paused, self.ended.set)
         self.memory = MemoryStore(lambda: self.runner.snapshot.time)
         self.broker = Broker()
         self.pictures = Pictures(self.simulation, self.runner)
         self.files = ClientFiles(options.record_dir, [sounds_directory()])
         self._audio = AudioModules(self.simulation, self.runner, self.files, self.broker)
         self.speech = SpeechModules(self.simulation, self.runner, self.memory, self.files, self.broker)
+        self._posture = ALRobotPosture(self.simulation, self.runner, self.memory)
+        self._behaviors = BehaviorModules(
+            self.simulation, self.runner, self.memory, self.files, self.speech, self._posture
+        )
+        self._zone = TimeZone()
+        self._life = LifeModules(
+            self.simulation,
+            self.runner,
+            self.memory,
+            self.broker,
+            self.speech,
+            self._posture,
+            self._behaviors.running,
+            self._zone,
+        )
         self._recognition = RecognitionModule(self.simulation, self.runner, self.memory, self.files)
         self._video = video_device.VideoDevice(self.simulation.cameras, self.files)
         self.vision = VisionModules(self.simulation, self.memory, self.files)
         self._pictures_taken = PictureModules(self.simulation, self.runner, self.files)
+        self._senses = SenseModules(self.simulation, self.runner, self.memory)
         self.sounds = WorldSoundsControl(self.simulation, self.runner, self.files)
         self.things = ThingsControl(self.simulation, self.runner, self.files)
+        self.hands = HandsControl(self.simulation, self.runner)
+        self.film = FilmControl(self.simulation, self.runner, self.files, options.renderer)
+        self.health = HealthControl(self.simulation, self.runner)
+        self._body = BodyModules(self.simulation, self.runner, self.memory)
         self._outlets: list[SoundFile | SoundCard] = []
 
     def start(self) -> None:
@@ -123,8 +168,15 @@ class SimulatorServer:
             RuntimeError: The address cannot be had.
             SimulationError: The sound card, the file for sound, or a sound of the world cannot be had.
         """
+        self.prepare()
+        self.runner.start()
+        self.serve()
+
+    def prepare(self) -> None:
+        """First part of `start`, before time passes: listen, and have a look at every tick."""
         self.speech.begin()
-        self.sounds.begin()
+        if self.simulation is self.simulation.shared.robots[0]:
+            self.sounds.begin()
         self._open_outlets()
         sys.setswitchinterval(SWITCH_INTERVAL)
         self.broker.listen(self.options.address, self.options.port, lambda: not self.ended.is_set())
@@ -133,11 +185,15 @@ class SimulatorServer:
         self.memory.add_live(live_keys(self.runner, self.simulation.model, self.simulation.led_layout, robot_leds))
         for key, value in constants(self.options.scene.version).items():
             self.memory.insert(key, value)
+        self.simulation.after_reset.append(lambda: self.memory.raise_event(AWAKE, False))
         self.simulation.after_tick.append(PostureEvents(self.simulation.model, self.memory))
         self.simulation.after_tick.append(FallEvents(self.simulation, self.memory))
-        self.simulation.after_tick.append(FootEvents(self.memory))
+        self._senses.begin()
         self.simulation.after_tick.append(DiagnosisEvents(self.simulation, self.memory))
-        self.runner.start()
+        self._body.begin()
+
+    def serve(self) -> None:
+        """Last part of `start`, when time passes: register the modules."""
         for name, parts in self.modules().items():
             self.broker.register(name, make_service(name, parts, self.broker))
         self.broker.register(NAO_SIMULATION, NaoSimulation(self))
@@ -152,28 +208,43 @@ class SimulatorServer:
             "ALMemory": [ALMemory(self.memory, self.broker)],
             "ALLeds": [ALLeds(self.simulation, self.runner)],
             "ALMotion": motion.parts(self.simulation, self.runner, self.memory),
-            "ALRobotPosture": [ALRobotPosture(self.simulation, self.runner, self.memory)],
+            "ALRobotPosture": [self._posture],
             **self._audio.modules(),
             **self.speech.modules(),
+            **self._behaviors.modules(),
+            **self._life.modules(),
             **self._recognition.modules(),
             sound_detection.NAME: sound_detection.parts(self.simulation, self.memory),
             **{name: sound_localization.parts(name, self.simulation, self.memory) for name in sound_localization.NAMES},
             video_device.NAME: self._video.parts(),
             **self.vision.modules(),
             **self._pictures_taken.modules(),
-            "ALSystem": [ALSystem(self.memory, self.reset_task, self.ended.set)],
+            **self._senses.modules(),
+            **self._body.modules(),
+            "ALSystem": [
+                ALSystem(self.memory, self.reboot_task, self.ended.set, self._icon, self.options.name, self._zone)
+            ],
         }
 
     def stop(self) -> None:
         """Leave the network and end the simulation."""
+        self.leave()
+        self.runner.stop()
+        self.close()
+
+    def leave(self) -> None:
+        """First part of `stop`: leave the network."""
         self.ended.set()
+        self.film.close()
         self._audio.close()
         self.vision.close()  # before what has files to complete, and needs the pictures that are drawn
         self._pictures_taken.close()
         self._video.close()
         self.sounds.close()
         self.broker.close()
-        self.runner.stop()
+
+    def close(self) -> None:
+        """Last part of `stop`: end everything else that works for the robot."""
         self.speech.close()
         self._recognition.close()
         self.pictures.close()
@@ -197,7 +268,7 @@ class SimulatorServer:
     # --- what only a simulator can do; for any thread, blocking until it is done -----------------------------------
 
     def reset(self) -> None:
-        """Put robot and world to where they started; tasks are killed, time goes on."""
+        """Put all robots and the world to where they started; tasks are killed, time goes on."""
         self.reset_task().result()
 
     def push(self, force: Sequence[float], duration: float, link: str) -> None:
@@ -216,11 +287,19 @@ class SimulatorServer:
         """A PNG picture of the robot; see `Pictures.png`."""
         return self.pictures.png(view, width, height)
 
+    def _icon(self, size: int) -> bytes:
+        return self.pictures.png("face", size, size)
+
     def reset_task(self) -> Task:
         """As `reset`, without waiting."""
+        return self.runner.execute(self.simulation.reset, "reset")
 
-        def reset() -> None:
-            self.simulation.reset()
-            self.memory.raise_event(AWAKE, False)
+    def reboot_task(self) -> Task:
+        """Put this robot to where it started, without waiting; one that is alone in its world resets that, too."""
+        return self.runner.execute(self.simulation.reboot, "reboot")
 
-        return self.runner.execute(reset, "reset")
+
+def _alone(options: ServerOptions) -> Simulation:
+    """A robot in a world of its own."""
+    place = options.places[0] if options.places else None
+    return Simulation(options.scene, renderer=options.renderer, place=place)

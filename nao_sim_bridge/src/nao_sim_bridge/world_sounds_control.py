@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import threading
 from typing import Any, Sequence
 
@@ -44,7 +43,7 @@ class WorldSoundsControl:
         self._files = files
         # Not that of the robot: a person and the robot may speak at the same time.
         self._studio = studio or Studio()
-        self._numbers = itertools.count(1)
+        self._numbers = simulation.sound.numbers
         self._lock = threading.Lock()
         self._being_made = 0
         simulation.holds.append(lambda: self._being_made > 0)

@@ -1,0 +1,184 @@
+"""Films of a running simulation from outside, with what the loudspeakers play: physics never waits for a drawing."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from nao_sim_bridge.sim.child_process import ChildProcess
+from nao_sim_bridge.sim.render.client import START_TIMEOUT, PictureRefused, RenderError
+from nao_sim_bridge.sim.render.wire import StateSender
+from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.sound.follower import Follower
+from nao_sim_bridge.sim.sound.samples import RATE, pcm16
+
+log = logging.getLogger("nao_sim.film")
+
+MODULE = "nao_sim_bridge.sim.render.film_worker"
+SOUND_STEP = RATE // 10
+MANY_WAITING = 1000
+"""Frames that are not drawn yet: fast time waits then."""
+TOO_MANY_WAITING = 4000
+"""Likewise, of time that does not wait: further ones are left out."""
+END_LIMIT = 1800.0
+"""s of wall time; at the end everything that waits is drawn."""
+
+
+@dataclass(frozen=True)
+class FilmReport:
+    """A film that is complete.
+
+    Attributes:
+        path: The file.
+        frames: How many pictures it has.
+        duration: s.
+        left_out: Frames that the computer was too slow for.
+    """
+
+    path: Path
+    frames: int
+    duration: float
+    left_out: int
+
+    def as_dict(self) -> dict[str, Any]:
+        """Its attributes by name, the path as text."""
+        return {**vars(self), "path": str(self.path)}
+
+
+class Film:
+    """One film that is being taken.
+
+    Threads: the simulation's puts states into a queue, a follower of the sound's clock puts sound there, a third one
+    sends both to the process that draws. The lock guards the queue.
+
+    Attributes:
+        path: The file.
+
+    Args:
+        simulation: What is filmed.
+        path: See above; one that is there is replaced.
+        view: A name of a view.
+        size: Width and height, pixels.
+        frame_rate: Pictures a second of simulated time.
+        engine: What draws; see `Renderer`.
+
+    Raises:
+        RenderError: There is no film process.
+    """
+
+    def __init__(
+        self, simulation: Simulation, path: Path, view: str, size: tuple[int, int], frame_rate: float, engine: str
+    ) -> None:
+        self.path = path
+        self._simulation = simulation
+        self._period = 1.0 / frame_rate
+        self._news = threading.Condition()
+        self._waiting: deque[tuple[str, Any]] = deque()
+        self._ending = False
+        self._left_out = 0
+        self._begin = self._frame = 0.0
+        self._first_sample = 0
+        self._sender = StateSender()
+        self._failure: RenderError | None = None
+        self._follower: Follower | None = None
+        scene = simulation.scene
+        arguments = (engine, scene.world, scene.version, str(path), view, str(size[0]), str(size[1]))
+        self._worker = ChildProcess(MODULE, arguments, "film process", RenderError, PictureRefused)
+        try:
+            log.info("%s is drawn by %s", path.name, self._worker.receive(START_TIMEOUT, "film"))
+        except RenderError:
+            self._worker.stop()
+            raise
+        self._thread = threading.Thread(target=self._send, name="film", daemon=True)
+
+    def begin(self) -> None:
+        """Film from now on; simulation thread."""
+        self._begin = self._simulation.time
+        self._first_sample = self._simulation.sound.timeline.now
+        self._thread.start()
+        self._follower = Follower("film sound", self._simulation.sound.timeline, self._hear, SOUND_STEP)
+        self._simulation.after_tick.append(self._look)
+        self._simulation.holds.append(self._behind)
+
+    def pause(self) -> None:
+        """Film no longer; simulation thread."""
+        self._simulation.after_tick.remove(self._look)
+        self._simulation.holds.remove(self._behind)
+
+    def caption(self, text: str) -> None:
+        """Write a text into the pictures from now on; any thread."""
+        self._put("caption", text)
+
+    def end(self) -> FilmReport:
+        """Draw what waits and complete the file; after `pause`.
+
+        Raises:
+            RenderError: Something went wrong on the way.
+        """
+        if self._follower is not None:
+            self._follower.close()
+        with self._news:
+            self._ending = True
+            self._news.notify_all()
+        self._thread.join()
+        try:
+            if self._failure is not None:
+                raise self._failure
+            frames, duration = self._worker.ask("end", None, END_LIMIT, "film")
+        finally:
+            self._worker.stop()
+        if self._left_out:
+            log.warning("%d frames are missing in %s: the computer is too slow for them", self._left_out, self.path)
+        return FilmReport(self.path, frames, duration, self._left_out)
+
+    def _look(self, snapshot: Snapshot) -> None:
+        """Take a frame if one is due; after every tick."""
+        elapsed = snapshot.time - self._begin
+        if elapsed + 1e-9 < self._frame * self._period:
+            return
+        self._frame = int(elapsed / self._period + 1e-9) + 1
+        if len(self._waiting) > TOO_MANY_WAITING:
+            self._left_out += 1
+            return
+        self._put("frame", (elapsed, self._simulation.render_state(snapshot)))
+
+    def _hear(self, first: int, last: int) -> None:
+        """Take sound; in the thread of the follower."""
+        mixed = self._simulation.sound.loudspeakers.mixed(first, last)
+        samples = np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
+        self._put("sound", (first - self._first_sample, samples.tobytes()))
+
+    def _behind(self) -> bool:
+        return len(self._waiting) > MANY_WAITING
+
+    def _put(self, kind: str, content: Any) -> None:
+        with self._news:
+            if self._failure is None:
+                self._waiting.append((kind, content))
+                self._news.notify_all()
+
+    def _send(self) -> None:
+        while True:
+            with self._news:
+                self._news.wait_for(lambda: self._waiting or self._ending)
+                if not self._waiting:
+                    return
+                kind, content = self._waiting.popleft()
+            try:
+                if kind == "frame":
+                    content = (content[0], self._sender.pack(content[1]))
+                self._worker.send(kind, content, "film")
+            except RenderError as error:
+                log.warning("%s is incomplete: %s", self.path, error)
+                with self._news:
+                    self._failure = error
+                    self._waiting.clear()
+            if len(self._waiting) <= MANY_WAITING:
+                self._simulation.wake()

@@ -1,0 +1,124 @@
+"""One simulated robot in ROS: its true pose, pushes, touches and pictures. Thin over its server."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Callable
+
+import rospy
+from geometry_msgs.msg import Point, Quaternion, Twist, Vector3
+from nav_msgs.msg import Odometry
+
+from nao_library_msgs.srv import (
+    GetTruepose,
+    GetTrueposeRequest,
+    GetTrueposeResponse,
+    PressSensors,
+    PressSensorsRequest,
+    PressSensorsResponse,
+    PushRobot,
+    PushRobotRequest,
+    PushRobotResponse,
+    TakePicture,
+    TakePictureRequest,
+    TakePictureResponse,
+)
+from nao_sim_bridge.ros_hand import RosHand
+from nao_sim_bridge.ros_health import RosHealth
+from nao_sim_bridge.server import SimulatorServer
+from nao_sim_bridge.sim.snapshot import Snapshot
+
+TRUTH_PERIOD = 0.02
+WORLD_FRAME, TORSO_FRAME = "world", "torso"
+
+
+class RosRobot:
+    """Publishes where a robot is and takes commands about it.
+
+    ROS API (relative names; of several robots those of `nao2` are `nao2/ground_truth/odom`, `nao2/nao_sim/push`...):
+        Publishes `ground_truth/odom` (nav_msgs/Odometry): true pose of the torso in world, velocity in torso; 50 Hz of
+        simulated time.
+        Services `~push`, `~press`, `~picture` (nao_library_msgs), `get_truepose` (nao_library_msgs/GetTruepose),
+        and those of `RosHealth` and `RosHand`.
+
+    Args:
+        server: Of the robot.
+        simulated_time: Whether time of messages is simulated time: this node publishes the clock.
+        name: Of one of several robots; empty for one that is alone.
+    """
+
+    def __init__(self, server: SimulatorServer, simulated_time: bool, name: str = "") -> None:
+        self._server = server
+        self._simulated_time = simulated_time
+        self._frame = f"{name}/{TORSO_FRAME}" if name else TORSO_FRAME
+        self._next_truth = 0.0
+        public, private = (f"{name}/", f"{name}/nao_sim/") if name else ("", "~")
+        self._truth = rospy.Publisher(f"{public}ground_truth/odom", Odometry, queue_size=5)
+        self._services = [
+            rospy.Service(f"{private}push", PushRobot, self._on_push),
+            rospy.Service(f"{private}press", PressSensors, self._on_press),
+            rospy.Service(f"{private}picture", TakePicture, self.on_picture),
+            rospy.Service(f"{public}get_truepose", GetTruepose, self._on_true_pose),
+        ]
+        self._health = RosHealth(server.health, private)
+        self._hand = RosHand(server.hands, private)
+
+    def tick(self) -> None:
+        """Publish what is due."""
+        snapshot = self._server.runner.snapshot
+        if snapshot.time >= self._next_truth:
+            self._next_truth = snapshot.time + TRUTH_PERIOD
+            if self._truth.get_num_connections():
+                self._truth.publish(self._odometry(snapshot))
+
+    def on_picture(self, request: TakePictureRequest) -> TakePictureResponse:
+        """Take a picture."""
+        size = (request.width or 640, request.height or 480)
+        path = Path()
+
+        def take() -> None:
+            nonlocal path
+            path = self._server.files.to_write(request.file or "picture.png")
+            path.write_bytes(self._server.picture(request.view or "three_quarter", *size))
+
+        success, message = _success(take)
+        return TakePictureResponse(success, message, str(path) if success else "")
+
+    def _odometry(self, snapshot: Snapshot) -> Odometry:
+        message = Odometry()
+        message.header.stamp = self._stamp(snapshot)
+        message.header.frame_id, message.child_frame_id = WORLD_FRAME, self._frame
+        message.pose.pose.position = Point(*snapshot.torso.position)
+        message.pose.pose.orientation = Quaternion(*snapshot.torso.orientation)
+        message.twist.twist = Twist(Vector3(*snapshot.velocity_in_torso), Vector3(*snapshot.turn_in_torso))
+        return message
+
+    def _stamp(self, snapshot: Snapshot) -> rospy.Time:
+        """ROS time of a snapshot: simulated time when this node publishes the clock, else now."""
+        return rospy.Time.from_sec(snapshot.time) if self._simulated_time else rospy.Time.now()
+
+    def _on_push(self, request: PushRobotRequest) -> PushRobotResponse:
+        force = (request.force.x, request.force.y, request.force.z)
+        push = lambda: self._server.push(force, request.time.to_sec(), request.link or TORSO_FRAME)  # noqa: E731
+        return PushRobotResponse(*_success(push))
+
+    def _on_press(self, request: PressSensorsRequest) -> PressSensorsResponse:
+        return PressSensorsResponse(*_success(lambda: self._server.press(request.sensors)))
+
+    def _on_true_pose(self, _request: GetTrueposeRequest) -> GetTrueposeResponse:
+        snapshot = self._server.runner.snapshot
+        answer = GetTrueposeResponse()
+        answer.pose.header.stamp = self._stamp(snapshot)
+        answer.pose.header.frame_id = WORLD_FRAME
+        answer.pose.pose.pose.position = Point(*snapshot.torso.position)
+        answer.pose.pose.pose.orientation = Quaternion(*snapshot.torso.orientation)
+        return answer
+
+
+def _success(action: Callable[[], object]) -> tuple[bool, str]:
+    """Run `action`; (True, "") or (False, what was wrong)."""
+    try:
+        action()
+    except (RuntimeError, ValueError, OSError) as error:
+        return False, str(error)
+    return True, ""

@@ -1,0 +1,43 @@
+"""Waiting for what a test needs: with a limit, and with an error that names it."""
+
+from __future__ import annotations
+
+import time
+from typing import Callable
+
+import rospy
+
+
+class StackNotReady(RuntimeError):
+    """Something that a test needs is not there; the text names it."""
+
+
+def wait_until(condition: Callable[[], bool], limit: float, what: str | Callable[[], str]) -> None:
+    """Ask again and again until `condition()` holds; it should itself take a moment, as a call to the robot does.
+
+    Raises:
+        StackNotReady: It does not hold within `limit` s of wall time.
+    """
+    give_up = time.monotonic() + limit
+    while not condition():
+        if time.monotonic() > give_up or rospy.is_shutdown():
+            text = what if isinstance(what, str) else what()
+            raise StackNotReady(f"not there within {limit:g} s: {text}")
+
+
+def wait_for_service(name: str, kind: type, limit: float) -> rospy.ServiceProxy:
+    """A service that is there.
+
+    Raises:
+        StackNotReady: It is not, within `limit` s of wall time.
+    """
+    wait_until(lambda: _service_there(name), limit, f"service {name}; is the simulator in the launch file?")
+    return rospy.ServiceProxy(name, kind)
+
+
+def _service_there(name: str) -> bool:
+    try:
+        rospy.wait_for_service(name, timeout=0.2)
+    except rospy.ROSException:
+        return False
+    return True
