@@ -146,5 +146,6 @@ class Call:
             try:
                 return self._future.value()
             except RuntimeError as late_error:
-                error = late_error
+                # From here: a frame that keeps an error which has passed through it is kept by that error.
+                raise self.method.translate(late_error, self) from late_error
         raise self.method.translate(error, self) from error

@@ -48,7 +48,7 @@ class Timing:
     connect_limit: float = 5.0
     first_delay: float = 0.2
     longest_delay: float = 2.0
-    patience: float = 3.0
+    patience: float = 10.0
 
 
 Listener = Callable[[State], None]

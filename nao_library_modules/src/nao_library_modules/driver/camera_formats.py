@@ -11,22 +11,8 @@ import numpy as np
 import vision_definitions as vision
 from naoqi.errors import NaoError
 
-TOP, BOTTOM = vision.kTopCamera, vision.kBottomCamera
-CAMERAS = {TOP: "top", BOTTOM: "bottom"}
-"""NAOqi's number of a camera -> its name in topics and parameters."""
-CAMERA_NAMES = {TOP: "CameraTop", BOTTOM: "CameraBottom"}
-"""NAOqi's number of a camera -> its name in NAOqi and, with an ending, in /tf."""
+from ..camera_facts import CAMERAS, SIZES
 
-SIZES = {
-    vision.kQQQQVGA: (40, 30),
-    vision.kQQQVGA: (80, 60),
-    vision.kQQVGA: (160, 120),
-    vision.kQVGA: (320, 240),
-    vision.kVGA: (640, 480),
-    vision.k4VGA: (1280, 960),
-    vision.k16VGA: (2560, 1920),
-}
-"""NAOqi's number of a resolution -> width and height in pixels."""
 RESOLUTIONS = {number: f"{width}x{height}" for number, (width, height) in SIZES.items()}
 
 GREY, BGR = "mono8", "bgr8"

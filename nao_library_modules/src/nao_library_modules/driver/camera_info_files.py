@@ -5,13 +5,13 @@ from __future__ import annotations
 import logging
 import os
 import re
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from urllib.parse import unquote
 
 from naoqi.errors import NaoError
 
+from ..whole_file import write_whole
 from .camera_calibration import Calibration, from_yaml, to_yaml
 
 log = logging.getLogger(__name__)
@@ -86,15 +86,6 @@ def write(path: Path, calibration: Calibration) -> None:
         NaoError: If that does not work.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        descriptor, part = tempfile.mkstemp(dir=str(path.parent), prefix=f".{path.name}.")
-        try:
-            with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-                file.write(to_yaml(calibration))
-            os.chmod(part, 0o644)
-            os.replace(part, str(path))
-        except OSError:
-            os.unlink(part)
-            raise
+        write_whole(path, to_yaml(calibration))
     except OSError as error:
         raise NaoError(f"{path} cannot be written: {error}") from error

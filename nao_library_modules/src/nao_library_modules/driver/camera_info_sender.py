@@ -14,8 +14,8 @@ from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
 
+from ..camera_facts import CAMERAS
 from .camera_calibration import Calibration, from_yaml, ideal, scaled
-from .camera_formats import CAMERAS
 from .image_messages import fill_info
 
 WAIT = 10.0

@@ -9,7 +9,8 @@ from typing import Any
 import vision_definitions as vision
 from naoqi.errors import NaoError
 
-from .camera_formats import BOTTOM, CAMERAS, COLOR_SPACES, RESOLUTIONS, TOP
+from ..camera_facts import BOTTOM, CAMERAS, TOP
+from .camera_formats import COLOR_SPACES, RESOLUTIONS
 from .camera_subscriber import StreamSettings
 from .reconfigure import Field
 

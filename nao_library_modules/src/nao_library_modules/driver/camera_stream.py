@@ -11,12 +11,13 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
+from ..camera_facts import CAMERA_NAMES
 from ..errors import Preempted
 from ..health import Level, Report
 from ..image_clock import ImageClock
 from ..interrupt import Interrupt
 from ..robot import wait_for_calls
-from .camera_formats import CAMERA_NAMES, RESOLUTIONS, SPACES, Picture, read_picture
+from .camera_formats import RESOLUTIONS, SPACES, Picture, read_picture
 from .camera_rate import RateMeter
 from .camera_subscriber import DEVICE, CameraSubscriber, StreamSettings
 from .demand import Demand
@@ -122,8 +123,10 @@ class CameraStream:
             try:
                 self._subscriber.change(subscription.handle, before, settings)
             except NaoError:
-                self._change_back(subscription.handle, settings, before)
-                raise
+                if self._subscription is subscription:
+                    self._change_back(subscription.handle, settings, before)
+                    raise
+                # It ended meanwhile, because nobody looks any more: the settings are those of the next one.
             self._settings = settings
 
     def _change_back(self, handle: str, tried: StreamSettings, before: StreamSettings) -> None:

@@ -16,10 +16,11 @@ from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
 
+from ..camera_facts import CAMERA_NAMES, CAMERAS, SIZES
 from ..health import Report
 from ..robot_frames import tf_prefix
 from ..ros_clock import RosClock
-from .camera_formats import CAMERA_NAMES, CAMERAS, SIZES, Picture
+from .camera_formats import Picture
 from .camera_info_files import camera_name
 from .camera_infos import CameraInfos
 from .camera_settings import TUNINGS, changed_tunings, fields_of, settled, stream_settings

@@ -18,6 +18,7 @@ DEVICE = "Device/SubDeviceList/{}/Value"
 SENSOR = "{}/Position/Sensor"
 COMMAND = "{}/Position/Actuator"
 CURRENT = "{}/ElectricCurrent/Sensor"
+STIFFNESS = "{}/Hardness/Actuator"
 INERTIAL = tuple(
     f"InertialSensor/{name}/Sensor"
     for name in (
@@ -81,6 +82,7 @@ class JointSensors:
         devices = [SHARED_MOTORS.get(joint, joint) for joint in joints]
         self._torque = [torque_per_ampere(joint) for joint in joints]
         keys = [pattern.format(device) for pattern in (SENSOR, COMMAND, CURRENT) for device in devices]
+        self._stiffness_keys = [DEVICE.format(STIFFNESS.format(device)) for device in devices]
         self._keys = [DEVICE.format(key) for key in (*keys, *INERTIAL)]
 
     def read(self) -> Reading:
@@ -94,6 +96,15 @@ class JointSensors:
         if self._use_odometry:
             torso = self._robot.proxy(MOTION).call_async("getPosition", "Torso", FRAME_WORLD, True)
         return self._reading(values.result(timeout=LIMIT), None if torso is None else torso.result(timeout=LIMIT))
+
+    def read_stiffnesses(self) -> tuple[float, ...]:
+        """Stiffness of each joint, 0 to 1; not a number where the robot does not tell.
+
+        Raises:
+            NaoError: If it cannot be asked.
+        """
+        values = self._robot.proxy(MEMORY).call_async("getListData", self._stiffness_keys).result(timeout=LIMIT)
+        return tuple(_number(value) for value in values)
 
     def _reading(self, values: Sequence[Any], torso: Sequence[float] | None) -> Reading:
         count = len(self.joints)

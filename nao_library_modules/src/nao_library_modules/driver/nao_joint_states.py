@@ -49,7 +49,9 @@ class NaoJointStates:
     ROS API (relative names):
         Publishes `joint_states` (sensor_msgs/JointState; efforts are torques in N m as the motor currents tell them),
         `imu` (sensor_msgs/Imu, in the frame of the torso), `odom` (nav_msgs/Odometry), and on /tf the frames odom ->
-        base_link and base_link -> base_footprint (REP 105, REP 120).
+        base_link and base_link -> base_footprint (REP 105, REP 120). `~joint_stiffness` (sensor_msgs/JointState:
+        efforts are stiffnesses, 0 to 1), while somebody listens: under the name of the node, for what is published on
+        `joint_stiffness` is what nao_controller sets.
         Services, with `~use_odometry`: `pause_odometry` (std_srvs/Empty: place and heading stand still, whatever the
         robot does), `resume_odometry` (std_srvs/Empty: they go on from there), `set_odometry_pose`
         (nao_library_msgs/SetTransform: pose of the torso in odometry), `odometry_offset`
@@ -83,6 +85,7 @@ class NaoJointStates:
         self._use_odometry = bool(rospy.get_param("~use_odometry", True))
         self._joint_states = rospy.Publisher("joint_states", JointState, queue_size=10)
         self._imu = rospy.Publisher("imu", Imu, queue_size=10)
+        self._stiffness = rospy.Publisher("~joint_stiffness", JointState, queue_size=10)
         self._odometry = rospy.Publisher("odom", Odometry, queue_size=10) if self._use_odometry else None
         self._offset = OdometryOffset()
         if self._use_odometry:
@@ -156,6 +159,9 @@ class NaoJointStates:
             changes = velocities.add(now, reading.positions)
             self._joint_states.publish(messages.joint_state(stamp, sensors.joints, reading, changes))
             self._imu.publish(messages.imu(stamp, self._base, reading))
+            if self._stiffness.get_num_connections() > 0:
+                stiffnesses = sensors.read_stiffnesses()
+                self._stiffness.publish(messages.joint_stiffness(stamp, sensors.joints, stiffnesses))
             transforms = self._foot_transforms(stamp, sensors, reading)
             if self._odometry is not None and reading.torso is not None:
                 speed = speeds.add(now, reading.torso[:3])

@@ -16,10 +16,10 @@ from nao_library_msgs.msg import FaceDetected, LandmarkDetected, MovementDetecte
 from nao_library_msgs.srv import LearnFace, LearnFaceResponse, VisionMotionSensitivity
 from naoqi.errors import BadArguments, NaoError, UnknownMethod
 
+from ..camera_facts import CAMERA_NAMES, TOP
 from ..health import Report
 from ..image_clock import ImageClock
 from ..robot_frames import tf_prefix
-from .camera_formats import CAMERA_NAMES, TOP
 from .image_messages import header_of
 from .node import name_for_robot, publish
 from .services import offer

@@ -14,6 +14,7 @@ from ..health import connection_report
 from ..node import FORWARDED_LOGGERS, robot_address, robot_parser
 from ..robot import Robot
 from ..ros_edge import forward_logs
+from .polling import FASTEST
 
 
 def run_driver(make: Callable[[Robot], Any], name: str, description: str, argv: Sequence[str] | None = None) -> int:
@@ -61,3 +62,15 @@ def publish(publisher: rospy.Publisher, message: Any) -> None:
         publisher.publish(message)
     except rospy.ROSException as error:
         rospy.logdebug("%s: %s", publisher.name, error)
+
+
+def rate_parameter(name: str, default: float) -> float:
+    """A parameter that is a rate in Hz.
+
+    Raises:
+        NaoError: If it is none that a node can keep.
+    """
+    rate = rospy.get_param(name, default)
+    if isinstance(rate, bool) or not isinstance(rate, (int, float)) or not 0.0 < rate <= 1.0 / FASTEST:
+        raise NaoError(f"{name} is {rate!r}: above 0 to {1.0 / FASTEST:g} Hz")
+    return float(rate)

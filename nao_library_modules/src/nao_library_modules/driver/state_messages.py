@@ -25,6 +25,13 @@ def joint_state(stamp: Time, joints: Sequence[str], reading: Reading, velocities
     return message
 
 
+def joint_stiffness(stamp: Time, joints: Sequence[str], stiffnesses: Sequence[float]) -> JointState:
+    """Stiffnesses of the joints, 0 to 1, in the place of efforts."""
+    message = JointState(name=list(joints), effort=stiffnesses)
+    message.header.stamp = stamp
+    return message
+
+
 def imu(stamp: Time, frame: str, reading: Reading) -> Imu:
     """The inertial unit, in the frame of the torso. The heading is that of odometry, and unknown without it."""
     yaw = 0.0 if reading.torso is None else reading.torso[5]

@@ -30,6 +30,11 @@ class TopicDemand(rospy.SubscribeListener):
         publisher.impl.add_subscriber_listener(self)  # not in the constructor: who comes first would find no publisher
         self._look()
 
+    @property
+    def listened(self) -> bool:
+        """Whether somebody listens, as it was told last."""
+        return self._told
+
     def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
         """One more listens; called by rospy."""
         self._look()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
@@ -12,6 +10,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
 from naoqi.errors import NaoError
 
+from ..goal_watch import GoalWatch
 from ..interrupt import Interrupt
 from ..ros_clock import RosClock
 from .poses import Pose
@@ -50,20 +49,15 @@ class TrajectoryClient:
         """
         if not self._client.wait_for_server(rospy.Duration(SERVER_LIMIT)):
             raise NaoError(f"there is no server for {rospy.resolve_name(ACTION)}: is nao_controller running?")
-        done, wake = threading.Event(), Interrupt()
-
-        def look(handle: actionlib.ClientGoalHandle) -> None:
-            if handle.get_comm_state() == actionlib.CommState.DONE:
-                done.set()
-                wake.trigger()
-
-        handle = self._client.send_goal(_goal(pose), look)
+        wake = Interrupt()
+        goal = GoalWatch(wake.trigger)
+        handle = self._client.send_goal(_goal(pose), goal.look)
         with interrupt.waking(wake.trigger):
             # The motion has a margin in its own time, and messages have one in real time: simulated time may be faster.
             in_time = not self._clock.wait(pose.time + MARGIN, wake) or wake.wait(MARGIN)
-        if not done.is_set():
-            handle.cancel()
-            done.wait(CANCEL_LIMIT)  # what comes next finds the joints free
+        if not goal.over.is_set():
+            goal.cancel(handle)
+            goal.over.wait(CANCEL_LIMIT)  # what comes next finds the joints free
             interrupt.check()
         if not in_time:
             raise NaoError(f"not there after {pose.time + MARGIN:g} s, {MARGIN:g} s longer than it should take")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Tuple
 
-from .camera_formats import CAMERA_NAMES, TOP
+from ..camera_facts import TOP, camera_number
 
 Pair = Tuple[float, float]
 
@@ -242,10 +242,9 @@ def _view(value: Sequence[Any]) -> View:
 
 
 def _camera(value: Any) -> int:
-    """Number of a camera that is told by number or name."""
-    if isinstance(value, str):
-        return next((number for number, name in CAMERA_NAMES.items() if name == value), TOP)
-    return int(value) if value in CAMERA_NAMES else TOP
+    """Number of a camera that is told by number or name; the top one if it is none of those there are."""
+    number = camera_number(value)
+    return TOP if number is None else number
 
 
 def _pose(value: Any) -> tuple[float, ...]:

@@ -1,0 +1,131 @@
+"""Eyes that blink in random colours until they are told to stop. No ROS."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Tuple
+
+from naoqi.errors import NaoError
+
+from ..errors import BadGoal, Preempted
+from ..interrupt import Interrupt
+from ..robot import CLEAN_UP_LIMIT
+from ..robot_task import run_task
+from .goal_crowd import Replaced
+
+LEDS = "ALLeds"
+EYES = "FaceLeds"
+LONGEST_PAUSE = 3.0
+"""Standard deviations above the mean that a pause may last."""
+
+Colour = Tuple[float, float, float]
+"""Red, green and blue, 0 to 1."""
+
+
+@dataclass(frozen=True)
+class Blinks:
+    """How to blink.
+
+    Attributes:
+        colours: To choose from.
+        background: Between the blinks.
+        duration: Of one blink, s: a third to fade in, a third to hold, a third to fade out.
+        mean_pause: Between two of them, s.
+        deviation: Standard deviation of the pause, s.
+    """
+
+    colours: Sequence[Colour]
+    background: Colour
+    duration: float
+    mean_pause: float
+    deviation: float
+
+    def check(self) -> None:
+        """See that they can be carried out.
+
+        Raises:
+            BadGoal: If not.
+        """
+        if not self.colours:
+            raise BadGoal("colors", [], "at least one colour", problem="there is no colour to blink in")
+        fields = [("bg_color", self.background), *((f"colors[{i}]", each) for i, each in enumerate(self.colours))]
+        for field, colour in fields:
+            if not all(0.0 <= part <= 1.0 for part in colour):
+                raise BadGoal(field, tuple(colour), "red, green and blue, each 0 to 1")
+        if not self.duration > 0.0:
+            raise BadGoal("blink_duration", self.duration, "above 0 s")
+        if not 0.0 < self.mean_pause < float("inf"):
+            raise BadGoal("blink_rate_mean", self.mean_pause, "above 0 s")
+        if not 0.0 <= self.deviation < float("inf"):
+            raise BadGoal("blink_rate_sd", self.deviation, "0 s and above")
+
+    def pause(self, chance: random.Random) -> float:
+        """A pause between two blinks, s."""
+        longest = self.mean_pause + LONGEST_PAUSE * self.deviation
+        return min(max(chance.gauss(self.mean_pause, self.deviation), 0.0), longest)
+
+
+def fade(robot: Any, light: str, colour: Colour, duration: float, interrupt: Interrupt) -> None:
+    """Fade a light or a group to a colour, and wait for the end.
+
+    Args:
+        robot: Its proxies, see `nao_library_modules.robot`.
+        light: As the robot names it.
+        colour: Red, green and blue, 0 to 1.
+        duration: s.
+        interrupt: Ends it.
+
+    Raises:
+        NaoError: If the robot refuses or is lost.
+        Preempted: Or whatever reason the interrupt has.
+    """
+    call = robot.proxy(LEDS).call_async("fadeRGB", light, *(float(part) for part in colour), float(duration))
+    run_task(call, interrupt, lambda: None)  # a robot that cannot cancel ends the fade by itself
+
+
+def blink(
+    robot: Any,
+    blinks: Blinks,
+    clock: Any,
+    interrupt: Interrupt,
+    tell: Callable[[Colour], None],
+    chance: random.Random,
+) -> bool:
+    """Blink until the interrupt comes; the eyes have the background colour then.
+
+    Args:
+        robot: Its proxies, see `nao_library_modules.robot`.
+        blinks: How.
+        clock: Time of holds and pauses.
+        interrupt: Ends it.
+        tell: Gets the colour of each blink that begins.
+        chance: Picks colours and pauses.
+
+    Returns:
+        Whether somebody else blinks from now on.
+
+    Raises:
+        NaoError: If the robot refuses or is lost.
+    """
+    third = blinks.duration / 3.0
+    try:
+        while True:
+            colour = chance.choice(blinks.colours)
+            tell(colour)
+            fade(robot, EYES, colour, third, interrupt)
+            clock.wait(third, interrupt)
+            interrupt.check()
+            fade(robot, EYES, blinks.background, third, interrupt)
+            clock.wait(blinks.pause(chance), interrupt)
+            interrupt.check()
+    except Replaced:
+        return True
+    except Preempted:
+        call = robot.proxy(LEDS).call_async("fadeRGB", EYES, *(float(part) for part in blinks.background), 0.0)
+        try:
+            call.result(timeout=CLEAN_UP_LIMIT)
+        except NaoError as error:
+            raise NaoError(f"the eyes may not have the colour of the background: {error}") from error
+        return False

@@ -1,0 +1,199 @@
+"""What the robot says about its body, judged: one report for each part of it. No ROS."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..body_devices import (
+    BATTERY_STATUS,
+    CHARGE,
+    CHARGING_BIT,
+    FULL_BIT,
+    HOT_MOTOR,
+    PREFIX,
+    TOO_HOT_MOTOR,
+    temperature_key,
+)
+from ..body_devices import CURRENT as AMPERES
+from ..health import Level, Report
+
+JOINT = "nao_joint: {}"
+BATTERY, CURRENT, HEAD = "nao_power: Battery", "nao_power: Current", "nao_cpu: Head Temperature"
+WLAN, ETHERNET = "nao_wlan: Status", "nao_ethernet: Status"
+
+PARTS = {BATTERY: "battery", CURRENT: "power", HEAD: "cpu", WLAN: "wlan", ETHERNET: "ethernet"}
+"""Report -> part of the robot that it is about; a joint is one by its name."""
+
+TEMPERATURE = temperature_key("{}")
+STIFFNESS = f"{PREFIX}{{}}/Hardness/Actuator/Value"
+HEAD_TEMPERATURE = temperature_key("Head")
+# The motor of both hips has its sensor under the name of the left one.
+WITHOUT_SENSOR = frozenset({"RHipYawPitch"})
+UNKNOWN = "unknown"
+
+BATTERY_FLAGS = (
+    "End off Discharge flag",
+    "Near End Off Discharge flag",
+    "Charge FET on",
+    "Discharge FET on",
+    "Accu learn flag",
+    "Discharging flag",
+    "Full Charge Flag",
+    "Charge Flag",
+    "Charge Temperature Alarm",
+    "Over Charge Alarm",
+    "Discharge Alarm",
+    "Charge Over Current Alarm",
+    "Discharge Over Current Alarm (14A)",
+    "Discharge Over Current Alarm (6A)",
+    "Discharge Temperature Alarm",
+    "Power-Supply present",
+)
+"""Bits of the battery's status, lowest first, under the names that nao_robot gave them."""
+ALARMS = tuple(name for name in BATTERY_FLAGS if name.endswith("Alarm") or "Alarm (" in name)
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """From where on something is worth a warning, or an error.
+
+    Attributes:
+        warm: Joint temperature, degC.
+        hot: Likewise.
+        head_warm: Temperature of the processor, degC.
+        head_hot: Likewise.
+        low: Charge of the battery, percent.
+        empty: Likewise.
+    """
+
+    warm: float = HOT_MOTOR
+    hot: float = TOO_HOT_MOTOR
+    head_warm: float = 100.0
+    head_hot: float = 105.0
+    low: float = 30.0
+    empty: float = 10.0
+
+
+def part_of(report: str) -> str:
+    """Part of the robot that a report is about."""
+    return PARTS.get(report) or report.split(": ")[-1]
+
+
+def keys_of(joints: Sequence[str]) -> list[str]:
+    """Keys of the robot's memory that the reports are made of."""
+    keys = [
+        pattern.format(joint) for joint in joints if joint not in WITHOUT_SENSOR for pattern in (TEMPERATURE, STIFFNESS)
+    ]
+    return [*keys, CHARGE, BATTERY_STATUS, AMPERES, HEAD_TEMPERATURE]
+
+
+def body_reports(joints: Sequence[str], values: Mapping[str, Any], limits: Thresholds) -> dict[str, Report]:
+    """Reports by name.
+
+    Args:
+        joints: Names of the joints.
+        values: What the memory has for the keys of `keys_of`; None for what it does not.
+        limits: From where on something is wrong.
+    """
+    reports = {JOINT.format(joint): joint_report(joint, values, limits) for joint in joints}
+    charge, flags = _number(values.get(CHARGE)), values.get(BATTERY_STATUS)
+    reports[BATTERY] = battery_report(charge, flags if isinstance(flags, int) else None, limits)
+    reports[CURRENT] = current_report(_number(values.get(AMPERES)))
+    reports[HEAD] = head_report(_number(values.get(HEAD_TEMPERATURE)), limits)
+    return reports
+
+
+def joint_report(joint: str, values: Mapping[str, Any], limits: Thresholds) -> Report:
+    """Temperature and stiffness of a joint."""
+    temperature = _number(values.get(TEMPERATURE.format(joint)))
+    stiffness = _number(values.get(STIFFNESS.format(joint)))
+    facts = {"Temperature": _text(temperature), "Stiffness": _text(stiffness)}
+    if temperature is None:
+        return Report(Level.OK, "No temperature sensor", facts)
+    if temperature < limits.warm:
+        return Report(Level.OK, f"Normal: {temperature:.1f} C", facts)
+    if temperature < limits.hot:
+        return Report(Level.WARN, f"Hot: {temperature:.1f} C", facts)
+    return Report(Level.ERROR, f"Too hot: {temperature:.1f} C", facts)
+
+
+def battery_report(charge: float | None, flags: int | None, limits: Thresholds) -> Report:
+    """Charge (0 to 1) and status of the battery."""
+    facts = {"Percentage": UNKNOWN if charge is None else f"{100.0 * charge:g}"}
+    for bit, name in enumerate(BATTERY_FLAGS):
+        facts[name] = UNKNOWN if flags is None else str(bool(flags >> bit & 1))
+    facts["Status"] = UNKNOWN if flags is None else bin(flags)
+    if charge is None:
+        return Report(Level.WARN, "the robot does not tell its charge", facts)
+    percent = f"{100.0 * charge:.1f} %"
+    alarms = [name for name in ALARMS if facts[name] == "True"]
+    if alarms:
+        return Report(Level.ERROR, f"{', '.join(alarms)} ({percent} left)", facts)
+    if flags is not None and flags >> FULL_BIT & 1:
+        return Report(Level.OK, f"Fully charged ({percent})", facts)
+    if flags is not None and flags >> CHARGING_BIT & 1:
+        return Report(Level.OK, f"Charging ({percent})", facts)
+    if 100.0 * charge > limits.low:
+        return Report(Level.OK, f"OK ({percent} left)", facts)
+    if 100.0 * charge > limits.empty:
+        return Report(Level.WARN, f"Low ({percent} left)", facts)
+    return Report(Level.ERROR, f"Almost empty ({percent} left)", facts)
+
+
+def current_report(amperes: float | None) -> Report:
+    """Current of the battery, above 0 while it is charged."""
+    facts = {"Current": _text(amperes)}
+    if amperes is None:
+        return Report(Level.OK, UNKNOWN, facts)
+    return Report(Level.OK, f"{amperes:.2f} A ({'charging' if amperes > 0.0 else 'discharging'})", facts)
+
+
+def head_report(temperature: float | None, limits: Thresholds) -> Report:
+    """Temperature of the processor in the head, degC."""
+    facts = {"CPU Temperature": _text(temperature)}
+    if temperature is None:
+        return Report(Level.OK, UNKNOWN, facts)
+    message = f"{temperature:.1f} C"
+    if temperature < limits.head_warm:
+        return Report(Level.OK, message, facts)
+    return Report(Level.WARN if temperature < limits.head_hot else Level.ERROR, message, facts)
+
+
+def network_reports(services: Sequence[Any] | None) -> dict[str, Report]:
+    """The robot's networks.
+
+    Args:
+        services: What ALConnectionManager lists: of each network a list of [property, value]; None if the robot does
+            not tell, as only newer ones do.
+    """
+    kinds = {WLAN: "wifi", ETHERNET: "ethernet"}
+    if services is None:
+        return {name: Report(Level.OK, "unknown: the robot does not tell") for name in kinds}
+    networks = [_properties(service) for service in services]
+    return {name: _network_report([n for n in networks if n.get("Type") == kind]) for name, kind in kinds.items()}
+
+
+def _network_report(networks: Sequence[Mapping[str, Any]]) -> Report:
+    connected = [n for n in networks if n.get("State") in ("online", "ready")]
+    if not connected:
+        return Report(Level.OK, "not connected")
+    facts = {key: str(connected[0][key]) for key in ("Name", "State", "Strength") if key in connected[0]}
+    return Report(Level.OK, f"connected: {facts.get('Name', 'without a name')}", facts)
+
+
+def _properties(service: Any) -> dict[str, Any]:
+    pairs = service if isinstance(service, (list, tuple)) else ()
+    return {str(p[0]): p[1] for p in pairs if isinstance(p, (list, tuple)) and len(p) == 2}
+
+
+def _number(value: Any) -> float | None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        return None
+    return float(value)
+
+
+def _text(value: float | None) -> str:
+    return "None" if value is None else f"{value:.3g}"

@@ -1,0 +1,134 @@
+"""Which keys of the robot's memory are watched, and how. No ROS."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from ..errors import BadGoal
+from .memory_access import check_pattern
+from .memory_names import is_pattern, matches
+from .memory_values import KINDS
+
+FASTEST = 100.0
+"""Hz, above which nobody asks."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What is to become of some keys.
+
+    Attributes:
+        pattern: A key, or several with * and ?.
+        rate: Hz, at most so many messages a second and key; 0: as ever.
+        kind: Kind of message; empty: by value.
+        on: Whether they are watched.
+    """
+
+    pattern: str
+    rate: float = 0.0
+    kind: str = ""
+    on: bool = True
+
+    def check(self) -> None:
+        """See that it makes sense.
+
+        Raises:
+            BadGoal: If not.
+        """
+        check_pattern(self.pattern)
+        if not (math.isfinite(self.rate) and 0.0 <= self.rate <= FASTEST):
+            raise BadGoal("rate", self.rate, f"0 to {FASTEST:g} Hz")
+        if self.kind and self.kind not in KINDS:
+            raise BadGoal("type", self.kind, f"one of {', '.join(KINDS)}, or nothing")
+
+
+class Rules:
+    """Rules in the order in which they were made: of those that concern a key the last one counts. For one lock."""
+
+    def __init__(self) -> None:
+        """Begin without."""
+        self._rules: list[Rule] = []
+
+    def add(self, rule: Rule) -> None:
+        """Add a rule; it takes the place of older ones for the same pattern, or for keys that it covers."""
+        self._rules = [r for r in self._rules if r.pattern != rule.pattern and not self._covers(rule, r)]
+        if rule.on or any(r.on for r in self._rules):
+            self._rules.append(rule)
+
+    def copy(self) -> Rules:
+        """The same rules, which do not change with these."""
+        other = Rules()
+        other._rules = list(self._rules)
+        return other
+
+    def rule_for(self, key: str) -> Rule | None:
+        """The rule that has a key watched; None if it is not to be."""
+        found = next((rule for rule in reversed(self._rules) if matches(key, rule.pattern)), None)
+        return found if found is not None and found.on else None
+
+    def wanted_of(self, known: Iterable[str]) -> dict[str, Rule]:
+        """Key -> its rule, for all keys that are to be watched.
+
+        Args:
+            known: Keys that the robot has; a rule for one key by name wants that in any case.
+        """
+        named = [rule.pattern for rule in self._rules if rule.on and not is_pattern(rule.pattern)]
+        found = {key: self.rule_for(key) for key in dict.fromkeys([*named, *known])}
+        return {key: rule for key, rule in found.items() if rule is not None}
+
+    @property
+    def has_patterns(self) -> bool:
+        """Whether keys that are not there yet may be wanted."""
+        return any(rule.on and is_pattern(rule.pattern) for rule in self._rules)
+
+    def __bool__(self) -> bool:
+        """Whether there are any."""
+        return bool(self._rules)
+
+    @staticmethod
+    def _covers(new: Rule, old: Rule) -> bool:
+        by_name = not is_pattern(old.pattern) and matches(old.pattern, new.pattern)
+        return not new.on and (by_name or new.pattern == "*")
+
+
+def read_rules(entries: Any, parameter: str) -> list[Rule]:
+    """Rules from a parameter.
+
+    Args:
+        entries: A list of keys and patterns, or of {key: ..., rate: ..., type: ...}; or a text with keys between commas
+            or spaces.
+        parameter: Its name, for the text of an error.
+
+    Raises:
+        NaoError: If it is something else.
+    """
+    if isinstance(entries, str):
+        entries = entries.replace(",", " ").split()
+    allowed = "a list of keys, or of {key: ..., rate: ..., type: ...}"
+    if not isinstance(entries, list):
+        raise NaoError(f"{parameter} is {entries!r}: {allowed}")
+    rules = []
+    for place, entry in enumerate(entries):
+        where = f"{parameter}[{place}]"
+        fields = {"key": entry} if isinstance(entry, str) else entry
+        if (
+            not isinstance(fields, dict)
+            or not isinstance(fields.get("key"), str)
+            or set(fields) - {"key", "rate", "type"}
+        ):
+            raise NaoError(f"{where} is {entry!r}: {allowed}")
+        rate = fields.get("rate", 0.0)
+        if isinstance(rate, bool) or not isinstance(rate, (int, float)):
+            raise NaoError(f"{where} has rate {rate!r}: Hz")
+        rule = Rule(fields["key"], float(rate), str(fields.get("type", "")))
+        try:
+            rule.check()
+        except BadGoal as error:
+            raise NaoError(f"{where}: {error}") from error
+        rules.append(rule)
+    return rules

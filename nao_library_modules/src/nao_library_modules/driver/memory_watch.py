@@ -1,0 +1,294 @@
+"""Keys and events of the robot's memory, watched while somebody listens to their topics. No ROS."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from naoqi.errors import NaoError, RobotUnreachable
+
+from ..errors import BadGoal
+from ..event_relay import EventRelay
+from ..health import Level, Report
+from ..interrupt import Interrupt
+from .memory_access import MEMORY, MemoryAccess
+from .memory_key import WatchedKey
+from .memory_names import matching, topics_of
+from .memory_rules import Rule, Rules
+from .polling import FASTEST, RETRY
+
+log = logging.getLogger(__name__)
+
+KEY_ADDED = "ALMemory/KeyAdded"
+CLOSE_LIMIT = 2.0
+FOREVER = 1e6
+
+
+class MemoryWatch:
+    """Has topics for keys, reads data that somebody listens to, and passes events on; after a lost connection as well.
+
+    Threads: the one of this object asks the robot and opens topics; so do callers of `watch` and `unwatch`, one of all
+    of them at a time (`_work`). Events come in threads of libqi, demand in those of the topics: they change a key and
+    wake the thread.
+    """
+
+    def __init__(self, robot: Any, clock: Any, make_topic: Callable[..., Any], largest: int) -> None:
+        """Watch nothing yet; the robot need not be there.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            clock: Time that rates are in.
+            make_topic: Opens a topic, see `WatchedKey`.
+            largest: How many keys may be watched at once.
+        """
+        self._robot = robot
+        self._memory = MemoryAccess(robot)
+        self._clock = clock
+        self._make_topic = make_topic
+        self._largest = largest
+        self._work = threading.Lock()
+        self._rules = Rules()
+        self._keys: dict[str, WatchedKey] = {}
+        self._homeless: deque[tuple[WatchedKey, Any]] = deque()  # events that need another topic first
+        self._relay = EventRelay(lambda: robot.proxy(MEMORY), self._on_event)
+        self._stale = True
+        self._generation: int | None = None
+        self._problem = self._overflow = ""
+        self._news = Interrupt()
+        self._closed = False
+        self._rest = Interrupt()
+        robot.connection.add_listener(self._wake)
+        self._thread = threading.Thread(target=self._run, name="memory", daemon=True)
+        self._thread.start()
+
+    # --- for the node ---------------------------------------------------------------------------------------------
+
+    def watch(self, rules: Iterable[Rule]) -> None:
+        """Watch what rules say, when the robot is there.
+
+        Raises:
+            NaoError: If they are more than may be watched at once; then nothing changes.
+        """
+        with self._work:
+            former = self._rules.copy()
+            for rule in rules:
+                rule.check()
+                self._rules.add(rule)
+            try:
+                if self._robot.connection.state == "connected":
+                    self._resolve()
+            except RobotUnreachable:
+                self._stale = True  # the thread sees to it when the robot is back
+            except NaoError:
+                self._rules = former
+                raise
+        self._wake()
+
+    def unwatch(self, pattern: str) -> list[str]:
+        """Watch keys no longer.
+
+        Returns:
+            Those that were watched.
+
+        Raises:
+            NaoError: If the pattern is empty.
+        """
+        rule = Rule(pattern, on=False)
+        rule.check()
+        with self._work:
+            self._rules.add(rule)
+            ended = matching(self._keys, pattern)
+            for key in ended:
+                self._drop(key)
+        self._wake()
+        return ended
+
+    def watched(self, pattern: str = "") -> dict[str, str]:
+        """Key -> topic, empty as long as it has none, of those that a pattern stands for."""
+        keys = dict(self._keys)
+        return {key: keys[key].topic_name if keys[key].kind else "" for key in matching(keys, pattern)}
+
+    def report(self) -> Report:
+        """How many keys are watched, and whether that works."""
+        keys = list(self._keys.values())
+        values = {
+            "keys": str(len(keys)),
+            "topics": str(sum(1 for key in keys if key.kind)),
+            "with listeners": str(sum(1 for key in keys if key.wanted)),
+            "messages": str(sum(key.published for key in keys)),
+        }
+        if not self._rules:
+            return Report(Level.OK, "nothing is watched", values)
+        if self._problem or self._overflow:
+            return Report(Level.ERROR, self._problem or self._overflow, values)
+        return Report(Level.OK, "watched", values)
+
+    def close(self) -> None:
+        """Watch nothing any more."""
+        self._robot.connection.remove_listener(self._wake)
+        self._closed = True
+        self._news.stop()
+        self._rest.stop()
+        self._thread.join(CLOSE_LIMIT)
+        self._relay.close()
+
+    # --- under _work ----------------------------------------------------------------------------------------------
+
+    def _resolve(self) -> None:
+        """Have the keys that the rules say, with their topics."""
+        known = self._memory.known() if self._rules else {}
+        wanted = self._rules.wanted_of(known)
+        if len(wanted) > self._largest:
+            problem = f"{len(wanted)} keys are to be watched"
+            raise BadGoal("pattern", len(wanted), f"{self._largest} at most (~max_topics)", problem=problem)
+        for name in [name for name in self._keys if name not in wanted]:
+            self._drop(name)
+        new = [name for name in wanted if name not in self._keys]
+        topics = topics_of(new, [key.topic_name for key in self._keys.values()])
+        for name in new:
+            self._keys[name] = WatchedKey(name, topics[name], wanted[name], self._make_topic)
+        for name, rule in wanted.items():
+            key = self._keys[name]
+            changed_kind = key.rule.kind != rule.kind
+            key.rule, key.is_event = rule, known.get(name, False)
+            if changed_kind:
+                key.close()
+        self._open_topics()
+        if self._rules.has_patterns or any(not key.kind for key in self._keys.values()):
+            self._relay.subscribe(KEY_ADDED)
+        self._stale, self._overflow = False, ""
+
+    def _open_topics(self) -> None:
+        shut = [key for key in self._keys.values() if not key.kind]
+        for key, value in zip(shut, self._memory.values([key.name for key in shut])):
+            key.open(value, self._wake)
+
+    def _drop(self, name: str) -> None:
+        key = self._keys.pop(name)
+        self._relay.unsubscribe(name)
+        key.close()
+
+    # --- the thread -----------------------------------------------------------------------------------------------
+
+    def _wake(self, *_: Any) -> None:
+        self._news.trigger()
+
+    def _run(self) -> None:
+        while not self._closed:
+            self._news.clear()
+            pause = self._look()
+            if pause is None:
+                self._news.wait(RETRY)  # of this computer's time: that of a simulator may have ended with it
+            else:
+                self._clock.wait(pause, self._news)
+                self._rest.wait(FASTEST)  # however fast simulated time runs, or events come
+
+    def _look(self) -> float | None:
+        """Do what is due; returns s until the next time, None if that does not work now."""
+        problem = ""
+        try:
+            if self._robot.connection.state == "connected":
+                with self._work:
+                    self._keep_up()
+                    pause = self._serve()
+                self._problem = ""
+                return pause
+            problem = "the robot is not connected"
+        except RobotUnreachable as error:
+            problem = str(error)  # the log has it already, from the connection
+        except NaoError as error:
+            problem = str(error)
+            if problem != self._problem:
+                log.warning("the memory cannot be watched: %s", error)
+        except Exception as error:  # a mistake in here must not leave a node that lives and says nothing
+            problem = f"unexpected error: {error!r}"
+            log.exception("the memory cannot be watched")
+        self._problem = problem
+        return None
+
+    def _keep_up(self) -> None:
+        generation = self._robot.connection.generation
+        if generation != self._generation:  # the robot behind a new connection knows nothing of what was
+            for name in self._relay.names:
+                self._relay.unsubscribe(name)
+            for key in self._keys.values():
+                key.subscribed = False
+            self._stale = True
+        if self._stale:
+            try:
+                self._resolve()
+            except BadGoal as error:  # new keys of the robot are too many: what is watched goes on
+                log.error("%s", error)
+                self._overflow, self._stale = str(error), False
+        self._generation = generation
+        while self._homeless:
+            key, value = self._homeless.popleft()
+            key.open(value, self._wake)
+            key.deliver(value)
+
+    def _serve(self) -> float:
+        """Read what is due and publish what was held; returns s until something is due again."""
+        self._mind_events()
+        now = self._clock.now()
+        waits = [FOREVER]
+        due, held = [], []
+        for key in self._keys.values():
+            if key.is_event:
+                wait, value = key.release(now)
+                if wait == 0.0:
+                    held.append((key, value))
+                elif wait is not None:
+                    waits.append(wait)
+            elif key.wanted:
+                wait = key.wait(now)
+                if wait > 0.0:
+                    waits.append(wait)
+                else:
+                    due.append(key)
+        # libqi brings events that follow each other closely in any order: what was held need not be the newest.
+        for (key, value), newest in zip(held, self._memory.values([key.name for key, _ in held])):
+            self._hand_over(key, value if newest is None else newest)
+        for key, value in zip(due, self._memory.values([key.name for key in due])):
+            key.was_read(now)
+            waits.append(key.wait(now))
+            if value is not None:
+                self._hand_over(key, value)
+        return min(waits)
+
+    def _mind_events(self) -> None:
+        """Subscribe the events that somebody waits for, or whose type is not known yet; those only."""
+        begun = []
+        for key in self._keys.values():
+            needed = key.is_event and (key.wanted or not key.kind)
+            if needed and not key.subscribed:
+                self._relay.subscribe(key.name)
+                begun.append(key)
+            elif key.subscribed and not needed:
+                self._relay.unsubscribe(key.name)
+            key.subscribed = needed
+        for key, value in zip(begun, self._memory.values([key.name for key in begun])):
+            if value is not None and key.wanted:
+                self._hand_over(key, value)  # who begins to listen learns how it stands
+
+    def _hand_over(self, key: WatchedKey, value: Any) -> None:
+        if not key.deliver(value):
+            key.open(value, self._wake)
+            key.deliver(value)
+
+    # --- in threads of libqi --------------------------------------------------------------------------------------
+
+    def _on_event(self, name: str, value: Any) -> None:
+        if name == KEY_ADDED and self._rules.rule_for(str(value)) is not None:
+            self._stale = True
+            self._wake()
+        key = self._keys.get(name)
+        if key is None:
+            return
+        if key.hold(value, self._clock.now()) > 0.0:
+            self._wake()
+        elif not key.deliver(value):
+            self._homeless.append((key, value))
+            self._wake()

@@ -1,0 +1,68 @@
+"""The node nao_behaviors: behaviours that are installed on the robot, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from actionlib import ActionServer
+
+from nao_library_actions.msg import RunBehaviorAction, RunBehaviorResult
+from nao_library_msgs.srv import GetInstalledBehaviors, GetInstalledBehaviorsResponse
+
+from ..errors import RobotLost
+from ..health import Report
+from ..interrupt import Interrupt
+from .behaviors import Behaviors
+from .goal_crowd import GoalCrowd, Outcome
+from .services import offer
+
+ROBOT = frozenset({"the robot"})
+"""What a behaviour has for itself: all of it."""
+SHUTDOWN_LIMIT = 2.0
+
+
+class NaoBehaviors:
+    """Behaviours of one robot, one at a time: a newer goal ends the one before.
+
+    ROS API (relative names):
+        Service `get_installed_behaviors` (nao_library_msgs/GetInstalledBehaviors).
+        Action `run_behavior` (nao_library_actions/RunBehavior): ends with the behaviour; cancelling it stops the
+        behaviour.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+        """
+        self._robot = robot
+        self._behaviors = Behaviors(robot)
+        self._crowd = GoalCrowd(lambda _: ROBOT, self._run)
+        name = "run_behavior"
+        ActionServer(name, RunBehaviorAction, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
+        robot.connection.add_listener(self._connection_changed)
+        offer("get_installed_behaviors", GetInstalledBehaviors, self._installed)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {"goals run_behavior": self._crowd.counter.report}
+
+    def close(self) -> None:
+        """Stop what runs."""
+        self._robot.connection.remove_listener(self._connection_changed)
+        self._crowd.close(SHUTDOWN_LIMIT)
+
+    def _installed(self, _request: Any) -> GetInstalledBehaviorsResponse:
+        return GetInstalledBehaviorsResponse(self._behaviors.installed())
+
+    def _run(self, goal: Any, interrupt: Interrupt) -> Outcome:
+        self._behaviors.run(goal.behavior, interrupt)
+        return Outcome(RunBehaviorResult())
+
+    def _connection_changed(self, state: Any) -> None:
+        """Called from the thread that the connection has for its listeners."""
+        if state == "lost":
+            reason = self._robot.connection.last_error or "no answer"
+            self._crowd.interrupt_all(RobotLost(self._robot.address, reason))

@@ -1,0 +1,182 @@
+"""The node nao_diagnostic_updater: how the robot is, and whether it can be reached."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+
+from nao_library_msgs.msg import ConnectionState, RobotInfo, StringStamped
+from nao_library_msgs.srv import GetRobotInfo, GetRobotInfoResponse
+from naoqi.errors import NaoError, UnknownMethod, UnknownModule
+
+from ..answers import json_of
+from ..health import Report
+from ..interrupt import Interrupt
+from ..joint_names import JointNames
+from .body_reports import Thresholds, body_reports, keys_of, network_reports, part_of
+from .node import publish
+from .robot_facts import KEYS, facts_of, info_fields
+from .services import offer
+
+log = logging.getLogger(__name__)
+
+MEMORY, NETWORKS = "ALMemory", "ALConnectionManager"
+ANSWER_LIMIT = 2.0
+SHUTDOWN_LIMIT = 3.0
+DEFAULT_RATE, FASTEST = 0.5, 20.0
+THRESHOLDS = {
+    "warning_threshold": "warm",
+    "error_threshold": "hot",
+    "cpu_warning_threshold": "head_warm",
+    "cpu_error_threshold": "head_hot",
+    "battery_warning_threshold": "low",
+    "battery_error_threshold": "empty",
+}
+"""Parameter -> field of Thresholds."""
+
+
+class NaoDiagnosticUpdater:
+    """Temperatures, stiffness, battery and connection of one robot on /diagnostics.
+
+    It works in wall-clock time: simulated time stands still exactly when the simulator is gone. Reports of a robot
+    that cannot be reached are stale, and say so.
+
+    ROS API:
+        Publishes `/diagnostics` (diagnostic_msgs/DiagnosticArray): `nao_joint: JOINT` each, `nao_power: Battery`,
+        `nao_power: Current`, `nao_cpu: Head Temperature`, `nao_wlan: Status`, `nao_ethernet: Status`; in a namespace
+        that comes before each name. Relative names `connection` (nao_library_msgs/ConnectionState, latched) and
+        `info` (nao_library_msgs/StringStamped, latched: facts of the robot as JSON).
+        Service `get_robot_config` (nao_library_msgs/GetRobotInfo).
+        Parameters `~update_rate` (0.5 Hz), `~warning_threshold` (68), `~error_threshold` (74): of joints, degC;
+        `~cpu_warning_threshold` (100), `~cpu_error_threshold` (105): degC; `~battery_warning_threshold` (30),
+        `~battery_error_threshold` (10): percent.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Begin; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+
+        Raises:
+            NaoError: If a parameter is wrong.
+        """
+        self._robot = robot
+        self._period = 1.0 / _number("~update_rate", DEFAULT_RATE, 1e-3, FASTEST)
+        defaults = Thresholds()
+        self._limits = Thresholds(
+            **{field: _number(f"~{name}", getattr(defaults, field)) for name, field in THRESHOLDS.items()}
+        )
+        self._names = JointNames(robot)
+        namespace = rospy.get_namespace().strip("/")
+        self._prefix = f"/{namespace}/" if namespace else ""
+        self._hardware = robot.address
+        self._last: dict[str, Report] = {}
+        self._told_facts: dict[str, str] = {}
+        self._interrupt = Interrupt()
+        self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
+        self._info = rospy.Publisher("info", StringStamped, queue_size=1, latch=True)
+        self._connection = rospy.Publisher("connection", ConnectionState, queue_size=10, latch=True)
+        robot.connection.add_listener(self._on_state)
+        self._on_state(robot.connection.state)
+        offer("get_robot_config", GetRobotInfo, self._robot_config)
+        self._thread = threading.Thread(target=self._run, name="diagnosis", daemon=True)
+        self._thread.start()
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics beside those that it publishes itself: none."""
+        return {}
+
+    def close(self) -> None:
+        """Publish no more."""
+        self._robot.connection.remove_listener(self._on_state)
+        self._interrupt.stop()
+        self._thread.join(SHUTDOWN_LIMIT)
+
+    # --- connection -----------------------------------------------------------------------------------------------
+
+    def _on_state(self, state: Any) -> None:
+        """Called from the thread that the connection has for its listeners."""
+        connection = self._robot.connection
+        message = ConnectionState(address=self._robot.address, state=str(state), connections=connection.generation)
+        message.last_error = connection.last_error or ""
+        message.header.stamp = rospy.Time.now()
+        publish(self._connection, message)
+
+    # --- facts ----------------------------------------------------------------------------------------------------
+
+    def _robot_config(self, _request: Any) -> GetRobotInfoResponse:
+        facts, joints = self._facts(), self._names.body
+        return GetRobotInfoResponse(RobotInfo(**info_fields(facts, len(joints))))
+
+    def _facts(self) -> dict[str, str]:
+        keys = list(KEYS.values())
+        return facts_of(dict(zip(keys, self._read(keys))))
+
+    def _tell_facts(self) -> None:
+        facts = self._facts()
+        if facts == self._told_facts:
+            return
+        self._told_facts = facts
+        body = facts["body id"]
+        self._hardware = body if body not in ("", "0") else self._robot.address
+        message = StringStamped(data=json_of({**facts, "address": self._robot.address}))
+        message.header.stamp = rospy.Time.now()
+        publish(self._info, message)
+
+    # --- the thread -----------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        generation = None
+        while not self._interrupt.is_set():
+            try:
+                if generation != self._robot.connection.generation:
+                    self._tell_facts()
+                    generation = self._robot.connection.generation
+                self._last = self._look()
+                self._publish(self._last)
+            except NaoError as error:  # the log has it already, from the connection
+                self._publish(self._last, str(error))
+            except Exception:  # a mistake in here must not leave a node that lives and says nothing
+                log.exception("the robot cannot be diagnosed")
+            self._interrupt.wait(self._period)
+
+    def _look(self) -> dict[str, Report]:
+        joints = self._names.body
+        keys = keys_of(joints)
+        reports = body_reports(joints, dict(zip(keys, self._read(keys))), self._limits)
+        try:
+            networks = self._robot.proxy(NETWORKS).call_async("services").result(timeout=ANSWER_LIMIT)
+        except (UnknownModule, UnknownMethod):
+            networks = None
+        return {**reports, **network_reports(networks)}
+
+    def _read(self, keys: list[str]) -> list[Any]:
+        return self._robot.proxy(MEMORY).call_async("getListData", keys).result(timeout=ANSWER_LIMIT)
+
+    def _publish(self, reports: Mapping[str, Report], problem: str = "") -> None:
+        message = DiagnosticArray()
+        message.header.stamp = rospy.Time.now()
+        for name, report in reports.items():
+            status = DiagnosticStatus(level=int(report.level), name=self._prefix + name, message=report.message)
+            status.hardware_id = f"{self._hardware}#{part_of(name)}"
+            status.values = [KeyValue(key, value) for key, value in report.values.items()]
+            if problem:
+                status.level, status.message = DiagnosticStatus.STALE, f"{report.message} (before: {problem})"
+            message.status.append(status)
+        if message.status:
+            publish(self._diagnostics, message)
+
+
+def _number(name: str, default: float, lowest: float | None = None, highest: float | None = None) -> float:
+    value = rospy.get_param(name, default)
+    right = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not right or (lowest is not None and value < lowest) or (highest is not None and value > highest):
+        allowed = "a number" if lowest is None else f"{lowest:g} to {highest:g}"
+        raise NaoError(f"{name} is {value!r}: {allowed}")
+    return float(value)

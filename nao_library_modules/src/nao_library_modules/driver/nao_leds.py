@@ -1,0 +1,100 @@
+"""The node nao_leds: lights that fade, eyes that blink."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+from actionlib import ActionServer
+from std_msgs.msg import ColorRGBA
+
+from nao_library_actions.msg import BlinkAction, BlinkFeedback, BlinkResult
+from nao_library_msgs.msg import FadeRGB
+from naoqi.errors import NaoError
+
+from ..errors import BadGoal, Preempted, RobotLost
+from ..health import Report
+from ..interrupt import Interrupt
+from ..ros_clock import RosClock
+from .blinking import EYES, Blinks, Colour, blink, fade
+from .goal_crowd import GoalCrowd, Outcome
+
+QUEUE = 100
+COMPLAINT_PERIOD = 5.0
+SHUTDOWN_LIMIT = 2.0
+
+
+class NaoLeds:
+    """Lights of one robot, under the names of nao_robot.
+
+    ROS API (relative names):
+        Subscribes `fade_rgb` (nao_library_msgs/FadeRGB): fades one after the other, in the order of the messages.
+        Action `blink` (nao_library_actions/Blink): the eyes blink until the goal is cancelled or a newer one comes;
+        so it never succeeds. `still_blinking` in its result tells that a newer one has come.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+        """
+        self._robot = robot
+        self._clock = RosClock()
+        self._chance = random.Random()
+        self._interrupt = Interrupt()
+        self._crowd = GoalCrowd(lambda _: frozenset({EYES}), self._blink, with_feedback=True)
+        ActionServer("blink", BlinkAction, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
+        robot.connection.add_listener(self._connection_changed)
+        rospy.Subscriber("fade_rgb", FadeRGB, self._fade, queue_size=QUEUE)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {"goals blink": self._crowd.counter.report}
+
+    def close(self) -> None:
+        """End fades and goals."""
+        self._robot.connection.remove_listener(self._connection_changed)
+        self._interrupt.stop()
+        self._crowd.close(SHUTDOWN_LIMIT)
+
+    def _fade(self, message: FadeRGB) -> None:
+        colour, duration = _rgb(message.color), message.fade_duration.to_sec()
+        try:
+            if not all(0.0 <= part <= 1.0 for part in colour):
+                raise BadGoal("color", colour, "red, green and blue, each 0 to 1")
+            if duration < 0.0:
+                raise BadGoal("fade_duration", duration, "0 s and above")
+            fade(self._robot, message.led_name, colour, duration, self._interrupt)
+        except Preempted:
+            return  # the node ends
+        except NaoError as error:
+            rospy.logerr_throttle(COMPLAINT_PERIOD, f"fade_rgb: {error}")
+
+    def _blink(self, goal: Any, interrupt: Interrupt, publish: Callable[[Any], None]) -> Outcome:
+        blinks = Blinks(
+            [_rgb(color) for color in goal.colors],
+            _rgb(goal.bg_color),
+            goal.blink_duration.to_sec(),
+            goal.blink_rate_mean,
+            goal.blink_rate_sd,
+        )
+        blinks.check()
+
+        def tell(colour: Colour) -> None:
+            publish(BlinkFeedback(last_color=ColorRGBA(*colour, 1.0)))
+
+        replaced = blink(self._robot, blinks, self._clock, interrupt, tell, self._chance)
+        return Outcome(BlinkResult(still_blinking=replaced), preempted=True)
+
+    def _connection_changed(self, state: Any) -> None:
+        """Called from the thread that the connection has for its listeners."""
+        if state == "lost":
+            reason = self._robot.connection.last_error or "no answer"
+            self._crowd.interrupt_all(RobotLost(self._robot.address, reason))
+
+
+def _rgb(color: ColorRGBA) -> tuple[float, float, float]:
+    return color.r, color.g, color.b

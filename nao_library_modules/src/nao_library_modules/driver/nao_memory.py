@@ -1,0 +1,193 @@
+"""The node nao_memory: keys and events of the robot's memory as topics, and services to read and write them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+
+from nao_library_msgs.msg import (
+    BoolStamped,
+    FloatArrayStamped,
+    FloatStamped,
+    IntArrayStamped,
+    IntStamped,
+    StringArrayStamped,
+    StringStamped,
+)
+from nao_library_msgs.srv import (
+    GetMemory,
+    GetMemoryResponse,
+    ListMemory,
+    ListMemoryResponse,
+    SetMemory,
+    SetMemoryResponse,
+    UnwatchMemory,
+    UnwatchMemoryResponse,
+    WatchMemory,
+    WatchMemoryResponse,
+)
+from naoqi.errors import NaoError
+
+from ..answers import json_of
+from ..health import Report
+from ..ros_clock import RosClock
+from ..suggestion import did_you_mean
+from .memory_access import MemoryAccess, check_pattern
+from .memory_names import is_pattern, matching
+from .memory_rules import Rule, read_rules
+from .memory_values import BOOL, FLOAT, FLOATS, INT, INTS, TEXT, TEXTS, parse_value, type_of
+from .memory_watch import MemoryWatch
+from .node import publish
+from .topic_demand import TopicDemand
+
+MESSAGES = {
+    BOOL: BoolStamped,
+    INT: IntStamped,
+    FLOAT: FloatStamped,
+    TEXT: StringStamped,
+    INTS: IntArrayStamped,
+    FLOATS: FloatArrayStamped,
+    TEXTS: StringArrayStamped,
+}
+QUEUE = 100
+MOST_TOPICS = 1000
+
+
+class NaoMemory:
+    """The memory of one robot. A topic is named after its key, and data is read only while somebody listens to it.
+
+    ROS API:
+        Publishes `~KEY` for each watched key (nao_library_msgs/BoolStamped, IntStamped, FloatStamped, StringStamped,
+        IntArrayStamped, FloatArrayStamped, StringArrayStamped; other values as JSON in a StringStamped). Of an event
+        every listener that begins gets the present value first, if there is one.
+        Services `~watch` (nao_library_msgs/WatchMemory), `~unwatch` (nao_library_msgs/UnwatchMemory), `~get`
+        (nao_library_msgs/GetMemory), `~set` (nao_library_msgs/SetMemory), `~list` (nao_library_msgs/ListMemory).
+        Parameters `~keys` (empty: what is watched from the start, a list of keys and patterns, or of {key: KEY,
+        rate: HZ, type: TYPE}), `~max_topics` (1000).
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Offer everything; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+
+        Raises:
+            NaoError: If a parameter is wrong.
+        """
+        largest = rospy.get_param("~max_topics", MOST_TOPICS)
+        if isinstance(largest, bool) or not isinstance(largest, int) or largest < 1:
+            raise NaoError(f"~max_topics is {largest!r}: 1 and above")
+        rules = read_rules(rospy.get_param("~keys", []), "~keys")
+        self._robot = robot
+        self._memory = MemoryAccess(robot)
+        self._watch = MemoryWatch(robot, RosClock(), MemoryTopic, largest)
+        self._watch.watch(rules)
+        _serve("~watch", WatchMemory, WatchMemoryResponse, self._on_watch)
+        _serve("~unwatch", UnwatchMemory, UnwatchMemoryResponse, self._on_unwatch)
+        _serve("~get", GetMemory, GetMemoryResponse, self._on_get)
+        _serve("~set", SetMemory, SetMemoryResponse, self._on_set)
+        _serve("~list", ListMemory, ListMemoryResponse, self._on_list)
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {"memory": self._watch.report}
+
+    def close(self) -> None:
+        """Watch nothing any more."""
+        self._watch.close()
+
+    # --- services -------------------------------------------------------------------------------------------------
+
+    def _on_watch(self, request: Any) -> WatchMemoryResponse:
+        self._watch.watch([Rule(request.pattern, request.rate, request.type)])
+        found = self._watch.watched(request.pattern)
+        topics = [_resolved(topic) for topic in found.values()]
+        return WatchMemoryResponse(True, self._missing(request.pattern, topics), list(found), topics)
+
+    def _missing(self, pattern: str, topics: list[str]) -> str:
+        """What a client should know that sees no topic."""
+        if self._robot.connection.state != "connected":
+            return f"the robot at {self._robot.address} is not connected: topics appear when it is"
+        shut = topics.count("")
+        if topics and not shut:
+            return ""
+        if shut and is_pattern(pattern):
+            return f"{shut} of {len(topics)} have no value yet: their topics appear with the first one"
+        known = self._memory.known()
+        if pattern in known:
+            return f"{pattern} has no value yet: its topic appears with the first one"
+        return f"there is no key like {pattern!r} yet{did_you_mean(pattern, known)}; topics appear when there is"
+
+    def _on_unwatch(self, request: Any) -> UnwatchMemoryResponse:
+        return UnwatchMemoryResponse(True, "", self._watch.unwatch(request.pattern))
+
+    def _on_get(self, request: Any) -> GetMemoryResponse:
+        found = self._memory.find(request.pattern)
+        values, types = [json_of(v) for v in found.values()], [type_of(v) for v in found.values()]
+        return GetMemoryResponse(True, "", list(found), values, types)
+
+    def _on_set(self, request: Any) -> SetMemoryResponse:
+        key = check_pattern(request.key, "key")
+        self._memory.write(key, parse_value(request.value), request.event)
+        return SetMemoryResponse(True, "")
+
+    def _on_list(self, request: Any) -> ListMemoryResponse:
+        known = self._memory.known()
+        keys = matching(known, request.pattern)
+        topics = self._watch.watched(request.pattern)
+        names = [_resolved(topics.get(key, "")) for key in keys]
+        return ListMemoryResponse(True, "", keys, [known[key] for key in keys], names)
+
+
+class MemoryTopic(TopicDemand):
+    """The topic of a key. Who begins to listen after others gets the last message first."""
+
+    def __init__(self, name: str, kind: str, tell: Callable[[bool], None]) -> None:
+        """Open the topic.
+
+        Args:
+            name: Of the topic, under that of the node.
+            kind: Kind of message, see memory_values.
+            tell: Gets whether anybody listens.
+        """
+        self._kind = MESSAGES[kind]
+        self._last: Any = None
+        self._topic = rospy.Publisher(f"~{name}", self._kind, queue_size=QUEUE)
+        super().__init__(self._topic, tell)
+
+    def publish(self, value: Any) -> None:
+        """Publish a value of the topic's kind, with the present time."""
+        message = self._kind(data=value)
+        message.header.stamp = rospy.Time.now()
+        self._last = message
+        publish(self._topic, message)
+
+    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
+        """One more listens; called by rospy. The first one gets what the robot says then, the others the last."""
+        last = self._last
+        if self.listened and last is not None:
+            peer_publish(last)
+        super().peer_subscribe(topic_name, topic_publish, peer_publish)
+
+    def close(self) -> None:
+        """Close the topic."""
+        self._topic.unregister()
+
+
+def _serve(name: str, kind: type, response: type, answer: Callable[[Any], Any]) -> None:
+    """Offer a service whose response tells what went wrong."""
+
+    def serve(request: Any) -> Any:
+        try:
+            return answer(request)
+        except NaoError as error:
+            return response(success=False, message=str(error))
+
+    rospy.Service(name, kind, serve)
+
+
+def _resolved(topic: str) -> str:
+    return rospy.resolve_name(f"~{topic}") if topic else ""

@@ -1,0 +1,81 @@
+"""The node nao_sonar: how far it is to what is ahead."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import rospy
+from sensor_msgs.msg import Range
+
+from ..body_devices import FARTHEST, NEAREST, SONARS
+from ..health import Report
+from ..robot_frames import tf_prefix
+from ..ros_clock import RosClock
+from .node import name_for_robot, publish, rate_parameter
+from .sonars import CONE, Sonars
+from .topic_demand import TopicDemand
+
+QUEUE = 10
+DEFAULT_RATE = 10.0
+
+
+class NaoSonar:
+    """The two sonars of one robot. They are silent while nobody listens.
+
+    ROS API (relative names):
+        Publishes `nao_robot/sonar/left`, `nao_robot/sonar/right` (sensor_msgs/Range, frames LSonar_frame and
+        RSonar_frame; infinite where there is nothing, minus infinite where it is too close, not a number when the
+        sensor failed, see REP 117), and the same as `nao_robot/sonar/left/sonar`, `nao_robot/sonar/right/sonar`.
+        Parameters `~sonar_rate` (10 Hz), `tf_prefix` (searched upwards; put before the frames).
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """Begin; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+
+        Raises:
+            NaoError: If a parameter is wrong.
+        """
+        self._prefix = tf_prefix()
+        self._lock = threading.Lock()  # guards the set
+        self._wanted: set[str] = set()
+        self._sonars = Sonars(
+            robot, name_for_robot(), rate_parameter("~sonar_rate", DEFAULT_RATE), RosClock(), self._publish
+        )
+        self._topics = {
+            name: (side, rospy.Publisher(name, Range, queue_size=QUEUE))
+            for side in SONARS
+            for name in (f"nao_robot/sonar/{side}", f"nao_robot/sonar/{side}/sonar")
+        }
+        self._demands = [
+            TopicDemand(topic, lambda wanted, name=name: self._want(name, wanted))
+            for name, (_, topic) in self._topics.items()
+        ]
+
+    def reports(self) -> dict[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        return {"sonars": self._sonars.report}
+
+    def close(self) -> None:
+        """Measure no more."""
+        self._sonars.close()
+
+    def _want(self, name: str, wanted: bool) -> None:
+        with self._lock:
+            self._wanted.add(name) if wanted else self._wanted.discard(name)
+            self._sonars.want(bool(self._wanted))
+
+    def _publish(self, ranges: Mapping[str, float]) -> None:
+        stamp = rospy.Time.now()
+        with self._lock:
+            names = list(self._wanted)
+        for name in names:
+            side, topic = self._topics[name]
+            message = Range(radiation_type=Range.ULTRASOUND, field_of_view=CONE, range=ranges[side])
+            message.min_range, message.max_range = NEAREST, FARTHEST
+            message.header.stamp, message.header.frame_id = stamp, f"{self._prefix}{side[0].upper()}Sonar_frame"
+            publish(topic, message)

@@ -1,0 +1,122 @@
+"""Something that is read from the robot again and again, while somebody wants it. No ROS."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from naoqi.errors import NaoError, RobotUnreachable
+
+from ..health import Level, Report
+from ..interrupt import Interrupt
+from .pacer import Pacer
+
+log = logging.getLogger(__name__)
+
+FASTEST = 0.008
+"""s of real time between two readings at least, however fast simulated time runs."""
+RETRY = 0.5
+"""s between two attempts to read a robot that cannot be read."""
+
+
+class Polling:
+    """Readings at an even rate, in a thread of its own that sleeps while nobody wants any."""
+
+    def __init__(self, robot: Any, name: str, rate: float, clock: Any, read: Callable[[], None]) -> None:
+        """Nothing is wanted yet.
+
+        Args:
+            robot: Its connection, see `nao_library_modules.robot`.
+            name: What is read, for log and report.
+            rate: Readings a second of `clock`, Hz.
+            clock: WallClock or RosClock.
+            read: Asks the robot and hands on what it says, in the thread of this object.
+        """
+        self._robot = robot
+        self._name = name
+        self._period = 1.0 / rate
+        self._clock = clock
+        self._read = read
+        self._interrupt = Interrupt()  # ends a wait when nobody wants readings any more, or for good
+        self._condition = threading.Condition()
+        self._wanted = False
+        self._closed = False
+        self._count = 0
+        self._problem = ""
+        self._told = ""
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+
+    def want(self, wanted: bool) -> None:
+        """Read, or not, from now on; any thread may say so."""
+        with self._condition:
+            self._wanted = wanted
+            self._interrupt.clear() if wanted else self._interrupt.trigger()
+            self._condition.notify_all()
+
+    def report(self) -> Report:
+        """Whether it is read."""
+        values = {"asked for every (ms)": f"{1000 * self._period:.0f}", "readings": str(self._count)}
+        if not self._wanted:
+            return Report(Level.OK, "nobody listens", values)
+        if self._problem:
+            return Report(Level.ERROR, f"the {self._name} cannot be read: {self._problem}", values)
+        return Report(Level.OK, "read", values)
+
+    def close(self, limit: float = 2.0) -> None:
+        """Read no more.
+
+        Args:
+            limit: Longest wait for the thread, s.
+        """
+        with self._condition:
+            self._closed, self._wanted = True, False
+            self._interrupt.stop()
+            self._condition.notify_all()
+        self._thread.join(limit)
+
+    # --- the thread -----------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        while True:
+            with self._condition:
+                self._condition.wait_for(lambda: self._wanted or self._closed)
+                if self._closed:
+                    return
+            try:
+                if not self._robot.connection.wait_connected(RETRY):
+                    self._problem = "the robot is not connected"
+                    self._interrupt.wait(RETRY)
+                    continue
+                self._read_on()
+            except RobotUnreachable as error:
+                self._problem = str(error)  # the log has it already, from the connection
+                self._interrupt.wait(RETRY)
+            except NaoError as error:
+                self._problem = str(error)
+                self._complain_once()
+                self._interrupt.wait(RETRY)
+            except Exception as error:  # a mistake in here must not leave a node that lives and says nothing
+                self._problem = f"unexpected error: {error!r}"
+                log.exception("the %s cannot be read", self._name)
+                self._interrupt.wait(RETRY)
+
+    def _read_on(self) -> None:
+        """Read until it is no longer wanted or fails."""
+        pacer = Pacer(self._clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
+        last = None
+        while pacer.wait() and self._robot.connection.state == "connected":
+            now = self._clock.now()
+            if now == last:
+                continue  # a step of simulated time may be longer than the wait
+            last = now
+            self._read()
+            self._problem = self._told = ""
+            self._count += 1
+
+    def _complain_once(self) -> None:
+        if self._problem != self._told:
+            log.warning("the %s cannot be read: %s", self._name, self._problem)
+            self._told = self._problem

@@ -1,0 +1,85 @@
+"""The sonars of the chest, which measure while somebody wants to know. No ROS."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from ..body_devices import NEAREST, SONARS, echo_of
+from ..health import Level, Report
+from .demand import Demand
+from .polling import Polling
+
+SONAR, MEMORY = "ALSonar", "ALMemory"
+CONE = 1.05
+"""rad, in which they see something."""
+ANSWER_LIMIT = 5.0
+READ_LIMIT = 1.0
+CLOSE_LIMIT = 2.0
+
+
+def range_of(value: Any) -> float:
+    """A distance in m as REP 117 has it.
+
+    Args:
+        value: What the robot's memory says, see `echo_of`.
+
+    Returns:
+        Infinity where there is nothing, minus infinity for what is too close to be measured, not a number for a
+        sensor that failed.
+    """
+    echo = echo_of(value)
+    return -math.inf if echo < NEAREST else echo
+
+
+class Sonars:
+    """Has the robot measure while that is wanted, after a lost connection as well."""
+
+    def __init__(
+        self, robot: Any, subscriber: str, rate: float, clock: Any, sink: Callable[[Mapping[str, float]], None]
+    ) -> None:
+        """Begin without; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            subscriber: Name under which the robot knows who wants it.
+            rate: Readings a second, Hz.
+            clock: ROS time.
+            sink: Gets each reading by side, in m, in a thread of its own.
+        """
+        self._robot = robot
+        self._subscriber = subscriber
+        self._sink = sink
+        self._measuring = Demand(robot, "sonars", lambda: self._ask("subscribe"), lambda: self._ask("unsubscribe"))
+        self._polling = Polling(robot, "sonars", rate, clock, self._read)
+
+    def want(self, wanted: bool) -> None:
+        """Measure, or not, from now on."""
+        self._measuring.want(wanted)
+        self._polling.want(wanted)
+
+    def report(self) -> Report:
+        """Whether distances come."""
+        report = self._polling.report()
+        if self._measuring.wanted and self._measuring.problem:
+            return Report(Level.ERROR, f"the sonars do not measure: {self._measuring.problem}", report.values)
+        return report
+
+    def close(self) -> None:
+        """Measure no more."""
+        self._polling.close()
+        self._measuring.close(CLOSE_LIMIT)
+
+    def _ask(self, method: str) -> None:
+        self._robot.proxy(SONAR).call_async(method, self._subscriber).result(timeout=ANSWER_LIMIT)
+
+    def _read(self) -> None:
+        if not self._measuring.running:
+            return  # the memory holds what was measured for somebody else, long ago
+        values = self._robot.proxy(MEMORY).call_async("getListData", list(SONARS.values())).result(timeout=READ_LIMIT)
+        if len(values) != len(SONARS):
+            raise NaoError(f"the robot's memory answers {values!r} for {', '.join(SONARS.values())}")
+        self._sink({side: range_of(value) for side, value in zip(SONARS, values)})

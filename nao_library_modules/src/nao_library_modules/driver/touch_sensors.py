@@ -1,0 +1,145 @@
+"""What touches the robot: its events, and how the sensors stand when nobody has said yet. No ROS."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..body_devices import FOOT_CONTACT
+from ..event_relay import EventRelay
+from ..health import Level, Report
+from ..tactile_names import BY_EVENT
+from .demand import Demand
+
+MEMORY = "ALMemory"
+ANSWER_LIMIT = 5.0
+CLOSE_LIMIT = 2.0
+HEAD, HAND, BUMPER, CHEST, FEET = "head", "hand", "bumper", "chest button", "feet"
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """One that is touched or not.
+
+    Attributes:
+        event: The event that tells that it changes.
+        place: What it belongs to: HEAD, HAND, BUMPER, CHEST or FEET.
+        number: Which one there, as the message of that place numbers them.
+        keys: Of the robot's memory: it is touched while one of them is not 0.
+    """
+
+    event: str
+    place: str
+    number: int
+    keys: tuple[str, ...]
+
+
+def _sensor(event: str, place: str, number: int) -> Sensor:
+    return Sensor(event, place, number, BY_EVENT[event].keys)
+
+
+SENSORS = (
+    _sensor("FrontTactilTouched", HEAD, 1),
+    _sensor("MiddleTactilTouched", HEAD, 2),
+    _sensor("RearTactilTouched", HEAD, 3),
+    _sensor("HandRightBackTouched", HAND, 0),
+    _sensor("HandRightLeftTouched", HAND, 1),
+    _sensor("HandRightRightTouched", HAND, 2),
+    _sensor("HandLeftBackTouched", HAND, 3),
+    _sensor("HandLeftLeftTouched", HAND, 4),
+    _sensor("HandLeftRightTouched", HAND, 5),
+    _sensor("RightBumperPressed", BUMPER, 0),
+    _sensor("LeftBumperPressed", BUMPER, 1),
+    _sensor("ChestButtonPressed", CHEST, 0),
+    Sensor("footContactChanged", FEET, 0, (FOOT_CONTACT,)),
+)
+CLICKS = {
+    "ALChestButton/SimpleClickOccurred": 1,
+    "ALChestButton/DoubleClickOccurred": 2,
+    "ALChestButton/TripleClickOccurred": 3,
+}
+
+
+class TouchSensors:
+    """Tells every change of every sensor, after a lost connection as well.
+
+    What a sensor says at the beginning counts as a change if it is touched, and so does what has changed while the
+    robot was lost; of the feet the beginning is always told.
+    """
+
+    def __init__(
+        self,
+        robot: Any,
+        tell: Callable[[Sensor, bool], None],
+        tell_clicks: Callable[[int], None],
+        sensors: Sequence[Sensor] = SENSORS,
+    ) -> None:
+        """Begin to listen; the robot need not be there yet.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            tell: Gets a sensor and whether it is touched, in a thread of libqi or of this object; must not wait.
+            tell_clicks: Gets how often the chest button was clicked, likewise.
+            sensors: Those to listen to.
+        """
+        self._robot = robot
+        self._tell = tell
+        self._tell_clicks = tell_clicks
+        self._sensors = {sensor.event: sensor for sensor in sensors}
+        # The lock is held while a change is told: changes of one sensor come in several threads of libqi.
+        self._lock = threading.Lock()
+        self._touched: dict[str, bool | None] = {s.event: None if s.place == FEET else False for s in sensors}
+        self._heard: set[str] = set()
+        self._relay = EventRelay(lambda: robot.proxy(MEMORY), self._on_event)
+        self._listening = Demand(robot, "touch sensors", self._begin, self._relay.close)
+        self._listening.want(True)
+
+    def report(self) -> Report:
+        """Whether touches are told."""
+        with self._lock:
+            values = {event: {None: "unknown", True: "touched", False: ""}[now] for event, now in self._touched.items()}
+        values["last error"] = self._listening.problem
+        if self._listening.running:
+            return Report(Level.OK, "touches are told", values)
+        return Report(Level.ERROR, f"deaf: {self._listening.problem or 'the robot is not connected'}", values)
+
+    def close(self) -> None:
+        """Listen no more."""
+        self._listening.close(CLOSE_LIMIT)
+
+    # --- in the thread of the demand ------------------------------------------------------------------------------
+
+    def _begin(self) -> None:
+        for event in self._relay.names:  # those of a connection that was lost
+            self._relay.unsubscribe(event)
+        with self._lock:
+            self._heard.clear()
+        for event in (*self._sensors, *CLICKS):
+            self._relay.subscribe(event)
+        keys = [key for sensor in self._sensors.values() for key in sensor.keys]
+        answer = self._robot.proxy(MEMORY).call_async("getListData", keys).result(timeout=ANSWER_LIMIT)
+        values = dict(zip(keys, answer))
+        for sensor in self._sensors.values():
+            known = [values[key] for key in sensor.keys if isinstance(values[key], (bool, int, float))]
+            if known:
+                self._take(sensor, any(value > 0.5 for value in known), is_event=False)
+
+    # --- in threads of libqi --------------------------------------------------------------------------------------
+
+    def _on_event(self, name: str, value: Any) -> None:
+        if name in CLICKS:
+            self._tell_clicks(CLICKS[name])
+        elif isinstance(value, (bool, int, float)):
+            self._take(self._sensors[name], value > 0.5, is_event=True)
+
+    def _take(self, sensor: Sensor, touched: bool, is_event: bool) -> None:
+        with self._lock:
+            if is_event:
+                self._heard.add(sensor.event)
+            elif sensor.event in self._heard:
+                return  # what was read is older than the event
+            if self._touched[sensor.event] is not touched:
+                self._touched[sensor.event] = touched
+                self._tell(sensor, touched)
