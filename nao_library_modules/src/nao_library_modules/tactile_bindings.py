@@ -1,0 +1,219 @@
+"""Behaviours that run when the robot is touched: which touch starts which. No ROS."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from naoqi.errors import NaoError
+
+from .event_relay import EventRelay
+from .interrupt import Interrupt
+from .tactile_names import BY_EVENT, Sensor, names_of
+from .tactile_touch import TouchWatch, Wanted
+
+log = logging.getLogger(__name__)
+
+IDLE_LOOK = 3600.0
+"""s; the thread that follows touches is woken by them, and looks by itself no more often."""
+
+
+@dataclass(frozen=True)
+class Binding:
+    """A touch and what it starts.
+
+    Attributes:
+        name: What the link is called.
+        sensors: Any of them starts it.
+        wanted: What kind of touch.
+        behavior: Name of the behaviour.
+        parameters: Its parameters, each as name=value.
+        cooldown: s after its end in which touches do not count.
+    """
+
+    name: str
+    sensors: tuple[Sensor, ...]
+    wanted: Wanted
+    behavior: str
+    parameters: tuple[str, ...] = ()
+    cooldown: float = 0.0
+
+
+@dataclass(frozen=True)
+class BindingState:
+    """What became of a binding so far.
+
+    Attributes:
+        running: Whether its behaviour runs.
+        runs: How often it was started.
+        last: How it ended last; empty if it never has.
+        text: What was said about that.
+    """
+
+    running: bool = False
+    runs: int = 0
+    last: str = ""
+    text: str = ""
+
+
+class BehaviorRunner(Protocol):
+    """Runs behaviours; see `tactile_runner.py`."""
+
+    def run(self, behavior: str, parameters: Sequence[str], done: Callable[[str, str], None]) -> None:
+        """Start a behaviour and go on; `done` gets how it ended and a text, in any thread, exactly once."""
+
+    def close(self) -> None:
+        """End what runs."""
+
+
+class _Entry:
+    """A binding at work."""
+
+    def __init__(self, binding: Binding, watch: TouchWatch) -> None:
+        self.binding = binding
+        self.watch = watch
+        self.running = False
+        self.runs = 0
+        self.ready_at = 0.0
+        self.last = self.text = ""
+
+
+class TouchBindings:
+    """Follows touches and starts behaviours.
+
+    Threads: libqi tells of touches, actionlib of ends; a thread of its own, which lives as long as there is a binding,
+    decides what they mean. The lock guards the entries; it is not held during calls to the robot or to the runner.
+
+    Args:
+        memory: Gives the proxy of ALMemory.
+        runner: Runs behaviours.
+        clock: ROS time.
+    """
+
+    def __init__(self, memory: Callable[[], Any], runner: BehaviorRunner, clock: Any) -> None:
+        self._relay = EventRelay(memory, self._told)
+        self._runner = runner
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._entries: dict[str, _Entry] = {}
+        self._touches: deque[tuple[str, bool]] = deque()
+        self._news = Interrupt()
+        self._thread: threading.Thread | None = None
+        self._closed = False
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the bindings, in the order in which they were made."""
+        with self._lock:
+            return list(self._entries)
+
+    def states(self) -> list[tuple[Binding, BindingState]]:
+        """All bindings and what became of them."""
+        with self._lock:
+            return [
+                (each.binding, BindingState(each.running, each.runs, each.last, each.text))
+                for each in self._entries.values()
+            ]
+
+    def bind(self, binding: Binding, pressed: Sequence[str]) -> None:
+        """Start a behaviour at touches from now on; one of the same name is replaced.
+
+        Args:
+            binding: The link.
+            pressed: Sensors that are pressed already.
+
+        Raises:
+            NaoError: The robot cannot be asked for the events.
+        """
+        for sensor in binding.sensors:
+            self._relay.subscribe(sensor.event)
+        names = names_of(binding.sensors)
+        watch = TouchWatch(binding.wanted, [name for name in pressed if name in names], self._clock.now())
+        with self._lock:
+            self._entries.pop(binding.name, None)
+            self._entries[binding.name] = _Entry(binding, watch)
+            if self._thread is None and not self._closed:
+                self._thread = threading.Thread(target=self._follow, name="touch bindings", daemon=True)
+                self._thread.start()
+        self._news.trigger()
+
+    def remove(self, name: str) -> None:
+        """Start nothing any more for a binding; empty: for any. What runs goes on."""
+        with self._lock:
+            removed = [self._entries.pop(each) for each in ([name] if name else list(self._entries))]
+            kept = {sensor.event for entry in self._entries.values() for sensor in entry.binding.sensors}
+        for event in {sensor.event for entry in removed for sensor in entry.binding.sensors} - kept:
+            self._relay.unsubscribe(event)
+
+    def renew(self) -> None:
+        """Ask a robot that has come back for the events."""
+        self._relay.renew()
+
+    def close(self) -> None:
+        """End everything."""
+        with self._lock:
+            self._closed = True
+            self._entries.clear()
+            thread = self._thread
+        self._news.stop()
+        self._relay.close()
+        self._runner.close()
+        if thread is not None:
+            thread.join(1.0)
+
+    def _told(self, event: str, value: Any) -> None:
+        """Called from a thread of libqi."""
+        self._touches.append((BY_EVENT[event].name, bool(value)))
+        self._news.trigger()
+
+    def _follow(self) -> None:
+        while not self._closed:
+            self._news.clear()
+            due = self._take_touches(self._clock.now())
+            if not self._touches and not self._closed:
+                self._clock.wait(max(0.001, due - self._clock.now()), self._news)
+
+    def _take_touches(self, now: float) -> float:
+        """Start what the touches until now start; returns when to look again."""
+        while self._touches:
+            name, pressed = self._touches.popleft()
+            self._look(lambda entry, n=name, p=pressed: self._tell(entry, n, p, now))
+        return self._look(lambda entry: entry.watch.look(now))
+
+    @staticmethod
+    def _tell(entry: _Entry, name: str, pressed: bool, now: float) -> list[str]:
+        return entry.watch.tell(name, pressed, now) if name in names_of(entry.binding.sensors) else []
+
+    def _look(self, touched: Callable[[_Entry], list[str]]) -> float:
+        """Start what `touched` says is to be started; returns when to look again."""
+        now, due, to_start = self._clock.now(), [], []
+        with self._lock:
+            for entry in self._entries.values():
+                if touched(entry) and not entry.running and now >= entry.ready_at:
+                    entry.running, entry.runs = True, entry.runs + 1
+                    to_start.append(entry)
+                if entry.watch.due is not None:
+                    due.append(entry.watch.due)
+        for entry in to_start:
+            self._start(entry)
+        return min(due, default=now + IDLE_LOOK)
+
+    def _start(self, entry: _Entry) -> None:
+        binding = entry.binding
+        log.info("touched: the behaviour %s begins (%s)", binding.behavior, binding.name)
+
+        def done(end: str, text: str) -> None:
+            with self._lock:
+                entry.running, entry.last, entry.text = False, end, text
+                entry.ready_at = self._clock.now() + binding.cooldown
+            if end not in ("succeeded", "preempted"):
+                log.warning("the behaviour %s of %s: %s %s", binding.behavior, binding.name, end, text)
+
+        try:
+            self._runner.run(binding.behavior, binding.parameters, done)
+        except NaoError as error:
+            done("rejected", str(error))

@@ -1,0 +1,43 @@
+"""What a goal has felt so far, for its result."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from sensor_msgs.msg import BatteryState
+
+from nao_library_msgs.msg import TouchBinding
+
+
+class Felt:
+    """What the functions of one chain felt."""
+
+    def __init__(self) -> None:
+        """Nothing yet."""
+        self.touched: list[str] = []
+        self.sonars: list[tuple[str, float]] = []
+        self.weights: list[tuple[str, float]] = []
+        self.batteries: list[BatteryState] = []
+        self.heat: list[tuple[str, float, int]] = []
+        self.fell = False
+        self.bindings: list[TouchBinding] = []
+
+    def touch(self, names: Sequence[str]) -> list[str]:
+        """Note what was touched, and answer it."""
+        self.touched += names
+        return list(names)
+
+    def fill(self, result: Any) -> None:
+        """Put everything into a result message."""
+        result.touched = self.touched
+        result.sonar_names, result.sonar = _columns(self.sonars, 2)
+        result.fsr_names, result.fsr = _columns(self.weights, 2)
+        result.battery = self.batteries
+        result.devices, result.temperatures, result.heat = _columns(self.heat, 3)
+        result.fell = self.fell
+        result.bindings = self.bindings
+
+
+def _columns(rows: Sequence[tuple[Any, ...]], count: int) -> tuple[list[Any], ...]:
+    return tuple([row[place] for row in rows] for place in range(count))

@@ -1,0 +1,98 @@
+"""What feels on a NAO and what it is called: short names, NAOqi's events, devices, groups. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from .body_devices import sensor_key
+from .errors import BadGoal
+from .suggestion import did_you_mean
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """Something that can be touched.
+
+    Attributes:
+        name: Its short name.
+        event: The event of the robot's memory that tells of it.
+        devices: Its switches or plates, by their names in the robot's memory.
+        groups: Groups that it is in.
+    """
+
+    name: str
+    event: str
+    devices: tuple[str, ...]
+    groups: tuple[str, ...]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of its devices: it is touched while one of them is not 0."""
+        return tuple(sensor_key(device) for device in self.devices)
+
+
+def _hand(side: str, part: str) -> Sensor:
+    name, letter = side.lower(), side[0]
+    return Sensor(
+        f"{name} hand {part.lower()}",
+        f"Hand{side}{part}Touched",
+        (f"{letter}Hand/Touch/{part}",),
+        (f"{name} hand", "hands", "any"),
+    )
+
+
+def _bumper(side: str) -> Sensor:
+    foot = f"{side[0]}Foot/Bumper"
+    return Sensor(
+        f"{side.lower()} bumper", f"{side}BumperPressed", (f"{foot}/Left", f"{foot}/Right"), ("bumpers", "any")
+    )
+
+
+SENSORS = (
+    *(
+        Sensor(f"{part.lower()} head", f"{part}TactilTouched", (f"Head/Touch/{part}",), ("head", "any"))
+        for part in ("Front", "Middle", "Rear")
+    ),
+    *(_hand(side, part) for side in ("Left", "Right") for part in ("Back", "Left", "Right")),
+    *(_bumper(side) for side in ("Left", "Right")),
+    Sensor("chest", "ChestButtonPressed", ("ChestBoard/Button",), ("any",)),
+)
+"""All of them, from head to foot."""
+
+BUMPERS = tuple(sensor for sensor in SENSORS if "bumpers" in sensor.groups)
+GROUPS = ("head", "left hand", "right hand", "hands", "bumpers", "any")
+BY_EVENT = {sensor.event: sensor for sensor in SENSORS}
+
+
+def names_of(sensors: Iterable[Sensor]) -> list[str]:
+    """Their short names."""
+    return [sensor.name for sensor in sensors]
+
+
+def sensors_of(words: Sequence[str], field: str = "sensors") -> tuple[Sensor, ...]:
+    """Sensors behind short names, events, devices and groups; each once, in the order of `SENSORS`.
+
+    Args:
+        words: The names; none stands for all sensors.
+        field: Of the message that holds them.
+
+    Raises:
+        BadGoal: Something has none of these names.
+    """
+    if not words:
+        return SENSORS
+    wanted = [sensor for word in words for sensor in _behind(word, field)]
+    return tuple(sensor for sensor in SENSORS if sensor in wanted)
+
+
+def _behind(word: str, field: str) -> list[Sensor]:
+    plain = " ".join(word.replace("_", " ").split())
+    lower = plain.lower()
+    found = [s for s in SENSORS if lower == s.name or lower in s.groups or word.strip() in (s.event, *s.devices)]
+    if not found:
+        known = [*GROUPS, *names_of(SENSORS)]
+        events = ", ".join(sensor.event for sensor in SENSORS)
+        problem = f"{word!r} is nothing that can be touched{did_you_mean(lower, known)}"
+        raise BadGoal(field, word, f"one of {', '.join(known)}, or an event: {events}", problem=problem)
+    return found

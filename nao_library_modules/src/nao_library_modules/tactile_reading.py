@@ -1,0 +1,211 @@
+"""Functions that read what the robot feels now: touch, sonars, feet, battery, temperatures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from sensor_msgs.msg import BatteryState
+
+from .body_devices import (
+    BATTERY_STATUS,
+    CHARGE,
+    CHARGING_BIT,
+    CORNERS,
+    CURRENT,
+    FULL_BIT,
+    SIDES,
+    SONARS,
+    echo_of,
+    sensor_key,
+    temperature_key,
+    weight_keys,
+)
+from .errors import BadGoal
+from .extractor_use import ExtractorUse
+from .function_chain import checked_by
+from .memory_functions import MEMORY
+from .suggestion import did_you_mean
+from .tactile_checks import FEET, check_bumpers, check_feet, check_sensors, check_sonars, words_of
+from .tactile_felt import Felt
+from .tactile_names import Sensor, sensors_of
+
+SONAR = "ALSonar"
+BATTERY_KEYS = (
+    CHARGE,
+    CURRENT,
+    temperature_key("Battery"),
+    *(sensor_key("Battery/Charge", part) for part in ("TotalVoltage", "RemainingCapacity", "FullChargeCapacity")),
+    BATTERY_STATUS,
+)
+HEAD, PACK = "head", "battery"
+SONAR_START = 0.35
+"""s until a sonar that was switched on has measured: it does ten times a second."""
+
+
+class ReadingFunctions(ExtractorUse):
+    """Parameters are fields of TactileFunction.
+
+    Attributes:
+        felt: What the chain has felt so far.
+        sonar_on: Whether a goal has switched the sonars on for longer.
+    """
+
+    felt: Felt
+    sonar_on: bool
+    after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
+
+    def reading_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "getTouched": self.get_touched,
+            "getBumpers": self.get_bumpers,
+            "getSonar": self.get_sonar,
+            "getFsr": self.get_fsr,
+            "getBattery": self.get_battery,
+            "getTemperatures": self.get_temperatures,
+            "setSonarEnabled": self.set_sonar_enabled,
+        }
+
+    @checked_by(check_sensors)
+    def get_touched(self, sensors: Sequence[str]) -> list[str]:
+        """Which sensors are touched now."""
+        return self.felt.touch(self.pressed(sensors_of(sensors)))
+
+    @checked_by(check_bumpers)
+    def get_bumpers(self, sensors: Sequence[str]) -> list[str]:
+        """Which bumpers are pressed now."""
+        return self.felt.touch(self.pressed(sensors_of(sensors or ["bumpers"])))
+
+    @checked_by(check_sonars)
+    def get_sonar(self, sensors: Sequence[str]) -> list[float]:
+        """How far away what the sonars hear is, m, infinite if they hear nothing; they are switched on for it."""
+        sides = words_of(sensors, SIDES, "sonar")
+        if self.sonar_on:
+            distances = self.sonar(sides)
+        else:
+            with self.subscribed(SONAR, "read"):
+                self.wait(SONAR_START)
+                distances = self.sonar(sides)
+        self.felt.sonars += zip(sides, distances)
+        return distances
+
+    @checked_by(check_feet)
+    def get_fsr(self, sensors: Sequence[str]) -> list[float]:
+        """What rests on the corners of the feet and on each of them, kg."""
+        names, keys = [], []
+        for foot in words_of(sensors, FEET, "foot"):
+            names += [f"{foot} {_words(corner)}" for corner in CORNERS] + [foot]
+            keys += weight_keys(foot.split()[0])
+        weights = [_number(value) for value in self._values(keys)]
+        self.felt.weights += zip(names, weights)
+        return weights
+
+    def get_battery(self) -> float:
+        """Charge of the battery, 0..1; current, voltage and what else is known are in the result."""
+        charge, current, temperature, voltage, rest, full, status = self._values(BATTERY_KEYS)
+        state = BatteryState(present=charge is not None, percentage=_number(charge), current=_number(current))
+        state.header.stamp = self.stamp()
+        state.temperature = _number(temperature)
+        state.voltage = _number(voltage) / 1000.0  # mV
+        state.charge, state.capacity = _number(rest) / 1000.0, _number(full) / 1000.0  # mAh
+        state.design_capacity = math.nan
+        state.power_supply_technology = BatteryState.POWER_SUPPLY_TECHNOLOGY_LION
+        state.power_supply_status = _supply(status, state.current)
+        self.felt.batteries.append(state)
+        return _number(charge)
+
+    def get_temperatures(self, sensors: Sequence[str]) -> list[float]:
+        """How warm motors, the computer in the head and the battery are, degrees Celsius."""
+        joints = self._joints(sensors)
+        names = [name for name in (*joints, HEAD, PACK) if not sensors or name in joints or name in sensors]
+        devices = [{HEAD: "Head", PACK: "Battery"}.get(name, name) for name in names]
+        warmths = [_number(value) for value in self._values([temperature_key(device) for device in devices])]
+        states = self._values([sensor_key(f"{device}/Temperature", "Status") for device in devices])
+        self.felt.heat += [(name, warmth, int(state or 0)) for name, warmth, state in zip(names, warmths, states)]
+        return warmths
+
+    def set_sonar_enabled(self, enable: bool, revert: bool) -> None:
+        """Keep the sonars measuring until they are switched off again, or let them be silent."""
+        before = self.sonar_on
+        self._switch_sonar(enable)
+        if revert:
+            self.after_wait(lambda: self._switch_sonar(before))
+        if enable and not before:
+            self.wait(SONAR_START)  # what follows finds no old distances
+
+    def pressed(self, sensors: Sequence[Sensor]) -> list[str]:
+        """Short names of those that are pressed now."""
+        keys = [key for sensor in sensors for key in sensor.keys]
+        values = dict(zip(keys, self._values(keys)))
+        return [sensor.name for sensor in sensors if any(_number(values[key]) > 0.5 for key in sensor.keys)]
+
+    def sonar(self, sides: Sequence[str]) -> list[float]:
+        """Distances in m; infinite where nothing is heard, not a number where a sonar failed."""
+        return [echo_of(value) for value in self._values([SONARS[side] for side in sides])]
+
+    def renew_sonar(self) -> None:
+        """Switch the sonars of a robot on that has come back, if they were to be on."""
+        if self.sonar_on:
+            self.call_now(self.robot.proxy(SONAR), "subscribe", self.subscriber_for("goals"))
+
+    def drop_sonar(self) -> None:
+        """Let the sonars be silent, as far as this server is concerned."""
+        if self.sonar_on:
+            self.sonar_on = False
+            self.stop_extractor(SONAR, "goals")
+
+    def _switch_sonar(self, enable: bool) -> None:
+        if enable and not self.sonar_on:
+            self.start_extractor(SONAR, "goals")
+            self.sonar_on = True
+        elif not enable:
+            self.drop_sonar()
+
+    def _values(self, keys: Sequence[str]) -> list[Any]:
+        return list(self.call(self.robot.proxy(MEMORY), "getListData", list(keys)))
+
+    def _joints(self, sensors: Sequence[str]) -> list[str]:
+        """Joints behind names of joints and chains."""
+        motion = self.robot.proxy("ALMotion")
+        body = [name for name in self.call(motion, "getBodyNames", "Body")]
+        if not sensors:
+            return body
+        found: list[str] = []
+        for name in sensors:
+            if name in body:
+                found.append(name)
+            elif name not in (HEAD, PACK):
+                found += self._chain(motion, name, body)
+        return list(dict.fromkeys(found))
+
+    def _chain(self, motion: Any, name: str, body: Sequence[str]) -> list[str]:
+        known = ["Head", "LArm", "RArm", "LLeg", "RLeg", "Body", HEAD, PACK, *body]
+        if name not in known:
+            problem = f"{name!r} is nothing whose temperature is known{did_you_mean(name, known)}"
+            raise BadGoal("sensors", name, f"one of {', '.join(known)}", problem=problem)
+        return list(self.call(motion, "getBodyNames", name))
+
+    def stamp(self) -> Any:
+        """ROS time of now, as messages have it."""
+        from genpy import Time
+
+        return Time.from_sec(self.clock.now())
+
+
+def _number(value: Any) -> float:
+    return float(value) if isinstance(value, (int, float)) else math.nan
+
+
+def _words(corner: str) -> str:
+    return "".join(f" {letter.lower()}" if letter.isupper() else letter for letter in corner).strip()
+
+
+def _supply(status: Any, current: float) -> int:
+    bits = int(status or 0)
+    if bits >> FULL_BIT & 1:
+        return BatteryState.POWER_SUPPLY_STATUS_FULL
+    if bits >> CHARGING_BIT & 1 or current > 0.0:
+        return BatteryState.POWER_SUPPLY_STATUS_CHARGING
+    return BatteryState.POWER_SUPPLY_STATUS_DISCHARGING

@@ -1,0 +1,82 @@
+"""Behaviours that are run by the server NaoBehavior, for touches."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+
+from nao_library_actions.msg import NaoBehaviorAction, NaoBehaviorGoal
+from nao_library_msgs.msg import BehaviorFunction
+from naoqi.errors import NaoError
+
+SERVER = "NaoBehavior"
+SERVER_LIMIT = 2.0
+"""s to wait for the server, when a touch asks for it."""
+
+
+class BehaviorClient:
+    """Client of NaoBehavior. Nothing of ROS is needed before the first behaviour is to run.
+
+    It stands on actionlib's ActionClient: a behaviour that was started by another touch goes on being followed when
+    the next one replaces it.
+
+    Args:
+        name: Of the action.
+    """
+
+    def __init__(self, name: str = SERVER) -> None:
+        self._name = name
+        self._client: actionlib.ActionClient | None = None
+        self._lock = threading.Lock()
+        self._handles: dict[object, Any] = {}
+
+    def run(self, behavior: str, parameters: Sequence[str], done: Callable[[str, str], None]) -> None:
+        """Start a behaviour and go on.
+
+        Args:
+            behavior: Its name.
+            parameters: Each as name=value.
+            done: Gets how it ended and what was said about it, once, in a thread of actionlib.
+
+        Raises:
+            NaoError: There is no server.
+        """
+        client = self._connected()
+        if not client.wait_for_server(rospy.Duration(SERVER_LIMIT)):
+            raise NaoError(f"there is no server {rospy.resolve_name(self._name)}: nobody can run {behavior}")
+        function = BehaviorFunction(function="runBehavior", str_param=behavior, parameters=list(parameters))
+        over = threading.Event()
+        key = object()
+
+        def changed(handle: Any) -> None:
+            if handle.get_comm_state() != actionlib.CommState.DONE or over.is_set():
+                return
+            over.set()
+            with self._lock:
+                self._handles.pop(key, None)
+            done(GoalStatus.to_string(handle.get_terminal_state()).lower(), handle.get_goal_status_text())
+
+        handle = client.send_goal(NaoBehaviorGoal([function]), changed)
+        with self._lock:
+            if not over.is_set():
+                # actionlib forgets a goal whose handle nobody holds.
+                self._handles[key] = handle
+
+    def _connected(self) -> actionlib.ActionClient:
+        """The client behind this one, made when it is asked for first."""
+        with self._lock:
+            if self._client is None:
+                self._client = actionlib.ActionClient(self._name, NaoBehaviorAction)
+            return self._client
+
+    def close(self) -> None:
+        """End what runs."""
+        with self._lock:
+            handles, self._handles = list(self._handles.values()), {}
+        for handle in handles:
+            handle.cancel()
