@@ -1,0 +1,248 @@
+"""From a behaviour to what runs: values for `${}`, boxes, goals; and everything that can be checked on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, Callable
+
+from naoqi.errors import NaoError
+
+from ..errors import BadGoal
+from .errors import BehaviorError, Problem
+from .expressions import substitute, text_of
+from .messages import message_of
+from .model import (
+    Barrier,
+    Behavior,
+    Box,
+    Functions,
+    Parallel,
+    PathParts,
+    Repeat,
+    Step,
+    Timeline,
+    Wait,
+    path_text,
+)
+from .parameters import arguments
+from .program import AllAtOnce, Goal, InOrder, Meeting, Node, OnTimeline, Pause, Rounds, servers_in
+from .servers import FunctionTables, server_of
+from .times import At
+
+MOST_NODES = 10_000
+"""Steps of a program, boxes unfolded: a few boxes in boxes can stand for more than any memory holds."""
+MOST_ROUNDS = 10_000
+LONGEST = 86_400.0
+"""s that a step may wait."""
+
+Library = Callable[[str], Behavior]
+"""Gives the behaviour of a name, or raises NaoError."""
+
+
+def bind(
+    behavior: Behavior, values: Mapping[str, Any], library: Library, tables: FunctionTables | None = None
+) -> InOrder:
+    """Make a program of a behaviour. Nothing is asked of servers or robot.
+
+    Args:
+        behavior: The behaviour.
+        values: Name -> value of some or all of its parameters.
+        library: For its boxes.
+        tables: Functions of the servers; without them only messages and fields are checked.
+
+    Raises:
+        BehaviorError: With everything that is wrong.
+        BadGoal: A value for a parameter will not do.
+    """
+    binder = _Binder(library, tables)
+    program = binder.behavior(behavior, arguments(behavior.parameters, values), (), behavior.name)
+    if binder.problems:
+        raise BehaviorError(behavior.name, binder.problems)
+    return program
+
+
+class _Scope:
+    """Where steps stand: the file, its parameters' values, the paths and boxes above."""
+
+    def __init__(self, behavior: str, values: Mapping[str, Any], prefix: PathParts, boxes: tuple[str, ...]) -> None:
+        self.behavior = behavior
+        self.values = values
+        self.prefix = prefix
+        self.boxes = boxes
+
+    def path(self, path: PathParts) -> PathParts:
+        """Path from the outermost behaviour on."""
+        if not self.prefix or not path:
+            return self.prefix + path
+        return (*self.prefix, ("/" if not path[0][0] else path[0][0], path[0][1]), *path[1:])
+
+
+class _Binder:
+    """Makes nodes of steps, and notes what is wrong."""
+
+    def __init__(self, library: Library, tables: FunctionTables | None) -> None:
+        self.problems: list[Problem] = []
+        self._library = library
+        self._tables = tables
+        self._loaded: dict[str, Behavior] = {}
+        self._nodes = 0
+
+    def behavior(self, behavior: Behavior, values: Mapping[str, Any], prefix: PathParts, *boxes: str) -> InOrder:
+        """The program of a behaviour, on its own or in a box.
+
+        Args:
+            behavior: The behaviour.
+            values: Of all its parameters.
+            prefix: Path of the box.
+            boxes: Names of the behaviours that it is in, itself the last.
+        """
+        scope = _Scope(behavior.name, values, prefix, boxes)
+        body = behavior.body
+        return InOrder(
+            scope.path(body.path), behavior.name, "", f"behavior {behavior.name}", nodes=self._all(body, scope)
+        )
+
+    def _all(self, step: Step, scope: _Scope, home: tuple[PathParts, int] | None = None) -> tuple[Node, ...]:
+        return tuple(node for node in (self._guarded(part, scope, home) for part in step.parts) if node is not None)
+
+    def _guarded(self, step: Step, scope: _Scope, home: tuple[PathParts, int] | None) -> Node | None:
+        self._nodes += 1
+        if self._nodes > MOST_NODES:
+            if self._nodes == MOST_NODES + 1:
+                self._note(step, scope, f"with all its boxes, the behavior has more than {MOST_NODES} steps")
+            return None
+        try:
+            return self._node(step, scope, home)
+        except BehaviorError as error:
+            for problem in error.problems:
+                self._note(step, scope, f"behavior {error.name}: {problem}")
+        except NaoError as error:
+            self._note(step, scope, str(error))
+        return None
+
+    def _note(self, step: Step, scope: _Scope, text: str) -> None:
+        inside = f" in {scope.behavior}" if len(scope.boxes) > 1 else ""
+        problem = Problem(f"step {path_text(scope.path(step.path))}{inside}", text, step.line)
+        if problem not in self.problems:  # a repetition is looked at in its first and its last round
+            self.problems.append(problem)
+
+    def _node(self, step: Step, scope: _Scope, home: tuple[PathParts, int] | None) -> Node:
+        common: dict[str, Any] = {
+            "path": scope.path(step.path),
+            "behavior": scope.behavior,
+            "label": step.label,
+            "what": step.what,
+            "policy": step.policy,
+        }
+        if step.limit is not None:
+            common["limit"] = _seconds("for", step.limit, scope.values)
+        if step.at is not None:
+            at = step.at
+            common["at"] = At(_seconds("at", at.offset, scope.values), at.label, at.of_end)
+        if isinstance(step, Functions):
+            return self._goal(step, scope, common)
+        if isinstance(step, Wait):
+            return Pause(**common, duration=_seconds("wait", step.duration, scope.values))
+        if isinstance(step, Barrier):
+            where, branch = home or (None, 0)
+            return Meeting(**common, name=step.name, home=where, branch=branch)
+        if isinstance(step, Box):
+            return self._box(step, scope, common)
+        if isinstance(step, Repeat):
+            return self._rounds(step, scope, common)
+        if isinstance(step, Parallel):
+            return self._parallel(step, scope, common)
+        if isinstance(step, Timeline):
+            return OnTimeline(**common, nodes=self._all(step, scope))
+        return InOrder(**common, nodes=self._all(step, scope, home))
+
+    def _goal(self, step: Functions, scope: _Scope, common: dict[str, Any]) -> Node:
+        server = server_of(step.server)
+        messages = []
+        for position, fields in enumerate(step.functions, start=1):
+            where = f"function {position}" if len(step.functions) > 1 else ""
+            messages.append(message_of(server.function, substitute(dict(fields), scope.values), where))
+        if self._tables is not None:
+            self._tables.check(server, messages)
+        return Goal(**common, server=server.name, goal=server.goal(messages))
+
+    def _box(self, step: Box, scope: _Scope, common: dict[str, Any]) -> Node:
+        if step.name in scope.boxes:
+            circle = " -> ".join((*scope.boxes[scope.boxes.index(step.name) :], step.name))
+            raise BadGoal("behavior", step.name, "a behavior that does not come back here", f"a circle: {circle}")
+        if step.name not in self._loaded:
+            self._loaded[step.name] = self._library(step.name)
+        behavior = self._loaded[step.name]
+        values = arguments(behavior.parameters, substitute(dict(step.arguments), scope.values))
+        inside = self.behavior(behavior, values, common["path"], *scope.boxes, step.name)
+        return InOrder(**common, nodes=inside.nodes, box=step.name)
+
+    def _parallel(self, step: Parallel, scope: _Scope, common: dict[str, Any]) -> Node:
+        nodes = []
+        for number, part in enumerate(step.steps, start=1):
+            node = self._guarded(part, scope, (common["path"], number))
+            if node is not None:
+                nodes.append(node)
+        users: dict[str, Node] = {}
+        for node in nodes:
+            for server in servers_in(node):
+                if server in users:
+                    remedy = "put these steps one after the other, or on a timeline"
+                    text = (
+                        f"its branches {users[server].where} and {node.where} both need {server}, which runs one goal"
+                    )
+                    self._note(step, scope, f"{text} at a time: {remedy}")
+                users.setdefault(server, node)
+        return AllAtOnce(**common, nodes=tuple(nodes))
+
+    def _rounds(self, step: Repeat, scope: _Scope, common: dict[str, Any]) -> Node:
+        count = substitute(step.count, scope.values)
+        whole = isinstance(count, int) or (isinstance(count, float) and count.is_integer())
+        if isinstance(count, bool) or not whole or not 0 <= count <= MOST_ROUNDS:
+            raise BadGoal("repeat", count, f"a whole number 0..{MOST_ROUNDS}")
+        path: PathParts = common["path"]
+
+        def one(number: int, binder: _Binder) -> InOrder:
+            values = {**scope.values, step.variable: number} if step.variable else scope.values
+            # Steps of a round stand at 4#2.1: the path of the repetition makes way for the one with the round.
+            inside = _Scope(scope.behavior, values, (*path, ("#", number)), scope.boxes)
+            nodes = []
+            for part in step.steps:
+                node = binder._guarded(_moved(part, len(step.path)), inside, None)
+                if node is not None:
+                    nodes.append(node)
+            return InOrder((*path, ("#", number)), scope.behavior, "", "round", nodes=tuple(nodes))
+
+        if not count:
+            return Rounds(**common, count=0)
+        first = one(1, self)
+        if step.variable and count > 1:
+            one(int(count), self)
+
+        def round_(number: int) -> InOrder:
+            if number == 1:
+                return first
+            binder = _Binder(self._library, None)
+            bound = one(number, binder)
+            if binder.problems:
+                raise BehaviorError(scope.behavior, binder.problems)
+            return bound
+
+        return Rounds(**common, count=int(count), round=round_)
+
+
+def _moved(step: Step, depth: int) -> Step:
+    """A step, and those inside, with paths that begin behind the first `depth` parts."""
+    changes: dict[str, Any] = {"path": step.path[depth:]}
+    if step.parts:
+        changes["steps"] = tuple(_moved(part, depth) for part in step.parts)
+    return replace(step, **changes)
+
+
+def _seconds(key: str, value: Any, values: Mapping[str, Any]) -> float:
+    number = substitute(value, values)
+    if isinstance(number, bool) or not isinstance(number, (int, float)) or not 0.0 <= number <= LONGEST:
+        problem = f"{text_of(number)!r} is not allowed" if number == value else f"{value} is {text_of(number)}"
+        raise BadGoal(key, number, f"0 to {LONGEST:g} s", problem)
+    return float(number)

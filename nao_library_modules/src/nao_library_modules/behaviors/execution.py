@@ -1,0 +1,237 @@
+"""Runs a program on the plan language: goals for servers, in order, at once, on timelines, and what to do on failures.
+
+Every step that waits does so in the plan, so that the end of the plan ends all of them at once, and a goal that runs is
+cancelled and seen to its end.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Callable
+
+from actionlib_msgs.msg import GoalStatus
+
+from naoqi.errors import NaoError
+
+from ..interrupt import Interrupt
+from ..process_modules.control import do, par, pursue, top_level
+from ..process_modules.failures import PlanFailure
+from ..process_modules.flow import Evaporated, sleep, wait_until
+from ..process_modules.fluents import Fluent
+from ..process_modules.tasks import current_task
+from .errors import StepFailed
+from .model import PathParts
+from .program import AllAtOnce, Goal, Meeting, Node, OnTimeline, Pause, Rounds, servers_in, walk
+from .report import ENDED, FAILED, LATE, PREEMPTED, RETRIED, SKIPPED, TOLD, Event, Record, Report
+from .timeline import Timeline
+from .turns import Turns
+
+NOTED_LATE = 0.05
+"""s after its time from which on it is told that a step is late."""
+
+Clients = Callable[[str], Any]
+"""Gives the client of a server, by its name: see `clients.ServerClient`."""
+
+
+class Execution:
+    """One run of a program.
+
+    Attributes:
+        report: What became of the steps; complete when `run` is over, however it ends.
+
+    Args:
+        program: What to run.
+        clients: For its goals.
+        clock: ROS time.
+        tell: Gets everything that happens to steps.
+    """
+
+    def __init__(self, program: Node, clients: Clients, clock: Any, tell: Callable[[Event], None]) -> None:
+        self._program = program
+        self._clients = {server: clients(server) for server in servers_in(program)}
+        self._clock = clock
+        self._turns = Turns(self._clients)
+        self._meetings: dict[PathParts, tuple[Node, Fluent]] = {}
+        self.report = Report(clock, tell)
+
+    def run(self, interrupt: Interrupt) -> None:
+        """Run it; a trigger of `interrupt` ends it.
+
+        Raises:
+            StepFailed: A step failed whose failure is to stop the behaviour.
+            PlanFailure: A server is not there; or the interrupt ended it, which `interrupt.check` tells then.
+        """
+        try:
+            top_level(do(self._all, interrupt, name=self._program.what), clock=self._clock)
+        finally:
+            self.report.close()
+
+    def _all(self, interrupt: Interrupt) -> None:
+        root = current_task()
+        with interrupt.waking(lambda: root.evaporate("preempted")):
+            try:
+                # All of them are there before anything moves.
+                for client in self._clients.values():
+                    client.wait_for_server()
+                self._in_order(self._program)
+            finally:
+                for part in self._program.parts:
+                    self.report.not_run(part)
+                for part in self._program.parts:
+                    self.report.rounds_not_run(part)
+
+    # --- a step -------------------------------------------------------------------------------------------------------
+
+    def _step(self, node: Node, due: float | None = None, begun: Callable[[], None] = lambda: None) -> None:
+        """Run a step to its end, with the retries that it is allowed.
+
+        Args:
+            node: The step.
+            due: When it was to begin, s from the beginning of the behaviour; now if there is no such time.
+            begun: Called when it begins.
+        """
+        wanted = self.report.now() if due is None else due
+        retries = node.policy.retries
+        former: list[Record] = []
+        while True:
+            record: list[Record] = []
+
+            def begin(record: list[Record] = record) -> Record:
+                late = max(self.report.now() - wanted, 0.0)
+                record.append(self.report.began(node, late))
+                if late > NOTED_LATE and record[0].attempts == 1:
+                    self.report.tell(node, LATE, f"{late:.3f} s late")
+                begun()
+                return record[0]
+
+            try:
+                self._limited(node, begin)
+            except (PlanFailure, NaoError) as failure:
+                own = isinstance(failure, StepFailed) and failure.details["path"] == node.where
+                error = failure.details["problem"] if own else str(failure)
+                record = record or [self.report.began(node)]
+                if retries > 0:
+                    retries -= 1
+                    self.report.tell(node, RETRIED, error)
+                    former = record
+                    continue
+                self.report.ended(record[0], SKIPPED if node.policy.skip else FAILED, error)
+                if node.policy.skip:
+                    return
+                if isinstance(failure, StepFailed):
+                    raise
+                raise StepFailed(node.where, node.what, error) from failure
+            except Evaporated:
+                # A step that is to be tried again may be waiting for its server: it has begun before.
+                for begun_before in record or former:
+                    self.report.ended(begun_before, PREEMPTED)
+                raise
+            self.report.ended(record[0], ENDED)
+            return
+
+    def _limited(self, node: Node, begin: Callable[[], Record]) -> None:
+        if node.limit is None:
+            self._do(node, begin)
+            return
+        # The time of a step begins with the step, not while it waits for its server.
+        started = Fluent(f"{node.what} began", False)
+
+        def begin_and_note() -> Record:
+            record = begin()
+            started.value = True
+            return record
+
+        def watch(limit: float = node.limit) -> None:
+            wait_until(lambda: started.value, [started])
+            sleep(limit)
+
+        pursue(do(self._do, node, begin_and_note, name=node.what), do(watch, name=f"for {node.limit:g} s"))
+
+    def _do(self, node: Node, begin: Callable[[], Record]) -> None:
+        if isinstance(node, Goal):
+            self._goal(node, begin)
+            return
+        record = begin()
+        if isinstance(node, Pause):
+            sleep(node.duration)
+        elif isinstance(node, Meeting):
+            self._meet(node)
+        elif isinstance(node, OnTimeline):
+            Timeline(node, self.report, self._step, record.tried).run()
+        elif isinstance(node, AllAtOnce):
+            self._at_once(node)
+        elif isinstance(node, Rounds):
+            for number in range(1, node.count + 1):
+                self._in_order(node.round(number))
+        else:
+            self._in_order(node)
+
+    # --- kinds --------------------------------------------------------------------------------------------------------
+
+    def _goal(self, node: Goal, begin: Callable[[], Record]) -> None:
+        with self._turns.of(node.server, self.report.now(), node.path):
+            record = begin()
+            told: list[str] = []
+
+            def on_feedback(feedback: Any) -> None:
+                text = _news(feedback)
+                if text and text not in told[-1:]:
+                    told.append(text)
+                    self.report.tell(node, TOLD, text)
+
+            def on_end(end: Any) -> None:
+                # Also of a goal that was cancelled: what it did until then counts.
+                if end.result is not None:
+                    record.results = list(end.result.results)
+
+            end = self._clients[node.server].call(node.goal, on_feedback=on_feedback, on_end=on_end)
+            if not end.succeeded:
+                # The behaviour itself cancels goals only where it does not look at their ends any more.
+                why = ": a goal of somebody else took its place" if end.status == GoalStatus.PREEMPTED else ""
+                raise StepFailed(node.where, node.what, f"{end}{why}")
+
+    def _in_order(self, node: Node) -> None:
+        parts = node.parts
+        for i, part in enumerate(parts):
+            try:
+                self._step(part)
+            except BaseException:
+                for other in parts[i + 1 :]:
+                    self.report.not_run(other)
+                raise
+
+    def _at_once(self, node: AllAtOnce) -> None:
+        met = Fluent(f"met in {node.where}", frozenset())
+        self._meetings[node.path] = (node, met)
+        branches = []
+        for number, part in enumerate(node.nodes, start=1):
+
+            def branch(part: Node = part, number: int = number) -> None:
+                self._step(part)
+                # Whoever waits at a barrier waits for this branch no longer.
+                met.update(lambda there: there | {(number, "")})
+
+            branches.append(do(branch, name=part.what))
+        par(*branches)
+
+    def _meet(self, node: Meeting) -> None:
+        if node.home is None:
+            return  # a barrier of a timeline has waited for its time, and that was all
+        home, met = self._meetings[node.home]
+        met.update(lambda there: there | {(node.branch, node.name)})
+        expected = {
+            number
+            for number, branch in enumerate(home.parts, start=1)
+            if any(isinstance(e, Meeting) and e.home == node.home and e.name == node.name for e in walk(branch))
+        }
+        wait_until(lambda: all((n, node.name) in met.value or (n, "") in met.value for n in expected), [met])
+
+
+def _news(feedback: Any) -> str:
+    """What a server tells while it carries out a goal, beyond that a single function runs."""
+    parts = []
+    if getattr(feedback, "waiting", ""):
+        parts.append(f"waits for {feedback.waiting}")
+    elif getattr(feedback, "count", 0) > 1:
+        parts.append(f"function {feedback.index + 1} of {feedback.count}: {feedback.function}")
+    parts += [str(getattr(feedback, name)) for name in ("status", "word") if getattr(feedback, name, "")]
+    return ", ".join(parts)

@@ -1,0 +1,150 @@
+"""`${...}` in values of behaviours: names of parameters, numbers, + - * / and parentheses. Pure.
+
+Alone it stands for the value as it is; in a text it becomes text. `$${` stands for the two characters `${`.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any, Union
+
+from ..errors import BadGoal
+from ..suggestion import did_you_mean
+
+Number = Union[int, float]
+_PART = re.compile(r"\$\$\{|\$\{([^{}]*)\}|\$\{")
+_OPERATIONS = {
+    ast.Add: lambda a, b: a + b,
+    ast.Sub: lambda a, b: a - b,
+    ast.Mult: lambda a, b: a * b,
+    ast.Div: lambda a, b: a / b,
+}
+GRAMMAR = "a parameter, or arithmetic on numbers and parameters: + - * / and parentheses"
+LARGEST = 1e300
+LONGEST = 200
+"""Characters of an expression: deeper ones than fit in would be too deep for the parser."""
+
+
+class BadExpression(BadGoal):
+    """An expression cannot be read or worked out."""
+
+    def __init__(self, text: str, problem: str, allowed: str = GRAMMAR) -> None:
+        """Compose the text."""
+        super().__init__("${" + text + "}", text, allowed, problem=problem)
+
+
+def substitute(value: Any, values: Mapping[str, Any]) -> Any:
+    """A value with everything in `${}` worked out, also inside lists and mappings.
+
+    Args:
+        value: Plain values of YAML.
+        values: Name -> value of the parameters.
+
+    Raises:
+        BadExpression: If something cannot be worked out.
+    """
+    if isinstance(value, str):
+        return _substitute_text(value, values)
+    if isinstance(value, list):
+        return [substitute(each, values) for each in value]
+    if isinstance(value, dict):
+        return {key: substitute(each, values) for key, each in value.items()}
+    return value
+
+
+def names_in(value: Any) -> Iterator[str]:
+    """Names that the expressions in a value use, also inside lists and mappings.
+
+    Raises:
+        BadExpression: If an expression cannot be read.
+    """
+    if isinstance(value, str):
+        for match in _PART.finditer(value):
+            if match[0] != "$${":
+                yield from (each.id for each in ast.walk(_parsed(match)) if isinstance(each, ast.Name))
+    elif isinstance(value, (list, tuple)):
+        for each in value:
+            yield from names_in(each)
+    elif isinstance(value, dict):
+        for each in value.values():
+            yield from names_in(each)
+
+
+def escaped(value: Any) -> Any:
+    """A value such that `substitute` gives it back as it is."""
+    if isinstance(value, str):
+        return value.replace("${", "$${")
+    if isinstance(value, list):
+        return [escaped(each) for each in value]
+    if isinstance(value, dict):
+        return {key: escaped(each) for key, each in value.items()}
+    return value
+
+
+def text_of(value: Any) -> str:
+    """A value as it appears within a text: 3.0 as "3", true as "true"."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        return f"{value:.12g}"
+    if isinstance(value, list):
+        return ", ".join(map(text_of, value))
+    return str(value)
+
+
+def _substitute_text(text: str, values: Mapping[str, Any]) -> Any:
+    whole = _PART.fullmatch(text)
+    if whole is not None and whole[0] != "$${":
+        return _value(whole, values)
+    return _PART.sub(lambda match: "${" if match[0] == "$${" else text_of(_value(match, values)), text)
+
+
+def _value(match: re.Match[str], values: Mapping[str, Any]) -> Any:
+    return _worked_out(_parsed(match), match[1], values)
+
+
+def _parsed(match: re.Match[str]) -> ast.expr:
+    text = match[1]
+    if text is None:
+        raise BadExpression(match.string[match.end() :][:20], "its } is missing, or it holds a brace")
+    if len(text) > LONGEST:
+        raise BadExpression(text[:20] + "...", f"it has {len(text)} characters, at most {LONGEST} are read")
+    try:
+        return ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
+        raise BadExpression(text, "it cannot be read") from error
+
+
+def _worked_out(node: ast.expr, text: str, values: Mapping[str, Any]) -> Any:
+    if isinstance(node, ast.Name):
+        if node.id not in values:
+            known = f"there are {', '.join(values)}" if values else "there are no parameters"
+            raise BadExpression(text, f"there is no parameter {node.id!r}{did_you_mean(node.id, values)}", known)
+        return values[node.id]
+    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        return node.value
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
+        operand = _number(node.operand, text, values)
+        return -operand if isinstance(node.op, ast.USub) else operand
+    if isinstance(node, ast.BinOp) and type(node.op) in _OPERATIONS:
+        left, right = _number(node.left, text, values), _number(node.right, text, values)
+        try:
+            result = _OPERATIONS[type(node.op)](left, right)
+        except ZeroDivisionError:
+            raise BadExpression(text, "it divides by zero") from None
+        except OverflowError:
+            raise BadExpression(text, "its result is too large") from None
+        if abs(result) > LARGEST or not math.isfinite(result):
+            raise BadExpression(text, "its result is too large")
+        return result
+    raise BadExpression(text, "it cannot be read")
+
+
+def _number(node: ast.expr, text: str, values: Mapping[str, Any]) -> Number:
+    value = _worked_out(node, text, values)
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise BadExpression(text, f"{text_of(value)!r} is no number to calculate with")
+    return value

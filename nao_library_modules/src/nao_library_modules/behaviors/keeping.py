@@ -1,0 +1,116 @@
+"""Functions that store, rename, copy and delete behaviours."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ..errors import BadGoal
+from ..field_checks import require_known
+from ..function_chain import checked_by
+from .checking import check
+from .planned import PlannedStore, UnknownYet
+from .reader import read
+from .servers import NAMES, FunctionTables
+from .store import BehaviorStore
+from .writer import from_goal
+
+
+def check_new(
+    self: KeepingFunctions, str_param: str, text: str, server: str, overwrite: bool, context: dict[str, Any]
+) -> None:
+    """A name that is free, and a behaviour that can be run or a server."""
+    planned = PlannedStore.of(self.store, context)
+    planned.require_free(str_param, overwrite)
+    if bool(text.strip()) == bool(server):
+        raise BadGoal("text", text[:200], "either a behavior, or the server whose last goal is to be stored")
+    if server:
+        require_known("server", server, NAMES, "server")
+    else:
+        # It is there already: whoever is a box of itself is found out.
+        planned.put(str_param, text)
+        try:
+            check(read(text, str_param), planned.load, None, self.tables)
+        except UnknownYet:
+            pass  # a box that an earlier function of this chain records
+    planned.put(str_param, text or None)
+
+
+def check_rename(
+    self: KeepingFunctions, str_param: str, new_name: str, overwrite: bool, context: dict[str, Any]
+) -> None:
+    """One's own behaviour, and a name that is free."""
+    planned = PlannedStore.of(self.store, context)
+    planned.require_of_user(str_param)
+    planned.require_free(new_name, overwrite, "new_name")
+    planned.put(new_name, planned.text(str_param))
+    planned.remove(str_param)
+
+
+def check_copy(self: KeepingFunctions, str_param: str, new_name: str, overwrite: bool, context: dict[str, Any]) -> None:
+    """A behaviour, and a name that is free."""
+    planned = PlannedStore.of(self.store, context)
+    text = planned.text(str_param)
+    planned.require_free(new_name, overwrite, "new_name")
+    planned.put(new_name, text)
+
+
+def check_delete(self: KeepingFunctions, str_param: str, context: dict[str, Any]) -> None:
+    """One's own behaviour."""
+    planned = PlannedStore.of(self.store, context)
+    planned.require_of_user(str_param)
+    planned.remove(str_param)
+
+
+class KeepingFunctions:
+    """Functions that store, rename, copy and delete behaviours. Parameters are fields of BehaviorFunction.
+
+    Attributes:
+        store: Behaviours by name.
+        tables: Functions of the servers.
+    """
+
+    store: BehaviorStore
+    tables: FunctionTables
+    goals: Any  # GoalLog
+
+    def keeping_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "storeBehavior": self.store_behavior,
+            "renameBehavior": self.rename_behavior,
+            "copyBehavior": self.copy_behavior,
+            "deleteBehavior": self.delete_behavior,
+        }
+
+    @checked_by(check_new)
+    def store_behavior(self, str_param: str, text: str, server: str, overwrite: bool) -> None:
+        """Store a behaviour: the one in `text`, or the goal that `server` got last."""
+        if server:
+            goal = self.goals.last(server)
+            if goal is None:
+                raise BadGoal("server", server, "one that got a goal", problem=f"{server} got no goal so far")
+            text = from_goal(server, goal)
+            check(read(text, str_param), self.store.load, None, self.tables)
+        self.store.save(str_param, text, overwrite)
+
+    @checked_by(check_rename)
+    def rename_behavior(self, str_param: str, new_name: str, overwrite: bool) -> list[str]:
+        """Give one of one's own behaviours another name; answers which other ones still use the old one as a box."""
+        self.store.rename(str_param, new_name, overwrite)
+        return self._users_of(str_param)
+
+    @checked_by(check_copy)
+    def copy_behavior(self, str_param: str, new_name: str, overwrite: bool) -> None:
+        """Make a behaviour of one's own that is the same as another one, also as one that comes with the library."""
+        self.store.save(new_name, self.store.text(str_param), overwrite)
+
+    @checked_by(check_delete)
+    def delete_behavior(self, str_param: str) -> list[str]:
+        """Delete one of one's own behaviours; answers which other ones still use it as a box."""
+        self.store.delete(str_param)
+        return self._users_of(str_param)
+
+    def _users_of(self, name: str) -> list[str]:
+        """Behaviours with a box of a name that nothing has any more."""
+        return [] if self.store.exists(name) else self.store.users_of(name)

@@ -1,0 +1,206 @@
+"""What a behaviour is made of, as it stands in its file: values may still hold `${...}`."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from typing import Any, Mapping, Tuple
+
+from ..failure_policy import FailurePolicy
+from .parameters import Parameter
+from .times import At
+
+PathParts = Tuple[Tuple[str, int], ...]
+"""Separators and numbers: (("", 2), (".", 1)) is 2.1."""
+
+
+def path_text(path: PathParts) -> str:
+    """A path as people read it: 2.1, 3/1, 4#2.1."""
+    return "".join(f"{separator}{number}" for separator, number in path)
+
+
+def child(path: PathParts, number: int, separator: str = ".") -> PathParts:
+    """Path of a part, counted from 1."""
+    return (*path, (separator if path else "", number))
+
+
+@dataclass(frozen=True)
+class Step(ABC):
+    """What all steps have.
+
+    Attributes:
+        path: Where it stands.
+        line: Of the file; 0 if it is not known.
+        label: Its name on a timeline; may be empty.
+        policy: What happens when it fails.
+        limit: s after which it is ended and counts as done; None for no limit. May hold `${}`.
+        at: When it begins, on a timeline.
+    """
+
+    path: PathParts
+    line: int = 0
+    label: str = ""
+    policy: FailurePolicy = FailurePolicy()
+    limit: Any = None
+    at: At | None = None
+
+    @property
+    @abstractmethod
+    def what(self) -> str:
+        """What it is, in a word or two."""
+
+    @property
+    def parts(self) -> tuple[Step, ...]:
+        """Steps inside of it, in the same file."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Functions(Step):
+    """One goal for a server: a function, or a chain of them.
+
+    Attributes:
+        server: Name of the action.
+        functions: Fields of each function message.
+        chained: Whether it was written as a chain.
+    """
+
+    server: str = ""
+    functions: Tuple[Mapping[str, Any], ...] = ()
+    chained: bool = False
+
+    @property
+    def what(self) -> str:
+        """The server and its function."""
+        if self.chained:
+            return f"chain {self.server}"
+        return f"{self.server}.{self.functions[0].get('function', '')}"
+
+
+@dataclass(frozen=True)
+class Wait(Step):
+    """Let time pass.
+
+    Attributes:
+        duration: s of ROS time.
+    """
+
+    duration: Any = 0.0
+
+    @property
+    def what(self) -> str:
+        """What it is."""
+        return "wait"
+
+
+@dataclass(frozen=True)
+class Barrier(Step):
+    """On a timeline: when all above has ended. In branches of a parallel: where those that have it wait for each other.
+
+    Attributes:
+        name: Of the barrier.
+    """
+
+    name: str = ""
+
+    @property
+    def what(self) -> str:
+        """What it is."""
+        return f"barrier {self.name}"
+
+
+@dataclass(frozen=True)
+class Composite(Step):
+    """Steps in steps."""
+
+    steps: Tuple[Step, ...] = ()
+
+    @property
+    def parts(self) -> tuple[Step, ...]:
+        """Its steps."""
+        return self.steps
+
+
+@dataclass(frozen=True)
+class Sequence(Composite):
+    """One after the other."""
+
+    @property
+    def what(self) -> str:
+        """What it is."""
+        return "sequence"
+
+
+@dataclass(frozen=True)
+class Parallel(Composite):
+    """All at once."""
+
+    @property
+    def what(self) -> str:
+        """What it is."""
+        return "parallel"
+
+
+@dataclass(frozen=True)
+class Timeline(Composite):
+    """Each at its time."""
+
+    @property
+    def what(self) -> str:
+        """What it is."""
+        return "timeline"
+
+
+@dataclass(frozen=True)
+class Repeat(Composite):
+    """A sequence several times.
+
+    Attributes:
+        count: How often.
+        variable: Parameter that has the number of the round, counted from 1; may be empty.
+    """
+
+    count: Any = 1
+    variable: str = ""
+
+    @property
+    def what(self) -> str:
+        """What it is."""
+        return "repeat"
+
+
+@dataclass(frozen=True)
+class Box(Step):
+    """Another behaviour.
+
+    Attributes:
+        name: Of the behaviour.
+        arguments: Values for its parameters.
+    """
+
+    name: str = ""
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def what(self) -> str:
+        """What it is."""
+        return f"behavior {self.name}"
+
+
+@dataclass(frozen=True)
+class Behavior:
+    """A behaviour.
+
+    Attributes:
+        name: Of its file.
+        help: What it does, in a line.
+        parameters: By name.
+        body: What it does.
+        tags: What it is filed under.
+    """
+
+    name: str
+    help: str
+    parameters: Mapping[str, Parameter]
+    body: Sequence
+    tags: Tuple[str, ...] = ()

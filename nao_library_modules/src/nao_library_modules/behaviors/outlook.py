@@ -1,0 +1,131 @@
+"""What a program would do, told before it does it: its steps, boxes, waits, and what could not be checked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from .messages import fields_of
+from .program import AllAtOnce, Goal, InOrder, Meeting, Node, OnTimeline, Pause, Rounds, name_of, walk
+from .servers import FunctionTables, server_of
+from .yaml_text import dump_line
+
+MOST_STEPS = 200
+"""Steps that are told one by one."""
+LONGEST = 200
+"""Characters that tell of a step."""
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """What there is to know of a program.
+
+    Attributes:
+        steps: Path of each step, what it is, and its fields; of repetitions the first round.
+        boxes: Behaviours that it runs, also by way of its boxes.
+        waits: s that its waits take if nothing fails, repetitions as their first round; goals take what they take.
+        unchecked: Functions with fields that only their server knows together with its robot.
+    """
+
+    steps: tuple[str, ...] = ()
+    boxes: tuple[str, ...] = ()
+    waits: float = 0.0
+    unchecked: tuple[str, ...] = ()
+
+
+def outlook_of(program: InOrder, tables: FunctionTables) -> Outlook:
+    """Look at a program.
+
+    Args:
+        program: It.
+        tables: Functions of the servers.
+    """
+    nodes = [node for part in program.parts for node in walk(part)]
+    boxes = dict.fromkeys(node.box for node in nodes if isinstance(node, InOrder) and node.box)
+    return Outlook(
+        _few([_told(node) for node in nodes]),
+        tuple(boxes),
+        waits_of(program),
+        _few([text for node in nodes if isinstance(node, Goal) for text in _unchecked(node, tables)]),
+    )
+
+
+def waits_of(node: Node) -> float:
+    """S that the waits of a node take."""
+    own = _waits_inside(node)
+    return own if node.limit is None else min(own, node.limit)
+
+
+def _waits_inside(node: Node) -> float:
+    if isinstance(node, Pause):
+        return node.duration
+    if isinstance(node, Goal):
+        return sum(message.time.to_sec() for message in _messages(node))
+    if isinstance(node, Rounds):
+        return node.count * sum(map(waits_of, node.parts))
+    if isinstance(node, AllAtOnce):
+        return max(map(waits_of, node.parts), default=0.0)
+    if isinstance(node, OnTimeline):
+        return max(_ends_of(node), default=0.0)
+    return sum(map(waits_of, node.parts))
+
+
+def _ends_of(timeline: OnTimeline) -> list[float]:
+    """When the entries of a timeline end, s from its beginning. None waits for itself: that was checked."""
+    entries = timeline.nodes
+    named = {name_of(entry): i for i, entry in enumerate(entries) if name_of(entry)}
+    begins: dict[int, float] = {}
+    ends: dict[int, float] = {}
+    while len(ends) < len(entries):  # once is enough where nobody refers to what stands below
+        for i, entry in enumerate(entries):
+            other = named[entry.at.label] if entry.at.label else None
+            if i in ends or not (other is None or other in ends):
+                continue
+            if isinstance(entry, Meeting):
+                if any(above not in ends for above in range(i)):
+                    continue
+                begins[i] = max((ends[above] for above in range(i)), default=0.0)
+            else:
+                since = 0.0 if other is None else (ends if entry.at.of_end else begins)[other]
+                begins[i] = since + entry.at.offset
+            ends[i] = begins[i] + waits_of(entry)
+    return list(ends.values())
+
+
+def _told(node: Node) -> str:
+    text = f"{node.where} {node.what}"
+    if isinstance(node, Pause):
+        text += f" {node.duration:g} s"
+    elif isinstance(node, Rounds):
+        text += f" {node.count} times"
+    elif isinstance(node, Goal):
+        told = [_fields(message) for message in _messages(node)]
+        text += f": {'; '.join(told)}" if any(told) else ""
+    return _cut(text)
+
+
+def _unchecked(node: Goal, tables: FunctionTables) -> Iterator[str]:
+    messages = _messages(node)
+    for position in tables.check(server_of(node.server), messages):
+        message = messages[position - 1]
+        yield _cut(f"{node.where} {node.server}.{message.function}: {_fields(message)}")
+
+
+def _messages(node: Goal) -> list[Any]:
+    return list(getattr(node.goal, node.goal.__slots__[0]))
+
+
+def _fields(message: Any) -> str:
+    """Fields of a message that say what its function does, in one line."""
+    fields = {name: value for name, value in fields_of(message).items() if name not in ("function", "on_error", "time")}
+    return ", ".join(f"{name} {dump_line(value)}" for name, value in fields.items())
+
+
+def _few(texts: list[str]) -> tuple[str, ...]:
+    more = len(texts) - MOST_STEPS
+    return (*texts[:MOST_STEPS], *([f"... and {more} more"] if more > 0 else []))
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."

@@ -1,0 +1,180 @@
+"""Functions that run and show behaviours."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from nao_library_msgs.msg import BehaviorInfo, BehaviorParameter, BehaviorStep
+
+from ..errors import BadGoal, Preempted
+from ..function_chain import checked_by
+from ..interrupt import Interrupt
+from ..process_modules.failures import PlanFailure
+from .checking import Facts, check_given, facts_of, outlook_facts
+from .execution import Execution
+from .parameters import Parameter
+from .planned import PlannedStore, UnknownYet
+from .reader import read
+from .report import Event, Record
+from .servers import FunctionTables
+from .store import BehaviorStore
+from .yaml_text import dump_line
+
+UNNAMED = "text"
+"""What a behaviour is called that has no name yet."""
+
+
+def check_run(self: RunningFunctions, str_param: str, parameters: Sequence[str], context: dict[str, Any]) -> None:
+    """A behaviour that can be run with these values."""
+    planned = PlannedStore.of(self.store, context)
+    try:
+        check_given(planned.load(str_param), planned.load, parameters, self.tables)
+    except UnknownYet:
+        pass  # an earlier function of this chain records it
+
+
+def check_name(self: RunningFunctions, str_param: str, context: dict[str, Any]) -> None:
+    """A behaviour that is there."""
+    PlannedStore.of(self.store, context).text(str_param)
+
+
+def check_what(self: RunningFunctions, str_param: str, text: str, context: dict[str, Any]) -> None:
+    """A name or a text."""
+    if bool(str_param.strip()) == bool(text.strip()):
+        raise BadGoal("text", text[:200], "either a name in str_param or a behavior in text")
+    if str_param.strip():
+        check_name(self, str_param, context)
+
+
+class RunningFunctions:
+    """Functions that run and show behaviours. Parameters are fields of BehaviorFunction.
+
+    Attributes:
+        store: Behaviours by name.
+        tables: Functions of the servers.
+        steps: What became of the steps of behaviours that this goal has run.
+        shown: Behaviours that this goal has asked for.
+        replaced: Behaviour that the goal before ran when this one came; empty if none.
+        ended_behavior: Behaviour that this goal ran when the next one came.
+    """
+
+    store: BehaviorStore
+    tables: FunctionTables
+    steps: list[Record]
+    shown: list[Facts]
+    replaced: str
+    ended_behavior: str
+    clients: Any  # Clients
+    interrupt: Interrupt  # of NaoBasic
+    clock: Any  # of NaoBasic
+    tell: Callable[[Event], None]  # of NaoBehavior
+
+    def running_functions(self) -> dict[str, Callable[..., Any]]:
+        """Name -> function, to be put into the function table of a module."""
+        return {
+            "runBehavior": self.run_behavior,
+            "stopBehavior": self.stop_behavior,
+            "listBehaviors": self.list_behaviors,
+            "getInstalledBehaviors": self.list_behaviors,
+            "describeBehavior": self.describe_behavior,
+            "checkBehavior": self.check_behavior,
+        }
+
+    @checked_by(check_run)
+    def run_behavior(self, str_param: str, parameters: Sequence[str]) -> float:
+        """Run a behaviour, and wait for its end; answers how long it took, s of ROS time."""
+        self.ended_behavior = ""
+        program = check_given(self.store.load(str_param), self.store.load, parameters, self.tables)
+        execution = Execution(program, self.clients, self.clock, self.tell)
+        try:
+            execution.run(self.interrupt)
+        except PlanFailure:
+            try:
+                self.interrupt.check()
+            except Preempted:
+                self.ended_behavior = str_param
+                raise
+            raise
+        finally:
+            self.steps += execution.report.records()
+        return execution.report.now()
+
+    def stop_behavior(self) -> list[str]:
+        """End the behaviour that runs, and with it what it does; answers which one that was, nothing if none ran."""
+        # Every goal replaces the one before: it was ended when this one came.
+        return [self.replaced] if self.replaced else []
+
+    def list_behaviors(self) -> list[str]:
+        """Names of the behaviours, those that come with the library and one's own."""
+        names = self.store.names()
+        self.shown += [facts_of(name, self.store.load, self.tables) for name in names]
+        return names
+
+    @checked_by(check_name)
+    def describe_behavior(self, str_param: str) -> str:
+        """The text of a behaviour; what it does, its parameters and servers are in the result as well."""
+        text = self.store.text(str_param)
+        self.shown.append(self.outlook(str_param))
+        return text
+
+    @checked_by(check_what)
+    def check_behavior(self, str_param: str, text: str, parameters: Sequence[str]) -> list[str]:
+        """What is wrong with a behaviour, stored or in `text`; nothing if it can be run; then the result tells more."""
+        name = str_param.strip()
+        load = (lambda: self.store.load(name)) if name else (lambda: read(text, UNNAMED))
+        facts = outlook_facts(name or UNNAMED, load, self.store.load, self.tables, parameters)
+        self.shown.append(facts)
+        return list(facts.problems)
+
+    def outlook(self, name: str) -> Facts:
+        """All there is to know about a stored behaviour, with the defaults of its parameters. Any thread may ask."""
+        return outlook_facts(name, lambda: self.store.load(name), self.store.load, self.tables)
+
+
+def step_message(record: Record) -> BehaviorStep:
+    """What became of a step, as a message."""
+    node = record.node
+    return BehaviorStep(
+        behavior=node.behavior,
+        path=node.where,
+        label=node.label,
+        what=node.what,
+        state=record.state,
+        began=record.began,
+        ended=record.ended,
+        late=record.late,
+        attempts=record.attempts,
+        error=record.error,
+        results=record.results,
+    )
+
+
+def info_message(facts: Facts, shipped: bool) -> BehaviorInfo:
+    """What there is to know about a behaviour, as a message.
+
+    Args:
+        facts: What there is to know.
+        shipped: Whether it comes with the library.
+    """
+    info = BehaviorInfo(name=facts.name, servers=list(facts.servers), shipped=shipped, problem=facts.problem)
+    if facts.behavior is not None:
+        info.help, info.tags = facts.behavior.help, list(facts.behavior.tags)
+        info.parameters = [_parameter_message(each) for each in facts.behavior.parameters.values()]
+    outlook = facts.outlook
+    info.steps, info.boxes, info.unchecked = list(outlook.steps), list(outlook.boxes), list(outlook.unchecked)
+    info.waits = outlook.waits
+    return info
+
+
+def _parameter_message(parameter: Parameter) -> BehaviorParameter:
+    return BehaviorParameter(
+        name=parameter.name,
+        type=parameter.kind,
+        default=dump_line(parameter.default),
+        help=parameter.help,
+        unit=parameter.unit,
+        choices=[dump_line(each) for each in parameter.choices],
+        min=parameter.lowest,
+        max=parameter.highest,
+    )

@@ -1,0 +1,137 @@
+"""The action server for behaviours: runs them, stores them, records them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from nao_library_actions.msg import NaoBehaviorAction
+from nao_library_msgs.srv import ListBehaviors, ListBehaviorsResponse
+
+from ..answers import Outcome
+from ..nao_basic import NaoBasic
+from ..paths import config_file
+from .checking import Facts, facts_of
+from .clients import Clients, GoalLog
+from .keeping import KeepingFunctions
+from .noting import NotingFunctions
+from .recording import Recording
+from .report import Event, Record
+from .running import RunningFunctions, info_message, step_message
+from .servers import NAMES, FunctionTables
+from .store import BehaviorStore
+
+PARAMETERS = {"behavior_dir": "~/.ros/nao_behaviors"}
+"""Private parameters of the node -> default."""
+LONGEST_NAMES = 200
+"""Characters that tell of a goal that was recorded."""
+SHIPPED = "behaviors"
+"""Folder in `config` with those that come with the library."""
+
+
+class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions):
+    """Behaviour goals: run what is written down for all modules together; store it, list it, record it.
+
+    A behaviour sends goals to the other servers, as any client does. Preempted, it cancels all of them at once, and
+    sees them end.
+
+    Attributes:
+        store: Behaviours by name.
+        tables: Functions of the servers.
+        recording: The one that goes on; None if none does.
+
+    ROS API:
+        Action `NaoBehavior` (nao_library_actions/NaoBehaviorAction) and what NaoBasic offers. Service
+        `NaoBehavior/list` (nao_library_msgs/ListBehaviors). Sends goals to the other servers, and listens to those that
+        others send. Parameter `~behavior_dir`: folder of the user's behaviours.
+    """
+
+    def __init__(
+        self,
+        ip: str,
+        port: int,
+        behavior_dir: str | Path = PARAMETERS["behavior_dir"],
+        clients: Any = None,
+        **options: Any,
+    ) -> None:
+        """Start the server.
+
+        Args:
+            ip: Address of the robot.
+            port: Port of its NAOqi.
+            behavior_dir: Folder of the user's behaviours; under ROS_HOME if relative, "~" stands for the home.
+            clients: Clients of the servers by name, where not those of this process's node.
+            options: As NaoBasic takes them.
+        """
+        super().__init__(ip, port, **options)
+        self.clients = clients or Clients()
+        self.goals = GoalLog(self._edge)
+        self.store = BehaviorStore(Path(behavior_dir).expanduser(), config_file(SHIPPED))
+        self.tables = FunctionTables()
+        self.recording: Recording | None = None
+        self.steps: list[Record] = []
+        self.shown: list[Facts] = []
+        self.replaced = self.ended_behavior = ""
+        own = {**self.running_functions(), **self.keeping_functions(), **self.noting_functions()}
+        self.without_robot = frozenset(own)  # the servers of the steps need it
+        self.function_table.update(own)
+        self._edge.serve("NaoBehavior/list", ListBehaviors, self.answer_list)
+        self.serve("NaoBehavior", NaoBehaviorAction)
+
+    # The life of a goal
+
+    def begin_chain(self) -> None:
+        """Forget what the last chain did, but for what it was doing when this one came."""
+        self.steps, self.shown = [], []
+        self.replaced, self.ended_behavior = self.ended_behavior, ""
+
+    def tell(self, event: Event) -> None:
+        """Publish what happens to a step. Called from threads of the plan, one after the other."""
+        node = event.node
+        self.publish_feedback(
+            behavior=node.behavior,
+            path=node.where,
+            label=node.label,
+            what=node.what,
+            state=event.state,
+            time=event.time,
+            text=event.text,
+        )
+
+    def tell_recorded(self, server: str, goal: Any) -> None:
+        """Publish that a goal was recorded, while a goal records. Called from threads of subscribers."""
+        _, function, _ = self._progress
+        if self._idle.is_set() or self.recording is None or function != "recordBehavior":
+            return
+        names = ", ".join(each.function for each in getattr(goal, goal.__slots__[0]))
+        what = f"{server}.{names}"[:LONGEST_NAMES]
+        self.publish_feedback(behavior=self.recording.name, what=what, state="recorded")
+
+    def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
+        """Add what became of the steps, and what was asked about behaviours."""
+        super().fill_result(result, outcomes)
+        result.steps = [step_message(record) for record in self.steps]
+        result.behaviors = [info_message(facts, self._is_shipped(facts.name)) for facts in self.shown]
+
+    def shut_down(self) -> None:
+        """As NaoBasic does; a recording that goes on is stored."""
+        super().shut_down()
+        self.keep_recording()
+
+    def argument_choices(self, function: str, field: str) -> Sequence[str]:
+        """Names of the behaviours and servers, for the description of the functions."""
+        if field in ("server", "servers"):
+            return NAMES
+        named = ("runBehavior", "describeBehavior", "checkBehavior", "renameBehavior", "copyBehavior", "deleteBehavior")
+        return self.store.names() if field == "str_param" and function in named else ()
+
+    def answer_list(self, request: Any) -> ListBehaviorsResponse:
+        """Which behaviours there are; called in threads of clients."""
+        names = [name for name in self.store.names() if request.name in ("", name)]
+        facts = [self.outlook(name) if request.name else facts_of(name, self.store.load, self.tables) for name in names]
+        return ListBehaviorsResponse([info_message(each, self._is_shipped(each.name)) for each in facts])
+
+    def _is_shipped(self, name: str) -> bool:
+        """Whether a name means one that comes with the library."""
+        return self.store.is_shipped(name) and not self.store.of_user(name)

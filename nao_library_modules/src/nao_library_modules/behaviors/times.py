@@ -1,0 +1,60 @@
+"""When an entry of a timeline begins: `1.5`, `eyes`, `eyes.end`, `eyes.end + 0.5`, `${pause}`. Pure."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import BadGoal
+
+LABEL = r"[A-Za-z_][A-Za-z0-9_-]*"
+_REFERENCE = re.compile(rf"\s*({LABEL})(\.end)?\s*(?:\+\s*(\S.*?))?\s*")
+ALLOWED = "s from the beginning of the timeline, LABEL, LABEL.end, or one of these with '+ seconds'"
+
+
+@dataclass(frozen=True)
+class At:
+    """When an entry begins.
+
+    Attributes:
+        offset: s, >= 0, from the beginning of the timeline or from the label; may hold `${}`.
+        label: Entry or barrier that it depends on; empty: the beginning of the timeline.
+        of_end: Whether it is the end of that entry that counts, not its beginning.
+    """
+
+    offset: Any = 0.0
+    label: str = ""
+    of_end: bool = False
+
+
+def at_of(value: Any) -> At:
+    """What a value of `at` means.
+
+    Raises:
+        BadGoal: If it means nothing.
+    """
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return At(value)
+    if isinstance(value, str):
+        if value.strip().startswith("${"):
+            return At(value.strip())
+        match = _REFERENCE.fullmatch(value)
+        if match:
+            return At(_offset(match[3], value), match[1], match[2] is not None)
+        try:
+            return At(float(value))
+        except ValueError:
+            pass
+    raise BadGoal("at", value, ALLOWED)
+
+
+def _offset(text: str | None, whole: str) -> Any:
+    if text is None:
+        return 0.0
+    if text.startswith("${"):
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise BadGoal("at", whole, ALLOWED) from None

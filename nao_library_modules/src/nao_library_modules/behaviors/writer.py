@@ -1,0 +1,60 @@
+"""From goals to the text of a behaviour."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .expressions import escaped
+from .messages import fields_of
+from .servers import server_of
+from .yaml_text import dump
+
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+def step_of(server: str, goal: Any) -> dict[str, Any]:
+    """A goal as a step of a file: a function, or a chain of them.
+
+    Args:
+        server: Name of the action.
+        goal: The goal message.
+
+    Raises:
+        BadGoal: If steps may not use the server.
+    """
+    messages = getattr(goal, server_of(server).goal.__slots__[0])
+    functions = [escaped(fields_of(message)) for message in messages]
+    if len(functions) == 1 and _WORD.fullmatch(functions[0].get("function", "")):
+        fields = dict(functions[0])
+        return {f"{server}.{fields.pop('function')}": fields}
+    return {"chain": {server: functions}}
+
+
+def text_of(help_: str, steps: Sequence[Mapping[str, Any]], tags: Sequence[str] = ()) -> str:
+    """The text of a behaviour without parameters.
+
+    Args:
+        help_: What it does, in a line.
+        steps: As in a file.
+        tags: What it is filed under.
+    """
+    content: dict[str, Any] = {"help": help_}
+    if tags:
+        content["tags"] = list(tags)
+    return dump({**content, "do": [dict(step) for step in steps]})
+
+
+def from_goal(server: str, goal: Any, help_: str = "") -> str:
+    """Write down one goal as a behaviour; what is returned can be stored: `store.save(name, text)`.
+
+    Args:
+        server: Name of the action.
+        goal: The goal message.
+        help_: What it does, in a line.
+
+    Raises:
+        BadGoal: If steps may not use the server.
+    """
+    return text_of(help_ or f"A goal of {server}.", [step_of(server, goal)])
