@@ -1,0 +1,189 @@
+"""`nao status`, `list` and `help`: what there is and how it does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import click
+
+from .errors import StackMissing
+from .output import plain, say_json, table
+from .settings import NaoCommand, Settings, settings_of
+from .stack import same_server
+
+INDENT = "  "
+
+
+def _complete_server(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
+    from .completion import servers
+
+    return servers(context, start)
+
+
+def _complete_function(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
+    from .completion import all_functions
+
+    return all_functions(context, start)
+
+
+@click.command(cls=NaoCommand, name="status")
+@click.pass_context
+def status_command(context: click.Context) -> None:
+    """Robot, battery, posture, servers, goals that run, and what is wrong.
+
+    The exit status is 3 if the robot cannot be reached.
+    """
+    from .status import read_status, status_lines
+
+    settings = settings_of(context)
+    found = read_status(settings.stack)
+    if settings.json:
+        say_json(found)
+    else:
+        for line in status_lines(found):
+            click.echo(line)
+    if not found["connected"]:
+        raise StackMissing(f"the robot at {found['address']} cannot be reached")
+
+
+@click.command(cls=NaoCommand, name="list")
+@click.argument("server", default="", shell_complete=_complete_server)
+@click.option("--all", "shared", is_flag=True, help="Also the functions that every server has.")
+@click.pass_context
+def list_command(context: click.Context, server: str, shared: bool) -> None:
+    """The servers, or the functions of SERVER."""
+    settings = settings_of(context)
+    if not server:
+        servers = described_servers(settings, brief=True)
+        if settings.json:
+            say_json([{"name": name, "help": told.help, "action": told.action} for name, told in servers])
+        else:
+            _print(table([(name, told.help) for name, told in servers]))
+        return
+    (_, told), *_ = described_servers(settings, server=server, names=not settings.json)
+    functions = [function for function in told.functions if shared or not function.shared]
+    if settings.json:
+        say_json([_json(function) for function in functions])
+    else:
+        _print(table([(function.name, function.help) for function in functions]))
+
+
+@click.command(cls=NaoCommand, name="help")
+@click.argument("name", shell_complete=_complete_function)
+@click.argument("function", default="")
+@click.pass_context
+def help_command(context: click.Context, name: str, function: str) -> None:
+    """What the function NAME does and takes, in all servers; or the server NAME, or its FUNCTION.
+
+    Without a running stack it tells what can be told from the code.
+    """
+    settings = settings_of(context)
+    wanted = function or name
+    found = _find(settings, wanted, name if function else "")
+    if not found:
+        _help_server(settings, name, function)
+        return
+    if all(described.shared for _, _, described in found):
+        found = found[:1]  # every server has it
+    if settings.json:
+        say_json([{"server": server, **_json(described)} for server, _, described in found])
+        return
+    for number, (server, told, described) in enumerate(found):
+        if number:
+            click.echo()
+        _print(function_lines(server, told, described))
+
+
+def _find(settings: Settings, function: str, server: str) -> list[tuple[str, Any, Any]]:
+    """Functions of a name: the server of each, what that says about itself, and the description."""
+    found = []
+    for name, told in described_servers(settings, server=server, names=True):
+        for candidate in told.functions:
+            if candidate.name.lower() == function.lower():
+                found.append((name, candidate.name))
+    told = {name: dict(described_servers(settings, name, functions=(exact,)))[name] for name, exact in found}
+    return [(name, told[name], next(f for f in told[name].functions if f.name == exact)) for name, exact in found]
+
+
+def described_servers(
+    settings: Settings, server: str = "", brief: bool = False, names: bool = False, functions: Sequence[str] = ()
+) -> list[tuple[str, Any]]:
+    """Servers with what they say about themselves: those that run, or what the code says where none does.
+
+    Args:
+        settings: Of this run.
+        server: Only this one; all without.
+        brief: True: without functions.
+        names: True: only names and help of the functions.
+        functions: Only these; all without.
+
+    Raises:
+        click.UsageError: There is no such server.
+    """
+    try:
+        stack = settings.stack
+        found = [stack.server(server)[len(stack.namespace) :]] if server else stack.servers()
+        return [(name, stack.describe(name, functions, brief, names)) for name in found]
+    except StackMissing as missing:
+        if settings.namespace is not None:
+            raise
+        from .offline import described_by_code
+
+        if not settings.told_offline:
+            click.echo(f"{missing.message}\nthis is what the code says:", err=True)
+            settings.told_offline = True
+        return described_by_code(server, brief, names, functions)
+
+
+def _help_server(settings: Settings, name: str, function: str) -> None:
+    """Help for a server; or what looks like a name that is not there.
+
+    Raises:
+        click.UsageError: There is neither a function nor a server of that name.
+    """
+    from ..suggestion import did_you_mean
+
+    servers = described_servers(settings, names=True)
+    known = [name for name, _ in servers]
+    functions = list(dict.fromkeys(f.name for _, told in servers for f in told.functions))
+    wanted = function or name
+    server = [(n, told) for n, told in servers if same_server(n, name)]
+    if function or not server:
+        hint = did_you_mean(wanted, [*functions, *known]) or ": `nao list` tells the servers"
+        raise click.UsageError(f"there is no function {wanted!r}{hint}")
+    (found, told), *_ = server
+    if settings.json:
+        (_, told), *_ = described_servers(settings, found)
+        say_json({"server": found, "help": told.help, "functions": [_json(f) for f in told.functions]})
+        return
+    click.echo(f"{found}: {told.help}")
+    rows = [(f.name, f.help) for f in told.functions if not f.shared]
+    _print(table(rows, INDENT))
+    click.echo(f"{INDENT}and those of the robot's memory: {', '.join(f.name for f in told.functions if f.shared)}")
+
+
+def function_lines(server: str, told: Any, function: Any) -> Iterable[str]:
+    """Help for one function."""
+    yield f"{server} {function.name}: {function.help}"
+    if function.answers != "nothing":
+        yield f"{INDENT}answers: {function.answers}"
+    for argument in [*function.arguments, *told.common]:
+        unit = f" {argument.unit}" if argument.unit else ""
+        yield f"{INDENT}{argument.name} ({argument.type}){unit}, {argument.default or '{}'}"
+        yield f"{INDENT * 2}{argument.help}"
+        if argument.allowed:
+            yield f"{INDENT * 2}allowed: {argument.allowed}"
+        if argument.choices and not all(word in argument.allowed for word in argument.choices):
+            yield f"{INDENT * 2}here: {', '.join(argument.choices)}"
+    yield f"{INDENT}nao call {server} {function.name}{''.join(f' {a.name}:=...' for a in function.arguments)}"
+
+
+def _json(function: Any) -> Any:
+    """A description; limits that are not known are null."""
+    return plain(function)
+
+
+def _print(lines: Iterable[str]) -> None:
+    for line in lines:
+        click.echo(line)

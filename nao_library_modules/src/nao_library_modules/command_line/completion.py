@@ -1,0 +1,127 @@
+"""How a word can go on, as the running robot knows it. Whatever goes wrong, there is just nothing to offer."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import click
+
+from .settings import Settings, settings_of
+
+
+def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
+    """An offer of words that fails in silence and is narrowed to what was begun."""
+
+    @functools.wraps(offer)
+    def run(context: click.Context, start: str, *more: Any) -> list[str]:
+        settings = settings_of(context)
+        settings.completing = True
+        try:
+            words = list(offer(settings, start, *more))
+        except Exception:  # an error text would end up in the line that is being typed
+            return []
+        return [word for word in words if word.startswith(start)]
+
+    return run
+
+
+@quietly
+def robots(settings: Settings, start: str) -> list[str]:
+    """Namespaces of robots."""
+    return [name.strip("/") or "/" for name in settings.stack.robots()]
+
+
+@quietly
+def servers(settings: Settings, start: str) -> list[str]:
+    """Names of servers."""
+    return settings.stack.servers()
+
+
+@quietly
+def all_functions(settings: Settings, start: str) -> list[str]:
+    """Names of all functions of all servers, and of the servers."""
+    names = dict.fromkeys(settings.stack.servers())
+    for server in settings.stack.servers():
+        names.update(dict.fromkeys(function.name for function in settings.stack.describe(server, names=True).functions))
+    return list(names)
+
+
+@quietly
+def chain(settings: Settings, start: str, server: str, before: Sequence[str]) -> list[str]:
+    """Next word of a chain: a function, a field, a value."""
+    from .chain_text import ASSIGN, NEXT
+
+    last = max((i for i, word in enumerate(before) if word in NEXT or _ends(word)), default=-1)
+    piece = [word for word in before[last + 1 :] if word]
+    if not piece:
+        return [function.name for function in settings.stack.describe(server, names=True).functions]
+    described = settings.stack.describe(server, [piece[0]])
+    arguments = [argument for function in described.functions for argument in function.arguments]
+    arguments += described.common
+    field, assigned, value = start.partition(ASSIGN)
+    if not assigned:
+        used = {word.partition(ASSIGN)[0] for word in piece[1:]}
+        return [f"{argument.name}{ASSIGN}" for argument in arguments if argument.name not in used]
+    for argument in arguments:
+        if argument.name == field:
+            return [f"{field}{ASSIGN}{word}" for word in _values(argument, value)]
+    return []
+
+
+@quietly
+def choices(settings: Settings, start: str, server: str, function: str, field: str) -> list[str]:
+    """Words that a field of a function may hold."""
+    for described in settings.stack.describe(server, [function]).functions:
+        for argument in described.arguments:
+            if argument.name == field:
+                return list(argument.choices)
+    return []
+
+
+@quietly
+def behaviors(settings: Settings, start: str) -> list[str]:
+    """Names of the stored behaviours."""
+    from .behaviors_commands import stored
+
+    return [behavior["name"] for behavior in stored(settings)]
+
+
+@quietly
+def parameters(settings: Settings, start: str, behavior: str) -> list[str]:
+    """Parameters of a behaviour."""
+    from .behaviors_commands import stored
+
+    return [f"{p['name']}=" for found in stored(settings, behavior) for p in found["parameters"]]
+
+
+@quietly
+def keys(settings: Settings, start: str) -> list[str]:
+    """Keys and events of the robot's memory; up to the next slash, for there are more than a thousand."""
+    from .robot_link import RobotLink
+    from .settings import QUICK
+
+    with RobotLink(settings.stack.robot_address(), QUICK) as robot:
+        names = [name for name in robot.memory_names() if name.startswith(start)]
+    return sorted({start + _to_slash(name[len(start) :]) for name in names})
+
+
+def _to_slash(rest: str) -> str:
+    head, slash, _ = rest.partition("/")
+    return head + slash
+
+
+def _values(argument: Any, typed: str) -> list[str]:
+    if argument.type == "bool":
+        return ["true", "false"]
+    if argument.type.endswith("[]"):
+        begun = typed.rpartition(",")[0]
+        return [f"{begun},{word}" if begun else word for word in argument.choices]
+    return list(argument.choices)
+
+
+def _ends(word: str) -> bool:
+    from .chain_text import ASSIGN
+
+    return word.endswith(",") and ASSIGN not in word

@@ -1,0 +1,149 @@
+"""`nao say`, `leds`, `pose`, `walk`, `wake`, `rest`: one function each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from .goals import carry_out, function_message
+from .settings import NaoCommand, settings_of
+
+AUDIO_OUT, LIGHTS, MOTION = "nao_audio_out", "NaoLights", "NaoMotion"
+SWITCHES = ("on", "off", "reset")
+"""What lights can be besides a colour and an intensity: functions of their own."""
+SIGNED = {"ignore_unknown_options": True}
+"""Numbers may begin with a minus sign."""
+
+
+def _seconds(value: float | None) -> Any:
+    if value is None:
+        return None
+    import rospy
+
+    return rospy.Duration.from_sec(value)
+
+
+def _choices(server: str, function: str, field: str) -> Any:
+    def complete(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
+        from .completion import choices
+
+        return choices(context, start, server, function, field)
+
+    return complete
+
+
+def _complete_look(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
+    from .completion import choices
+
+    lights = choices(context, start, LIGHTS, "setColor", "lights")
+    colours = choices(context, start, LIGHTS, "setColor", "str_param")
+    return [*lights, *colours, *(word for word in SWITCHES if word.startswith(start))]
+
+
+@click.command(cls=NaoCommand, name="say")
+@click.argument("text", nargs=-1, required=True)
+@click.option("--language", metavar="NAME", shell_complete=_choices(AUDIO_OUT, "say", "language"), help="Of this text.")
+@click.option("--voice", metavar="NAME", shell_complete=_choices(AUDIO_OUT, "say", "voice"), help="For this text.")
+@click.option("--volume", type=float, metavar="0..1", help="Of this text.")
+@click.option("--speed", type=float, metavar="%", help="50 to 400, 100 is normal.")
+@click.option("--pitch", type=float, metavar="%", help="50 to 200, 100 is normal.")
+@click.option("--animated", is_flag=True, help="With gestures.")
+@click.option("--background", is_flag=True, help="Do not wait for the end.")
+@click.pass_context
+def say_command(context: click.Context, text: tuple[str, ...], animated: bool, **fields: Any) -> None:
+    """Say TEXT."""
+    settings = settings_of(context)
+    if animated:
+        fields.pop("background")
+    function = "animatedSay" if animated else "say"
+    message = function_message(settings, AUDIO_OUT, function=function, str_param=" ".join(text), **fields)
+    carry_out(settings, AUDIO_OUT, [message], quiet=True)
+
+
+@click.command(cls=NaoCommand, name="leds", context_settings=dict(SIGNED))
+@click.argument("lights", nargs=-1, required=True, shell_complete=_complete_look, metavar="LIGHT... LOOK")
+@click.option("--for", "seconds", type=float, metavar="S", help="Wait so long afterwards.")
+@click.option("--fade", "duration", type=float, metavar="S", help="Take so long to get there.")
+@click.option("--revert", is_flag=True, help="Afterwards the lights go back to what they were.")
+@click.pass_context
+def leds_command(
+    context: click.Context, lights: tuple[str, ...], seconds: float | None, duration: float | None, revert: bool
+) -> None:
+    """Set LIGHTs to a LOOK: a colour (green, '#FF8000'), an intensity 0..1, on, off or reset."""
+    if len(lights) < 2:
+        raise click.UsageError("lights and their look are wanted: nao leds FaceLeds green")
+    settings = settings_of(context)
+    *names, look = lights
+    fields: dict[str, Any] = {"lights": names, "revert": revert, "time": _seconds(seconds)}
+    intensity = _number(look)
+    if intensity is not None:
+        fields.update(function="setIntensity" if duration is None else "fade", i_values=[intensity], duration=duration)
+    elif look in SWITCHES:
+        if duration is not None:
+            raise click.UsageError(f"{look} takes no time: --fade is for colours and intensities")
+        fields.update(function=look)
+    else:
+        fields.update(function="setColor" if duration is None else "fadeRGB", str_param=look, duration=duration)
+    carry_out(settings, LIGHTS, [function_message(settings, LIGHTS, **fields)], quiet=True)
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+@click.command(cls=NaoCommand, name="pose")
+@click.argument("posture", shell_complete=_choices(MOTION, "goToPosture", "str_param"))
+@click.option("--speed", type=float, metavar="0..1", help="Fraction of the top speed.")
+@click.pass_context
+def pose_command(context: click.Context, posture: str, speed: float | None) -> None:
+    """Go to a POSTURE from wherever the robot is."""
+    settings = settings_of(context)
+    message = function_message(settings, MOTION, function="goToPosture", str_param=posture, speed=speed)
+    carry_out(settings, MOTION, [message], quiet=True)
+
+
+@click.command(cls=NaoCommand, name="walk", context_settings=dict(SIGNED))
+@click.argument("x", type=float)
+@click.argument("y", type=float, default=0.0)
+@click.argument("theta", type=float, default=0.0)
+@click.pass_context
+def walk_command(context: click.Context, x: float, y: float, theta: float) -> None:
+    """Walk X m ahead and Y m to the left, and turn THETA rad to the left; answers how far it got.
+
+    A robot that does not stand stands up before.
+    """
+    settings = settings_of(context)
+    stand = function_message(settings, MOTION, function="goToPosture", str_param="StandInit")
+    walk = function_message(settings, MOTION, function="moveTo", values=[x, y, theta])
+    end = carry_out(settings, MOTION, [walk] if _stands(settings) else [stand, walk], quiet=True)
+    if not settings.json:
+        far = dict(zip(("m ahead", "m to the left", "rad to the left"), end.result["results"][-1]["values"]))
+        click.echo(", ".join(f"{float(value):.3f} {unit}" for unit, value in far.items()))
+
+
+def _stands(settings: Any) -> bool:
+    """Whether the robot is awake and on its feet."""
+    from .robot_link import RobotLink
+
+    with RobotLink(settings.stack.robot_address()) as robot:
+        awake = robot.call("ALMotion", "robotIsWakeUp")
+        return bool(awake and robot.call("ALRobotPosture", "getPostureFamily") == "Standing")
+
+
+def _one_function(name: str, text: str) -> click.Command:
+    @click.command(cls=NaoCommand, name=name, help=text)
+    @click.pass_context
+    def run(context: click.Context) -> None:
+        settings = settings_of(context)
+        carry_out(settings, MOTION, [function_message(settings, MOTION, function=_FUNCTIONS[name])], quiet=True)
+
+    return run
+
+
+_FUNCTIONS = {"wake": "wakeUp", "rest": "rest"}
+wake_command = _one_function("wake", "Switch the motors on; a robot on its feet stands up.")
+rest_command = _one_function("rest", "Go to a safe posture and switch the motors off.")

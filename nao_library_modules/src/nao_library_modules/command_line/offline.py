@@ -1,0 +1,47 @@
+"""Descriptions of the servers where none runs, as far as the code tells."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+import click
+
+from ..suggestion import did_you_mean
+
+
+def described_by_code(
+    server: str = "", brief: bool = False, names: bool = False, functions: Sequence[str] = ()
+) -> list[tuple[str, Any]]:
+    """Servers with their descriptions, as their service would give them.
+
+    Args:
+        server: Only this one; all without.
+        brief: True: without functions.
+        names: True: only names and help of the functions.
+        functions: Only these; all without.
+
+    Raises:
+        click.UsageError: There is no such server.
+    """
+    from nao_library_msgs.srv import DescribeFunctionsRequest
+
+    from .stack import same_server
+
+    servers = _servers()
+    chosen = [found for found in servers if not server or same_server(found.name, server)]
+    if not chosen:
+        known = [found.name for found in servers]
+        raise click.UsageError(
+            f"there is no server {server!r}{did_you_mean(server, known)}; there are {', '.join(known)}"
+        )
+    request = DescribeFunctionsRequest(list(functions), names, brief)
+    return [(found.name, found.service.answer(request)) for found in chosen]
+
+
+@lru_cache(maxsize=None)
+def _servers() -> list[Any]:
+    from ..describe_offline import offline_servers
+
+    return offline_servers()

@@ -1,0 +1,95 @@
+"""What a goal does while it runs: one line that changes on a terminal, plain lines elsewhere. On standard error."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import threading
+from typing import Any
+
+import click
+
+from .output import filled, plain, words
+
+WHEEL = "|/-\\"
+PERIOD = 0.15
+"""s between two turns of the wheel."""
+STEP = ("path", "what", "state", "text")
+"""Fields that tell of a step of a behaviour."""
+TOLD_ELSEWHERE = frozenset({"index", "function", "count"})
+
+
+class Progress:
+    """Shown from the beginning of a `with` block to its end.
+
+    Feedback comes from a thread of ROS, the wheel turns in one of its own; the lock guards what they print.
+
+    Args:
+        shown: False: nothing is printed.
+    """
+
+    def __init__(self, shown: bool) -> None:
+        self._shown = shown
+        self._live = shown and sys.stderr.isatty()
+        self._lock = threading.Lock()
+        self._ended = threading.Event()
+        self._text = ""
+        self._turns = 0
+        self._thread: threading.Thread | None = None
+
+    def feedback(self, message: Any) -> None:
+        """Show a feedback message."""
+        fields = plain(message)
+        text = f"{fields.get('index', 0) + 1}/{fields.get('count', 1)} {fields.get('function', '')}"
+        if fields.get("waiting"):
+            text = f"waits for {fields['waiting']}"
+        elif fields.get("what"):  # a step of a behaviour
+            text = " ".join(fields[name] for name in STEP if fields.get(name))
+        elif self._live:
+            more = {n: v for n, v in fields.items() if n not in TOLD_ELSEWHERE and filled(v) and v != 0}
+            text += f": {words(more)}" if more else ""
+        with self._lock:
+            if text == self._text:
+                return
+            self._text = text
+            if self._live:
+                self._draw()
+            elif self._shown:
+                click.echo(text, err=True)
+
+    def note(self, text: str) -> None:
+        """Show a line that stays."""
+        if self._shown:
+            with self._lock:
+                self._wipe()
+                click.echo(text, err=True)
+
+    def __enter__(self) -> Progress:
+        if self._live:
+            self._thread = threading.Thread(target=self._turn, name="progress", daemon=True)
+            self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ended.set()
+        if self._thread is not None:
+            self._thread.join()
+        with self._lock:
+            self._wipe()
+
+    def _turn(self) -> None:
+        while not self._ended.wait(PERIOD):
+            with self._lock:
+                self._turns += 1
+                self._draw()
+
+    def _draw(self) -> None:
+        line = f"{WHEEL[self._turns % len(WHEEL)]} {self._text}"
+        width = shutil.get_terminal_size().columns
+        sys.stderr.write(f"\r\x1b[K{line[: width - 1]}")
+        sys.stderr.flush()
+
+    def _wipe(self) -> None:
+        if self._live:
+            sys.stderr.write("\r\x1b[K")
+            sys.stderr.flush()

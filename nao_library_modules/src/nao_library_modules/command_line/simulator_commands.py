@@ -1,0 +1,176 @@
+"""`nao sim`: what only a simulated robot can be asked."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from typing import Any
+
+import click
+
+from .errors import CommandFailed
+from .output import say_json
+from .settings import NaoGroup, Settings, settings_of
+from .stack import SIMULATOR
+
+VIEWS = ("front", "three_quarter", "side", "back", "far", "room", "face")
+
+
+@click.group(cls=NaoGroup, name="sim", context_settings={"help_option_names": ["-h", "--help"]})
+def sim_command() -> None:
+    """Touch, push and picture a simulated robot, and rule its time."""
+
+
+def _call(settings: Settings, name: str, kind: Any, **fields: Any) -> Any:
+    """Call a service of the simulator."""
+    stack = settings.stack
+    service = stack.service(f"{SIMULATOR}/{name}")
+    # Time that passes, and pictures on a busy computer, take as long as they take.
+    answer = stack.graph.call(service, kind, kind._request_class(**fields), patient=True)
+    if not getattr(answer, "success", True):
+        raise CommandFailed(answer.message)
+    return answer
+
+
+def _complete_sensor(_context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
+    from ..tactile_names import SENSORS
+
+    return [device for sensor in SENSORS for device in sensor.devices if device.startswith(start)]
+
+
+@sim_command.command("touch")
+@click.argument("sensors", nargs=-1, metavar="[SENSOR]...", shell_complete=_complete_sensor)
+@click.option(
+    "--for", "seconds", type=click.FloatRange(min=0.0), metavar="S", help="Let go after so long, in its time."
+)
+@click.pass_context
+def touch(context: click.Context, sensors: tuple[str, ...], seconds: float | None) -> None:
+    """Press SENSORs until they are let go: `nao sim touch` without any lets go of all.
+
+    With --for 0 they are let go at once: a tap.
+    """
+    from nao_library_msgs.srv import PressSensors
+
+    settings = settings_of(context)
+    _call(settings, "press", PressSensors, sensors=list(sensors))
+    if seconds is not None:
+        # A finger that comes and goes between two ticks was never there.
+        _pass_time(settings, max(seconds, 0.1))
+        _call(settings, "press", PressSensors, sensors=[])
+    if settings.json:
+        say_json({"pressed": list(sensors) if seconds is None else []})
+
+
+def _pass_time(settings: Settings, seconds: float) -> None:
+    """Wait until so much of the robot's time is over."""
+    import rospy
+
+    from .goals import start_node
+
+    start_node()
+    rospy.sleep(seconds)
+
+
+@sim_command.command("push", context_settings={"ignore_unknown_options": True})
+@click.argument("force", nargs=3, type=float, metavar="X Y Z")
+@click.option("--for", "seconds", type=float, default=0.1, show_default=True, metavar="S", help="How long.")
+@click.option("--link", default="", help="Where: torso, Head, l_wrist, ...  [default: torso]")
+@click.pass_context
+def push(context: click.Context, force: tuple[float, float, float], seconds: float, link: str) -> None:
+    """Push with a force X Y Z, in N, in the world."""
+    import rospy
+    from geometry_msgs.msg import Vector3
+
+    from nao_library_msgs.srv import PushRobot
+
+    settings = settings_of(context)
+    _call(settings, "push", PushRobot, link=link, force=Vector3(*force), time=rospy.Duration.from_sec(seconds))
+    if settings.json:
+        say_json({"force": list(force), "time": seconds, "link": link or "torso"})
+
+
+@sim_command.command("picture")
+@click.argument("file", default="", type=click.Path())
+@click.option("--view", type=click.Choice(VIEWS), default="three_quarter", show_default=True, help="From where.")
+@click.option("--size", default="640x480", show_default=True, metavar="WxH", help="In pixels.")
+@click.pass_context
+def picture(context: click.Context, file: str, view: str, size: str) -> None:
+    """Take a picture from outside, and put it into FILE; without, it stays in the simulator's folder."""
+    from nao_library_msgs.srv import TakePicture
+
+    settings = settings_of(context)
+    width, height = read_size(size)
+    name = f"picture-{os.getpid()}.png" if file else "picture.png"
+    answer = _call(settings, "picture", TakePicture, view=view, width=width, height=height, file=name)
+    path = bring(answer.path, file)
+    if settings.json:
+        say_json({"path": path, "view": view})
+    else:
+        click.echo(path)
+
+
+def read_size(text: str) -> tuple[int, int]:
+    """Width and height in pixels from `640x480`.
+
+    Raises:
+        click.UsageError: It is no size.
+    """
+    width, by, height = text.lower().partition("x")
+    if not (by and width.isdigit() and height.isdigit()):
+        raise click.UsageError(f"{text!r} is no size: 640x480")
+    return int(width), int(height)
+
+
+def bring(path: str, file: str) -> str:
+    """Move a file that a server has written to where it is wanted; where that is, as a text.
+
+    Raises:
+        CommandFailed: It is on another computer, or cannot be moved.
+    """
+    if not file:
+        return path
+    if not os.path.exists(path):
+        raise CommandFailed(f"the file is on the computer of the server: {path}")
+    target = Path(file)
+    if target.is_dir():
+        target = target / Path(path).name
+    try:
+        shutil.move(path, target)
+    except OSError as error:
+        raise CommandFailed(f"{path} cannot be moved to {target}: {error.strerror or error}") from None
+    return str(target)
+
+
+@sim_command.command("advance")
+@click.argument("seconds", type=click.FloatRange(min=0.0))
+@click.pass_context
+def advance(context: click.Context, seconds: float) -> None:
+    """Let SECONDS of simulated time pass as fast as possible; answers the time afterwards."""
+    import rospy
+
+    from nao_library_msgs.srv import AdvanceTime
+
+    settings = settings_of(context)
+    answer = _call(settings, "advance", AdvanceTime, time=rospy.Duration.from_sec(seconds))
+    if settings.json:
+        say_json({"time": answer.now})
+    else:
+        click.echo(f"{answer.now.to_sec():.3f}")
+
+
+def _plain_command(name: str, text: str) -> None:
+    @sim_command.command(name, help=text)
+    @click.pass_context
+    def run(context: click.Context) -> None:
+        from std_srvs.srv import Empty
+
+        settings = settings_of(context)
+        _call(settings, name, Empty)
+        if settings.json:
+            say_json({})
+
+
+_plain_command("reset", "Put robot and things back to where they began.")
+_plain_command("pause", "Stop time.")
+_plain_command("resume", "Let time go on.")

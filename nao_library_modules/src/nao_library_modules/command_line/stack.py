@@ -1,0 +1,159 @@
+"""The servers of one robot: which robot is meant, which servers it has, what they say about themselves."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..server_types import ACTIONS
+from ..suggestion import did_you_mean
+from .errors import StackMissing
+from .graph import LIMIT, Graph
+
+if TYPE_CHECKING:
+    from nao_library_msgs.srv import DescribeFunctionsResponse
+
+DESCRIBE = "/describe"
+SIMULATOR = "nao_sim"
+
+
+class Stack:
+    """Servers of one namespace. Nothing is asked before it is needed, and each question once.
+
+    Args:
+        namespace: Of the robot, as it was given; None: that of the environment, or of the only robot there is.
+        limit: s that an answer may take.
+    """
+
+    def __init__(self, namespace: str | None = None, limit: float = LIMIT) -> None:
+        self.graph = Graph(limit)
+        self._given = namespace if namespace is not None else os.environ.get("ROS_NAMESPACE") or None
+        self._namespace: str | None = None
+        self._described: dict[tuple[Any, ...], Any] = {}
+
+    @property
+    def namespace(self) -> str:
+        """Of the robot, with a slash at both ends.
+
+        Raises:
+            click.UsageError: There are several robots and none was chosen, or not the one that was.
+        """
+        if self._namespace is None:
+            self._namespace = self._choose()
+        return self._namespace
+
+    def robots(self) -> list[str]:
+        """Namespaces that have servers, with a slash at both ends."""
+        return sorted({name.rpartition("/")[0] + "/" for name in self._all_servers()})
+
+    def servers(self) -> list[str]:
+        """Names of the robot's servers.
+
+        Raises:
+            StackMissing: It has none.
+        """
+        space = self.namespace
+        return sorted((name[len(space) :] for name in self._all_servers() if _in(name, space)), key=str.lower)
+
+    def server(self, name: str) -> str:
+        """Full name of a server; `lights`, `naolights` and `NaoLights` are the same.
+
+        Raises:
+            StackMissing: It does not run.
+            click.UsageError: There is no such server.
+        """
+        servers = self.servers()
+        for server in servers:
+            if same_server(server, name):
+                return self.namespace + server
+        if any(same_server(known, name) for known in ACTIONS):
+            raise StackMissing(f"the server {name} does not run; there are {', '.join(servers)}")
+        raise click.UsageError(
+            f"there is no server {name!r}{did_you_mean(name, servers)}; there are {', '.join(servers)}"
+        )
+
+    def describe(
+        self, server: str, functions: Sequence[str] = (), brief: bool = False, names: bool = False
+    ) -> DescribeFunctionsResponse:
+        """What a server says about its functions and itself.
+
+        Args:
+            server: Its name, as `server` takes it.
+            functions: Names of functions; all without.
+            brief: True: only about itself.
+            names: True: only names and help of the functions.
+        """
+        from nao_library_msgs.srv import DescribeFunctions, DescribeFunctionsRequest
+
+        full = self.server(server)
+        key = (full, brief, names, tuple(functions))
+        if key not in self._described:
+            request = DescribeFunctionsRequest(list(functions), names, brief)
+            self._described[key] = self.graph.call(full + DESCRIBE, DescribeFunctions, request)
+        return self._described[key]
+
+    def connected(self, server: str) -> bool:
+        """Whether a server reaches its robot at this moment."""
+        self._described.clear()
+        return bool(self.describe(server, brief=True).connected)
+
+    def robot_address(self) -> tuple[str, int]:
+        """IP and port of the robot, as its servers know it."""
+        for server in self.servers():
+            address = self.describe(server, brief=True).robot
+            ip, _, port = address.rpartition(":")
+            if ip and port.isdigit():
+                return ip, int(port)
+        raise StackMissing("no server knows the address of the robot")
+
+    def service(self, name: str) -> str:
+        """Full name of a service: that of this robot, or that which all robots share.
+
+        Raises:
+            StackMissing: There is none.
+        """
+        services = self.graph.services()
+        for full in (self.namespace + name, "/" + name):
+            if full in services:
+                return full
+        missing = f"there is no service {self.namespace}{name}"
+        raise StackMissing(f"{missing}: is this a simulated robot?" if name.startswith(SIMULATOR) else missing)
+
+    def _all_servers(self) -> list[str]:
+        listened = self.graph.subscribed()
+        names = [name[: -len(DESCRIBE)] for name in self.graph.services() if name.endswith(DESCRIBE)]
+        return [name for name in names if f"{name}/goal" in listened]
+
+    def _choose(self) -> str:
+        robots = self.robots()
+        if not robots:
+            raise StackMissing(f"no robot's servers run at {self.graph.uri}")
+        if self._given is not None:
+            wanted = "/" + self._given.strip("/") + "/" if self._given.strip("/") else "/"
+            if wanted in robots:
+                return wanted
+            raise StackMissing(f"no servers run in {wanted.rstrip('/') or '/'}; {_where(robots)}")
+        if len(robots) > 1 and "/" not in robots:
+            raise click.UsageError(f"choose a robot with --robot; {_where(robots)}")
+        return "/" if "/" in robots else robots[0]
+
+
+def _where(robots: Sequence[str]) -> str:
+    return f"there are {', '.join(robot.strip('/') or '/' for robot in robots)}"
+
+
+def _in(name: str, space: str) -> bool:
+    return name.startswith(space) and "/" not in name[len(space) :]
+
+
+def same_server(server: str, name: str) -> bool:
+    """Whether a name means a server: `lights` and `naolights` mean NaoLights."""
+    return _short(server) == _short(name)
+
+
+def _short(name: str) -> str:
+    bare = name.lower().replace("_", "").replace("-", "")
+    return bare[3:] if bare.startswith("nao") else bare

@@ -1,0 +1,154 @@
+"""How a robot and its servers do, gathered for `nao status`."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from ..body_devices import CHARGE
+from .errors import CommandFailed, StackMissing
+from .output import table
+from .stack import Stack
+
+DIAGNOSTICS = "/diagnostics"
+DIAGNOSTICS_TIME = 1.3
+"""s to listen: every node reports once a second."""
+LEVELS = ("ok", "warning", "error", "stale")
+
+
+def read_status(stack: Stack) -> dict[str, Any]:
+    """What there is to tell; what cannot be asked is None.
+
+    Raises:
+        StackMissing: There are no servers.
+    """
+    names = stack.servers()
+    reports = _Diagnostics()
+    servers = {name: _server(stack, name) for name in names}
+    ip, port = stack.robot_address()
+    found: dict[str, Any] = {
+        "robot": stack.namespace.strip("/") or "/",
+        "address": f"{ip}:{port}",
+        "master": stack.graph.uri,
+        "connected": False,
+        "battery": None,
+        "awake": None,
+        "posture": None,
+        "stiffness": None,
+        "servers": servers,
+        "diagnostics": None,
+    }
+    found.update(_robot((ip, port)))
+    found["diagnostics"] = reports.result()
+    return found
+
+
+def _server(stack: Stack, name: str) -> dict[str, Any]:
+    try:
+        told = stack.describe(name, brief=True)
+    except (StackMissing, CommandFailed) as error:
+        return {"up": False, "connected": False, "running": [], "index": 0, "problem": error.message}
+    running = list(told.running)
+    return {"up": True, "connected": told.connected, "running": running, "index": told.index, "problem": ""}
+
+
+def _robot(address: tuple[str, int]) -> dict[str, Any]:
+    from .robot_link import RobotLink
+
+    try:
+        with RobotLink(address, limit=3.0) as robot:
+            stiffnesses = list(robot.call("ALMotion", "getStiffnesses", "Body"))
+            return {
+                "connected": True,
+                "battery": robot.memory("getListData", [CHARGE])[0],
+                "awake": bool(robot.call("ALMotion", "robotIsWakeUp")),
+                "posture": str(robot.call("ALRobotPosture", "getPosture")),
+                "stiffness": {
+                    "stiff": sum(value > 0.0 for value in stiffnesses),
+                    "joints": len(stiffnesses),
+                    "mean": sum(stiffnesses) / max(1, len(stiffnesses)),
+                },
+            }
+    except StackMissing:
+        return {}
+    except CommandFailed as error:
+        return {"connected": True, "problem": error.message}
+
+
+class _Diagnostics:
+    """The reports of all nodes, gathered while the rest is asked."""
+
+    def __init__(self) -> None:
+        from diagnostic_msgs.msg import DiagnosticArray
+
+        from .goals import start_node
+
+        start_node()
+        import rospy
+
+        self._lock = threading.Lock()
+        self._reports: dict[str, Any] = {}
+        self._began = time.monotonic()
+        self._subscriber = rospy.Subscriber(DIAGNOSTICS, DiagnosticArray, self._on_array)
+
+    def _on_array(self, message: Any) -> None:
+        """Called from a thread of ROS."""
+        with self._lock:
+            self._reports.update((status.name, status) for status in message.status)
+
+    def result(self) -> dict[str, Any]:
+        """Counts by level, and the reports that are not ok."""
+        threading.Event().wait(max(0.0, self._began + DIAGNOSTICS_TIME - time.monotonic()))
+        self._subscriber.unregister()
+        with self._lock:
+            reports = list(self._reports.values())
+        level = [LEVELS[_number(status.level) % len(LEVELS)] for status in reports]
+        counts = {name: level.count(name) for name in LEVELS}
+        problems = [
+            {"name": status.name, "level": name, "message": status.message}
+            for status, name in sorted(zip(reports, level), key=lambda pair: pair[0].name)
+            if name != LEVELS[0]
+        ]
+        return {**counts, "problems": problems}
+
+
+def _number(level: Any) -> int:
+    return level[0] if isinstance(level, bytes) else int(level)
+
+
+def status_lines(found: Mapping[str, Any]) -> Iterator[str]:
+    """The status for people."""
+    stiffness = found["stiffness"]
+    rows = [
+        ("robot", f"{found['robot']} at {found['address']}, {'connected' if found['connected'] else 'NOT REACHED'}"),
+        ("master", found["master"]),
+    ]
+    if found["battery"] is not None:
+        rows.append(("battery", f"{found['battery']:.0%}"))
+    if found["posture"] is not None:
+        rows.append(("posture", f"{found['posture']}, {'awake' if found['awake'] else 'at rest'}"))
+    if stiffness is not None:
+        rows.append(
+            ("stiffness", f"{stiffness['stiff']} of {stiffness['joints']} joints, mean {stiffness['mean']:.2f}")
+        )
+    if found.get("problem"):
+        rows.append(("problem", found["problem"]))
+    yield from table(rows)
+    yield "servers"
+    yield from table([(name, _does(server)) for name, server in found["servers"].items()], "  ")
+    reports = found["diagnostics"]
+    yield "diagnostics: " + ", ".join(
+        f"{reports[level]} {level}" for level in LEVELS if reports[level] or level == "ok"
+    )
+    for problem in reports["problems"]:
+        yield f"  {problem['level']}: {problem['name']}: {problem['message']}"
+
+
+def _does(server: Mapping[str, Any]) -> str:
+    if not server["up"]:
+        return f"DOWN: {server['problem']}"
+    running = server["running"]
+    text = f"{server['index'] + 1}/{len(running)} {running[server['index']]}" if running else "idle"
+    return text if server["connected"] else f"{text}, without a robot"

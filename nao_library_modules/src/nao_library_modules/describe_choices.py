@@ -1,0 +1,88 @@
+"""Words that only the robot knows: names of its lights, joints, postures, voices. Asked once for each connection."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from naoqi.errors import NaoError
+
+log = logging.getLogger(__name__)
+
+LIMIT = 3.0
+"""s that the robot has for an answer: who asks for a description is waiting for more than this."""
+
+Question = tuple  # (NAOqi module, method, arguments...)
+
+LIGHTS: Sequence[Question] = (("ALLeds", "listGroups"), ("ALLeds", "listLEDs"))
+JOINTS: Sequence[Question] = (("ALMotion", "getBodyNames", "Chains"), ("ALMotion", "getBodyNames", "Body"))
+POSTURES: Sequence[Question] = (("ALRobotPosture", "getPostureList"),)
+VOICES: Sequence[Question] = (("ALTextToSpeech", "getAvailableVoices"),)
+LANGUAGES: Sequence[Question] = (("ALTextToSpeech", "getAvailableLanguages"),)
+HEARD_LANGUAGES: Sequence[Question] = (("ALSpeechRecognition", "getAvailableLanguages"),)
+
+OF_FIELDS: dict[tuple[str, str], Sequence[Question]] = {
+    ("LedFunction", "lights"): LIGHTS,
+    ("MotionFunction", "names"): JOINTS,
+    ("AudioOutFunction", "voice"): VOICES,
+    ("AudioOutFunction", "language"): LANGUAGES,
+}
+"""(message, field) -> what to ask, for every function that reads the field."""
+
+OF_FUNCTIONS: dict[tuple[str, str, str], Sequence[Question]] = {
+    ("LedFunction", "listGroup", "str_param"): LIGHTS,
+    ("MotionFunction", "goToPosture", "str_param"): POSTURES,
+    ("MotionFunction", "applyPosture", "str_param"): POSTURES,
+    ("AudioOutFunction", "setVoice", "str_param"): VOICES,
+    ("AudioOutFunction", "setLanguage", "str_param"): LANGUAGES,
+    ("AudioInFunction", "setLanguage", "str_param"): HEARD_LANGUAGES,
+}
+"""(message, function, field) -> what to ask; it comes before what the field has for all functions."""
+
+
+class Choices:
+    """What one robot answers. Any thread may ask."""
+
+    def __init__(self, robot: Any, message: str, own: Callable[[str, str], Sequence[str]]) -> None:
+        """Ask nothing yet.
+
+        Args:
+            robot: Proxies and connection.
+            message: Type of the function messages, without its package.
+            own: Function, field -> words that the module itself knows.
+        """
+        self._own = own
+        self._robot = robot
+        self._message = message
+        self._lock = threading.Lock()
+        self._known: dict[Question, tuple[str, ...]] = {}
+        self._generation: int | None = None
+
+    def of(self, function: str, field: str) -> tuple[str, ...]:
+        """Words that a field of a function may hold; none where nobody has a say or the robot cannot be asked."""
+        own = self._own(function, field)
+        if own:
+            return tuple(own)
+        key = (self._message, function, field)
+        questions = OF_FUNCTIONS.get(key) or OF_FIELDS.get((self._message, field), ())
+        if not questions or self._robot.connection.state != "connected":
+            return ()
+        return tuple(dict.fromkeys(word for question in questions for word in self._answer(question)))
+
+    def _answer(self, question: Question) -> tuple[str, ...]:
+        with self._lock:
+            generation = self._robot.connection.generation
+            if generation != self._generation:  # the robot behind a new connection may be another one
+                self._known.clear()
+                self._generation = generation
+            if question not in self._known:
+                module, method, *arguments = question
+                try:
+                    answer = self._robot.proxy(module).call_async(method, *arguments).result(timeout=LIMIT)
+                except NaoError as error:
+                    log.debug("%s.%s cannot be asked: %s", module, method, error)
+                    return ()
+                self._known[question] = tuple(map(str, answer))
+            return self._known[question]

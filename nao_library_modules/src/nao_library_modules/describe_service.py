@@ -1,0 +1,91 @@
+"""The service that tells what the functions of a server are: from descriptions to messages."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from nao_library_msgs.msg import ArgumentDescription, FunctionDescription
+from nao_library_msgs.srv import DescribeFunctionsResponse
+
+from .describe import Argument, Described, Description
+from .describe_choices import Choices
+
+
+class DescribeService:
+    """Answers for one server. Clients come in threads of their own; the lock lets them in one after the other.
+
+    ROS API:
+        Service `NAME/describe` (nao_library_msgs/DescribeFunctions), NAME the name of the action.
+    """
+
+    def __init__(self, module: Any, action: type, running: Callable[[], tuple[Sequence[str], int]]) -> None:
+        """Keep what it tells of; nothing is worked out before somebody asks.
+
+        Args:
+            module: The module.
+            action: Type of its action.
+            running: The functions of the goal that runs, and the index of the one that does.
+        """
+        self._module = module
+        self._action = action
+        self._running = running
+        self._lock = threading.Lock()
+        self._description: Description | None = None
+
+    def answer(self, request: Any) -> Any:
+        """Response to a request."""
+        running, index = self._running()
+        robot = self._module.robot
+        with self._lock:
+            description = self._described()
+            response = DescribeFunctionsResponse(
+                action=description.action,
+                message=description.message,
+                help=description.help,
+                robot=str(robot.address),
+                connected=robot.connection.state == "connected",
+                running=list(running),
+                index=index,
+            )
+            if not request.without_functions:
+                described = description.functions(request.functions, not request.without_arguments)
+                response.functions = [function_message(function) for function in described]
+                response.common = [argument_message(argument) for argument in description.common()]
+                known = frozenset(description.names)
+                response.unknown = [name for name in request.functions if name not in known]
+        return response
+
+    def _described(self) -> Description:
+        if self._description is None:
+            self._description = Description(self._module, self._action)
+            message = self._description.message.rpartition("/")[2]
+            self._description.choices = Choices(self._module.robot, message, self._module.argument_choices).of
+        return self._description
+
+
+def function_message(described: Described) -> FunctionDescription:
+    """A description as a message."""
+    return FunctionDescription(
+        name=described.name,
+        help=described.help,
+        answers=described.answers,
+        shared=described.shared,
+        arguments=[argument_message(argument) for argument in described.arguments],
+    )
+
+
+def argument_message(argument: Argument) -> ArgumentDescription:
+    """A description of an argument as a message."""
+    return ArgumentDescription(
+        name=argument.name,
+        type=argument.type,
+        unit=argument.unit,
+        default=argument.default,
+        help=argument.help,
+        allowed=argument.allowed,
+        choices=list(argument.choices),
+        minimum=argument.minimum,
+        maximum=argument.maximum,
+    )
