@@ -13,8 +13,9 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
+from ..goal_watch import GoalWatch
 from .control import Step, subtask
-from .failures import ActionlibActionTimedOut
+from .failures import ActionlibActionTimedOut, LowLevelFailure
 from .flow import retry_after_suspension, uninterrupted, wait_until
 from .fluents import Fluent
 
@@ -75,7 +76,11 @@ class PlanActionClient:
         threading.Thread(target=self._look_for_server, name=f"server of {name}", daemon=True).start()
 
     def call(
-        self, goal: Any, timeout: float | None = None, on_feedback: Callable[[Any], None] | None = None
+        self,
+        goal: Any,
+        timeout: float | None = None,
+        on_feedback: Callable[[Any], None] | None = None,
+        on_end: Callable[[ActionEnd], None] | None = None,
     ) -> ActionEnd:
         """Send a goal and wait for its end, in a plan.
 
@@ -85,12 +90,14 @@ class PlanActionClient:
             goal: The goal.
             timeout: s; that of the client if there is none.
             on_feedback: Gets the feedback, in actionlib's thread.
+            on_end: Gets the end, also that of a goal that was cancelled because the plan ends.
 
         Raises:
             ActionlibActionTimedOut: There is no server, or the goal took too long.
+            LowLevelFailure: The server went away.
         """
         limit = self.timeout if timeout is None else timeout
-        body = lambda: retry_after_suspension(lambda: self._once(goal, limit, on_feedback))  # noqa: E731
+        body = lambda: retry_after_suspension(lambda: self._once(goal, limit, on_feedback, on_end))  # noqa: E731
         return subtask(Step(f"action {self.name}", body))
 
     def wait_for_server(self, timeout: float = SERVER_LIMIT) -> None:
@@ -100,37 +107,73 @@ class PlanActionClient:
             ActionlibActionTimedOut: There is none.
         """
         deadline = time.monotonic() + timeout
-        while not wait_until(lambda: self._there.value, [self._there], LOOK_PERIOD):
+        while not wait_until(lambda: self._there.value and self._connection(), [self._there], LOOK_PERIOD):
             if time.monotonic() < deadline:
                 continue
             where = rospy.resolve_name(self.name)
             raise ActionlibActionTimedOut(f"there is no server for {where} after {timeout:g} s", action=self.name)
 
+    def _wait_for_end(self, done: Fluent, connection: Any, limit: float | None) -> None:
+        """Wait for the end of a goal, at most `limit` s.
+
+        Raises:
+            LowLevelFailure: The server has gone, and with it the goal: nothing would ever come.
+        """
+        while limit is None or limit > 0.0:
+            period = LOOK_PERIOD if limit is None else min(LOOK_PERIOD, limit)
+            if wait_until(lambda: done.value, [done], period):
+                return
+            if self._connection() is not connection:
+                raise LowLevelFailure(f"the server of {self.name} has gone, and its goal with it")
+            limit = None if limit is None else limit - period
+
+    def _connection(self) -> Any:
+        """What goals go through to the server; None while there is none. Another one after it was started again."""
+        status = self._client.last_status_msg
+        if status is None:
+            return None
+        server = status._connection_header["callerid"]
+        connections = self._client.pub_goal.impl.connections
+        return next((each for each in connections if each.endpoint_id == server), None)
+
     def _look_for_server(self) -> None:
         if self._client.wait_for_server():
             self._there.value = True
 
-    def _once(self, goal: Any, limit: float | None, on_feedback: Callable[[Any], None] | None) -> ActionEnd:
+    def _once(
+        self,
+        goal: Any,
+        limit: float | None,
+        on_feedback: Callable[[Any], None] | None,
+        on_end: Callable[[ActionEnd], None] | None,
+    ) -> ActionEnd:
         self.wait_for_server()
         done = Fluent(f"goal of {self.name} is over", False)
 
-        def look(handle: Any) -> None:
-            if handle.get_comm_state() == actionlib.CommState.DONE:
-                done.value = True
+        def end() -> None:
+            done.value = True
 
+        watch, cancelled = GoalWatch(end), False
+        connection = self._connection()
         told = None if on_feedback is None else lambda _, feedback: on_feedback(feedback)
-        handle = self._client.send_goal(goal, look, told)
+        handle = self._client.send_goal(goal, watch.look, told)
         try:
-            in_time = wait_until(lambda: done.value, [done], limit)
+            self._wait_for_end(done, connection, limit)
         finally:
             if not done.value:
-                handle.cancel()
                 with uninterrupted():
+                    cancelled = watch.cancel(handle)
                     if not wait_until(lambda: done.value, [done], CANCEL_LIMIT):
                         log.warning("the goal of %s was cancelled %g s ago and does not end", self.name, CANCEL_LIMIT)
-        if not in_time:
+            if done.value and on_end is not None:
+                on_end(_end_of(handle))
+        if cancelled:
             raise ActionlibActionTimedOut(f"the goal of {self.name} took longer than {limit:g} s", action=self.name)
-        return ActionEnd(handle.get_terminal_state(), handle.get_goal_status_text(), handle.get_result())
+        return _end_of(handle)
+
+
+def _end_of(handle: Any) -> ActionEnd:
+    return ActionEnd(handle.get_terminal_state(), handle.get_goal_status_text(), handle.get_result())
 
 
 _lock = threading.Lock()

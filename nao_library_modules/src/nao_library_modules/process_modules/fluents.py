@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import operator
 import threading
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import Any, Callable
 
@@ -20,7 +21,7 @@ from .failures import PlanError
 Listener = Callable[[], None]
 
 
-class AnyFluent:
+class AnyFluent(ABC):
     """What plain fluents, pulses and networks have in common: a value, and listeners.
 
     Comparing and computing with `<`, `<=`, `>`, `>=`, `+`, `-`, `*`, `/`, `&`, `|` and `~` makes networks. `==` stays
@@ -34,22 +35,22 @@ class AnyFluent:
         self.name = name
 
     @property
+    @abstractmethod
     def value(self) -> Any:
         """The value now; any thread may ask."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def pulses(self) -> int:
         """How often it has pulsed: a number that grows with every change, and with every `pulse`."""
-        raise NotImplementedError
 
+    @abstractmethod
     def listen(self, listener: Listener) -> None:
         """Call something at every pulse, in the thread that makes the change: it has to be quick and may not wait."""
-        raise NotImplementedError
 
+    @abstractmethod
     def unlisten(self, listener: Listener) -> None:
         """Call it no longer."""
-        raise NotImplementedError
 
     def eq(self, other: Any) -> AnyFluent:
         """True while the values are equal."""

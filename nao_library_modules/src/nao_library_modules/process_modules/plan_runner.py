@@ -24,6 +24,7 @@ WAKE_UP = "wakeup"
 ROBOT_LIMIT = 60.0
 """s to wait for the driver, and until it has reached the robot."""
 RETRY = 0.5
+"""s between two tries: that the driver has reached the robot is told by nothing but its answer."""
 END_LIMIT = 10.0
 """s that a plan may take to end when its node ends."""
 

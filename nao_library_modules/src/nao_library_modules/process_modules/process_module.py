@@ -10,6 +10,7 @@ from __future__ import annotations
 import enum
 import logging
 import threading
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable
 from typing import Any
@@ -61,7 +62,7 @@ class Request:
         self.root: Task | None = None
 
 
-class ProcessModule:
+class ProcessModule(ABC):
     """A module that does one thing at a time; what else is asked waits for its turn.
 
     Attributes:
@@ -97,18 +98,18 @@ class ProcessModule:
 
     # --- what a module is made of -------------------------------------------------------------------------------------
 
+    @abstractmethod
     def execute(self, command: Command) -> Any:
         """Carry out a command, in a thread of the module; what it answers goes to the caller.
 
         Raises:
             PlanFailure: It cannot be done.
         """
-        raise NotImplementedError
 
-    def on_started(self) -> None:
+    def on_started(self) -> None:  # noqa: B027  most modules need none
         """Called in the module's thread when it begins to run."""
 
-    def on_stopped(self) -> None:
+    def on_stopped(self) -> None:  # noqa: B027  most modules need none
         """Called in the module's thread when it has ended."""
 
     def resources(self, command: Command) -> frozenset[str]:

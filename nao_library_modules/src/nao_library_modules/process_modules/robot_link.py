@@ -20,6 +20,7 @@ from .flow import wait_until
 from .fluents import Fluent
 from .settings import Settings, load_settings
 from .space import Point3, turned
+from .told_topic import ToldTopic
 
 STATE_LIMIT = 5.0
 """s to wait for the first joint states, and for frames."""
@@ -46,7 +47,7 @@ class RobotLink:
         self.clock = RosClock()
         self.joints = Fluent("joint states", {})
         self._clients: dict[str, PlanActionClient] = {}
-        self._publishers: dict[str, rospy.Publisher] = {}
+        self._topics: dict[str, ToldTopic] = {}
         self._lock = threading.Lock()
         self._known_since = 0.0
         self._chains: dict[str, Chain] = {}
@@ -61,12 +62,12 @@ class RobotLink:
                 self._clients[name] = PlanActionClient(name, kind)
             return self._clients[name]
 
-    def publisher(self, topic: str, kind: type) -> rospy.Publisher:
-        """Publisher of a topic; there is one for each."""
+    def topic(self, name: str, kind: type) -> ToldTopic:
+        """A topic to publish on; there is one for each."""
         with self._lock:
-            if topic not in self._publishers:
-                self._publishers[topic] = rospy.Publisher(topic, kind, queue_size=10)
-            return self._publishers[topic]
+            if name not in self._topics:
+                self._topics[name] = ToldTopic(name, kind)
+            return self._topics[name]
 
     def angles(self) -> Mapping[str, float]:
         """Angles of the joints, rad by name; the first ones are waited for, in a plan.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Dict, Tuple
 
@@ -34,6 +35,16 @@ class Settings:
         shortest_motion: s.
         stable: Angles of all joints of the stable pose, rad, by joint.
         stable_time: s that it takes.
+        eyes: m over the torso's frame.
+        robot_radius: m around the middle of the robot that has to be free.
+        robot_height: m over the floor up to which it has to be free.
+        eye_height: m over the floor, of a robot that stands.
+        seeing_distances: m from which things are looked at, in the order in which they are tried.
+        steepest_look: rad down that the top camera looks with the whole head bowed.
+        shoulder_height: m over the floor, of a robot that stands.
+        shoulder_aside: m from the middle of the robot.
+        reaching_distances: m in front of the robot that things are reached, in the order in which they are tried.
+        longest_reach: m from a shoulder to the hand.
         walk_tolerance: m and rad that the robot may be away from its target.
         walk_speed: m/s and rad/s that a walk has at least: with the distance it tells when it takes too long.
     """
@@ -53,6 +64,16 @@ class Settings:
     shortest_motion: float
     stable: Dict[str, float]
     stable_time: float
+    eyes: float
+    robot_radius: float
+    robot_height: float
+    eye_height: float
+    seeing_distances: Tuple[float, ...]
+    steepest_look: float
+    shoulder_height: float
+    shoulder_aside: float
+    reaching_distances: Tuple[float, ...]
+    longest_reach: float
     walk_tolerance: Tuple[float, float]
     walk_speed: Tuple[float, float]
 
@@ -78,6 +99,16 @@ def load_settings(file: Path | str = FILE) -> Settings:
         told += [f"missing {', '.join(missing)}"] * bool(missing)
         raise NaoError(f"{path.name}: {'; '.join(told)} (keys are {', '.join(names)})")
     return Settings(**{name: _tuples(content[name]) for name in names})
+
+
+@lru_cache(maxsize=None)
+def numbers_of_nao() -> Settings:
+    """Settings of the package, for rules that have no robot to ask; read once.
+
+    Raises:
+        NaoError: As `load_settings`.
+    """
+    return load_settings()
 
 
 def _tuples(value: Any) -> Any:

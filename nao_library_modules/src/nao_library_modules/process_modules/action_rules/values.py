@@ -4,27 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
 from typing import Any
 
 from ...places import Place
 from ..designators.designator import Designator, action, motion
 from ..designators.patterns import Mismatch, Pattern, one_of
 from ..failures import DesignatorError
-from ..settings import Settings, load_settings
+from ..settings import numbers_of_nao
 from ..space import Point3
 
 ODOM = "odom"
 SIDE = one_of("left", "right")
 BOTH = (action, motion)
-EYES = 0.19
-"""m, height of the eyes over the torso."""
-
-
-@lru_cache(maxsize=None)
-def numbers_of_nao() -> Settings:
-    """The numbers that rules use."""
-    return load_settings()
 
 
 def a_point() -> Pattern:
@@ -48,7 +39,7 @@ def a_position() -> Pattern:
 
     def take(value: Any) -> Point3:
         if not isinstance(value, (str, Mapping)) and isinstance(value, Sequence) and len(value) == 2:
-            return Point3(*_finite(value), EYES)
+            return Point3(*_finite(value), numbers_of_nao().eyes)
         return point.take(value)
 
     return Pattern(f"two numbers [x, y] in m, at the height of the eyes, or {point.wanted}", take)

@@ -21,6 +21,7 @@ from typing import Any, Callable, Iterable
 
 from ...places import Place, wrapped
 from ..failures import DesignatorError
+from ..settings import numbers_of_nao
 from ..space import Point3
 from .designator import Designator, location
 from .objects import BELIEFS, KnownObject
@@ -28,19 +29,12 @@ from .rules import rule
 
 MOST_TRIES = 200
 """Candidates that are looked at before a description is given up."""
-ROBOT_RADIUS = 0.17
-"""m around the robot that has to be free: half its width with hanging arms, and a little."""
 AROUND = 24
-SEEING = (0.35, 0.6, 1.0, 1.5)
-"""m from which things are looked at."""
-REACHING = (0.16, 0.19, 0.13)
-"""m in front of the robot that things are reached."""
-LONGEST_REACH = 0.3
-"""m from a shoulder to the hand, at most; the hand gets 0.22 m ahead."""
-SHOULDER_HEIGHT, SHOULDER_ASIDE = 0.42, 0.1
-EYE_HEIGHT = 0.47
-STEEPEST = 0.75
-"""rad down that the top camera can look with the whole head bowed."""
+"""Headings that are tried around a thing."""
+SIGHT_STEP = 0.02
+"""m between two points of a line of sight that are looked at."""
+STANDS_ON = 0.06
+"""m before its end in which a line of sight is not hidden: things stand on others."""
 
 
 class Verdict(enum.Enum):
@@ -142,14 +136,14 @@ def around_object(desig: Designator) -> Iterator[Candidate]:
     if thing is None:
         return
     distance = desig.get("distance", 0.1)
-    yield from _ring(thing, [float(distance) + ROBOT_RADIUS])
+    yield from _ring(thing, [float(distance) + numbers_of_nao().robot_radius])
 
 
 def to_see(desig: Designator) -> Iterator[Candidate]:
     """Places from which a thing can be seen: to="see", object=..."""
     thing = _thing(desig, "object", "obj", "target")
     if desig.get("to") == "see" and thing is not None:
-        yield from _ring(thing, SEEING)
+        yield from _ring(thing, numbers_of_nao().seeing_distances)
 
 
 def to_reach(desig: Designator) -> Iterator[Candidate]:
@@ -158,10 +152,11 @@ def to_reach(desig: Designator) -> Iterator[Candidate]:
     if desig.get("to") != "reach" or thing is None:
         return
     sides = [desig["side"]] if "side" in desig else ["left", "right"]
-    for ahead in REACHING:
+    nao = numbers_of_nao()
+    for ahead in nao.reaching_distances:
         for turn in _turns():
             for side in sides:
-                aside = SHOULDER_ASIDE if side == "left" else -SHOULDER_ASIDE
+                aside = nao.shoulder_aside if side == "left" else -nao.shoulder_aside
                 # The thing is ahead of the shoulder, seen from a robot with this heading.
                 foot = Place(thing.position.x, thing.position.y, turn).then(Place(-ahead, -aside, 0.0))
                 yield Candidate(foot, thing.position.frame)
@@ -172,12 +167,12 @@ def to_reach(desig: Designator) -> Iterator[Candidate]:
 
 def not_in_collision(desig: Designator, candidate: Candidate) -> Verdict:
     """Nothing that is known stands where the robot would."""
-    place = candidate.place
+    place, nao = candidate.place, numbers_of_nao()
     for thing in BELIEFS.all():
         if thing.position.frame != candidate.frame or not any(thing.size):
             continue
         low = thing.position.z - thing.size[2] / 2.0
-        if low < 0.58 and thing.distance_to(place.x, place.y) < ROBOT_RADIUS - 1e-9:
+        if low < nao.robot_height and thing.distance_to(place.x, place.y) < nao.robot_radius - 1e-9:
             return Verdict.REJECT
     return Verdict.ACCEPT
 
@@ -187,11 +182,11 @@ def in_view(desig: Designator, candidate: Candidate) -> Verdict:
     thing = _thing(desig, "object", "obj", "target")
     if desig.get("to") != "see" or thing is None:
         return Verdict.UNKNOWN
-    place = candidate.place
+    place, nao = candidate.place, numbers_of_nao()
     away = math.hypot(thing.position.x - place.x, thing.position.y - place.y)
-    if math.atan2(EYE_HEIGHT - thing.position.z, away) > STEEPEST:
+    if math.atan2(nao.eye_height - thing.position.z, away) > nao.steepest_look:
         return Verdict.REJECT
-    eye = Point3(place.x, place.y, EYE_HEIGHT, candidate.frame)
+    eye = Point3(place.x, place.y, nao.eye_height, candidate.frame)
     hides = (each for each in BELIEFS.all() if each.name != thing.name and each.position.frame == candidate.frame)
     return Verdict.REJECT if any(_between(each, eye, thing.position) for each in hides) else Verdict.ACCEPT
 
@@ -201,10 +196,11 @@ def in_reach(desig: Designator, candidate: Candidate) -> Verdict:
     thing = _thing(desig, "object", "obj", "target")
     if desig.get("to") != "reach" or thing is None:
         return Verdict.UNKNOWN
+    nao = numbers_of_nao()
     x, y, _ = Place(thing.position.x, thing.position.y, 0.0).seen_from(candidate.place)
-    up = thing.position.z - SHOULDER_HEIGHT
-    reach = min(math.hypot(x, y - aside, up) for aside in (SHOULDER_ASIDE, -SHOULDER_ASIDE))
-    return Verdict.ACCEPT if reach <= LONGEST_REACH else Verdict.REJECT
+    up = thing.position.z - nao.shoulder_height
+    reach = min(math.hypot(x, y - aside, up) for aside in (nao.shoulder_aside, -nao.shoulder_aside))
+    return Verdict.ACCEPT if reach <= nao.longest_reach else Verdict.REJECT
 
 
 # --- inside -----------------------------------------------------------------------------------------------------------
@@ -246,13 +242,13 @@ def _between(thing: KnownObject, eye: Point3, target: Point3) -> bool:
     """Whether the box of a thing is on the way from the eye to the target."""
     if not any(thing.size):
         return False
-    steps = max(2, int(eye.distance_to(target) / 0.02))
+    steps = max(2, int(eye.distance_to(target) / SIGHT_STEP))
     for step in range(1, steps):
         share = step / steps
         x, y, z = (a + share * (b - a) for a, b in zip(eye[:3], target[:3]))
         half = thing.size[2] / 2.0
-        # The last centimetres do not count: things stand on others.
-        if math.dist((x, y, z), target[:3]) > 0.06 and abs(z - thing.position.z) < half and not thing.distance_to(x, y):
+        in_height = abs(z - thing.position.z) < half
+        if in_height and not thing.distance_to(x, y) and math.dist((x, y, z), target[:3]) > STANDS_ON:
             return True
     return False
 

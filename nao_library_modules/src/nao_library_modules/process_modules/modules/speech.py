@@ -8,7 +8,6 @@ from std_msgs.msg import String
 from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
 
 from ..failures import SpeechLowLevelFailure
-from ..flow import sleep
 from ..robot_link import RobotLink
 from .robot_module import RobotModule
 
@@ -16,7 +15,6 @@ TOPIC = "speech"
 ACTION = "speech_action"
 LISTENER_LIMIT = 10.0
 """s to wait for a node that speaks."""
-PERIOD = 0.02
 LONGEST = 120.0
 """s that a text may take."""
 
@@ -36,15 +34,9 @@ class Speech(RobotModule):
         Raises:
             SpeechLowLevelFailure: Nobody listens to the topic.
         """
-        publisher = self.robot.publisher(TOPIC, String)
-        waited = 0.0
-        while publisher.get_num_connections() == 0:
-            if waited >= LISTENER_LIMIT:
-                where = rospy.resolve_name(TOPIC)
-                raise SpeechLowLevelFailure(f"nobody speaks what comes on {where}: is nao_speech running?")
-            sleep(PERIOD)
-            waited += PERIOD
-        publisher.publish(String(text))
+        if not self.robot.topic(TOPIC, String).tell(String(text), LISTENER_LIMIT):
+            where = rospy.resolve_name(TOPIC)
+            raise SpeechLowLevelFailure(f"nobody speaks what comes on {where}: is nao_speech running?")
 
     def say(self, text: str) -> None:
         """Say a text and wait until it is said; a cancel silences it.
