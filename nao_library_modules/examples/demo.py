@@ -2,20 +2,24 @@
 """Plays a demonstration on a simulated NAO and checks every step against what the robot reports.
 
 Starts simulator and action servers on a ROS master of its own, wakes the robot up, sends the lights through their paces
-as goals, has it find a ball, walk to a table meanwhile, greet and hear itself, and leaves pictures, sound, a table and
-the log of the stack in the output folder.
+as goals, has it find a ball, walk to a table meanwhile, greet and hear itself. Then a second robot, on a stack of its
+own, plays the ten behaviours that come with the library. Leaves pictures, sound, a film, a table and the logs of the
+stacks in the output folder.
 The exit status tells whether all of it went as asked.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+import subprocess
 import sys
 import threading
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Mapping, Sequence
+from typing import Mapping
 
+from nao_library_modules.demo_behaviors import FILM, SHEET, BehaviorShow
+from nao_library_modules.demo_lights import Step, steps
 from nao_library_modules.demo_support import (
     SOUND,
     Stack,
@@ -24,11 +28,8 @@ from nao_library_modules.demo_support import (
     wait_until,
     write_table,
 )
-from nao_library_modules.own_stack import can_connect
 
 DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
-EYE_ANGLES = tuple(range(0, 360, 45))
-EYES = ("LeftFaceLeds", "RightFaceLeds")
 START_LIMIT = 60.0
 STEP_LIMIT = 30.0
 # m. The near edge of the table is 0.6 m ahead of where the robot starts.
@@ -42,94 +43,12 @@ EYES_PICTURE = "own_eyes.png"
 WORDS, OWN_WORD = ("hello", "goodbye", "laboratory", "elephant", "umbrella"), "laboratory"
 # How long the greeting lasts at least, s.
 GREETING_TIME = 2.0
+# Where the process of the behaviours leaves its part of the table.
+BEHAVIOR_ROWS = "behaviors.json"
 # m: nearer to what the sonars see than a walk comes by itself, 0.4 m.
 NEAR, USUAL = 0.15, 0.4
 # Pixels of the green eyes in a front view of 640 x 480; without them there are none.
 MIN_GREEN_PIXELS = 150
-
-
-@dataclass(frozen=True)
-class Step:
-    """One goal of the demonstration.
-
-    Attributes:
-        title: What is asked, for the table.
-        functions: Fields of each function message of the chain.
-        during: Device name -> intensity while the last function waits; nothing to check when empty.
-        after: Device name -> intensity when the goal has ended.
-        picture: View to take while the last function waits, or after the goal; no picture when empty.
-        walking: Whether the robot walks to the table meanwhile.
-    """
-
-    title: str
-    functions: Sequence[Mapping[str, object]]
-    during: Mapping[str, float] = field(default_factory=dict)
-    after: Mapping[str, float] = field(default_factory=dict)
-    picture: str = ""
-    walking: bool = False
-
-
-def eye_devices(red: float, green: float, blue: float) -> dict[str, float]:
-    """Intensity that every device of both eyes must have for a colour."""
-    colors = {"Red": red, "Green": green, "Blue": blue}
-    return {
-        f"Face/Led/{color}/{side}/{angle}Deg": value
-        for color, value in colors.items()
-        for side in ("Left", "Right")
-        for angle in EYE_ANGLES
-    }
-
-
-def steps() -> list[Step]:
-    """The demonstration: the listings of the nao_library paper, then a chained light show."""
-    white, green = eye_devices(1, 1, 1), eye_devices(0, 1, 0)
-    chest = {f"ChestBoard/Led/{color}": value for color, value in (("Red", 0.0), ("Green", 0.0), ("Blue", 1.0))}
-    return [
-        Step(
-            "head light Brain0 at half intensity",
-            [{"function": "setIntensity", "lights": ["Brain0"], "i_values": [0.5]}],
-            after={"Head/Led/Front/Right/1": 0.5},
-        ),
-        Step(
-            "both eyes green for 2 s, then as before",
-            [{"function": "setColor", "lights": EYES, "i_values": [0, 1, 0], "time": 2.0, "revert": True}],
-            during=green,
-            after=white,
-        ),
-        Step(
-            "both eyes green",
-            [{"function": "setColor", "lights": EYES, "i_values": [0, 1, 0]}],
-            after=green,
-            picture="front",
-        ),
-        Step(
-            "show while it walks: rasta, random and turning eyes, ears, fades",
-            [
-                {"function": "rasta", "duration": 1.2},
-                {"function": "randomEyes", "duration": 1.0},
-                {"function": "rotateEyes", "str_param": "magenta", "rotation_time": 0.5, "duration": 1.0},
-                {"function": "earLedsSetAngle", "angle": 90, "duration": 0.5, "leave_on": True},
-                {
-                    "function": "fadeListRGB",
-                    "lights": ["FaceLeds"],
-                    "str_param": "red,yellow,cyan",
-                    "times": [0.4, 0.8, 1.2],
-                },
-                {"function": "fadeRGB", "lights": ["ChestLeds"], "i_values": [0, 0, 1], "duration": 0.5},
-                {"function": "fade", "lights": ["BrainLeds"], "i_values": [0.2], "duration": 0.5},
-                {"function": "setColor", "lights": ["FeetLeds"], "str_param": "blue"},
-            ],
-            after={**eye_devices(0, 1, 1), **chest, "Head/Led/Middle/Left/0": 0.2, "LFoot/Led/Blue": 1.0},
-            picture="three_quarter",
-            walking=True,
-        ),
-        Step(
-            "everything off, then back to the default",
-            [{"function": "off", "lights": ["AllLeds"], "time": 0.3}, {"function": "reset", "lights": ["AllLeds"]}],
-            after={**white, "ChestBoard/Led/Blue": 0.0},
-            picture="face",
-        ),
-    ]
 
 
 class Demonstration:
@@ -150,7 +69,7 @@ class Demonstration:
 
         self._output = output
         self.rows: list[tuple[str, str, bool]] = []
-        wait_until(lambda: can_connect(stack.ros_port), START_LIMIT, "the ROS master", stack.alive)
+        stack.wait_for_master(START_LIMIT)
         rospy.init_node("nao_library_demo", disable_signals=True)
         self._lights = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
         if not self._lights.wait_for_server(rospy.Duration(START_LIMIT)):
@@ -308,6 +227,39 @@ class Demonstration:
         print(f"  {'ok  ' if good else 'FAIL'}  {asked}: {reported}", flush=True)
 
 
+def play_behaviors(output: Path) -> int:
+    """Play the ten behaviours and film them; in a process of its own, for a process knows one ROS master.
+
+    Returns:
+        Exit status: 0 when every one went as asked.
+    """
+    rows: list[tuple[str, str, bool]] = []
+
+    def report(asked: str, reported: str, good: bool) -> None:
+        rows.append((asked, reported, good))
+        print(f"  {'ok  ' if good else 'FAIL'}  {asked}: {reported}", flush=True)
+
+    try:
+        with BehaviorShow(output) as show:
+            show.play(report)
+    except Exception as error:
+        report("the ten behaviours", str(error), False)
+    (output / BEHAVIOR_ROWS).write_text(json.dumps(rows), encoding="utf-8")
+    return 0 if all(good for _, _, good in rows) else 1
+
+
+def behavior_rows(output: Path) -> list[tuple[str, str, bool]]:
+    """Rows of the table about the ten behaviours, played by a process of its own."""
+    (output / BEHAVIOR_ROWS).unlink(missing_ok=True)
+    subprocess.run([sys.executable, __file__, "--output", str(output), "--behaviors"], check=False)
+    try:
+        return [tuple(row) for row in json.loads((output / BEHAVIOR_ROWS).read_text(encoding="utf-8"))]
+    except (OSError, ValueError) as error:
+        return [("the ten behaviours", f"their process has ended: {error}", False)]
+    finally:
+        (output / BEHAVIOR_ROWS).unlink(missing_ok=True)
+
+
 def play_all(stack: Stack, output: Path) -> list[tuple[str, str, bool]]:
     """The whole demonstration; returns the table."""
     demonstration = Demonstration(stack, output)
@@ -333,8 +285,12 @@ def main() -> int:
     """Run the demonstration; the exit status is 0 when every step went as asked."""
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--output", type=Path, default=Path("demo_output"), help="folder for pictures and the table")
-    output = options.parse_args().output.resolve()
+    options.add_argument("--behaviors", action="store_true", help="only the ten behaviours")
+    chosen = options.parse_args()
+    output = chosen.output.resolve()
     output.mkdir(parents=True, exist_ok=True)
+    if chosen.behaviors:
+        return play_behaviors(output)
     print(f"starting the simulated NAO and its action servers (log: {output / 'stack.log'})", flush=True)
     stack = Stack(output)
     try:
@@ -344,9 +300,12 @@ def main() -> int:
         return 1
     finally:
         stack.stop()
+    print("playing the ten behaviours (log: behaviors.log)", flush=True)
+    rows += behavior_rows(output)
     write_table(rows, output / "table.md")
     failures = sum(not good for _, _, good in rows)
-    print(f"{len(rows) - failures} of {len(rows)} as asked; pictures, {SOUND} and table.md are in {output}")
+    left = f"pictures, {SOUND}, {FILM}, {SHEET} and table.md"
+    print(f"{len(rows) - failures} of {len(rows)} as asked; {left} are in {output}")
     return 1 if failures else 0
 
 

@@ -63,7 +63,7 @@ def watch(body: ALProxy, memory: ALProxy, seconds: float) -> list[Sample]:
     end = time.monotonic() + seconds
     while time.monotonic() < end or not samples:
         samples.append(look(body, memory))
-        time.sleep(PERIOD / 1000.0)
+        time.sleep(PERIOD / 1000.0)  # the pace of looking; there is nothing to wait for
     return samples
 
 

@@ -7,11 +7,18 @@ from typing import Any
 
 import actionlib
 import rospy
+from actionlib_msgs.msg import GoalStatus
+
+from .heap import Heap
 
 log = logging.getLogger(__name__)
 
 SHUTDOWN_POLL = 0.1
 """s between two looks whether the node has ended, for nothing wakes the waiting thread then."""
+OVER = frozenset(
+    (GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.PREEMPTED, GoalStatus.RECALLED, GoalStatus.REJECTED)
+)
+"""States of goals that have ended."""
 
 
 class PromptActionServer(actionlib.SimpleActionServer):
@@ -19,8 +26,26 @@ class PromptActionServer(actionlib.SimpleActionServer):
 
     The loop it replaces waits before it looks: a goal that came while the last one was being ended was announced to
     nobody, and lies there for a tenth of a second. This one looks under the lock that announcements are made under.
+
+    It also forgets what was in a goal when that is over. actionlib tells of such a goal for 5 s more and keeps all of
+    it for longer, in a ring of objects that Python finds some day: hundreds of goals with long lists in them are
+    hundreds of megabytes. Their ids and states are enough. The room that they took is given back to the system.
+
     Everything else is actionlib's.
     """
+
+    def __init__(self, name: str, action: type, *arguments: Any, **options: Any) -> None:
+        """As actionlib's.
+
+        Args:
+            name: Name of the action.
+            action: Its type.
+            arguments: As actionlib takes them.
+            options: As actionlib takes them.
+        """
+        self._no_goal = type(action().action_goal)()
+        self._heap = Heap()
+        super().__init__(name, action, *arguments, **options)
 
     # The name is actionlib's: the constructor starts a thread with it.
     def executeLoop(self) -> None:  # noqa: N802
@@ -31,6 +56,25 @@ class PromptActionServer(actionlib.SimpleActionServer):
                     self.execute_condition.wait(SHUTDOWN_POLL)
                     continue
             self._carry_out(self.accept_new_goal())
+            self._empty_goals()
+            self._heap.tidy()
+
+    # Called under the lock of actionlib's ActionServer. A new goal may end one that waits.
+    def internal_goal_callback(self, goal: Any) -> None:
+        """Keep a new goal until it is taken up."""
+        super().internal_goal_callback(goal)
+        self._empty_goals()
+
+    def _empty_goals(self) -> None:
+        """Put an empty goal in the place of each one that is over."""
+        server = self.action_server
+        with server.lock:
+            for tracker in server.status_list:
+                if tracker.status.status in OVER:
+                    tracker.goal = self._no_goal
+            for handle in (self.current_goal, self.next_goal):
+                if handle.status_tracker is not None and handle.status_tracker.status.status in OVER:
+                    handle.goal = self._no_goal
 
     def _terminated(self) -> bool:
         with self.terminate_mutex:

@@ -11,19 +11,21 @@ _SCALARS = (bool, int, float)
 
 @dataclass(frozen=True)
 class Outcome:
-    """A function of a chain that was done.
+    """A function of a chain that was done, or failed.
 
     Attributes:
         position: Place in the chain, counted from 1.
         function: Its name.
         values: Its answers as strings.
         elapsed: s it took, without the wait after it.
+        error: Why it failed; empty if it did not.
     """
 
     position: int
     function: str
     values: list[str]
     elapsed: float
+    error: str = ""
 
 
 def text_of(value: Any) -> str:
@@ -36,8 +38,14 @@ def text_of(value: Any) -> str:
 
 
 def json_of(value: Any) -> str:
-    """A value as JSON; what JSON does not know (bytes, objects) becomes its text."""
-    return json.dumps(value, default=_plain)
+    """A value as JSON.
+
+    What JSON does not know becomes its text (bytes, objects), or null (numbers that are none, or infinite).
+    """
+    try:
+        return json.dumps(value, default=_plain, allow_nan=False)
+    except ValueError:  # Python would write NaN and Infinity, which other languages do not read
+        return json.dumps(json.loads(json.dumps(value, default=_plain), parse_constant=lambda _: None))
 
 
 def _plain(value: Any) -> Any:

@@ -68,7 +68,6 @@ class NaoAudioInput(NaoBasic, NaoAudio, RecordingFunctions, RecognitionFunctions
         self.heard = Heard()
         self.subscriber = subscriber_name(str(self._edge.namespace))
         self.frame_prefix = self._edge.frame_prefix()
-        self._progress = (0, "", 0)
         self._took_over = False
         for functions in (
             self.audio_functions(),
@@ -119,10 +118,7 @@ class NaoAudioInput(NaoBasic, NaoAudio, RecordingFunctions, RecognitionFunctions
             words: What was heard last.
             confidences: 0..1, one a word.
         """
-        index, function, count = self._progress
-        self.server.publish_feedback(
-            self._feedback_type(index, function, count, status, list(words), list(confidences))
-        )
+        self.publish_feedback(status=status, words=list(words), confidences=list(confidences))
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add what was heard."""
@@ -148,10 +144,6 @@ class NaoAudioInput(NaoBasic, NaoAudio, RecordingFunctions, RecognitionFunctions
             except NaoError as error:
                 log.debug("%s may work for nobody: %s", module, error)
         return self.robot.connection.state == "connected"
-
-    def _tell_progress(self, position: int, function: str, count: int) -> None:
-        self._progress = (position - 1, function, count)
-        super()._tell_progress(position, function, count)
 
     def _connection_changed(self, *args: Any) -> None:
         super()._connection_changed(*args)

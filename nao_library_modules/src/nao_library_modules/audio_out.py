@@ -54,7 +54,6 @@ class NaoAudioOutput(NaoBasic, SpeechFunctions, PlayerFunctions):
         self.words = SpokenWords(lambda: self.robot.proxy(MEMORY), self._tell_word)
         self.loaded = LoadedSounds(self.robot.connection)
         self.files = FileNotes()
-        self._progress: tuple[int, str, int] = (0, "", 0)
         self._memory_functions = frozenset(self.function_table)
         self.function_table.update(self.audio_functions())
         self.function_table.update(self.speech_functions())
@@ -109,15 +108,9 @@ class NaoAudioOutput(NaoBasic, SpeechFunctions, PlayerFunctions):
 
     # Inside
 
-    def _tell_progress(self, position: int, function: str, count: int) -> None:
-        self._progress = (position, function, count)
-        super()._tell_progress(position, function, count)
-
     def _tell_word(self, word: str, sentence: str) -> None:
         """Called from a thread of libqi."""
-        position, function, count = self._progress
-        feedback = self._feedback_type(index=position - 1, function=function, count=count, word=word, sentence=sentence)
-        self.server.publish_feedback(feedback)
+        self.publish_feedback(word=word, sentence=sentence)
 
     def _connection_changed(self, *args: Any) -> None:
         super()._connection_changed(*args)

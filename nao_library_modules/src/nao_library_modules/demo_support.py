@@ -50,15 +50,15 @@ def count_green_pixels(path: Path) -> int:
     return int(((green > 150) & (green > 1.6 * red) & (green > 1.6 * blue)).sum())
 
 
-def wait_until(ready: Callable[[], bool], limit: float, what: str, going_on: Callable[[], bool] = lambda: True) -> None:
-    """Wait until `ready()`, looking ten times a second.
+def wait_until(ready: Callable[[], bool], limit: float, what: str) -> None:
+    """Wait until `ready()`, looking ten times a second: for what the robot tells nobody of, such as its LEDs.
 
     Raises:
-        RuntimeError: It did not become ready within `limit` s, or `going_on()` became false.
+        RuntimeError: It did not become ready within `limit` s.
     """
     give_up = time.monotonic() + limit
     while not ready():
-        if time.monotonic() > give_up or not going_on():
+        if time.monotonic() > give_up:
             raise RuntimeError(f"{what} did not become ready within {limit:g} s")
         time.sleep(0.1)
 

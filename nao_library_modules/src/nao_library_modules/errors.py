@@ -8,7 +8,10 @@ NaoError                 (naoqi.errors) root of everything that can go wrong wit
     RobotFell            the robot fell while a goal moved it
     MotionStopped        joints did not get where a goal sent them: joints
         WalkStopped      the robot did not get where a goal sent it: goal, reached
-    CannotWalk           the robot is not ready to walk: problem
+    NotReady             the robot cannot do something as it is now: problem
+        CannotWalk       it cannot walk
+        NotFit           a motor is too hot, or the battery empty
+    PutToRest            the robot put a chain to rest while a goal moved it: chains
 
 Preempted                no error but a signal: a new goal, a cancel or the end of the node interrupts the
 function
@@ -66,13 +69,19 @@ class UnknownFunction(NaoError):  # noqa: N818  named like the errors of the pro
         known: The names there are, sorted.
     """
 
-    def __init__(self, name: str, known: Iterable[str]) -> None:
-        """Compose the text: the closest names first, then all of them."""
+    def __init__(self, name: str, known: Iterable[str], server: str = "") -> None:
+        """Compose the text: the closest names, and where all are to be seen; all of them if none is close.
+
+        Args:
+            name: The name that was asked for.
+            known: The names there are.
+            server: Name of the action whose functions they are; empty if it has none.
+        """
         self.name = name
         self.known = sorted(known)
-        super().__init__(
-            f"unknown function {name!r}{did_you_mean(name, self.known)}; known are {', '.join(self.known)}"
-        )
+        hint = did_you_mean(name, self.known)
+        rest = f"`nao list {server} --all` tells all" if hint and server else f"known are {', '.join(self.known)}"
+        super().__init__(f"unknown function {name!r}{hint}; {rest}")
 
 
 class FunctionFailed(NaoError):  # noqa: N818  named like the errors of the proxy layer
@@ -152,8 +161,8 @@ class WalkStopped(MotionStopped):
         self.cause = cause
 
 
-class CannotWalk(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """The robot is not ready to walk.
+class NotReady(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """The robot cannot do something as it is now.
 
     Attributes:
         problem: Why.
@@ -163,11 +172,34 @@ class CannotWalk(NaoError):  # noqa: N818  named like the errors of the proxy la
         """Compose the text.
 
         Args:
-            problem: Why it cannot walk.
+            problem: Why it cannot.
             remedy: What to do about it.
         """
         super().__init__(f"{problem}: {remedy}")
         self.problem = problem
+
+
+class CannotWalk(NotReady):
+    """The robot is not ready to walk."""
+
+
+class NotFit(NotReady):
+    """The robot must not move: a motor is too hot, or the battery empty."""
+
+
+class PutToRest(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """The robot put a chain to rest to protect it while a goal moved it.
+
+    Attributes:
+        chains: Their names; Body for all of it.
+    """
+
+    def __init__(self, chains: Iterable[str]) -> None:
+        """Compose the text."""
+        self.chains = list(chains)
+        super().__init__(
+            f"the robot put {', '.join(self.chains)} to rest: a motor is too hot or broken, or the battery is empty"
+        )
 
 
 def _way(way: Place) -> str:

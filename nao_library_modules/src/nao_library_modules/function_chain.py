@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, TypeVar
 
 from .errors import BadGoal, FunctionFailed, Preempted, UnknownFunction
+from .failure_policy import FailurePolicy
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -53,12 +54,14 @@ class Step:
         function: Name in the function table.
         args: Arguments in the order of the function's parameters.
         sleep_time: s to wait afterwards.
+        policy: What becomes of the chain when it fails.
     """
 
     position: int
     function: str
     args: tuple[Any, ...]
     sleep_time: float
+    policy: FailurePolicy = FailurePolicy()
 
 
 def seconds(duration: Any) -> float:
@@ -101,16 +104,37 @@ class _Signature:
         return values if self._bound_self is None else (self._bound_self, *values)
 
 
-class _Binding:
-    """A table entry bound to a message type: its arguments, and its check with the check's arguments."""
+class Binding:
+    """A table entry bound to a message type: its arguments, and its check with the check's arguments.
+
+    Attributes:
+        function: The callable.
+        arguments: Takes a message and the context, gives the arguments.
+        check: The check that was declared for it, if any.
+    """
 
     def __init__(self, function: Callable[..., Any], message_type: type) -> None:
         self.function = function
         self.arguments = _Signature(function, message_type).arguments
         self.check: Callable[..., None] | None = getattr(function, CHECK_ATTRIBUTE, None)
         if self.check is not None:
-            bound_self = getattr(function, "__self__", None)
-            self.check_arguments = _Signature(self.check, message_type, bound_self).arguments
+            self._bound_self = getattr(function, "__self__", None)
+            self._check_arguments = _Signature(self.check, message_type, self._bound_self).arguments
+
+    def run_check(self, message: Any, context: dict[str, Any], stand_in: object | None = None) -> None:
+        """Run the check, if there is one.
+
+        Args:
+            message: The function message.
+            context: What the checks of a chain share.
+            stand_in: Takes the place of the module in the check of its method.
+        """
+        if self.check is None:
+            return
+        arguments = self._check_arguments(message, context)
+        if stand_in is not None and self._bound_self is not None:
+            arguments = (stand_in, *arguments[1:])
+        self.check(*arguments)
 
 
 class FunctionChain:
@@ -120,25 +144,27 @@ class FunctionChain:
     table holds the same callable.
     """
 
-    def __init__(self, function_table: Mapping[str, Callable[..., Any]]) -> None:
+    def __init__(self, function_table: Mapping[str, Callable[..., Any]], server: str = "") -> None:
         """Keep the table.
 
         Args:
             function_table: NAOqi function name -> callable.
+            server: Name of the action that serves it, for texts; it may be set later.
         """
+        self.server = server
         self._table = function_table
-        self._bindings: dict[tuple[str, type], _Binding] = {}
+        self._bindings: dict[tuple[str, type], Binding] = {}
 
     def look_up(self, name: str) -> Callable[..., Any]:
         """The callable of a name.
 
         Raises:
-            UnknownFunction: With the closest names and the list of all.
+            UnknownFunction: With the closest names, or the list of all.
         """
         try:
             return self._table[name]
         except KeyError:
-            raise UnknownFunction(name, self._table) from None
+            raise UnknownFunction(name, self._table, self.server) from None
 
     def read(self, messages: Sequence[Any], before_check: Callable[[int], None] = lambda _: None) -> list[Step]:
         """Check a whole chain and bind it; nothing runs.
@@ -151,19 +177,31 @@ class FunctionChain:
             BadGoal: If the chain is empty.
             FunctionFailed: Names the first function that is wrong and says why.
         """
-        if not messages:
-            raise BadGoal("functions", list(messages), "at least one function", problem="the chain is empty")
         context: dict[str, Any] = {}
         # Two passes: what can be told without the robot is told without it.
-        bindings = [self._guarded(i, message, self._bind) for i, message in enumerate(messages, start=1)]
+        bindings = self.bind(messages)
         steps = []
         for i, (message, binding) in enumerate(zip(messages, bindings), start=1):
             before_check(i)
-            step = Step(i, message.function, binding.arguments(message, context), seconds(message.time))
-            if binding.check is not None:
-                self._guarded(i, message, lambda m, b=binding: b.check(*b.check_arguments(m, context)))
+            arguments = binding.arguments(message, context)
+            step = Step(i, message.function, arguments, seconds(message.time), _policy(message))
+            self._guarded(i, message, lambda m, b=binding: b.run_check(m, context))
             steps.append(step)
         return steps
+
+    def bind(self, messages: Sequence[Any]) -> list[Binding]:
+        """Look at what concerns no robot: names of functions, times, failure policies.
+
+        Returns:
+            For each message what is to be called; its `run_check` runs the check.
+
+        Raises:
+            BadGoal: If the chain is empty.
+            FunctionFailed: Names the first function that is wrong and says why.
+        """
+        if not messages:
+            raise BadGoal("functions", list(messages), "at least one function", problem="the chain is empty")
+        return [self._guarded(i, message, self._bind) for i, message in enumerate(messages, start=1)]
 
     @staticmethod
     def _guarded(position: int, message: Any, action: Callable[[Any], Any]) -> Any:
@@ -174,13 +212,19 @@ class FunctionChain:
         except Exception as error:  # a check with a mistake in it as well: the text names the function
             raise FunctionFailed(position, message.function, error) from error
 
-    def _bind(self, message: Any) -> _Binding:
+    def _bind(self, message: Any) -> Binding:
         sleep_time = seconds(message.time)
         if not (math.isfinite(sleep_time) and sleep_time >= 0.0):
             raise BadGoal("time", sleep_time, "0 s or more")
+        _policy(message)
         function = self.look_up(message.function)
         key = (message.function, type(message))
         binding = self._bindings.get(key)
         if binding is None or binding.function is not function:
-            binding = self._bindings[key] = _Binding(function, type(message))
+            binding = self._bindings[key] = Binding(function, type(message))
         return binding
+
+
+def _policy(message: Any) -> FailurePolicy:
+    """The failure policy of a message; a module's own message type need not have the field."""
+    return FailurePolicy.of(getattr(message, "on_error", ""))

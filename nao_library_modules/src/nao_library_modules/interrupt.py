@@ -66,7 +66,10 @@ class Interrupt:
             with self._lock:
                 reason = self._reason
             if reason is not None:
-                raise reason
+                try:
+                    raise reason
+                finally:
+                    del reason  # else this frame and the error keep each other, and the goal that is being run
 
     def wait(self, timeout: float) -> bool:
         """Wait for the trigger.

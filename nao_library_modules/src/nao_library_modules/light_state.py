@@ -6,9 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any, Mapping, Tuple
 
+from .body_devices import PREFIX
 from .light_names import COLOUR_PARTS, LightNames, colour_part
-
-MEMORY_PREFIX = "Device/SubDeviceList/"
 
 Values = Mapping[str, float]
 """Device name -> intensity 0..1."""
@@ -19,7 +18,7 @@ Call = Tuple[str, Tuple[Any, ...]]
 
 def memory_keys(devices: Iterable[str]) -> list[str]:
     """Keys of the robot's memory that hold the values of LEDs."""
-    return [MEMORY_PREFIX + device for device in devices]
+    return [PREFIX + device for device in devices]
 
 
 def light_intensity(names: LightNames, light: str, values: Values) -> float:

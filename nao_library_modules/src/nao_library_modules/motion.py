@@ -11,7 +11,7 @@ from nao_library_actions.msg import NaoMotionAction
 from naoqi.errors import NaoError
 
 from .answers import Outcome
-from .errors import RobotFell
+from .errors import PutToRest, RobotFell
 from .event_relay import EventRelay
 from .function_chain import Step
 from .memory_functions import MEMORY
@@ -19,6 +19,7 @@ from .motion_cartesian import CartesianFunctions
 from .motion_facts import MotionAccess
 from .motion_gait import GaitAccess
 from .motion_gaze import GazeFunctions
+from .motion_health import HealthAccess, in_chain
 from .motion_joints import JointMotion
 from .motion_plan import MotionPlan
 from .motion_poses import NamedPoses
@@ -32,6 +33,7 @@ from .motion_walk import WalkFunctions
 from .motion_walk_end import WalkFailure
 from .motion_walk_state import WalkState
 from .nao_basic import NaoBasic
+from .paths import config_file
 from .places import Place
 
 log = logging.getLogger(__name__)
@@ -39,9 +41,12 @@ log = logging.getLogger(__name__)
 DRIVER = ("nao_library", "nao_driver.launch")
 MOTIONS = Path("~/.ros/nao_motions")
 """Folder for recorded motions and pose libraries where none is configured."""
+SHIPPED = "motions"
+"""Folder in `config` with motions that can be replayed without having been recorded."""
 # Functions whose joints only the client moves on: what setAngles began goes on after the function.
 ASKING = frozenset({"getAngles"})
 FALLING, MOVE_FAILED = "ALMotion/RobotIsFalling", "ALMotion/MoveFailed"
+DISABLED = "ALMotion/Protection/DisabledDevicesChanged"
 
 
 class NaoMotion(
@@ -64,6 +69,7 @@ class NaoMotion(
     Attributes:
         access: Facts and state of the joints.
         gait: Parameters of the walk.
+        health: Heat of the motors, battery, ground under the feet.
         walk_failure: Why the last walk ended before time.
         plan: What the chain that is checked, or runs, does.
         poses: Poses by name.
@@ -75,6 +81,7 @@ class NaoMotion(
     """
 
     typed_answers = ASKING
+    without_robot = frozenset({"listMotions", "renameMotion", "deleteMotion"})
 
     def __init__(self, ip: str, port: int, motion_dir: str | Path = MOTIONS, **options: Any) -> None:
         """Start the server.
@@ -90,9 +97,10 @@ class NaoMotion(
         folder = Path(motion_dir).expanduser()
         self.access = MotionAccess(self.robot, self.call)
         self.gait = GaitAccess(self.robot, self.call)
+        self.health = HealthAccess(self.robot, self.call)
         self.walk_failure = WalkFailure()
         self.poses = NamedPoses(folder)
-        self.store = MotionStore(folder)
+        self.store = MotionStore(folder, config_file(SHIPPED))
         self.plan = self._new_plan()
         self.recording_names = set()
         self._dry_run = False
@@ -122,7 +130,7 @@ class NaoMotion(
         """Forget what the last chain did."""
         self.plan = self._new_plan()
         self.recording_names.clear()
-        for event in (FALLING, MOVE_FAILED):
+        for event in (FALLING, MOVE_FAILED, DISABLED):
             try:
                 self._mishaps.subscribe(event)
             except NaoError as error:
@@ -178,9 +186,20 @@ class NaoMotion(
         """Called from a thread of libqi."""
         if event == MOVE_FAILED:
             self.walk_failure.tell(value)
+        elif event == DISABLED:
+            self._disabled(value)
         elif value and self.plan.moves and not self._idle.is_set():
             # A chain that goes on would move a robot that lies.
             self.interrupt.trigger(RobotFell())
+
+    def _disabled(self, value: Any) -> None:
+        """The robot has put chains to rest, or gives them back: pairs of name and whether it has."""
+        if not self.plan.moves or self._idle.is_set():
+            return
+        resting = [str(name) for name, rests in value or () if rests]
+        hit = [chain for chain in resting if any(in_chain(joint, chain) for joint in self.plan.moved)]
+        if hit:
+            self.interrupt.trigger(PutToRest(hit))
 
     def _new_plan(self) -> MotionPlan:
         return MotionPlan(
@@ -188,4 +207,5 @@ class NaoMotion(
             self.access.state,
             lambda: bool(self.motion("moveIsActive")),
             lambda: str(self.call(self.robot.proxy(POSTURES), "getPostureFamily")),
+            lambda: self.health.read(list(self.access.facts.limits)),
         )

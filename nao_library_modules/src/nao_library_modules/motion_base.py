@@ -56,6 +56,13 @@ class MotionBase:
         if limp:
             self.motion("setStiffnesses", limp, [stiffness] * len(limp))
 
+    def careful(self, joints: Iterable[str], fraction: float) -> float:
+        """A fraction of the top speed, or less where a motor is hot."""
+        allowed = self.plan.health.careful(joints, fraction)
+        if allowed < fraction:
+            log.warning("%s is hot: at %g of the top speed instead of %g", ", ".join(joints), allowed, fraction)
+        return allowed
+
     def require_reached(self, goals: Mapping[str, float]) -> None:
         """See that joints are told to be where a motion was to bring them.
 

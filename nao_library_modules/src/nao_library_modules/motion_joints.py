@@ -198,7 +198,7 @@ class JointMotion(MotionBase):
     ) -> None:
         """Give joints targets and go on at once; newer targets replace older ones."""
         wanted = _angles_of(self.plan, names, angles)
-        fractions = _fractions(list(wanted), speed, speeds)
+        fractions = [self.careful(wanted, fraction) for fraction in _fractions(list(wanted), speed, speeds)]
         self.stiffen(list(wanted), stiffness)
         if relative:
             now = self.motion("getAngles", list(wanted), False)
@@ -210,7 +210,7 @@ class JointMotion(MotionBase):
         """Change the targets of joints and go on at once."""
         wanted = _angles_of(self.plan, names, angles)
         self.stiffen(list(wanted), stiffness)
-        self.motion("changeAngles", list(wanted), list(wanted.values()), speed or DEFAULT_SPEED)
+        self.motion("changeAngles", list(wanted), list(wanted.values()), self.careful(wanted, speed or DEFAULT_SPEED))
 
     @checked_by(check_interpolation)
     def angle_interpolation(
@@ -319,7 +319,8 @@ class JointMotion(MotionBase):
 
     def _go(self, pose: Mapping[str, float], speed: float, stiffness: float) -> None:
         self.stiffen(list(pose), stiffness)
-        self.motion("angleInterpolationWithSpeed", list(pose), list(pose.values()), speed or DEFAULT_SPEED)
+        fraction = self.careful(pose, speed or DEFAULT_SPEED)
+        self.motion("angleInterpolationWithSpeed", list(pose), list(pose.values()), fraction)
         self.require_reached(pose)
 
     def _hands(self, method: str, names: Sequence[str]) -> None:

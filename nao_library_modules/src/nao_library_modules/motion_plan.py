@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from .errors import BadGoal
 from .motion_facts import JointState, MotionFacts
-from .motion_walk_plan import WalkPlan
+from .motion_health import Health
+from .motion_walk_plan import LEGS, WalkPlan
 
 # The robot's numbers have 32 bits: a limit that it tells must be allowed as a target. rad.
 TOLERANCE = 1e-4
@@ -29,12 +30,14 @@ class MotionPlan:
         moves: Whether the chain moves anything.
         durations: Place of each function in the chain, counted from 1 -> how long it takes as far as known, s.
         walk: What the chain does with the walk.
+        health: How the robot is; asked for when a function first needs to know.
 
     Args:
         facts: The joints.
         read_state: Asks the robot where they are; called when a function first needs to know.
         read_walking: Asks the robot whether it walks.
         read_posture: Asks the robot for the family of its posture.
+        read_health: Asks the robot how it is.
     """
 
     def __init__(
@@ -43,6 +46,7 @@ class MotionPlan:
         read_state: Callable[[], JointState],
         read_walking: Callable[[], bool] = lambda: False,
         read_posture: Callable[[], str] = lambda: "Standing",
+        read_health: Callable[[], Health] = Health,
     ) -> None:
         self.touched: dict[str, None] = {}
         self.aimed: dict[str, None] = {}
@@ -50,12 +54,14 @@ class MotionPlan:
         self.durations: dict[int, float] = {}
         self._read_facts = facts
         self._read_state = read_state
+        self._read_health = read_health
+        self._health: Health | None = None
         self._angles: dict[str, float | None] | None = None
         self._stiffnesses: dict[str, float] | None = None
         self._position = 0
-        self._moved: set[str] = set()
+        self._moved: frozenset[str] = frozenset()  # replaced as a whole: other threads read it
         self.walk = WalkPlan(
-            lambda: self.facts.chains, self._stiffness, self._moved.__contains__, read_walking, read_posture
+            lambda: self.facts.chains, self._stiffness, lambda joint: joint in self._moved, read_walking, read_posture
         )
 
     @property
@@ -66,6 +72,18 @@ class MotionPlan:
             NaoError: If the robot cannot be asked.
         """
         return self._read_facts()
+
+    @property
+    def health(self) -> Health:
+        """How the robot was when the chain was checked."""
+        if self._health is None:
+            self._health = self._read_health()
+        return self._health
+
+    @property
+    def moved(self) -> frozenset[str]:
+        """Joints that the chain moves."""
+        return self._moved
 
     def begin_function(self, position: int) -> None:
         """The function at a place of the chain, counted from 1, is looked at next."""
@@ -97,7 +115,7 @@ class MotionPlan:
         assert self._angles is not None
         for joint in joints:
             self._angles[joint] = None
-            self._moved.add(joint)
+        self._moved |= frozenset(joints)
 
     def set_stiffness(self, values: Mapping[str, float]) -> None:
         """Joints get stiff or limp."""
@@ -120,6 +138,7 @@ class MotionPlan:
         if not (math.isfinite(stiffness) and 0.0 <= stiffness <= 1.0):
             raise BadGoal("stiffness", stiffness, "0 (leave as it is) to 1")
         self.walk.require_free(joints)
+        self.health.require_fit(joints)
         limp = self.limp(joints)
         if limp and stiffness == 0.0:
             raise BadGoal(
@@ -129,6 +148,15 @@ class MotionPlan:
                 problem=f"no stiffness in {', '.join(limp)}: nothing would move",
             )
         self.set_stiffness(dict.fromkeys(limp, stiffness))
+
+    def require_fit_legs(self) -> None:
+        """See that the robot can get on its feet; an arm or a head that is too hot stays limp then.
+
+        Raises:
+            NotFit: If a motor of the legs is too hot, or the battery empty.
+        """
+        chains = self.facts.chains
+        self.health.require_fit([joint for leg in LEGS for joint in chains.get(leg, ())])
 
     def require_angle(self, joint: str, angle: float, field: str) -> None:
         """See that an angle is within the limits of a joint.
@@ -170,13 +198,14 @@ class MotionPlan:
         self._know()
         assert self._angles is not None
         self._angles.update(goals)
-        self._moved.update(goals)
+        self._moved |= frozenset(goals)
         self.touch(goals)
         self.takes(duration)
 
     def move_with_speed(self, goals: Mapping[str, float | None], fractions: Mapping[str, float]) -> None:
         """Joints go to where they are to go at fractions of their top speeds."""
         longest = 0.0
+        fractions = {joint: self.health.careful(goals, fraction) for joint, fraction in fractions.items()}
         for joint, goal in goals.items():
             before = self.angle(joint)
             if goal is not None and before is not None:

@@ -50,6 +50,7 @@ def check_posture(self: PostureFunctions, str_param: str, speed: float) -> None:
         )
     fraction = require_fraction("speed", speed, POSTURE_SPEED)
     body = list(self.plan.facts.chains[BODY])
+    self.plan.require_fit_legs()
     self.plan.set_stiffness(dict.fromkeys(body, 1.0))
     self.plan.forget(body)
     self.plan.touch(body)

@@ -45,7 +45,12 @@ def check_stiffness_names(self: MotionBase, names: Sequence[str]) -> None:
 
 
 def check_wake_up(self: MotionBase) -> None:
-    """Everything is stiff afterwards."""
+    """A robot that is fit; everything is stiff afterwards."""
+    self.plan.require_fit_legs()
+    _check_stand(self)
+
+
+def _check_stand(self: MotionBase) -> None:
     body = list(self.plan.facts.chains[BODY])
     self.plan.set_stiffness(dict.fromkeys(body, 1.0))
     self.plan.forget(body)
@@ -56,7 +61,7 @@ def check_wake_up(self: MotionBase) -> None:
 
 def check_rest(self: MotionBase) -> None:
     """Everything is limp afterwards."""
-    check_wake_up(self)
+    _check_stand(self)
     self.plan.set_stiffness(dict.fromkeys(self.plan.facts.chains[BODY], 0.0))
 
 

@@ -1,10 +1,8 @@
-"""Recorded motions as YAML files of one folder."""
+"""Recorded motions as YAML files of one folder, and those that come with the library."""
 
 from __future__ import annotations
 
-import os
 import re
-import tempfile
 from pathlib import Path
 
 import yaml
@@ -12,9 +10,9 @@ import yaml
 from .errors import BadGoal
 from .recorded_motion import RecordedMotion, motion_of
 from .suggestion import did_you_mean
+from .whole_file import write_whole
 
 SUFFIX = ".yaml"
-MODE = 0o644
 # No separators and no dot in front: a name stays in the folder.
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. -]*")
 
@@ -24,14 +22,16 @@ class MotionStore:
 
     Args:
         folder: Where they are; made when the first one is saved.
+        shipped: Where there are more that can only be replayed; those in `folder` stand before them.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, shipped: Path | None = None) -> None:
         self.folder = folder
+        self._shipped = shipped
 
     def names(self) -> list[str]:
-        """Names of all motions, sorted."""
-        return sorted(path.stem for path in self.folder.glob(f"*{SUFFIX}")) if self.folder.is_dir() else []
+        """Names of the motions in the folder, sorted."""
+        return _names(self.folder)
 
     def load(self, name: str) -> RecordedMotion:
         """A motion.
@@ -39,7 +39,7 @@ class MotionStore:
         Raises:
             BadGoal: If there is none of that name, or its file is broken.
         """
-        path = self._existing(name)
+        path = self._readable(name)
         try:
             content = yaml.safe_load(path.read_text(encoding="utf-8"))
         except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
@@ -55,16 +55,7 @@ class MotionStore:
         path = self.path(name)
         text = yaml.safe_dump(motion.to_content(), default_flow_style=None, sort_keys=False, width=10**6)
         try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            descriptor, draft = tempfile.mkstemp(dir=self.folder, suffix=".draft")
-            try:
-                with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-                    file.write(text)
-                os.chmod(draft, MODE)  # drafts are made for their owner alone
-                os.replace(draft, path)
-            except BaseException:
-                os.unlink(draft)
-                raise
+            write_whole(path, text)
         except OSError as error:
             raise BadGoal(
                 "str_param", name, "a folder to write to", problem=f"{path} cannot be written: {error}"
@@ -74,24 +65,34 @@ class MotionStore:
         """Give a motion another name.
 
         Raises:
-            BadGoal: If there is none of that name, or one of the new name already.
+            BadGoal: If there is none of that name, it comes with the library, there is one of the new name already, or
+                the file cannot be renamed.
         """
         path, target = self._existing(name), self.require_free(new_name)
-        path.rename(target)
+        try:
+            path.rename(target)
+        except OSError as error:
+            problem = f"{path} cannot be renamed to {target.name}: {error.strerror or error}"
+            raise BadGoal("texts", new_name, "a folder to write to", problem) from error
 
     def delete(self, name: str) -> None:
         """Delete a motion.
 
         Raises:
-            BadGoal: If there is none of that name.
+            BadGoal: If there is none of that name, it comes with the library, or the file cannot be deleted.
         """
-        self._existing(name).unlink()
+        path = self._existing(name)
+        try:
+            path.unlink()
+        except OSError as error:
+            problem = f"{path} cannot be deleted: {error.strerror or error}"
+            raise BadGoal("str_param", name, "a folder to write to", problem) from error
 
     def require(self, name: str) -> None:
-        """See that there is a motion.
+        """See that there is a motion that can be renamed and deleted.
 
         Raises:
-            BadGoal: If there is none of that name.
+            BadGoal: If there is none of that name, or it comes with the library.
         """
         self._existing(name)
 
@@ -120,11 +121,30 @@ class MotionStore:
     def _existing(self, name: str) -> Path:
         path = self.path(name)
         if not path.is_file():
-            known = self.names()
-            raise BadGoal(
-                "str_param",
-                name,
-                f"one of {', '.join(known)}" if known else f"none is recorded in {self.folder} yet",
-                problem=f"there is no motion {name!r}{did_you_mean(name, known)}",
-            )
+            if self._coming_with_us(name) is not None:
+                problem = f"motion {name!r} comes with the library"
+                raise BadGoal("str_param", name, "one that was recorded", problem=problem)
+            raise self._unknown(name)
         return path
+
+    def _readable(self, name: str) -> Path:
+        path = self.path(name)
+        if path.is_file():
+            return path
+        shipped = self._coming_with_us(name)
+        if shipped is None:
+            raise self._unknown(name)
+        return shipped
+
+    def _coming_with_us(self, name: str) -> Path | None:
+        path = self._shipped / f"{name}{SUFFIX}" if self._shipped is not None else None
+        return path if path is not None and path.is_file() else None
+
+    def _unknown(self, name: str) -> BadGoal:
+        known = sorted({*self.names(), *(_names(self._shipped) if self._shipped is not None else ())})
+        allowed = f"one of {', '.join(known)}" if known else f"none is recorded in {self.folder} yet"
+        return BadGoal("str_param", name, allowed, problem=f"there is no motion {name!r}{did_you_mean(name, known)}")
+
+
+def _names(folder: Path) -> list[str]:
+    return sorted(path.stem for path in folder.glob(f"*{SUFFIX}")) if folder.is_dir() else []

@@ -88,6 +88,7 @@ def _require_seconds(duration: float) -> None:
 def _begin(self: MotionBase) -> None:
     """What all walks need and do."""
     self.plan.walk.require_ready()
+    self.plan.health.require_walk(self.plan.walk.moved_joints(), self.plan.moves)
     # Legs walk, arms swing: only the robot knows where they are afterwards.
     self.plan.forget(self.plan.walk.moved_joints())
 

@@ -13,8 +13,10 @@ from nao_library_msgs.msg import FunctionResult
 from naoqi.errors import NaoError
 
 from .answers import Outcome, values_of
-from .errors import FunctionFailed, Preempted, RobotLost
+from .describe_service import DescribeService
+from .errors import FunctionFailed, Preempted, RobotLost, cut
 from .event_relay import EventRelay
+from .first_contact import PATIENCE, FirstContact
 from .function_chain import Step
 from .function_runner import FunctionRunner
 from .health import GoalCounter, connection_report, launch_report
@@ -49,12 +51,14 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         server: The action server, None before `serve`.
 
     ROS API:
-        Action as named in `serve`. Publishes `memory_events` (nao_library_msgs/MemoryEvent) and
-        `/diagnostics`.
+        Action as named in `serve`, and beside it the service NAME/describe (nao_library_msgs/DescribeFunctions).
+        Publishes `memory_events` (nao_library_msgs/MemoryEvent) and `/diagnostics`.
     """
 
     typed_answers: frozenset[str] = frozenset()
     """Functions whose answers have fields of their own in the result, so that they stay out of memList."""
+    without_robot: frozenset[str] = frozenset()
+    """Functions that do not need the robot: a goal of nothing else never waits for it."""
 
     def __init__(
         self,
@@ -64,6 +68,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         launchpath: LaunchPath | None = None,
         robot: Any = None,
         edge: Any = None,
+        patience: float = PATIENCE,
     ) -> None:
         """Connect in the background; the robot need not be there yet.
 
@@ -74,6 +79,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             launchpath: `(package, launchfile)` that belongs to the module.
             robot: Proxies and connection, where not those of ip and port.
             edge: ROS side, where not that of this process's node.
+            patience: s from now on for which goals wait for a robot that has never been reached.
 
         Raises:
             BadLaunchPath: If the launch file is to be started and is not there.
@@ -91,8 +97,12 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         super().__init__(self.function_table, edge.clock)
         self.events = EventRelay(lambda: self.robot.proxy(MEMORY), edge.event_sink())
         self.function_table.update(self.memory_functions())
+        self._failures: list[Outcome] = []
         self._edge = edge
         self._goals = GoalCounter()
+        self._first_contact = FirstContact(self.robot, patience)
+        self._progress = (0, "", 0)  # index of the function that began last, its name, how many the chain has
+        self._running: tuple[tuple[str, ...], int] = ((), 0)  # functions of the goal that runs, and the one that does
         self._idle = threading.Event()
         self._idle.set()
         self._launch: Supervisor | None = None
@@ -105,12 +115,13 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
     # The life of a module
 
     def serve(self, name: str, action: type) -> None:
-        """Start the action server and the diagnostics: the last line of a module's constructor.
+        """Start the action server, its description and the diagnostics: the last line of a module's constructor.
 
         Args:
             name: Relative name of the action.
             action: Its type; the first field of the goal is the array of function messages.
         """
+        self.chain.server = name
         self._feedback_type = type(action().action_feedback.feedback)
         self.server = self._edge.action_server(name, action, self.execute_cb, self.interrupt.trigger)
         self.server.start()
@@ -121,6 +132,8 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         if self.launchpath is not None:
             reports[f"{name} launch file"] = lambda: launch_report(self._launch)
         self._diagnostics = self._edge.publish_diagnostics(self.robot.address, reports)
+        description = DescribeService(self, action, lambda: self._running)
+        self._edge.serve_description(name, description.answer)
 
     def start_launch(self) -> None:
         """Start the launch file and keep it running.
@@ -158,8 +171,10 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             # The request may have come before `clear`, even before this goal was taken up.
             if self.server.is_preempt_requested():
                 self.interrupt.trigger()
+            self._await_robot(goal)
             self.begin_chain()
             outcomes: list[Outcome] = []
+            self._failures = []
             end, text = self._run_chain(goal, outcomes)
             self.end_chain(end)
             result = self.server.get_default_result()
@@ -173,6 +188,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             self._goals.ended(end, text)
             getattr(self.server, f"set_{end}")(result, text)
         finally:
+            self._running = ((), 0)
             self.interrupt.clear()
             self._idle.set()
 
@@ -189,6 +205,13 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
     def begin_check(self, position: int) -> None:
         """Called before the function at a place of the chain, counted from 1, is checked."""
 
+    def argument_choices(self, function: str, field: str) -> Sequence[str]:
+        """Words that a field of a function may hold, for its description: none.
+
+        For modules that have names of their own, such as stored files. Called from threads of clients.
+        """
+        return ()
+
     def steps_to_run(self, goal: Any, steps: Sequence[Step], outcomes: list[Outcome]) -> Sequence[Step]:
         """What of a checked chain is to be run: all of it.
 
@@ -201,6 +224,15 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         """
         return steps
 
+    def publish_feedback(self, **fields: Any) -> None:
+        """Publish how far the chain is. Any thread.
+
+        Args:
+            fields: What else the feedback of the module's action has.
+        """
+        index, function, count = self._progress
+        self.server.publish_feedback(self._feedback_type(index=index, function=function, count=count, **fields))
+
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Fill the result message. Modules with more fields extend it.
 
@@ -211,8 +243,22 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         Raises:
             NaoError: If the robot cannot be asked; the goal is aborted then.
         """
-        result.results = [FunctionResult(o.function, o.values, Duration.from_sec(o.elapsed)) for o in outcomes]
+        told = sorted([*outcomes, *self._failures], key=lambda outcome: outcome.position)
+        result.results = [FunctionResult(o.function, o.values, Duration.from_sec(o.elapsed), o.error) for o in told]
         result.memList = [value for o in outcomes if o.function not in self.typed_answers for value in o.values]
+
+    def _await_robot(self, goal: Any) -> None:
+        """Wait for a robot that has never been there; a goal that is wrong in any case is not kept waiting."""
+        messages = getattr(goal, goal.__slots__[0])
+        names = tuple(message.function for message in messages)
+        if self.without_robot.issuperset(names) or not self._first_contact.expected:
+            return
+        try:
+            self.chain.bind(messages)
+        except NaoError:
+            return  # the chain is read once more, and then it is told
+        self._running = (names, 0)
+        self._first_contact.wait(self.interrupt, lambda awaited: self._tell_wait(awaited, len(messages)))
 
     def _run_chain(self, goal: Any, outcomes: list[Outcome]) -> tuple[str, str]:
         messages = getattr(goal, goal.__slots__[0])
@@ -220,31 +266,64 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         try:
             self.interrupt.check()
             steps = self.steps_to_run(goal, self.chain.read(messages, self.begin_check), outcomes)
+            names = tuple(message.function for message in messages)
             for step in steps:
                 position, function = step.position, step.function
                 self.interrupt.check()
-                self._tell_progress(step.position, step.function, len(steps))
-                began = self.clock.now()
-
-                def note(answer: Any, step: Any = step, began: float = began) -> None:
-                    elapsed = max(0.0, self.clock.now() - began)
-                    outcomes.append(Outcome(step.position, step.function, values_of(answer), elapsed))
-
-                self.run(step.function, step.args, step.sleep_time, note)
+                self._running = (names, position - 1)
+                self._run_step(step, len(steps), outcomes)
         except Preempted:
             return "preempted", f"preempted in function {position} ({function})" if position else "preempted"
         except Exception as error:
-            if position:
-                error = FunctionFailed(position, function, error)
-            cause = error.cause if isinstance(error, FunctionFailed) else error
-            if isinstance(cause, NaoError):
-                return "aborted", str(error)
-            log.error("unexpected error: %s", error, exc_info=cause)
-            return "aborted", str(error) if error is not cause else f"unexpected error: {error!r}"
+            return "aborted", _why(error, position, function)
         return "succeeded", ""
 
+    def _run_step(self, step: Step, count: int, outcomes: list[Outcome]) -> None:
+        """Run one function of a chain, as often as its policy says."""
+        for tries_left in range(step.policy.retries, -1, -1):
+            self._tell_progress(step.position, step.function, count)
+            answered, began = len(outcomes), self.clock.now()
+            try:
+                self.run(
+                    step.function, step.args, step.sleep_time, lambda a, b=began: self._answered(step, a, b, outcomes)
+                )
+                return
+            except Preempted:
+                raise
+            except Exception as error:
+                only_clean_up = len(outcomes) > answered
+                try:
+                    # What ended the wait of all functions, as a robot that is gone, ends the chain as well.
+                    self.interrupt.check()
+                except NaoError as end:
+                    if not only_clean_up:
+                        self._note_failure(step, began, end)
+                    raise
+                if tries_left and not only_clean_up:
+                    log.warning("%s failed and is tried again: %s", step.function, _told(error))
+                    continue
+                if not only_clean_up:
+                    self._note_failure(step, began, error)
+                if not step.policy.skip:
+                    raise
+                log.warning("%s failed, the chain goes on: %s", step.function, _told(error))
+                return
+
+    def _note_failure(self, step: Step, began: float, error: Exception) -> None:
+        self._failures.append(Outcome(step.position, step.function, [], self._since(began), _told(error)))
+
+    def _answered(self, step: Step, answer: Any, began: float, outcomes: list[Outcome]) -> None:
+        outcomes.append(Outcome(step.position, step.function, values_of(answer), self._since(began)))
+
+    def _since(self, began: float) -> float:
+        return max(0.0, self.clock.now() - began)
+
     def _tell_progress(self, position: int, function: str, count: int) -> None:
-        self.server.publish_feedback(self._feedback_type(index=position - 1, function=function, count=count))
+        self._progress = (position - 1, function, count)
+        self.publish_feedback()
+
+    def _tell_wait(self, awaited: str, count: int) -> None:
+        self.server.publish_feedback(self._feedback_type(count=count, waiting=awaited))
 
     # The connection
 
@@ -257,3 +336,22 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         elif connection.state == "lost":
             # A function that only waits would otherwise not notice.
             self.interrupt.trigger(RobotLost(self.robot.address, connection.last_error or "no answer"))
+
+
+def _why(error: Exception, position: int, function: str) -> str:
+    """Why a chain ended; position 0: before its first function. What is no NaoError goes to the log.
+
+    Not where the error was caught: a frame that keeps an error which has passed through it is kept by that error, and
+    the whole goal with them, megabytes perhaps, until Python looks for such rings.
+    """
+    if position:
+        error = FunctionFailed(position, function, error)
+    cause = error.cause if isinstance(error, FunctionFailed) else error
+    if isinstance(cause, NaoError):
+        return str(error)
+    log.error("unexpected error: %s", error, exc_info=cause)
+    return str(error) if error is not cause else f"unexpected error: {error!r}"
+
+
+def _told(error: Exception) -> str:
+    return cut(str(error) if isinstance(error, NaoError) else f"unexpected error: {error!r}")

@@ -10,6 +10,7 @@ import rospy
 
 from naoqi.errors import NaoError
 
+from .first_contact import require_patience
 from .ros_edge import forward_logs
 
 DEFAULT_IP = "127.0.0.1"
@@ -84,7 +85,8 @@ def run_module(
 
     ROS API:
         Parameters `~pip`, `~pport`: the robot. `~autostart`, `~launchpath` ("package launchfile"): launch
-        file to start with the module.
+        file to start with the module. `~patience`: s from the start for which goals wait for a robot that has never
+        been reached (default 30).
     """
     arguments = rospy.myargv(argv)[1:]
     options = robot_parser(description).parse_args(arguments)
@@ -98,9 +100,15 @@ def run_module(
             autostart=bool(rospy.get_param("~autostart", False)),
             launchpath=launch_path(rospy.get_param("~launchpath", "")),
             **{name: rospy.get_param(f"~{name}", default) for name, default in (parameters or {}).items()},
+            **_patience(),
         )
     except NaoError as error:
         rospy.logfatal("%s", error)
         return 1
     rospy.spin()
     return 0
+
+
+def _patience() -> dict[str, float]:
+    """The parameter, where it is set: a module may have been written without it."""
+    return {"patience": require_patience(rospy.get_param("~patience"))} if rospy.has_param("~patience") else {}

@@ -52,6 +52,17 @@ class OwnStack:
         """Whether roslaunch still runs."""
         return self._process.poll() is None
 
+    def wait_for_master(self, limit: float = START_LIMIT) -> None:
+        """Wait until the ROS master answers: nodes can be made then.
+
+        Args:
+            limit: s.
+
+        Raises:
+            TimeoutError: It does not, or roslaunch has ended.
+        """
+        self._wait_for("the ROS master", self.ros_port, limit)
+
     def wait_for_robot(self, limit: float = START_LIMIT) -> None:
         """Wait until the simulated robot answers: parameters are set then, and nodes come up.
 
@@ -61,23 +72,31 @@ class OwnStack:
         Raises:
             TimeoutError: It does not, or roslaunch has ended.
         """
+        self._wait_for("the simulated robot", self.nao_port, limit)
+
+    def _wait_for(self, what: str, port: int, limit: float) -> None:
+        """Nobody tells that somebody listens on a port: look again and again, but hear of the end of roslaunch."""
         deadline = time.monotonic() + limit
-        while not can_connect(self.nao_port):
-            if not self.alive() or time.monotonic() > deadline:
+        while not can_connect(port):
+            if self._ended_within(PERIOD):
                 words = self.log.read_text(encoding="utf-8", errors="replace").strip().rpartition("\n")[2]
-                why = f"not there within {limit:g} s" if self.alive() else f"roslaunch has ended: {words}"
-                raise TimeoutError(f"the simulated robot does not come up: {why}")
-            time.sleep(PERIOD)
+                raise TimeoutError(f"{what} does not come up: roslaunch has ended: {words}")
+            if time.monotonic() > deadline:
+                raise TimeoutError(f"{what} does not come up: not there within {limit:g} s")
+
+    def _ended_within(self, seconds: float) -> bool:
+        try:
+            self._process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
 
     def stop(self) -> None:
         """End everything that was started."""
         for number, limit in LIMITS:
             if self.alive():
                 self._process.send_signal(number)
-                try:
-                    self._process.wait(limit)
-                except subprocess.TimeoutExpired:
-                    continue
+                self._ended_within(limit)
 
     def __enter__(self) -> OwnStack:
         return self

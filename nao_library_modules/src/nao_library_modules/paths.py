@@ -8,13 +8,13 @@ PACKAGE = "nao_library_modules"
 
 
 def config_file(name: str) -> Path:
-    """Path of a file in `config`: beside the sources, or in the share directory of an installation.
+    """Path of a file or folder in `config`: beside the sources, or in the share directory of an installation.
 
     Raises:
         FileNotFoundError: If it is in neither place.
     """
     beside = Path(__file__).resolve().parents[2] / "config" / name
-    if beside.is_file():
+    if beside.exists():
         return beside
     import rospkg  # only an installation gets here, and it has ROS
 
@@ -22,6 +22,6 @@ def config_file(name: str) -> Path:
         installed = Path(rospkg.RosPack().get_path(PACKAGE)) / "config" / name
     except rospkg.ResourceNotFound:
         installed = None
-    if installed is not None and installed.is_file():
+    if installed is not None and installed.exists():
         return installed
     raise FileNotFoundError(f"no configuration file {name}: looked beside the sources and in package {PACKAGE}")

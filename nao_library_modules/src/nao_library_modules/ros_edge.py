@@ -9,6 +9,7 @@ from typing import Any
 import rospy
 
 from nao_library_msgs.msg import MemoryEvent
+from nao_library_msgs.srv import DescribeFunctions
 
 from .action_server import PromptActionServer
 from .answers import json_of
@@ -28,8 +29,8 @@ class RosEdge:
         clock: ROS time.
 
     ROS API:
-        Publishes `memory_events` (nao_library_msgs/MemoryEvent) and `/diagnostics`. Listens to /tf when asked for a
-        frame.
+        Publishes `memory_events` (nao_library_msgs/MemoryEvent) and `/diagnostics`. Services NAME/describe
+        (nao_library_msgs/DescribeFunctions). Listens to /tf when asked for a frame.
     """
 
     def __init__(self) -> None:
@@ -77,6 +78,35 @@ class RosEdge:
     ) -> DiagnosticsPublisher:
         """Begin to publish reports."""
         return DiagnosticsPublisher(hardware_id, reports)
+
+    def serve_description(self, name: str, answer: Callable[[Any], Any]) -> None:
+        """Answer what the functions of an action server are, on the service `NAME/describe`.
+
+        Args:
+            name: Relative name of the action.
+            answer: Request -> response of DescribeFunctions; called in a thread of each client.
+        """
+        rospy.Service(f"{name}/describe", DescribeFunctions, answer)
+
+    def serve(self, name: str, kind: type, answer: Callable[[Any], Any]) -> None:
+        """Answer a service.
+
+        Args:
+            name: Relative name of the service.
+            kind: Its type.
+            answer: Request -> response; called in a thread of each client.
+        """
+        rospy.Service(name, kind, answer)
+
+    def subscribe(self, topic: str, kind: type, callback: Callable[[Any], None]) -> None:
+        """Have every message of a topic, until the node ends.
+
+        Args:
+            topic: Relative name of the topic.
+            kind: Type of its messages.
+            callback: Gets each message, in a thread of each publisher.
+        """
+        rospy.Subscriber(topic, kind, callback, queue_size=1000)
 
     def locate(self, frame: str) -> Place:
         """Where a frame of /tf is now, seen from above by the robot.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from collections.abc import Iterable
 
 LIKENESS = 0.6
@@ -12,8 +13,9 @@ LIKENESS = 0.6
 def closest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
     """Known names that look like `name`, the closest first.
 
-    Of equally close ones those come first that come first in `known`. Upper and lower case do not matter:
-    `setcolor` is as close to `setColor` as can be.
+    Of equally close ones those come first that end in a number if the name does, and in none if it does not: `FaceLed`
+    rather means `FaceLeds` than `FaceLed0`. Then the longer common beginning counts, then the length, then the order in
+    `known`. Upper and lower case do not matter: `setcolor` is as close to `setColor` as can be.
 
     Args:
         name: The name as typed.
@@ -26,8 +28,11 @@ def closest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
         matcher.set_seq1(candidate.lower())
         # The quick one is an upper bound and spares most of the work.
         if matcher.quick_ratio() >= LIKENESS and matcher.ratio() >= LIKENESS:
-            scored.append((matcher.ratio(), candidate))
-    scored.sort(key=lambda pair: -pair[0])
+            other_kind = candidate[-1:].isdigit() != name[-1:].isdigit()
+            beginning = len(os.path.commonprefix([candidate.lower(), name.lower()]))
+            score = (-matcher.ratio(), other_kind, -beginning, abs(len(candidate) - len(name)))
+            scored.append((score, candidate))
+    scored.sort(key=lambda pair: pair[0])
     return [candidate for _, candidate in scored[:count]]
 
 

@@ -104,7 +104,6 @@ class NaoVision(
         self.taken = Taken()
         self.subscriber = subscriber_name("NaoVision", str(self._edge.namespace))
         self.frame_prefix = self._edge.frame_prefix()
-        self._progress = (0, "", 0)
         self._took_over = False
         for functions in (
             self.streaming_functions(),
@@ -115,6 +114,8 @@ class NaoVision(
             self.tracking_functions(),
         ):
             self.function_table.update(functions)
+        # They take topics, of any camera.
+        self.without_robot = frozenset({**self.streaming_functions(), **self.picture_functions()})
         self.serve("NaoVision", NaoVisionAction)
 
     # The life of a goal
@@ -134,8 +135,7 @@ class NaoVision(
             objects: SeenObject messages.
             done: How many pictures were taken.
         """
-        index, function, count = self._progress
-        self.server.publish_feedback(self._feedback_type(index, function, count, status, done, list(objects)))
+        self.publish_feedback(status=status, done=done, objects=list(objects))
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add what was seen and taken."""
@@ -149,7 +149,3 @@ class NaoVision(
         self.threads.close()
         super().shut_down()
         self.threads.close()  # of a goal that was just about to start one
-
-    def _tell_progress(self, position: int, function: str, count: int) -> None:
-        self._progress = (position - 1, function, count)
-        super()._tell_progress(position, function, count)

@@ -4,24 +4,16 @@ from __future__ import annotations
 
 import re
 
+from . import camera_facts
+from .camera_facts import CAMERA_NAMES, RESOLUTIONS
 from .errors import BadGoal
 from .suggestion import did_you_mean
 
 VIDEO = "ALVideoDevice"
 """NAOqi's module for the cameras."""
-CAMERAS = {"top": 0, "bottom": 1}
+CAMERAS = {name: number for number, name in camera_facts.CAMERAS.items()}
 """Name -> NAOqi's number."""
-OPTICAL_FRAMES = {"top": "CameraTop_optical_frame", "bottom": "CameraBottom_optical_frame"}
-RESOLUTIONS = {
-    "QQQQVGA": (8, 40, 30),
-    "QQQVGA": (7, 80, 60),
-    "QQVGA": (0, 160, 120),
-    "QVGA": (1, 320, 240),
-    "VGA": (2, 640, 480),
-    "4VGA": (3, 1280, 960),
-    "16VGA": (4, 2560, 1920),
-}
-"""Name -> NAOqi's number, width, height."""
+OPTICAL_FRAMES = {name: f"{CAMERA_NAMES[number]}_optical_frame" for name, number in CAMERAS.items()}
 FRAME_RATES = (1, 30)
 """Frames a second, the least and the most."""
 

@@ -10,10 +10,10 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from .camera_facts import RESOLUTIONS
 from .extractor_use import Events
 from .image_clock import ImageClock
 from .memory_functions import MEMORY
-from .vision_cameras import RESOLUTIONS
 from .vision_checks import DEFAULT_TIMEOUT
 from .vision_detect_cameras import ROBOT, TORSO, CameraAccess
 from .vision_detect_events import (

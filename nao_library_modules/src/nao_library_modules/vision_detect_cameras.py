@@ -7,10 +7,11 @@ from contextlib import contextmanager
 
 from naoqi.errors import NaoError, UnknownMethod
 
+from .camera_facts import CAMERA_NAMES
 from .extractor_use import ExtractorUse
 from .motion_facts import MOTION
 from .vision_cameras import CAMERAS, VIDEO
-from .vision_detect_events import CAMERA_FRAMES, Lens, Pose, Region, Sight
+from .vision_detect_events import Lens, Pose, Region, Sight
 
 TORSO, ROBOT = 0, 2
 """NAOqi's FRAME_TORSO and FRAME_ROBOT."""
@@ -65,9 +66,9 @@ class CameraAccess(ExtractorUse):
             if wanted is None:
                 yield now
                 return
-            raise InUse(module, others, f"looks through {CAMERA_FRAMES[now]}")
+            raise InUse(module, others, f"looks through {CAMERA_NAMES[now]}")
         if self.begin(owner, "setActiveCamera", [camera], "setActiveCamera", now) is False:
-            raise NaoError(f"{owner} cannot look through {CAMERA_FRAMES[camera]}")
+            raise NaoError(f"{owner} cannot look through {CAMERA_NAMES[camera]}")
         proxy = self.robot.proxy(owner)
         with self.ended_by(lambda: self.call_now(proxy, "setActiveCamera", now), f"{owner} keeps its camera"):
             yield camera
@@ -79,7 +80,7 @@ class CameraAccess(ExtractorUse):
 
     def camera_pose(self, camera: int, frame: int) -> Pose:
         """Where a camera is now, in one of NAOqi's frames."""
-        position = self.call(self.robot.proxy(MOTION), "getPosition", CAMERA_FRAMES[camera], frame, True)
+        position = self.call(self.robot.proxy(MOTION), "getPosition", CAMERA_NAMES[camera], frame, True)
         x, y, z, wx, wy, wz = map(float, position)
         return x, y, z, wx, wy, wz
 

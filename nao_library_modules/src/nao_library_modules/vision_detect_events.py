@@ -10,10 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Tuple
 
-BALL, FACE, LANDMARK, CODE, MOVEMENT = "ball", "face", "landmark", "code", "movement"
+from .camera_facts import camera_number
 
-CAMERA_FRAMES = ("CameraTop", "CameraBottom")
-"""In the order of NAOqi's numbers."""
+BALL, FACE, LANDMARK, CODE, MOVEMENT = "ball", "face", "landmark", "code", "movement"
 
 Pose = Tuple[float, float, float, float, float, float]
 """NAOqi's Position6D: m and rad about X, Y, Z, Z turned about last."""
@@ -176,10 +175,10 @@ def _read(value: Any, what: str, read: Any) -> Look:
 
 
 def _camera(camera: Any) -> int:
-    index = CAMERA_FRAMES.index(camera) if isinstance(camera, str) else int(camera)
-    if not 0 <= index < len(CAMERA_FRAMES):
+    number = camera_number(camera)
+    if number is None:
         raise ValueError(f"no camera {camera!r}")
-    return index
+    return number
 
 
 def _pose(values: Sequence[float]) -> Pose:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
+from abc import ABC, abstractmethod
 from typing import Any
 
 from nao_library_msgs.msg import VisionThread
@@ -31,7 +32,7 @@ LAST_FRAME_LIMIT = 1.0
 """s to wait at a stop for frames that are on their way; a camera that is later than that has another clock."""
 
 
-class FrameThread:
+class FrameThread(ABC):
     """Takes the frames of a topic in a thread of its own, from its start to its stop, as often as it is started.
 
     Threads: `_arrived` is called by the one that receives messages, `_handle` and `_end` by the worker. The rest is for
@@ -70,6 +71,7 @@ class FrameThread:
 
     # To be filled in
 
+    @abstractmethod
     def _begin(self) -> None:
         """Open what frames go to. Called before the first one can come.
 
@@ -77,6 +79,7 @@ class FrameThread:
             NaoError: If that cannot be; then the thread does not start.
         """
 
+    @abstractmethod
     def _handle(self, frame: Frame) -> tuple[int, int] | None:
         """Pass a frame on.
 
@@ -87,8 +90,8 @@ class FrameThread:
             BadPicture: If it cannot be read; the next one may.
             NaoError: If there can be no further one.
         """
-        raise NotImplementedError
 
+    @abstractmethod
     def _end(self) -> None:
         """Close what frames went to.
 
@@ -96,6 +99,7 @@ class FrameThread:
             NaoError: If that fails.
         """
 
+    @abstractmethod
     def _fill(self, report: VisionThread) -> None:
         """Add what only this kind has to tell."""
 

@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 from itertools import cycle
 from typing import Tuple
 
+from .camera_facts import CAMERA_NAMES
 from .gaze import load_head, look_at
 from .motion_facts import JointLimits
-from .vision_detect_events import BALL, CAMERA_FRAMES, FACE
+from .vision_detect_events import BALL, FACE
 from .vision_detect_space import Sighting
 
 Angles = Tuple[float, float]
@@ -36,7 +37,7 @@ def aim(sighting: Sighting) -> Angles:
         ValueError: If it is in the head.
     """
     head = load_head()
-    return look_at(head, head.cameras[CAMERA_FRAMES[sighting.camera]], sighting.in_torso)
+    return look_at(head, head.cameras[CAMERA_NAMES[sighting.camera]], sighting.in_torso)
 
 
 def within(joint: JointLimits, angle: float) -> float:

@@ -1,0 +1,45 @@
+"""What becomes of a chain when one of its functions fails: the field `on_error` of function messages."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from .errors import BadGoal
+
+ALLOWED = 'empty or "stop", "skip", "retry N" or "retry N skip" with N from 1 to 100'
+_RETRY = re.compile(r"retry +(\d{1,3})(?: +(stop|skip))?")
+MOST_RETRIES = 100
+
+
+@dataclass(frozen=True)
+class FailurePolicy:
+    """How often a function that fails is tried again, and whether the chain goes on without it afterwards.
+
+    Attributes:
+        retries: How often it is tried again.
+        skip: True: the chain goes on with the next function; False: the goal is aborted.
+    """
+
+    retries: int = 0
+    skip: bool = False
+
+    @classmethod
+    def of(cls, text: str) -> FailurePolicy:
+        """The policy that a text names.
+
+        Args:
+            text: See `ALLOWED`.
+
+        Raises:
+            BadGoal: If it names none.
+        """
+        words = text.strip().lower()
+        if words in ("", "stop"):
+            return cls()
+        if words == "skip":
+            return cls(skip=True)
+        match = _RETRY.fullmatch(words)
+        if match is None or not 1 <= int(match[1]) <= MOST_RETRIES:
+            raise BadGoal("on_error", text, ALLOWED)
+        return cls(int(match[1]), match[2] == "skip")

@@ -1,0 +1,75 @@
+"""A robot that has never been reached yet: what is asked of it right after the start waits until it is there."""
+
+from __future__ import annotations
+
+import logging
+import math
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from .interrupt import Interrupt
+
+log = logging.getLogger(__name__)
+
+PATIENCE = 30.0
+"""s from the start of a module: a robot or simulator that is launched together with it is there by then."""
+
+
+def require_patience(value: Any) -> float:
+    """A time to wait from a parameter, s.
+
+    Raises:
+        NaoError: If it is none.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value < math.inf:
+        raise NaoError(f"~patience {value!r}: it is a time of 0 s or more")
+    return float(value)
+
+
+class FirstContact:
+    """Waits for a robot that has never been reached; for one that went away nobody waits.
+
+    Any thread may wait. Time is that of the computer, for simulated time may not have begun.
+
+    Args:
+        robot: With its address and connection.
+        patience: s from now on for which goals wait.
+    """
+
+    def __init__(self, robot: Any, patience: float) -> None:
+        self._robot = robot
+        self._deadline = time.monotonic() + patience
+
+    @property
+    def expected(self) -> bool:
+        """Whether the robot may still come for the first time."""
+        connection = self._robot.connection
+        never = connection.generation == 0 and connection.state == "connecting"
+        return never and time.monotonic() < self._deadline
+
+    def wait(self, interrupt: Interrupt, tell: Callable[[str], None]) -> None:
+        """Wait until the robot is there, the time is over, or something interrupts.
+
+        Args:
+            interrupt: Ends the wait.
+            tell: Gets what is waited for, "the robot at ...", if that takes any time.
+        """
+        if not self.expected or interrupt.is_set():
+            return
+        awaited = f"the robot at {self._robot.address}"
+        limit = self._deadline - time.monotonic()
+        log.info("a goal waits for %s, which was not reached yet: up to %.0f s more", awaited, limit)
+        tell(awaited)
+        changed = threading.Event()
+        listener = lambda *_: changed.set()  # noqa: E731
+        self._robot.connection.add_listener(listener)
+        try:
+            if self.expected:  # it may have come before the listener
+                with interrupt.waking(changed.set):
+                    changed.wait(limit)
+        finally:
+            self._robot.connection.remove_listener(listener)

@@ -1,0 +1,60 @@
+"""A goal of actionlib's client, watched from its acknowledgement to its end, and cancelled so that its end is not lost.
+
+That client has two traps. It forgets that a goal is over when it cancels it. And it takes a goal for lost that it
+cancels before the server has told of it, for the next status message may have been made before the goal came.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from actionlib import CommState
+
+ACKNOWLEDGEMENT_LIMIT = 5.0
+"""s that a server may take to tell of a goal before it is cancelled all the same."""
+
+
+class GoalWatch:
+    """Sees what becomes of one goal.
+
+    Attributes:
+        acknowledged: Set as soon as the server has told of the goal.
+        over: Set by its end.
+
+    Args:
+        on_end: Called at the end, in actionlib's thread and under the client's lock: it has to be quick.
+    """
+
+    def __init__(self, on_end: Callable[[], None] | None = None) -> None:
+        self.acknowledged = threading.Event()
+        self.over = threading.Event()
+        self._on_end = on_end
+
+    def look(self, handle: Any) -> None:
+        """To be called at each transition: the `transition_cb` of `send_goal`."""
+        state = handle.get_comm_state()
+        if state != CommState.WAITING_FOR_GOAL_ACK:
+            self.acknowledged.set()
+        if state == CommState.DONE:
+            self.over.set()
+            if self._on_end is not None:
+                self._on_end()
+
+    def cancel(self, handle: Any, limit: float = ACKNOWLEDGEMENT_LIMIT) -> bool:
+        """Cancel the goal, unless it is over.
+
+        Args:
+            handle: The client's handle of the goal.
+            limit: s of this computer to wait until the server has told of the goal.
+
+        Returns:
+            Whether it was cancelled; False: it was over before.
+        """
+        self.acknowledged.wait(limit)
+        with handle.comm_state_machine.mutex:  # nothing comes in between
+            if self.over.is_set():
+                return False
+            handle.cancel()
+            return True
