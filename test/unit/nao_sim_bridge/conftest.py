@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import pytest
 
+from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim.simulation import Scene, Simulation
 
 BODY = range(26)
@@ -51,6 +53,20 @@ class Bench:
     def watch(self, seconds):
         """The snapshots of the next `seconds`."""
         return [self.simulation.tick() for _ in range(round(seconds / self.simulation.settings.tick_s))]
+
+
+@pytest.fixture
+def change_file(tmp_path, monkeypatch):
+    """Has a module read its FILE of the package after a change of the content."""
+
+    def change_for(module, change):
+        content = json.loads(config_file(module.FILE).read_text())
+        change(content)
+        path = tmp_path / module.FILE
+        path.write_text(json.dumps(content))
+        monkeypatch.setattr(module, "config_file", lambda name: path)
+
+    return change_for
 
 
 @pytest.fixture(scope="session")

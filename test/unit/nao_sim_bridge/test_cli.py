@@ -23,9 +23,10 @@ def test_the_defaults_are_a_robot_on_the_loopback_in_real_time():
 
 def test_every_option_reaches_the_server():
     network, scene = "--port 0 --listen 0.0.0.0", "--world my.yaml --seed 7 --robot V5 --posture Stand"
-    trouble = "--friction 0.4 --payload 0.5 --sensor-noise 1 --sensor-delay 0.03"
+    trouble = "--friction 0.4 --payload 0.5 --sensor-noise 1 --sensor-delay 0.03 --charger"
     chosen = options(*f"{network} {scene} {trouble} --speed 2.5 --gui --paused --record-dir my/files".split())
-    expected = Scene("my.yaml", "V5", "Stand", 7, friction=0.4, payload=0.5, sensor_noise=1.0, sensor_delay=0.03)
+    far_from_ideal = dict(friction=0.4, payload=0.5, sensor_noise=1.0, sensor_delay=0.03)
+    expected = Scene("my.yaml", "V5", "Stand", 7, charger=True, **far_from_ideal)
     assert chosen == ServerOptions(expected, "0.0.0.0", 0, 2.5, True, True, Path("my/files"))
 
 
@@ -33,6 +34,14 @@ def test_what_is_played_can_go_to_a_file_and_to_the_sound_card():
     assert (options().sound_file, options().sound_card) == ("", False)
     chosen = options("--sound-file", "all.wav", "--sound-card")
     assert (chosen.sound_file, chosen.sound_card) == ("all.wav", True)
+
+
+def test_there_can_be_several_robots_at_places():
+    assert (options().robots, options().places) == (1, ())
+    chosen = options("--robots", "3", "--places=-1,0,0; 1,0,180; 0,1,-90")
+    assert chosen.robots == 3
+    assert [place.x for place in chosen.places] == [-1.0, 1.0, 0.0]
+    assert options("--places", "").places == ()
 
 
 def test_what_draws_can_be_chosen():
@@ -64,6 +73,9 @@ def test_as_fast_as_possible_has_several_spellings(text):
         (["--payload", "-1"], "'-1' is not an amount"),
         (["--sensor-noise", "inf"], "'inf' is not an amount"),
         (["--sensor-delay", "nan"], "'nan' is not an amount"),
+        (["--robots", "0"], "'0' is not a number of robots: 1 to 8"),
+        (["--robots", "2.5"], "'2.5' is not a number of robots"),
+        (["--places", "here"], "is 'here'"),
         (["--renderer", "vulkan"], "invalid choice: 'vulkan' (choose from"),
         (["--seed", "x"], "invalid int value: 'x'"),
         (["--wrold", "empty"], "unrecognized arguments: --wrold"),
@@ -81,7 +93,7 @@ def test_help_names_every_option_and_its_default(capsys):
         parse("nao_sim", ["--help"])
     assert ended.value.code == 0
     text = capsys.readouterr().out
-    scene = "world seed robot posture friction payload sensor-noise sensor-delay"
+    scene = "world seed robot posture friction payload sensor-noise sensor-delay charger"
     for option in f"port listen speed gui {scene} record-dir paused verbose".split():
         assert f"--{option}" in text
     assert "(default: 9559)" in text and "empty" in text

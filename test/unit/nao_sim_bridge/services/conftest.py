@@ -113,6 +113,34 @@ def robot(shared_robot):
 
 
 @pytest.fixture
+def told(robot):
+    """Values of an event that an action leads to, each with the time, s after the begin of the action."""
+
+    def of(event, action):
+        values, begin = [], robot.now.time
+        robot.server.memory.listen(event, lambda value: values.append((value, robot.now.time - begin)))
+        action()
+        return list(values)
+
+    return of
+
+
+@pytest.fixture
+def heard(robot):
+    """Gives a queue of the values that an event tells from then on, by the name of the event."""
+    subscribers = []  # who lets go of one hears nothing more
+
+    def of(event):
+        values = queue.Queue()
+        subscriber = robot.ALMemory.subscriber(event)
+        subscriber.signal.connect(values.put)
+        subscribers.append(subscriber)
+        return values
+
+    return of
+
+
+@pytest.fixture
 def stiff_robot(robot):
     """The robot, stiff, standing."""
     robot.ALMotion.setStiffnesses("Body", 1.0)

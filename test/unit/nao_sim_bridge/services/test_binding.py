@@ -6,7 +6,7 @@ import logging
 
 import pytest
 
-from nao_sim_bridge.services.binding import offered
+from nao_sim_bridge.services.binding import DEFECT, offered
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.tasks import Task, TaskIds
 
@@ -110,6 +110,12 @@ def test_every_overload_arrives_as_it_was_sent(proxy, motion, method, arguments)
     assert flat(arrived) == pytest.approx(flat(arguments))
 
 
+@pytest.mark.parametrize("name", [0, 1.5, True, None, [], ["HeadYaw"], {"a": 1}])
+def test_what_is_no_text_is_refused_where_only_texts_are_taken(proxy, name):
+    with pytest.raises(RuntimeError, match=r"^ALMotion::getBodyNames name is .*, allowed is a text$"):
+        proxy.getBodyNames(name)
+
+
 @pytest.mark.parametrize("arguments", [(), ("HeadYaw",), ("HeadYaw", 0.5), ("HeadYaw", 0.5, 0.1, 0.1), ("a", 1, "x")])
 def test_wrong_arguments_are_refused_with_the_candidates(proxy, motion, arguments):
     with pytest.raises(RuntimeError, match="setAngles::.*mmf"):
@@ -181,6 +187,27 @@ def test_a_defect_is_logged_with_its_place_and_answered(proxy, caplog):
         proxy.getCOM("Body", 0, True)
     assert "ALMotion::getCOM failed" in caplog.text
     assert "AttributeError" in caplog.text
+
+
+def test_what_python_says_of_its_objects_is_not_answered(proxy, motion, patience):
+    with pytest.raises(RuntimeError) as caught:
+        proxy.getMass("Head")
+    assert str(caught.value).strip() == f"ALMotion::getMass {DEFECT}"
+    future = proxy.wakeUp(_async=True)
+    proxy.ping()
+    motion.tasks[0].finish(error=TypeError("unhashable type: 'list'"))
+    with pytest.raises(RuntimeError, match=f"^ALMotion::wakeUp {DEFECT}"):
+        future.value(int(1000 * patience))
+
+
+def test_a_posted_call_is_checked_like_any_other(proxy):
+    for call, told in (
+        ((), "method is None, allowed is the name of a method"),
+        (("getLimits", 3), "name is 3, allowed is a text"),
+        (("getLimits", "a", "b"), r"was called with 2 arguments, allowed is getLimits\(string name\)"),
+    ):
+        with pytest.raises(RuntimeError, match=f"ALMotion::pCall {told}"):
+            proxy.pCall(*call)
 
 
 def test_a_failed_task_arrives_as_its_error(proxy, motion, patience):

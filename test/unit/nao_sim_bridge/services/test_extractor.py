@@ -7,6 +7,7 @@ import pytest
 from nao_sim_bridge.services.extractor import Extractor, Subscription
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.sim.errors import BadValue, SimulationError
+from nao_sim_bridge.sim.tasks import TaskIds
 
 
 @pytest.fixture
@@ -132,3 +133,31 @@ def test_who_cannot_be_served_is_not_subscribed(memory):
     with pytest.raises(SimulationError, match="no ears"):
         extractor.subscribe("one")
     assert extractor.getSubscribersInfo() == []
+
+
+def test_all_who_subscribe_before_the_start_is_done_wait_for_it(memory):
+    ids, tasks = TaskIds(), []
+
+    def start():
+        tasks.append(ids.make("start"))
+        return tasks[-1]
+
+    extractor = Extractor("ALTest", memory, start, lambda: None)
+    assert [extractor.subscribe(name) for name in ("one", "two")] == [tasks[0], tasks[0]]
+    tasks[0].finish()
+    assert extractor.subscribe("late") is None
+    for name in ("one", "two", "late"):
+        extractor.unsubscribe(name)
+    assert extractor.subscribe("again") is tasks[1] is not tasks[0]
+
+
+def test_a_start_that_fails_later_is_told_to_those_who_wait_and_they_are_subscribed(memory):
+    start = TaskIds().make("start")
+    extractor = Extractor("ALTest", memory, lambda: start, lambda: None)
+    waiting = [extractor.subscribe(name) for name in ("one", "two")]
+    start.finish(error=SimulationError("no ears"))
+    for task in waiting:
+        with pytest.raises(SimulationError, match="no ears"):
+            task.result(0.0)
+    assert extractor.subscribe("late") is None
+    assert [name for name, _, _ in extractor.getSubscribersInfo()] == ["one", "two", "late"]

@@ -48,6 +48,12 @@ def test_a_malformed_list_writes_nothing(memory, pairs):
     assert "Test/Good" not in memory.getDataListName()
 
 
+@pytest.mark.parametrize("pairs", [3, "Test/One", {"Test/One": 1}, None])
+def test_what_is_no_list_of_pairs_is_refused(memory, pairs):
+    with pytest.raises(RuntimeError, match=r"ALMemory::insertListData list is .*, allowed is \[\[key, value\], ...\]"):
+        memory.insertListData(pairs)
+
+
 @pytest.mark.parametrize("keys", ["Test/One", [1, 2]])
 def test_a_malformed_list_of_keys_is_refused(memory, keys):
     with pytest.raises(RuntimeError, match="keyList is .*, allowed is a list of strings"):

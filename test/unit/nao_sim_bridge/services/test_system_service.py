@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import os
 
 import pytest
+from PIL import Image
 
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.services.system import ALSystem
@@ -49,6 +51,23 @@ def test_a_known_time_zone_is_taken(system):
     assert system.timezone() == "Europe/Paris"
 
 
+@pytest.mark.skipif(not os.path.isfile("/usr/share/zoneinfo/Asia/Tokyo"), reason="no time zones on this machine")
+def test_the_robots_clock_is_that_of_its_time_zone(robot, system):
+    def hour_in(zone):
+        assert system.setTimezone(zone) is True
+        robot.advance(1.1)
+        return robot.ALMemory.getData("Launchpad/Hour") + robot.ALMemory.getData("Launchpad/Minute") / 60.0
+
+    before = system.timezone()
+    robot.ALAutonomousLife.setAutonomousAbilityEnabled("All", False)
+    robot.finish("ALAutonomousLife", "setState", "solitary", after=8.0)
+    try:
+        assert (hour_in("Asia/Tokyo") - hour_in("Etc/UTC")) % 24.0 == pytest.approx(9.0, abs=0.1)
+    finally:
+        robot.ALAutonomousLife.setState("disabled")
+        system.setTimezone(before)
+
+
 def test_memory_and_disk_are_those_of_the_machine(system):
     assert 0 < system.freeMemory() <= system.totalMemory()
     assert system.totalMemory() == pytest.approx(
@@ -70,3 +89,33 @@ def test_a_shutdown_ends_the_simulator():
     ended = []
     ALSystem(MemoryStore(lambda: 0.0), lambda: None, lambda: ended.append(True)).shutdown()
     assert ended == [True]
+
+
+def test_the_icon_is_a_picture_of_the_robot(system):
+    small, usual = (Image.open(io.BytesIO(bytes(system.robotIcon(*size)))) for size in ((48,), ()))
+    assert (small.format, small.size, usual.size) == ("PNG", (48, 48), (128, 128))
+    assert len(set(usual.convert("RGB").getdata())) > 50
+    with pytest.raises(RuntimeError, match="ALSystem::robotIcon size is 5, allowed is a whole number, 16 to 1024"):
+        system.robotIcon(5)
+
+
+@pytest.mark.parametrize(
+    "method, arguments, message",
+    [
+        ("changePassword", ("nao", "secret"), "needs no password"),
+        ("factoryReset", ("image", "checksum"), "no disk to flash; reboot, or NaoSimulation.reset"),
+        ("upgrade", ("image", "checksum"), "it offers what NAOqi 2.8"),
+    ],
+)
+def test_what_would_flash_a_robot_is_refused_and_says_what_to_do(system, method, arguments, message):
+    with pytest.raises(RuntimeError, match=f"ALSystem::{method} .*{message}"):
+        system.call(method, *arguments)
+
+
+def test_an_icon_cannot_be_set():
+    with pytest.raises(RuntimeError, match="its picture"):
+        ALSystem(MemoryStore(lambda: 0.0), lambda: None, lambda: None).setRobotIcon(object())
+
+
+def test_there_are_no_applications_to_back_up(system):
+    assert list(system.appBackupInfo()) == []

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import math
 
 import pytest
 
-from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim import balance as module
 from nao_sim_bridge.sim.balance import FILE, Balance, load_balance
 from nao_sim_bridge.sim.capture_point import BodyMotion
@@ -49,15 +47,11 @@ def law():
 
 
 @pytest.fixture
-def load_changed(tmp_path, monkeypatch):
+def load_changed(change_file):
     """Reads the file of the package after a change of its content."""
 
     def load(change):
-        content = json.loads(config_file(FILE).read_text())
-        change(content)
-        path = tmp_path / FILE
-        path.write_text(json.dumps(content))
-        monkeypatch.setattr(module, "config_file", lambda name: path)
+        change_file(module, change)
         return load_balance(MODEL)
 
     return load

@@ -7,6 +7,7 @@ import random
 import pytest
 
 from nao_sim_bridge.sim import led_animations
+from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.leds_layout import load_leds
 
 LEDS = load_leds()
@@ -72,6 +73,19 @@ def test_rotating_eyes_light_one_segment_after_the_other_on_both_sides():
         assert order == [[name] for name in names] * 2
     red, green, blue = LEDS.lamps_of("eye", "Left")[0].devices
     assert [frames[0].values[i] for i in (red, green, blue)] == [1.0, 0.0, 0.5]
+
+
+@pytest.mark.parametrize(
+    "animation",
+    [
+        lambda: led_animations.random_eyes(LEDS, 1e300, random.Random(1)),
+        lambda: led_animations.rasta(LEDS, 1e6),
+        lambda: led_animations.rotate_eyes(LEDS, (1.0, 0.0, 0.0), 1e-6, 1.0),
+    ],
+)
+def test_an_animation_of_too_many_colours_is_refused(animation):
+    with pytest.raises(BadValue, match="duration is .*, allowed is .* s at most"):
+        animation()
 
 
 @pytest.mark.parametrize("degrees, number", [(18, 1), (90, 3), (198, 6), (270, 8), (-90, 8), (630, 8)])

@@ -82,7 +82,7 @@ def test_standing_warms_the_motors_and_empties_the_battery_a_little(standing):
     _, settled, end = standing
     assert max(end.temperatures) > max(settled.temperatures) >= 27.0
     assert max(end.temperatures) < 40.0
-    assert 0.95 < end.battery_charge < settled.battery_charge <= 1.0
+    assert 0.95 < end.battery.charge < settled.battery.charge <= 1.0
 
 
 def test_nothing_but_the_soles_touches_anything(standing):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 TOOLS = Path(__file__).resolve().parents[4] / "nao_sim_bridge" / "tools"
-NAMES = ("camera_stage", "check_detection", "detection_tally")
+NAMES = ("camera_stage", "check_detection", "detection_tally", "measurement")
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Loudspeakers on a bench: simulated time without a robot, passed on by hand."""
+"""Loudspeakers on a bench: simulated time without a robot, passed on by hand. And those of a simulated robot."""
 
 from __future__ import annotations
 
@@ -64,3 +64,22 @@ def noise():
     return lambda seconds, channels=1: Sound(
         random.uniform(-0.5, 0.5, (round(seconds * RATE), channels)).astype(np.float32), RATE
     )
+
+
+@pytest.fixture
+def device(robot):
+    device = robot.ALAudioDevice
+    device.setOutputVolume(100)
+    device.muteAudioOut(False)
+    device.openAudioOutputs()
+    device.openAudioInputs()
+    device.setParameter("outputSampleRate", 48000)
+    yield device
+    device.disableEnergyComputation()
+    device.setFileAsInput("")
+    device.flushAudioOutputs()
+
+
+@pytest.fixture
+def sound(robot):
+    return robot.server.simulation.sound

@@ -14,7 +14,7 @@ import qi
 
 from nao_sim_bridge.broker import Broker
 from nao_sim_bridge.services.audio import microphone_clients
-from nao_sim_bridge.services.audio.microphone_clients import WAITING, MicrophoneClients
+from nao_sim_bridge.services.audio.microphone_clients import HELD_UP, WAITING, MicrophoneClients
 from nao_sim_bridge.services.audio.microphone_formats import MicrophoneFormat
 from nao_sim_bridge.services.errors import NaoqiError
 from naoqi import ALBroker, ALModule
@@ -135,6 +135,22 @@ def test_a_module_gets_blocks_in_order_with_their_times(clients, ears, module_of
         assert (channels, frames) == (4, 100)
         assert time == [2, 170000 * number]
         np.testing.assert_array_equal(np.frombuffer(buffer, "<i2"), np.full(400, number))
+
+
+def test_a_module_may_get_two_blocks_at_once(clients, ears, module_of, patience):
+    module = Module()
+    module_of("Patient", module)
+    clients.subscribe("Patient")
+    clients.set_at_once(2)
+    for number in range(5):
+        ears.deliver("Patient", numbered(number), 2.0 + 0.25 * number)
+    for number, time in ((0, [2, 0]), (2, [2, 500000])):
+        channels, frames, begun, buffer = module.heard.get(timeout=patience)
+        assert (channels, frames, begun) == (4, 200, time)
+        assert np.frombuffer(buffer, "<i2").tolist() == [number] * 400 + [number + 1] * 400
+    clients.set_at_once(1)
+    ears.deliver("Patient", numbered(5), 3.25)
+    assert module.heard.get(timeout=patience)[1:3] == (200, [3, 0]), "what was begun is not lost"
 
 
 def test_a_module_of_the_naoqi_package_gets_bytes(clients, ears, broker, patience):
@@ -281,3 +297,51 @@ def test_closed_microphones_are_silent_until_they_are_opened(clients, ears, modu
     clients.set_closed(False)
     ears.deliver("Waits", numbered(3))
     assert module.heard.get(timeout=patience)[1] == 100
+
+
+def test_a_block_of_a_format_that_counts_no_more_is_dropped(clients, ears, module_of, patience):
+    module = Module()
+    module_of("Changes", module)
+    clients.subscribe("Changes")
+    clients.set_at_once(2)
+    ears.deliver("Changes", numbered(1))
+    late = ears.listening["Changes"][0]  # under way while the format changes
+    clients.prefer("Changes", MicrophoneFormat(16000, 3))
+    late(Block(1.5, numbered(2)))
+    for number in range(3, 7):
+        ears.deliver("Changes", numbered(number, channels=1))
+    for number in (3, 5):
+        channels, frames, _, buffer = module.heard.get(timeout=patience)
+        assert (channels, frames) == (1, 200)
+        assert np.frombuffer(buffer, "<i2").tolist() == [number] * 100 + [number + 1] * 100
+
+
+def test_blocks_that_were_under_way_when_the_microphones_closed_are_dropped(clients, ears, module_of, patience):
+    module = Module()
+    module.may_return.clear()
+    module_of("Shuts", module)
+    clients.subscribe("Shuts")
+    ears.deliver("Shuts", numbered(0))
+    module.heard.get(timeout=patience)  # it is busy with this one from now on
+    late = ears.listening["Shuts"][0]
+    clients.set_closed(True)
+    for _ in range(HELD_UP + 1):
+        late(Block(1.5, numbered(1)))
+    assert not clients.behind()
+    clients.set_closed(False)
+    ears.deliver("Shuts", numbered(2))
+    module.may_return.set()
+    assert np.frombuffer(module.heard.get(timeout=patience)[3], "<i2")[0] == 2
+
+
+def test_blocks_that_do_not_fit_together_make_nobody_deaf(clients, ears, module_of, patience):
+    module = Module()
+    module_of("Odd", module)
+    clients.subscribe("Odd")
+    clients.set_at_once(2)
+    ears.deliver("Odd", numbered(1))
+    with pytest.raises(ValueError):
+        ears.deliver("Odd", numbered(2, channels=1))
+    for number in (3, 4):
+        ears.deliver("Odd", numbered(number))
+    assert np.frombuffer(module.heard.get(timeout=patience)[3], "<i2").tolist() == [3] * 400 + [4] * 400

@@ -42,6 +42,12 @@ def test_what_is_no_name_is_refused(names):
         joint_names(names, MODEL)
 
 
+@pytest.mark.parametrize("names", [[["HeadYaw"]], ["HeadYaw", {}], [3]])
+def test_what_is_no_name_in_a_list_is_refused(names):
+    with pytest.raises(BadValue, match="names is .*, allowed is the name of a joint or of a chain"):
+        joint_names(names, MODEL)
+
+
 def test_an_unknown_name_offers_the_closest():
     with pytest.raises(UnknownName, match="unknown joint or chain 'HeadYow': did you mean 'HeadYaw'"):
         joint_names(["HeadPitch", "HeadYow"], MODEL)

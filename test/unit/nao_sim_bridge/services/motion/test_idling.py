@@ -44,6 +44,7 @@ def test_the_breath_is_described_by_two_numbers(robot):
         ([["Bpm", 50.0]], "Bpm is 50.0, allowed is 5 to 30"),
         ([["Amplitude", -1.0]], "Amplitude is -1.0"),
         ([["Bmp", 10.0]], "did you mean 'Bpm'"),
+        ([[["Bpm"], 10.0]], "unknown breath parameter"),
         (["Bpm", 10.0], "pConfig"),
     ],
 )

@@ -31,7 +31,7 @@ def test_a_hot_knee_puts_the_robot_to_rest_and_keeps_it_there(stiff_robot):
     assert motion.getStiffnesses("Body") == [0.0] * 26
     assert not motion.robotIsWakeUp()
     assert memory.getData("ALMotion/Protection/DisabledDevicesChanged") == [["Body", True]]
-    assert memory.getData("ALMotion/Protection/DisabledFeaturesChanged") == [["LegsStiffness", True]]
+    assert memory.getData("ALMotion/Protection/DisabledFeaturesChanged") == [["LegsStiffness", True], ["Move", True]]
     with pytest.raises(RuntimeError, match="too hot"):
         motion.wakeUp()
     stiff_robot.server.runner.call(lambda: warm("LKneePitch", 40.0))

@@ -22,6 +22,7 @@ def motion(walker):
         ("moveTo", ([[0.1, 0.0]],), "controlPoint is .*, allowed is a list of at least one"),
         ("moveTo", (0.1, 0.0, 0.0, [["MaxStepX", 0.2]]), "MaxStepX is 0.2, allowed is 0.001 to 0.08"),
         ("move", (0.1, 0.0, math.nan), "theta is nan, allowed is a finite number"),
+        ("move", (1e300, 0.0, 0.0), r"x is 1e\+300, allowed is -1e\+06 to 1e\+06"),
         ("move", (0.1, 0.0, 0.0, [["MaxStpX", 0.04]]), "unknown gait parameter 'MaxStpX': did you mean 'MaxStepX'"),
         ("move", (0.1, 0.0, 0.0, [["MinStepX", -0.02]]), "MinStepX is -0.02, allowed is nothing"),
         ("move", (0.1, 0.0, 0.0, ["MaxStepX", 0.04]), "moveConfig is .*, allowed is pairs"),

@@ -169,7 +169,7 @@ def test_a_paused_module_sees_nobody(stiff_robot, faces, show, seen):
     "method, arguments, message",
     [
         ("learnFace", ("  ",), "name is '  ', allowed is the name of somebody"),
-        ("learnFace", (5,), "name is 5, allowed is a text"),
+        ("learnFace", (5,), "pId is 5, allowed is a text"),
         ("learnFace", ("x" * 201,), "allowed is 200 characters at most"),
         ("setRecognitionConfidenceThreshold", (1.5,), "threshold is 1.5, allowed is 0 to 1"),
         ("importOldDatabase", ("drop",), "policy is 'drop', allowed is overwrite or merge or keep"),

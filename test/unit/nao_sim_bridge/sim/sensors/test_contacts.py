@@ -8,7 +8,7 @@ import pytest
 
 from nao_sim_bridge.sim.readings import Contact, Pose
 from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
-from nao_sim_bridge.sim.sensors.contacts import in_link_frames
+from nao_sim_bridge.sim.sensors.contacts import in_link_frames, not_from_below
 
 UPRIGHT = Pose((1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 1.0))
 TURNED = Pose((0.0, 0.0, 1.0), from_roll_pitch_yaw(0.0, 0.0, math.pi / 2))
@@ -40,3 +40,11 @@ def test_contacts_are_sorted_by_link():
     assert [press.force for press in presses[4]] == [0.0, 2.0]
     assert [press.force for press in presses[-1]] == [1.0]
     assert in_link_frames([], {}) == {}
+
+
+@pytest.mark.parametrize("roll, kept", [(0.0, False), (0.9, False), (1.2, True), (math.pi, True)])
+def test_what_pushes_along_the_z_axis_of_a_link_comes_from_below(roll, kept):
+    """The floor under a foot that is tilted by `roll`, rad; at a right angle it is at its side."""
+    pose = Pose((0.0, 0.0, 0.1), from_roll_pitch_yaw(roll, 0.0, 0.3))
+    contact = Contact(3, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 5.0)
+    assert not_from_below([contact], {3: pose}) == ([contact] if kept else [])

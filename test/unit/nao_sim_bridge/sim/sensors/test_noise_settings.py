@@ -13,15 +13,11 @@ from nao_sim_bridge.sim.sensors.noise_settings import FILE, load_noise
 
 
 @pytest.fixture
-def load_changed(tmp_path, monkeypatch):
+def load_changed(change_file):
     """Reads the file of the package after a change of its content."""
 
     def load(change):
-        content = json.loads(config_file(FILE).read_text())
-        change(content)
-        path = tmp_path / FILE
-        path.write_text(json.dumps(content))
-        monkeypatch.setattr(module, "config_file", lambda name: path)
+        change_file(module, change)
         return load_noise()
 
     return load

@@ -9,6 +9,7 @@ import pytest
 
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.sound.air import Air
 from nao_sim_bridge.sim.sound.samples import RATE
 from nao_sim_bridge.sim.sound.settings import load_sound_settings
 from nao_sim_bridge.sim.sound.sound_world import SoundWorld
@@ -32,7 +33,8 @@ class Room:
         self.model = load_model()
         settings.setdefault("background_db", -60.0)
         self.ids = TaskIds()
-        self.world = SoundWorld(self.model, TICK, self.ids, seed, settings=replace(load_sound_settings(), **settings))
+        self.air = Air(self.ids, TICK, replace(load_sound_settings(), **settings))
+        self.world = SoundWorld(self.model, self.air, seed)
         self.torso = Pose((0.0, 0.0, 0.0), UPRIGHT)
         self.yaw = self.pitch = 0.0
         self.moves = None
@@ -51,7 +53,9 @@ class Room:
             self._tick += 1
             if self.moves is not None:
                 self.moves(self._tick * TICK)
-            self.world.tick(self.snapshot)
+            self.world.record(self.snapshot)
+            self.air.tick(self._tick)
+            self.world.hear()
 
     def frames(self, from_s, to_s):
         """(4, frames) heard."""

@@ -19,6 +19,22 @@ def loud(room):
     return one
 
 
+@pytest.fixture
+def slow_listener(loud, patience):
+    """Somebody who got his first block 0.2 s after the begin, and waits with it for an event; event, and blocks."""
+    entered, go_on, blocks = threading.Event(), threading.Event(), []
+
+    def slow(block):
+        entered.set()
+        assert go_on.wait(patience)
+        blocks.append(block)
+
+    loud.ears.listen("slow", slow)
+    loud.run(0.2)
+    assert entered.wait(patience)
+    return go_on, blocks
+
+
 def test_blocks_follow_each_other_and_are_what_the_microphones_heard(loud):
     blocks = []
     listener = loud.ears.listen("test", blocks.append)
@@ -124,17 +140,8 @@ def test_a_listener_that_fails_is_logged_once_and_goes_on(loud, caplog):
     assert caplog.text.count("ValueError: deaf") == 1 and "bad one" in caplog.text
 
 
-def test_ears_lag_behind_a_slow_listener_and_ask_time_to_wait(loud, patience):
-    entered, go_on, blocks = threading.Event(), threading.Event(), []
-
-    def slow(block):
-        entered.set()
-        assert go_on.wait(patience)
-        blocks.append(block)
-
-    loud.ears.listen("slow", slow)
-    loud.run(0.2)
-    assert entered.wait(patience)
+def test_ears_lag_behind_a_slow_listener_and_ask_time_to_wait(loud, slow_listener, patience):
+    go_on, blocks = slow_listener
     assert not loud.ears.holds()
     loud.run(0.3)
     assert loud.ears.lag == pytest.approx(0.34) and loud.ears.holds()
@@ -184,17 +191,8 @@ def test_wrong_wishes_are_refused(loud):
     assert not loud.ears.listening
 
 
-def test_somebody_who_never_hears_leaves_a_gap_and_not_an_error(loud, patience, caplog):
-    entered, go_on, blocks = threading.Event(), threading.Event(), []
-
-    def slow(block):
-        entered.set()
-        assert go_on.wait(patience)
-        blocks.append(block)
-
-    loud.ears.listen("slow", slow)
-    loud.run(0.2)
-    assert entered.wait(patience)
+def test_somebody_who_never_hears_leaves_a_gap_and_not_an_error(loud, slow_listener, patience, caplog):
+    go_on, blocks = slow_listener
     loud.run(70.0)
     go_on.set()
     loud.ears.catch_up(patience)

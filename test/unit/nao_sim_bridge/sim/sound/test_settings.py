@@ -1,25 +1,19 @@
 from __future__ import annotations
 
-import json
-
 import pytest
 
-from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.sound import settings
-from nao_sim_bridge.sim.sound.settings import FILE, load_sound_settings
+from nao_sim_bridge.sim.sound.settings import load_sound_settings
 
 
 @pytest.fixture
-def changed(tmp_path, monkeypatch):
+def changed(change_file):
     """Reads the settings after a change of the file's content."""
 
     def read(change):
-        content = json.loads(config_file(FILE).read_text())
-        change(content)
-        (tmp_path / FILE).write_text(json.dumps(content))
-        monkeypatch.setattr(settings, "config_file", lambda name: tmp_path / name)
+        change_file(settings, change)
         return load_sound_settings.__wrapped__()
 
     return read

@@ -32,7 +32,7 @@ def test_a_reset_ends_what_plays_and_time_goes_on(simulation):
     playing = sound.loudspeakers.play(sine(500.0, 5.0), "say")
     source = sound.sources.add(SoundSource("radio", (1.0, 0.0, 0.5), sine(500.0, 5.0)))
     calls = []
-    sound.after_reset.append(lambda: calls.append(sound.sources.names()))
+    simulation.after_reset.append(lambda: calls.append(sound.sources.names()))
     simulation.run(0.5)
     simulation.reset()
     assert playing.task.killed and source.task.killed and calls == [[]]

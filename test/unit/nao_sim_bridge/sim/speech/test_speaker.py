@@ -31,7 +31,7 @@ class Mouth:
         self.events = []
         self.speaker.listeners.append(lambda event: self.events.append((simulation.time, event)))
         self._released = threading.Event()
-        simulation.wake = self._released.set
+        simulation.shared.wake = self._released.set
 
     def say(self, text, style=NAO):
         return self.speaker.say(self.studio.read(text, style), style)

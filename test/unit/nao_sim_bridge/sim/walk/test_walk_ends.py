@@ -37,6 +37,16 @@ def test_stopped_at_any_moment_it_stands_still_on_both_feet(walker, moment):
     assert walker.failures == []
 
 
+@pytest.mark.parametrize("moment", [2.0, 2.15, 2.3, 2.45, 2.6])
+def test_stopped_on_its_way_straight_on_its_weight_comes_to_lie_in_the_middle(walker, moment):
+    walker.move_to((2.0, 0.0, 0.0))
+    walker.run(moment)
+    walker.until(walker.locomotion.stop())
+    walker.run(0.5)
+    left, right = walker.now.foot_loads
+    assert left / (left + right) == pytest.approx(0.5, abs=0.05)
+
+
 def test_no_velocity_at_all_ends_a_walk(walker):
     walker.move(0.06)
     walker.run(2.0)
