@@ -60,7 +60,7 @@ LAYERS = (
         "modules",
         "nao_library_modules/src/nao_library_modules",
         frozenset({"naoqi", "errors", "definitions", "ros"}),
-        ("driver", "process_modules"),
+        ("behaviors", "command_line", "driver", "process_modules"),
     ),
     Layer(
         "driver",
@@ -73,6 +73,18 @@ LAYERS = (
         "nao_library_modules/src/nao_library_modules/process_modules",
         frozenset({"errors", "definitions", "ros", "modules"}),
     ),
+    # A module that is a client of the others as well: it runs plans.
+    Layer(
+        "behaviors",
+        "nao_library_modules/src/nao_library_modules/behaviors",
+        frozenset({"errors", "definitions", "ros", "modules", "process_modules"}),
+    ),
+    # A client of everything, which the rest of the library knows nothing of.
+    Layer(
+        "command_line",
+        "nao_library_modules/src/nao_library_modules/command_line",
+        frozenset({"naoqi", "errors", "definitions", "ros", "modules"}),
+    ),
     Layer("sim", "nao_sim_bridge/src/nao_sim_bridge/sim", frozenset({"pybullet", "sim paths"})),
     Layer("services", "nao_sim_bridge/src/nao_sim_bridge/services", frozenset({"sim", "qi", "sim paths"})),
     Layer(
@@ -82,8 +94,19 @@ LAYERS = (
         ("sim", "services"),
     ),
 )
-# Files of the server layer that ROS may be in; the others run without.
-ROS_SIDE = {"ros_node.py", "ros_side.py", "ros_sounds.py", "ros_things.py", "testing.py"}
+# Files and folders of the server layer that ROS may be in; the others run without.
+ROS_SIDE = {
+    "ros_node.py",
+    "ros_side.py",
+    "ros_sounds.py",
+    "ros_things.py",
+    "testing",
+    "ros_robot.py",
+    "ros_hand.py",
+    "ros_film.py",
+    "ros_health.py",
+    "ros_success.py",
+}
 
 
 def files_of(layer: Layer) -> list[Path]:
@@ -122,7 +145,7 @@ def layer_of(module: str) -> str | None:
         return own.get(part, "server")
     if root == "nao_library_modules":
         part = inner[0] if inner else ""
-        return part if part in ("driver", "process_modules") else "modules"
+        return part if part in ("behaviors", "command_line", "driver", "process_modules") else "modules"
     return root if root in ("naoqi", "qi", "pybullet") else None
 
 
@@ -142,7 +165,13 @@ def test_imports_point_one_way(layer):
 
 def test_only_the_ros_side_of_the_simulator_knows_ros():
     (server,) = [layer for layer in LAYERS if layer.name == "server"]
-    users = {path.name for path in files_of(server) for module in imported(path) if layer_of(module) == "ros"}
+    folder = ROOT / server.folder
+    users = {
+        path.relative_to(folder).parts[0]
+        for path in files_of(server)
+        for module in imported(path)
+        if layer_of(module) == "ros"
+    }
     assert users, "nobody uses ROS: the rule checks nothing"
     assert users <= ROS_SIDE
 

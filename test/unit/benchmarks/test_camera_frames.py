@@ -2,20 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
-
 import numpy as np
 import pytest
 from nao_benchmarks.errors import BenchmarkError
-from nao_benchmarks.places import PROGRAMS
-
-
-@pytest.fixture
-def program():
-    spec = importlib.util.spec_from_file_location("camera_frames", PROGRAMS / "camera_frames.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def test_both_kinds_of_frames_are_timed_equally_often(program):

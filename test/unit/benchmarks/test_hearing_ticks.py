@@ -2,19 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.util
-
 import pytest
 from nao_benchmarks.errors import BenchmarkError
-from nao_benchmarks.places import PROGRAMS
-
-
-@pytest.fixture
-def program():
-    spec = importlib.util.spec_from_file_location("hearing_ticks", PROGRAMS / "hearing_ticks.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def test_both_robots_are_timed_equally_often(program):

@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 
 import pytest
 from nao_benchmarks.errors import BenchmarkError
-from nao_benchmarks.places import PROGRAMS
 
 from nao_sim_bridge.sim.simulation import Scene, Simulation
-
-
-@pytest.fixture(scope="module")
-def program():
-    spec = importlib.util.spec_from_file_location("standing_ticks", PROGRAMS / "standing_ticks.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture

@@ -2,20 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
-
 import pybullet
 import pytest
 from nao_benchmarks.errors import BenchmarkError
-from nao_benchmarks.places import PROGRAMS
-
-
-@pytest.fixture(scope="module")
-def program():
-    spec = importlib.util.spec_from_file_location("walking_ticks", PROGRAMS / "walking_ticks.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 
 import pytest
+from fake_motion import FakeMotion, FakePostures
 from fake_robot import FakeCall, FakeRobot
 from fake_server import FakeEdge
 
@@ -22,6 +24,15 @@ def edge():
 @pytest.fixture
 def make_call():
     return FakeCall
+
+
+@pytest.fixture
+def no_ring_collector():
+    """Objects that keep each other in a ring stay: only what nobody refers to any more goes."""
+    gc.collect()
+    gc.disable()
+    yield
+    gc.enable()
 
 
 @pytest.fixture
@@ -45,7 +56,47 @@ def in_thread():
 
 
 @pytest.fixture
+def fake(robot, make_call):
+    """ALMotion as NaoMotion finds it; postures are there as well."""
+    fake = FakeMotion(make_call)
+    robot.add("ALMotion", fake)
+    robot.add("ALRobotPosture", FakePostures())
+    return fake
+
+
+@pytest.fixture
+def motion(robot, edge, fake, tmp_path):
+    from nao_library_modules.motion import NaoMotion
+
+    return NaoMotion("10.0.0.7", 9559, robot=robot, edge=edge, motion_dir=tmp_path)
+
+
+@pytest.fixture
 def lights(robot, edge):
     from nao_library_modules.lights import NaoLights
 
     return NaoLights("10.0.0.7", 9559, robot=robot, edge=edge)
+
+
+@pytest.fixture
+def succeed(play):
+    """Plays functions that succeed, and gives the result. `play`, of the module under test, gives the server."""
+
+    def run(*functions):
+        server = play(*functions)
+        assert server.end == "succeeded", server.text
+        return server.result
+
+    return run
+
+
+@pytest.fixture
+def refused(play):
+    """Plays functions that fail, and gives the text."""
+
+    def run(*functions):
+        server = play(*functions)
+        assert server.end == "aborted"
+        return server.text
+
+    return run

@@ -45,3 +45,9 @@ def test_json_takes_what_robots_send():
     assert json_of(b"\x00\xff") == '"00ff"'
     assert json.loads(json_of({"angles": np.array([0.5, 1.0])})) == {"angles": [0.5, 1.0]}
     assert "object" in json_of(object())
+
+
+@pytest.mark.parametrize("number", [float("nan"), float("inf"), -float("inf"), np.float64("nan")])
+def test_numbers_that_json_does_not_have_are_null(number):
+    assert json_of(number) == "null"
+    assert json_of([1, number, {"a": (number, b"\x01"), "b": "NaN"}]) == '[1, null, {"a": [null, "01"], "b": "NaN"}]'

@@ -76,6 +76,16 @@ def test_an_unknown_function_names_its_place_the_closest_names_and_all():
     assert caught.value.cause.known == ["move", "on", "setColor"]
 
 
+def test_an_unknown_function_of_a_server_names_the_closest_or_all():
+    chain = FunctionChain({"move": print, "setColor": print}, "NaoLights")
+    with pytest.raises(UnknownFunction) as caught:
+        chain.look_up("setColour")
+    text = "unknown function 'setColour': did you mean 'setColor'?; `nao list NaoLights --all` tells all"
+    assert str(caught.value) == text
+    with pytest.raises(UnknownFunction, match="unknown function 'zzz'; known are move, setColor"):
+        chain.look_up("zzz")
+
+
 @pytest.mark.parametrize("time", [-0.5, float("nan"), float("inf")])
 def test_a_wait_must_be_a_finite_time(time):
     with pytest.raises(FunctionFailed, match=r"function 1 \(move\): field time: .* 0 s or more"):
@@ -105,6 +115,27 @@ def test_a_check_sees_the_fields_it_names_and_its_error_names_the_function():
         chain.read([Message(speed=0.5), Message(speed=0.5), Message(speed=0.75)])
     assert str(caught.value) == "function 3 (move): field speed: 0.75 is not allowed: 0..0.5"
     assert (caught.value.position, caught.value.cause.field) == (3, "speed")
+
+
+def test_a_check_can_be_run_with_something_in_place_of_its_module():
+    class Module:
+        limit = 0.5
+
+        def check_speed(self, speed, context):
+            context["checked"] = speed
+            if speed > self.limit:
+                raise BadGoal("speed", speed, f"0..{self.limit}")
+
+        @checked_by(check_speed)
+        def move(self, names, speed):
+            raise AssertionError("checking must not run anything")
+
+    context = {}
+    (binding,) = FunctionChain({"move": Module().move}).bind([Message(speed=0.75)])
+    binding.run_check(Message(speed=0.75), context, SimpleNamespace(limit=1.0))
+    assert context == {"checked": 0.75}
+    with pytest.raises(BadGoal):
+        binding.run_check(Message(speed=0.75), context)
 
 
 def test_a_check_knows_what_earlier_functions_of_the_same_chain_define_and_of_no_other():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import weakref
 
 import pytest
 
@@ -89,3 +90,24 @@ def test_a_waker_may_use_the_interrupt_itself():
         thread.start()
         thread.join(5.0)
     assert seen == [True]
+
+
+class Goal:
+    """What somebody works on who is interrupted."""
+
+
+def test_what_was_interrupted_is_not_kept(no_ring_collector):
+    """The error keeps the frames that it went through: none of them may keep it."""
+    goals = []
+
+    def work():
+        goal = Goal()
+        goals.append(weakref.ref(goal))
+        interrupt.check()
+
+    interrupt = Interrupt()
+    interrupt.trigger()
+    with pytest.raises(Preempted):
+        work()
+    interrupt.clear()
+    assert goals[0]() is None

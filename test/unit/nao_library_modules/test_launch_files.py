@@ -35,6 +35,24 @@ def test_names_are_relative_so_that_a_namespace_holds_them(launch):
     assert all(not element.get("ns", "").startswith("/") for element in launch.iter())
 
 
+@pytest.mark.parametrize(("name", "included"), [("nao.launch", "nao_driver.launch"), ("nao_sim.launch", "nao.launch")])
+def test_parts_of_the_driver_can_be_left_out_from_the_outside(name, included):
+    root = ElementTree.parse(ROOT / "launch" / "launch" / name).getroot()
+    (include,) = [each for each in root.iter("include") if each.get("file").endswith(f"/{included}")]
+    passed = {each.get("name"): each.get("value") for each in include.findall("arg")}
+    for part in ("cameras", "senses", "apps"):
+        assert passed[part] == f"$(arg {part})"
+
+
+def test_the_action_servers_share_few_heaps():
+    """What comes before it in the file, as the driver, does not have it."""
+    root = list(ElementTree.parse(ROOT / "launch" / "launch" / "nao.launch").getroot())
+    (env,) = [each for each in root if each.tag == "env" and each.get("name") == "MALLOC_ARENA_MAX"]
+    servers = [each for each in root if each.tag == "node"]
+    assert env.get("value") == "2"
+    assert servers and root.index(env) < root.index(servers[0])
+
+
 def test_every_node_has_a_program(launch):
     for node in launch.iter("node"):
         if (ROOT / node.get("pkg")).is_dir():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from fake_motion import CHAINS, FakeMotion, FakePostures
+from fake_motion import CHAINS
 from genpy import Duration
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
@@ -13,21 +13,6 @@ from nao_library_actions.msg import NaoMotionGoal
 from nao_library_msgs.msg import MotionFunction
 
 LIMIT = 5.0
-
-
-@pytest.fixture
-def fake(robot, make_call):
-    fake = FakeMotion(make_call)
-    robot.add("ALMotion", fake)
-    robot.add("ALRobotPosture", FakePostures())
-    return fake
-
-
-@pytest.fixture
-def motion(robot, edge, fake, tmp_path):
-    from nao_library_modules.motion import NaoMotion
-
-    return NaoMotion("10.0.0.7", 9559, robot=robot, edge=edge, motion_dir=tmp_path)
 
 
 def f(function, **fields):

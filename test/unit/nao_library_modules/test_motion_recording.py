@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fake_motion import CHAINS, FakeMotion, FakePostures
+from fake_motion import CHAINS
 
 from nao_library_actions.msg import NaoMotionGoal
 from nao_library_modules.recorded_motion import RecordedMotion
@@ -29,14 +29,6 @@ class TickingClock:
         self.time += duration
         self.on_wait()
         return not interrupt.is_set()
-
-
-@pytest.fixture
-def fake(robot, make_call):
-    fake = FakeMotion(make_call)
-    robot.add("ALMotion", fake)
-    robot.add("ALRobotPosture", FakePostures())
-    return fake
 
 
 @pytest.fixture

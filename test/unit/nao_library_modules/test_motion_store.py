@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+from pathlib import Path
+
 import pytest
 
 from nao_library_modules.errors import BadGoal
@@ -72,3 +75,22 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(BadGoal, match="cannot be written"):
         MotionStore(tmp_path / "file" / "motions").save("wave", MOTION)
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda store: store.rename("wave", "greet"), "wave.yaml cannot be renamed to greet.yaml: No space left"),
+        (lambda store: store.delete("wave"), "wave.yaml cannot be deleted: No space left"),
+    ],
+)
+def test_a_file_that_cannot_be_changed_is_told_with_path_and_reason(store, monkeypatch, call, told):
+    def refuse(*_, **__):
+        raise OSError(errno.ENOSPC, "No space left")
+
+    store.save("wave", MOTION)
+    monkeypatch.setattr(Path, "rename", refuse)
+    monkeypatch.setattr(Path, "unlink", refuse)
+    with pytest.raises(BadGoal) as caught:
+        call(store)
+    assert f"{store.folder}/{told}" in str(caught.value)

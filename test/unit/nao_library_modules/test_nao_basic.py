@@ -1,74 +1,22 @@
-"""Goals as chains: progress, ends, preemption, clean-up, a robot that goes away."""
+"""Goals as chains: progress, ends, policies, preemption, clean-up."""
 
 from __future__ import annotations
 
-import threading
-
 import pytest
+from chain_module import ChainModule, chain
 from genpy import Duration
 
-from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_actions.msg import NaoLedGoal
 from nao_library_modules.errors import BadGoal, Preempted, UnknownFunction
 from nao_library_modules.function_chain import checked_by
-from nao_library_modules.launcher import BadLaunchPath
-from nao_library_modules.nao_basic import NaoBasic
-from nao_library_msgs.msg import LedFunction
 from naoqi.errors import RobotUnreachable
 
 LIMIT = 5.0
 
 
-class Module(NaoBasic):
-    """A module whose functions say what they did."""
-
-    def __init__(self, **options):
-        super().__init__("10.0.0.7", 9559, **options)
-        self.done = []
-        self.started = threading.Event()
-        self.function_table.update(
-            say=self.say,
-            fail=self.fail,
-            crash=self.crash,
-            last=self.last,
-            borrow=self.borrow,
-            nested=self.nested,
-        )
-        self.serve("Module", NaoLedAction)
-
-    def say(self, str_param):
-        self.done.append(str_param)
-        return str_param
-
-    def fail(self, str_param):
-        raise BadGoal("str_param", str_param, "something else")
-
-    def crash(self):
-        raise KeyError("oops")
-
-    def last(self):
-        """A robot method that lasts until it is cancelled."""
-        self.started.set()
-        self.call(self.robot.proxy("ALLeds"), "rasta", 60.0)
-
-    def borrow(self, str_param):
-        """Something to be given back."""
-        self.done.append(f"borrow {str_param}")
-        self.after_wait(lambda: self.done.append(f"return {str_param}"))
-
-    def nested(self):
-        self.borrow("outer")
-        self.run("borrow", ["inner"], 0.0)
-        self.done.append("nested done")
-
-
 @pytest.fixture
 def module(robot, edge):
-    return Module(robot=robot, edge=edge)
-
-
-def chain(*functions, time=0.0):
-    messages = [LedFunction(function=f, str_param=p, time=Duration.from_sec(time)) for f, p in functions]
-    return NaoLedGoal(messages)
+    return ChainModule(robot=robot, edge=edge)
 
 
 def test_functions_run_in_order_and_their_answers_are_the_result(module):
@@ -93,7 +41,9 @@ def test_the_server_waits_after_each_function(module, edge):
 def test_a_chain_with_an_error_runs_nothing(module):
     server = module.server.play(chain(("say", "one"), ("sya", "two")))
     assert server.end == "aborted"
-    assert server.text.startswith("function 2 (sya): unknown function 'sya': did you mean 'say'?; known are ")
+    assert server.text == (
+        "function 2 (sya): unknown function 'sya': did you mean 'say'?; `nao list Module --all` tells all"
+    )
     assert module.done == []
     assert server.feedback == []
     assert server.result.results == []
@@ -109,8 +59,63 @@ def test_an_error_while_running_keeps_the_results_before_it(module):
     server = module.server.play(chain(("say", "one"), ("fail", "x"), ("say", "three")))
     assert server.end == "aborted"
     assert server.text == "function 2 (fail): field str_param: 'x' is not allowed: something else"
-    assert [result.values for result in server.result.results] == [["one"]]
+    one, failed = server.result.results
+    assert (one.values, one.error) == (["one"], "")
+    assert (failed.function, failed.values) == ("fail", [])
+    assert failed.error == "field str_param: 'x' is not allowed: something else"
     assert module.done == ["one"]
+
+
+def play_with_policy(module, function, on_error):
+    goal = chain(("say", "one"), (function, "x"), ("say", "three"))
+    goal.functions[1].on_error = on_error
+    return module.server.play(goal)
+
+
+def test_a_function_that_may_be_skipped_does_not_end_the_chain(module):
+    server = play_with_policy(module, "fail", "skip")
+    assert (server.end, module.done) == ("succeeded", ["one", "three"])
+    assert [bool(result.error) for result in server.result.results] == [False, True, False]
+    assert server.result.memList == ["one", "three"]
+
+
+def test_a_function_is_tried_again_as_often_as_its_goal_says(module):
+    tries = iter(["first", "second"])
+
+    def at_the_third(str_param):
+        failure = next(tries, None)
+        if failure is not None:
+            raise BadGoal("str_param", str_param, failure)
+        return "at last"
+
+    module.function_table["fail"] = at_the_third
+    server = play_with_policy(module, "fail", "retry 2")
+    assert (server.end, server.result.memList) == ("succeeded", ["one", "at last", "three"])
+
+
+@pytest.mark.parametrize(("on_error", "end"), [("retry 2", "aborted"), ("retry 2 skip", "succeeded")])
+def test_what_becomes_of_a_function_that_fails_at_every_try(module, on_error, end):
+    calls = []
+    module.function_table["crash"] = lambda: calls.append(1) or {}["oops"]
+    assert play_with_policy(module, "crash", on_error).end == end
+    assert len(calls) == 3
+
+
+@pytest.mark.parametrize("on_error", ["ignore", "retry", "retry 0", "retry 101", "retry -1", "skip 2"])
+def test_an_unknown_policy_is_refused_before_anything_runs(module, on_error):
+    server = play_with_policy(module, "say", on_error)
+    assert (server.end, module.done) == ("aborted", [])
+    assert "function 2 (say): field on_error" in server.text
+
+
+def test_preemption_ends_a_chain_whatever_may_be_skipped(module, robot):
+    goal = chain(("last", ""), ("say", "never"))
+    goal.functions[0].on_error = "retry 5 skip"
+    thread = module.server.play_in_background(goal)
+    assert robot.leds.started.wait(LIMIT)
+    module.server.preempt()
+    thread.join(LIMIT)
+    assert (module.server.end, module.done) == ("preempted", [])
 
 
 def test_an_unexpected_error_is_logged_with_its_trace_and_the_server_lives_on(module, caplog):
@@ -227,30 +232,6 @@ def test_after_wait_outside_of_a_function_is_a_mistake(module):
         module.after_wait(lambda: None)
 
 
-def test_a_robot_that_goes_away_ends_a_goal_that_only_waits(module, robot, edge):
-    thread = module.server.play_in_background(chain(("say", "one"), time=60.0))
-    assert edge.clock.waiting.wait(LIMIT)
-    robot.connection.become("lost", "no heartbeat")
-    thread.join(LIMIT)
-    assert module.server.end == "aborted"
-    assert module.server.text == "function 1 (say): the robot at 10.0.0.7:9559 went away: no heartbeat"
-    robot.connection.become("connected")
-    assert module.server.play(chain(("say", "two"))).end == "succeeded"
-
-
-def test_events_are_subscribed_again_after_a_reconnection(module, robot, edge):
-    module.server.play(chain(("subscribeToEvent", "A")))
-    robot.connection.become("connected")  # the first connection
-    robot.connection.become("lost", "gone")
-    robot.memory.signals.clear()
-    renewed = threading.Event()
-    module.events.renew = lambda renew=module.events.renew: (renew(), renewed.set())
-    robot.connection.become("connected")
-    assert renewed.wait(LIMIT)
-    robot.memory.signals["A"](1)
-    assert edge.events == [("A", 1)]
-
-
 def test_run_calls_a_function_by_name_with_a_list_of_arguments(module):
     assert module.run("say", ["hello"], Duration.from_sec(0.0)) == "hello"
     with pytest.raises(UnknownFunction):
@@ -266,49 +247,3 @@ def test_waiting_is_interrupted_outside_of_goals_too(module):
     module.interrupt.trigger()
     with pytest.raises(Preempted):
         module.wait(60.0)
-
-
-def test_autostart_needs_a_launch_file(robot, edge):
-    with pytest.raises(BadLaunchPath):
-        NaoBasic("10.0.0.7", 9559, autostart=True, launchpath=("nao_library", "no.launch"), robot=robot, edge=edge)
-
-
-def test_reports_are_there_for_the_diagnostics(module, edge):
-    module.server.play(chain(("sya", "")))
-    reports = {name: report() for name, report in edge.reports.items()}
-    assert reports["Module robot"].message == "connected"
-    assert reports["Module goals"].values["aborted"] == "1"
-
-
-class FakeSupervisor:
-    def __init__(self, *arguments):
-        self.arguments = arguments
-        self.done = []
-
-    def start(self):
-        self.done.append("start")
-
-    def stop(self):
-        self.done.append("stop")
-
-
-def test_autostart_starts_the_launch_file_for_the_robot_and_the_end_of_the_node_stops_it(robot, edge, monkeypatch):
-    monkeypatch.setattr("nao_library_modules.nao_basic.launch_supervisor", FakeSupervisor)
-    path = ("nao_library", "nao.launch")
-    module = NaoBasic("10.0.0.7", 9560, autostart=True, launchpath=path, robot=robot, edge=edge)
-    supervisor = module._launch
-    assert supervisor.arguments == (path, "10.0.0.7", 9560, "/robot1/")
-    assert supervisor.done == ["start"]
-    for action in edge.shutdown_actions:
-        action()
-    assert supervisor.done == ["start", "stop"]
-
-
-def test_without_autostart_the_launch_file_is_left_alone_until_asked_for(robot, edge, monkeypatch):
-    monkeypatch.setattr("nao_library_modules.nao_basic.launch_supervisor", FakeSupervisor)
-    module = NaoBasic("10.0.0.7", 9559, launchpath=("nao_library", "nao.launch"), robot=robot, edge=edge)
-    module.stop_launch()
-    assert module._launch is None
-    module.start_launch()
-    module.stop_launch()
-    assert module._launch.done == ["start", "stop"]

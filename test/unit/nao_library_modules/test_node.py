@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import pytest
+import rospy
 
-from nao_library_modules.node import launch_path, robot_address, robot_parser
+from nao_library_modules import node
+from nao_library_modules.node import launch_path, robot_address, robot_parser, run_module
 from naoqi.errors import NaoError
 
 
@@ -57,3 +59,27 @@ def test_help_names_options_and_parameters(capsys):
     assert caught.value.code == 0
     for word in ("Lights of a NAO.", "--pip", "--pport", "~pip"):
         assert word in text
+
+
+@pytest.mark.parametrize(
+    ("parameters", "status", "options"),
+    [
+        ({}, 0, {}),
+        ({"~patience": 60}, 0, {"patience": 60.0}),
+        ({"~patience": "long"}, 1, None),
+    ],
+)
+def test_a_module_gets_its_patience_only_where_it_is_set(monkeypatch, parameters, status, options):
+    made = []
+    monkeypatch.setattr(rospy, "init_node", lambda name: None)
+    monkeypatch.setattr(rospy, "spin", lambda: None)
+    monkeypatch.setattr(rospy, "logfatal", lambda *_: None)
+    monkeypatch.setattr(rospy, "get_param", parameters.get)
+    monkeypatch.setattr(rospy, "has_param", parameters.__contains__)
+    monkeypatch.setattr(node, "forward_logs", lambda *_: None)
+
+    def module(ip, port, autostart, launchpath, **more):
+        made.append(more)
+
+    assert run_module(module, "module", "A module.", ["module"]) == status
+    assert made == ([] if options is None else [options])

@@ -25,6 +25,19 @@ def test_equally_close_names_keep_their_order():
     assert closest("Led", ["Leds", "Led2", "Led1", "Other"]) == ["Leds", "Led2", "Led1"]
 
 
+@pytest.mark.parametrize(
+    "typed, known, best",
+    [
+        ("FaceLed", [*(f"FaceLed{n}" for n in range(8)), "FaceLeds"], "FaceLeds"),
+        ("Brain", ["Brain0", "BrainX", "Brain1"], "BrainX"),
+        ("FaceLed9", ["FaceLeds", "FaceLed1"], "FaceLed1"),
+        ("gaze", ["maze", "gate"], "gate"),
+    ],
+)
+def test_of_equally_close_names_one_of_many_comes_last_then_the_beginning_counts(typed, known, best):
+    assert closest(typed, known)[0] == best
+
+
 def test_no_more_names_than_asked_for():
     assert len(closest("getColor", KNOWN, count=1)) == 1
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import threading
+import weakref
 
 import pytest
 
 from naoqi import errors
+from naoqi.calls import Call
 
 
 @pytest.fixture
@@ -130,3 +133,35 @@ def test_many_threads_share_a_proxy(proxy, in_thread):
     finishes = [in_thread(lambda n=n: [proxy.add(n, k) for k in range(50)]) for n in range(8)]
     for n, finish in enumerate(finishes):
         assert finish()["value"] == [n + k for k in range(50)]
+
+
+class Asker:
+    """Who waits for an answer, and may hold a lot."""
+
+
+def test_the_error_of_a_call_that_took_its_time_keeps_nobody(proxy, begun, monkeypatch):
+    """The error keeps the frames that it went through: none of them may keep it."""
+    wait = Call._wait
+
+    def wait_after_the_first_look(call, timeout):
+        monkeypatch.setattr(Call, "_wait", wait)
+        proxy.breakDown("lost a screw")
+        return wait(call, timeout)
+
+    def ask():
+        asker = Asker()
+        askers.append(weakref.ref(asker))
+        call = proxy.call_async("begin")
+        begun()
+        monkeypatch.setattr(Call, "_wait", wait_after_the_first_look)
+        call.result()
+
+    askers = []
+    gc.collect()
+    gc.disable()
+    try:
+        with pytest.raises(errors.RobotError, match="lost a screw"):
+            ask()
+        assert askers[0]() is None
+    finally:
+        gc.enable()

@@ -1,4 +1,4 @@
-"""README.md says what the code says."""
+"""README.md and docs/*.md say what the code says."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 import readme_tables
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from readme_tables import ReadmeError, fill, functions_table, launch_default, table
+from readme_tables import DOCUMENTS, ReadmeError, fill, functions_table, launch_default, table, untold
 
 from nao_library_actions.msg import NaoLedResult
 from nao_sim_bridge.cli import parser
@@ -50,7 +50,6 @@ def test_filling_twice_changes_nothing():
     "text, names, complaint",
     [
         (ONE.format(""), {"two": ""}, "there is no table 'one'; there are: two"),
-        ("nothing\n", {"one": ""}, "no marks for one"),
         ("<!-- begin: one -->\n<!-- end: two -->\n", {"one": "", "two": ""}, "not followed by its 'end: one'"),
         ("<!-- begin: one -->\n" + ONE.format(""), {"one": ""}, "not followed by its 'end: one'"),
         (ONE.format("") + "<!-- begin: one -->\n", {"one": ""}, "a mark has no partner"),
@@ -131,30 +130,43 @@ def test_no_more_methods_are_answered_than_the_robot_has(tables):
     assert all(0 < answered <= of for answered, of in rows.values())
 
 
-# README.md
+# The documents
 
 
-def test_the_readme_is_up_to_date(tables):
-    text = readme_tables.README.read_text(encoding="utf-8")
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_a_document_is_up_to_date(tables, document):
+    text = document.read_text(encoding="utf-8")
     assert fill(text, tables) == text, "run 'make docs'"
+
+
+def test_every_table_is_told(tables):
+    assert untold([document.read_text(encoding="utf-8") for document in DOCUMENTS], tables) == []
+
+
+def test_a_table_that_nobody_tells_is_named(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(readme_tables, "all_tables", lambda: {"one": "new", "two": "new"})
+    file = tmp_path / "README.md"
+    file.write_text(ONE.format(""), encoding="utf-8")
+    assert readme_tables.main([str(file)]) == 1
+    assert "nobody has marks for two" in capsys.readouterr().err
 
 
 def test_check_tells_by_its_status_and_writes_nothing(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(readme_tables, "all_tables", lambda: {"one": "new"})
     file = tmp_path / "README.md"
     file.write_text(ONE.format("old\n"))
-    assert readme_tables.main(["--check", "--file", str(file)]) == 1
+    assert readme_tables.main(["--check", str(file)]) == 1
     assert "run 'make docs'" in capsys.readouterr().err
     assert file.read_text() == ONE.format("old\n")
-    assert readme_tables.main(["--file", str(file)]) == 0
-    assert readme_tables.main(["--check", "--file", str(file)]) == 0
+    assert readme_tables.main([str(file)]) == 0
+    assert readme_tables.main(["--check", str(file)]) == 0
 
 
 def test_marks_that_do_not_fit_are_told_and_nothing_is_written(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(readme_tables, "all_tables", lambda: {"two": "new"})
     file = tmp_path / "README.md"
     file.write_text(ONE.format("old\n"))
-    assert readme_tables.main(["--file", str(file)]) == 1
+    assert readme_tables.main([str(file)]) == 1
     assert "there is no table 'one'" in capsys.readouterr().err
     assert file.read_text() == ONE.format("old\n")
 
@@ -163,7 +175,7 @@ def test_marks_that_do_not_fit_are_told_and_nothing_is_written(tmp_path, monkeyp
 
 
 def programs():
-    return re.findall(r"```python\n(.*?)```", readme_tables.README.read_text(encoding="utf-8"), re.DOTALL)
+    return re.findall(r"```python\n(.*?)```", DOCUMENTS[0].read_text(encoding="utf-8"), re.DOTALL)
 
 
 def test_every_program_compiles():

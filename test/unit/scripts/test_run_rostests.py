@@ -8,7 +8,7 @@ import sys
 
 import pytest
 import run_rostests
-from run_rostests import MARGIN, MARK, free_port, processes_of, time_limit
+from run_rostests import MARGIN, MARK, ROBOTS, free_port, in_groups, processes_of, time_limit
 
 
 @pytest.mark.parametrize(
@@ -28,7 +28,7 @@ def test_a_scenario_may_take_as_long_as_its_tests_and_a_margin(tmp_path, text, s
 
 def test_a_free_port_can_be_listened_on():
     port = free_port()
-    for wanted in (port, port + 1):
+    for wanted in range(port, port + ROBOTS):
         with socket.socket() as server:
             server.bind(("127.0.0.1", wanted))
             assert server.getsockname() == ("127.0.0.1", wanted)
@@ -42,6 +42,18 @@ def test_ports_in_use_are_left_out(monkeypatch):
         choices = iter([used, used - 1, other])
         monkeypatch.setattr(run_rostests.random, "choice", lambda ports: next(choices))
         assert free_port() == other
+
+
+def test_long_scenarios_begin_and_those_that_want_to_be_alone_come_last_one_by_one(tmp_path):
+    texts = {"short": '<test time-limit="10"/>', "quiet": "<!-- alone: ... -->", "long": '<test time-limit="300"/>'}
+    scenarios = []
+    for name, text in texts.items():
+        scenarios.append(tmp_path / f"{name}.test")
+        scenarios[-1].write_text(f"<launch>{text}</launch>")
+    scenarios = [path.relative_to(tmp_path) for path in scenarios]
+    names = [(count, [path.stem for path in group]) for count, group in in_groups(tmp_path, scenarios, 2)]
+    assert names == [(2, ["long", "short"]), (1, ["quiet"])]
+    assert in_groups(tmp_path, scenarios, 1) == [(1, scenarios)]
 
 
 def test_processes_are_known_by_their_mark_until_they_end():

@@ -123,6 +123,13 @@ def test_scenarios_are_found_at_any_depth_and_picked_by_part_of_their_path(tmp_p
     assert find_scenarios(tmp_path, ["walk", "nothing"]) == [Path("walk/far.test")]
 
 
+def test_a_scenario_on_request_runs_when_it_is_named_only(tmp_path):
+    (tmp_path / "short.test").write_text("<launch/>")
+    (tmp_path / "long.test").write_text("<launch><!-- on request: many minutes --></launch>")
+    assert find_scenarios(tmp_path) == [Path("short.test")]
+    assert find_scenarios(tmp_path, ["long"]) == [Path("long.test")]
+
+
 def test_main_misses_the_scenario_that_left_nothing(tmp_path, capsys):
     scenarios = tmp_path / "rostest"
     scenarios.mkdir()

@@ -7,6 +7,7 @@ import time
 from types import SimpleNamespace
 
 import pytest
+from fake_proxy import FakeProxy
 
 from naoqi.errors import RobotError
 
@@ -61,28 +62,6 @@ class FakeMotion:
 @pytest.fixture
 def motion(make_call):
     return FakeMotion(make_call)
-
-
-class FakeProxy:
-    """Starts calls of a service and keeps them in mind."""
-
-    def __init__(self, service, make_call):
-        self._service = service
-        self._make_call = make_call
-        self.calls = []
-
-    def call_async(self, method, *arguments):
-        self.calls.append((method, *arguments))
-        pending = self._make_call(method)
-        try:
-            result = getattr(self._service, method)(*arguments)
-        except RobotError as error:
-            pending.end(error=error)
-            return pending
-        if hasattr(result, "add_done_callback"):
-            return result
-        pending.end(result)
-        return pending
 
 
 @pytest.fixture

@@ -110,7 +110,7 @@ def test_playing_is_silenced_with_the_node(player, robot, interrupt, in_thread):
 def test_a_recording_takes_its_time_of_the_robot(player, robot, clock, in_thread):
     calls = robot.services["ALAudioRecorder"].calls
     thread, outcome = in_thread(player.record, REQUEST)
-    assert clock.waits.acquire(timeout=LIMIT)
+    clock.somebody_waits(REQUEST.seconds)
     assert calls == [("/home/nao/a.wav", "wav", 48000, [1, 1, 1, 1])]
     with pytest.raises(NaoError, match="one at a time"):
         player.record(REQUEST)
@@ -123,7 +123,7 @@ def test_a_recording_takes_its_time_of_the_robot(player, robot, clock, in_thread
 
 def test_a_recording_that_is_interrupted_is_completed_on_the_robot(player, robot, clock, interrupt, in_thread):
     thread, outcome = in_thread(player.record, REQUEST)
-    assert clock.waits.acquire(timeout=LIMIT)
+    clock.somebody_waits(REQUEST.seconds)
     interrupt.stop()
     assert isinstance(wait(thread, outcome), Preempted)
     assert robot.services["ALAudioRecorder"].calls[1:] == ["stop"]
@@ -131,12 +131,12 @@ def test_a_recording_that_is_interrupted_is_completed_on_the_robot(player, robot
 
 def test_a_recording_ends_with_an_error_when_the_robot_is_lost_and_the_next_one_works(player, robot, clock, in_thread):
     thread, outcome = in_thread(player.record, REQUEST)
-    assert clock.waits.acquire(timeout=LIMIT)
+    clock.somebody_waits(REQUEST.seconds)
     robot.lose()
     assert isinstance(wait(thread, outcome), RobotUnreachable)
     robot.come_back()
     thread, outcome = in_thread(player.record, REQUEST)
-    assert clock.waits.acquire(timeout=LIMIT)
+    clock.somebody_waits(REQUEST.seconds)
     clock.advance(6.0)
     assert wait(thread, outcome) is None
 

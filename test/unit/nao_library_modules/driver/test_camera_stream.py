@@ -31,6 +31,7 @@ class Device:
         self.calls = []
         self.asked = []
         self.refused = ""
+        self.before_setting = lambda: None
         self.broken = ""
         self.answer = None
 
@@ -53,8 +54,11 @@ class Device:
         return list(self.subscribers)
 
     def _set(self, handle, place, value):
+        self.before_setting()
         if self.refused == value:
             return False
+        if handle not in self.subscribers:
+            raise RobotError("ALVideoDevice", "set", f"no subscriber {handle}")
         self.subscribers[handle][place] = value
         return True
 
@@ -220,6 +224,20 @@ def test_what_the_robot_refuses_is_told_and_all_is_as_before(stream, device, eve
         stream.change(StreamSettings(0, 0, 0, 30))
     assert device.subscribers == {f"{NAME}_0": [0, 1, 13, 15]}
     assert stream.settings == StreamSettings(0, 1, 13, 15)
+
+
+def test_settings_that_meet_the_end_of_a_subscription_are_those_of_the_next_one(stream, device, eventually):
+    def stop_looking():
+        stream.want(False)
+        eventually(lambda: device.subscribers == {})
+
+    stream.want(True)
+    eventually(lambda: device.asked)
+    device.before_setting = stop_looking
+    stream.change(StreamSettings(0, 0, 0, 30))
+    stream.want(True)
+    eventually(lambda: device.subscribers == {f"{NAME}_0": [0, 0, 0, 30]})
+    assert device.calls == ["subscribe", "unsubscribe", "subscribe"]
 
 
 def test_another_camera_is_another_subscription(stream, device, seen, eventually):

@@ -102,3 +102,12 @@ def test_a_joint_without_angle_is_an_error(make_sensors, memory):
     memory[KEY.format("HeadYaw/Position/Sensor")] = None
     with pytest.raises(NaoError, match="None as the angle of HeadYaw"):
         make_sensors().read()
+
+
+def test_stiffnesses_are_asked_for_apart(make_sensors, memory):
+    sensors = make_sensors()
+    memory[KEY.format("HeadYaw/Hardness/Actuator")] = 0.6
+    memory[KEY.format("LHipYawPitch/Hardness/Actuator")] = None
+    head, hip = sensors.read_stiffnesses()
+    assert head == 0.6 and math.isnan(hip)
+    assert len(make_sensors.asked) == 1

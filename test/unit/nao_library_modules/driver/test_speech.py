@@ -178,7 +178,7 @@ def test_a_text_that_waits_is_never_begun_when_it_is_silenced(speech, voice, beg
 def test_a_robot_that_says_nothing_for_two_minutes_is_given_up(speech, clock, begin):
     utterance = speech.say("one")
     call = begin()
-    assert clock.waits.acquire(timeout=LIMIT)
+    clock.somebody_waits(QUIET_LIMIT)
     clock.advance(QUIET_LIMIT + 1.0)
     assert isinstance(ended(utterance), NothingSaid)
     assert call.canceled
@@ -187,9 +187,10 @@ def test_a_robot_that_says_nothing_for_two_minutes_is_given_up(speech, clock, be
 def test_a_long_text_may_take_its_time_while_words_come(speech, robot, clock, begin):
     utterance = speech.say("a very long story")
     call = begin()
+    last_word = 0.0
     for _ in range(5):
-        assert clock.waits.acquire(timeout=LIMIT)
-        clock.time += 0.9 * QUIET_LIMIT
+        clock.somebody_waits(last_word + QUIET_LIMIT)
+        last_word = clock.time = clock.time + 0.9 * QUIET_LIMIT
         robot.services["ALMemory"].raise_event(WORD, "word")
         clock.advance(0.2 * QUIET_LIMIT)
     assert not utterance.ended.is_set()

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import fake_walk
 import pytest
+from fake_proxy import FakeProxy
 from fake_robot import FakeConnection
 from set_clock import SetClock
 
@@ -26,34 +27,9 @@ def walk(make_call):
     return fake_walk.FakeWalk(make_call)
 
 
-class WalkProxy:
-    """Calls that fail while the robot is lost."""
-
-    def __init__(self, walk, make_call):
-        self.walk = walk
-        self.calls = []
-        self.lost = False
-        self._make_call = make_call
-
-    def call_async(self, method, *arguments):
-        if self.lost:
-            raise LOST
-        self.calls.append((method, *arguments))
-        call = self._make_call(f"ALMotion.{method}")
-        try:
-            result = getattr(self.walk, method)(*arguments)
-        except RobotError as error:
-            call.end(error=error)
-            return call
-        if hasattr(result, "add_done_callback"):
-            return result
-        call.end(result)
-        return call
-
-
 @pytest.fixture
 def proxy(walk, make_call):
-    return WalkProxy(walk, make_call)
+    return FakeProxy(walk, make_call)
 
 
 @pytest.fixture
@@ -300,22 +276,22 @@ def test_a_stop_that_did_not_reach_the_robot_is_sent_when_it_is_back(
     walker, walk, proxy, robot, clock, caplog, eventually
 ):
     done(steer(walker, FORWARD))
-    proxy.lost = True
+    proxy.lost = LOST
     robot.connection.become("lost")
     clock.advance(0.6)
     eventually(lambda: "cannot be stopped" in caplog.text)
     assert walk.walking
-    proxy.lost = False
+    proxy.lost = None
     robot.connection.become("connected")
     eventually(lambda: not walk.walking)
 
 
 def test_nothing_is_sent_to_a_robot_that_comes_back_and_owes_nothing(walker, walk, proxy, robot):
-    proxy.lost = True
+    proxy.lost = LOST
     robot.connection.become("lost")
     with pytest.raises(RobotUnreachable):
         done(steer(walker, FORWARD))
-    proxy.lost = False
+    proxy.lost = None
     robot.connection.become("connected")
     done(walker.order(Step("LLeg", 0.02, 0.1, 0.0), "step"))
     assert methods(proxy) == ["setFootSteps"]
@@ -342,7 +318,7 @@ def test_the_end_stops_the_walk_and_takes_no_orders(robot, clock, walk):
 
 def test_the_end_does_not_wait_for_a_robot_that_is_lost(robot, clock, walk, proxy, caplog):
     walker = Walker(robot, clock, cmd_vel_timeout=0.5)
-    proxy.lost = True
+    proxy.lost = LOST
     walker.close(LIMIT)
     assert "connection lost" in caplog.text
 

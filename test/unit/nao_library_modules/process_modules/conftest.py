@@ -1,12 +1,17 @@
-"""Plans that run beside a test."""
+"""Plans that run beside a test, and process modules that keep a log."""
 
 from __future__ import annotations
 
 import threading
 
 import pytest
+from cram_modules import Log, Many, One
 
+from nao_library_modules.process_modules import registry
 from nao_library_modules.process_modules.control import top_level
+from nao_library_modules.process_modules.designators import locations
+from nao_library_modules.process_modules.designators.objects import BELIEFS
+from nao_library_modules.process_modules.registry import with_process_modules_running
 
 LIMIT = 10.0
 
@@ -57,6 +62,40 @@ def run_plan():
         return answer, roots[0]
 
     return run
+
+
+@pytest.fixture
+def nothing_is_known(monkeypatch):
+    """Known objects, generators and validators of places are as they were before and after the test."""
+    monkeypatch.setattr(locations, "_generators", list(locations._generators))
+    monkeypatch.setattr(locations, "_validators", list(locations._validators))
+    BELIEFS.clear()
+    yield
+    BELIEFS.clear()
+
+
+@pytest.fixture(autouse=True)
+def _no_module_stays_known(monkeypatch):
+    """Modules and their names stay known when they have ended, for the next plan; not for the next test."""
+    monkeypatch.setattr(registry, "_modules", {})
+    monkeypatch.setattr(registry, "_aliases", {})
+
+
+@pytest.fixture
+def log():
+    return Log()
+
+
+@pytest.fixture
+def one(log):
+    with with_process_modules_running(One(log)) as (module,):
+        yield module
+
+
+@pytest.fixture
+def many(log):
+    with with_process_modules_running(Many(log)) as (module,):
+        yield module
 
 
 @pytest.fixture(autouse=True)

@@ -27,16 +27,9 @@ from nao_library_modules.process_modules.failures import (
     TaskEvaporatedFailure,
     fail,
 )
-from nao_library_modules.process_modules.flow import (
-    checkpoint,
-    sleep,
-    uninterrupted,
-)
+from nao_library_modules.process_modules.flow import checkpoint, sleep, uninterrupted
 from nao_library_modules.process_modules.fluents import Fluent
-from nao_library_modules.process_modules.handling import (
-    give,
-    with_failure_handling,
-)
+from nao_library_modules.process_modules.handling import give, with_failure_handling
 from nao_library_modules.process_modules.tasks import TaskState, current_task
 from nao_library_modules.process_modules.trace import Trace, trace_of
 from nao_library_modules.process_modules.waiting import wait_for

@@ -5,12 +5,7 @@ from __future__ import annotations
 import pytest
 from cram_waits import forever, seen
 
-from nao_library_modules.process_modules.control import (
-    do,
-    par,
-    seq,
-    top_level,
-)
+from nao_library_modules.process_modules.control import do, par, seq, top_level
 from nao_library_modules.process_modules.failures import (
     ManipulationPoseUnreachable,
     NavigationGoalNotReached,
@@ -22,9 +17,7 @@ from nao_library_modules.process_modules.failures import (
     TaskEvaporatedFailure,
     fail,
 )
-from nao_library_modules.process_modules.flow import (
-    sleep,
-)
+from nao_library_modules.process_modules.flow import sleep
 from nao_library_modules.process_modules.fluents import Fluent
 from nao_library_modules.process_modules.handling import (
     do_retry,

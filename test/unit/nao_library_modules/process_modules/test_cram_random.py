@@ -5,6 +5,8 @@ from __future__ import annotations
 import random
 import threading
 
+from cram_modules import Many, One
+
 from nao_library_modules.process_modules.control import (
     do,
     par,
@@ -22,12 +24,7 @@ from nao_library_modules.process_modules.flow import checkpoint, sleep, uninterr
 from nao_library_modules.process_modules.fluents import Fluent
 from nao_library_modules.process_modules.handling import do_retry, give, with_failure_handling, with_retry_counters
 from nao_library_modules.process_modules.policies import timeout_policy, with_policy
-from nao_library_modules.process_modules.process_module import (
-    AsynchronousProcessModule,
-    ModuleState,
-    ProcessModule,
-    pm_cancel,
-)
+from nao_library_modules.process_modules.process_module import ModuleState, pm_cancel
 from nao_library_modules.process_modules.registry import perform, with_process_modules_running
 from nao_library_modules.process_modules.tasks import TaskState
 
@@ -71,25 +68,6 @@ class Work:
         return how
 
 
-class One(ProcessModule):
-    name = "one"
-
-    def __init__(self, work):
-        super().__init__()
-        self.execute = work.carry_out
-
-
-class Many(AsynchronousProcessModule):
-    name = "many"
-
-    def __init__(self, work):
-        super().__init__()
-        self.execute = work.carry_out
-
-    def resources(self, command):
-        return frozenset({command.arguments["limb"]})
-
-
 class RandomPlan:
     """A plan made with a seed."""
 
@@ -119,8 +97,10 @@ class RandomPlan:
             return with_failure_handling(branch, handlers)
 
     def _leaf(self):
+        limb = self.random.choice(LIMBS)
         arguments = {
-            "limb": self.random.choice(LIMBS),
+            "limb": limb,
+            "needs": [limb],
             "how": self.random.choice(["quick", "fail", "compute", "sleep", "sleep", "stay"]),
             "moment": self.random.random() * MOMENT,
         }

@@ -18,11 +18,7 @@ from nao_library_modules.process_modules.control import (
     try_all,
     try_in_order,
 )
-from nao_library_modules.process_modules.failures import (
-    PlanFailure,
-    TaskEvaporatedFailure,
-    fail,
-)
+from nao_library_modules.process_modules.failures import PlanFailure, TaskEvaporatedFailure, fail
 from nao_library_modules.process_modules.flow import (
     checkpoint,
     retry_after_suspension,

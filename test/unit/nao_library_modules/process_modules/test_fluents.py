@@ -10,6 +10,7 @@ import pytest
 from nao_library_modules.process_modules.control import do, par, pursue, top_level
 from nao_library_modules.process_modules.failures import PlanError
 from nao_library_modules.process_modules.fluents import (
+    AnyFluent,
     Fluent,
     fl_and,
     fl_eq,
@@ -184,3 +185,12 @@ def test_changes_from_outside_of_plans_wake_who_waits():
     assert top_level(lambda: wait_for(fluent >= 2000)) is True
     for thread in threads:
         thread.join()
+
+
+def test_a_kind_of_fluent_without_its_own_value_cannot_be_made():
+    class Nothing(AnyFluent):
+        def listen(self, listener):
+            pass
+
+    with pytest.raises(TypeError, match="abstract.*pulses.*unlisten.*value"):
+        Nothing("nothing")

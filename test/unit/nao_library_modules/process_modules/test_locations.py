@@ -7,10 +7,8 @@ import math
 import pytest
 
 from nao_library_modules.places import Place
-from nao_library_modules.process_modules.designators import locations
 from nao_library_modules.process_modules.designators.designator import a, all_, location, object_, the
 from nao_library_modules.process_modules.designators.locations import (
-    ROBOT_RADIUS,
     Candidate,
     Verdict,
     next_different_location_solution,
@@ -19,20 +17,11 @@ from nao_library_modules.process_modules.designators.locations import (
 )
 from nao_library_modules.process_modules.designators.objects import BELIEFS, object_pose
 from nao_library_modules.process_modules.failures import AmbiguousPerception, DesignatorError
+from nao_library_modules.process_modules.settings import numbers_of_nao
 from nao_library_modules.process_modules.space import Point3
 
-
-@pytest.fixture(autouse=True)
-def nothing_is_known():
-    BELIEFS.clear()
-    yield
-    BELIEFS.clear()
-
-
-@pytest.fixture(autouse=True)
-def own_registrations(monkeypatch):
-    monkeypatch.setattr(locations, "_generators", list(locations._generators))
-    monkeypatch.setattr(locations, "_validators", list(locations._validators))
+pytestmark = pytest.mark.usefixtures("nothing_is_known")
+ROBOT_RADIUS = numbers_of_nao().robot_radius
 
 
 @pytest.fixture

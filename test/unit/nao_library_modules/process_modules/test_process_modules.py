@@ -298,3 +298,12 @@ def test_what_cannot_be_performed_is_told(hand):
         top_level(lambda: pm_execute(hand, Designator(action, {}, resolve=lambda desig: [3])))
     with pytest.raises(DesignatorError):
         top_level(lambda: perform(an(action, type="juggling with knives")))
+
+
+@pytest.mark.parametrize("base", [ProcessModule, AsynchronousProcessModule])
+def test_a_module_that_executes_nothing_cannot_be_made(base):
+    class Idle(base):
+        name = "idle"
+
+    with pytest.raises(TypeError, match="abstract.*execute"):
+        Idle()

@@ -1,9 +1,12 @@
-"""The module for vision on stand-ins."""
+"""The module for vision on stand-ins, and streams and recordings by themselves."""
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 import pytest
-from fake_vision import FakeTopics, FakeVideoDevice
+from fake_vision import FakeTopics, FakeVideoDevice, numbered_image
+from vision_thread_tools import CAMERA, OUT, HandClock
 
 
 @pytest.fixture
@@ -37,20 +40,63 @@ def play(vision):
 
 
 @pytest.fixture
-def succeed(play):
-    def run(*functions):
-        server = play(*functions)
-        assert server.end == "succeeded", server.text
-        return server.result
-
-    return run
+def clock():
+    return HandClock()
 
 
 @pytest.fixture
-def refused(play):
-    def run(*functions):
-        server = play(*functions)
-        assert server.end == "aborted"
-        return server.text
+def files(tmp_path):
+    from nao_library_modules.vision_files import VisionFiles
 
-    return run
+    return VisionFiles(str(tmp_path))
+
+
+@contextmanager
+def all_stopped():
+    """Gives a function that starts what it gets; everything that it got is stopped at the end."""
+    made = []
+
+    def started(one):
+        made.append(one)
+        one.start()
+        return one
+
+    yield started
+    for one in made:
+        one.stop(at_once=True)
+
+
+@pytest.fixture
+def stream(topics, clock):
+    from nao_library_modules.vision_stream import Stream
+
+    with all_stopped() as started:
+        yield lambda rate=0.0, out=OUT, width=0, height=0: started(
+            Stream("s", CAMERA, rate, topics, clock, out, width, height)
+        )
+
+
+@pytest.fixture
+def recording(topics, clock, files):
+    from nao_library_modules.vision_recorder import Recording, VideoWish
+
+    with all_stopped() as started:
+
+        def make(name="walk.mp4", rate=0.0, **fields):
+            wish = VideoWish(files.folder / name if name else None, "mp4", "h264", **fields)
+            return started(Recording("r", CAMERA, rate, topics, clock, files, wish))
+
+        yield make
+
+
+@pytest.fixture
+def send(topics, clock):
+    """Sends frames at 10 a second, numbered on."""
+    numbers = iter(range(256))
+
+    def some(count=1, topic=CAMERA):
+        for _ in range(count):
+            clock.time += 0.1
+            topics.send(topic, numbered_image(next(numbers), clock.time))
+
+    return some

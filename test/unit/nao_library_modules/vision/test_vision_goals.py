@@ -178,6 +178,12 @@ def test_two_streams_need_two_topics(refused, succeed):
     succeed(f("subscribe", id="my_camera", topic_out="other"))
 
 
+def test_pictures_of_any_camera_are_taken_without_a_robot(camera, vision, robot, play):
+    robot.connection.generation = 0
+    run = play(f("takePicture", str_param="a.png"), f("listThreads"))
+    assert (run.end, [feedback.waiting for feedback in run.feedback]) == ("succeeded", ["", ""])
+
+
 def test_files_that_are_there_are_replaced_only_on_demand(vision, refused, succeed, camera):
     succeed(f("takePicture", str_param="a.png"))
     before = (vision.files.folder / "a.png").read_bytes()

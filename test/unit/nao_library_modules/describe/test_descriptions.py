@@ -1,0 +1,171 @@
+"""The descriptions of all servers, against the servers themselves."""
+
+import importlib
+import inspect
+import json
+import math
+import pkgutil
+
+import pytest
+
+import nao_library_modules.behaviors
+from nao_library_modules.describe import COMMON, Description, answers, message_class
+from nao_library_modules.describe_fields import NO_UNIT
+from nao_library_modules.describe_offline import offline_servers
+from nao_library_modules.errors import BadGoal, FunctionFailed
+from nao_library_modules.nao_basic import NaoBasic
+
+SERVERS = {server.name: server for server in offline_servers()}
+NAMES = sorted(SERVERS)
+UNITS = {"s", "rad", "m", "deg", "%", "Hz", "kg", "rad/s", "m/s", "pixels", "frames a second", "samples a second"}
+
+
+def described(name):
+    server = SERVERS[name]
+    return Description(server.module, server.action)
+
+
+def functions(name):
+    return {function.name: function for function in described(name).functions()}
+
+
+def argument(server, function, field):
+    return next(a for a in functions(server)[function].arguments if a.name == field)
+
+
+def test_the_servers_of_the_library_are_found():
+    assert {"NaoLights", "NaoMotion", "nao_audio_out", "nao_audio_in", "NaoVision", "NaoBehavior"} <= set(SERVERS)
+
+
+def test_every_module_that_serves_an_action_is_among_the_servers():
+    found = set()
+    for package in (nao_library_modules, nao_library_modules.behaviors):
+        for file in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
+            if not file.ispkg:
+                found |= {each for each in vars(importlib.import_module(file.name)).values() if inspect.isclass(each)}
+    modules = {each for each in found if issubclass(each, NaoBasic) and each is not NaoBasic}
+    assert modules == {type(server.module) for server in SERVERS.values()}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_function_of_the_table_has_help_and_tells_what_it_answers(name):
+    found = functions(name)
+    assert list(found) == list(SERVERS[name].module.function_table)
+    for function in found.values():
+        assert function.help.endswith((".", "...")), function.name
+        assert function.answers, function.name
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_argument_has_type_help_and_a_unit_where_it_is_a_number(name):
+    for function in functions(name).values():
+        for taken in function.arguments:
+            where = (function.name, taken.name)
+            assert taken.type and taken.help, where
+            numeric = taken.type.startswith(("float", "int", "uint", "duration"))
+            assert bool(taken.unit) == numeric, where
+            assert not numeric or taken.unit == NO_UNIT or set(taken.unit.split(", ")) <= UNITS, (where, taken.unit)
+            if taken.default:
+                json.loads(taken.default)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_fields_of_all_functions_are_told_once(name):
+    common = [a.name for a in described(name).common()]
+    assert common == list(COMMON)
+    for function in functions(name).values():
+        assert not set(common) & {a.name for a in function.arguments}, function.name
+
+
+@pytest.mark.parametrize(
+    "server, function, field, unit, low, high",
+    [
+        ("NaoLights", "fade", "duration", "s", 0.0, math.nan),
+        ("NaoLights", "earLedsSetAngle", "angle", "deg", 0.0, 360.0),
+        ("NaoLights", "setIntensity", "i_values", NO_UNIT, math.nan, math.nan),
+        ("NaoMotion", "setAngles", "angles", "rad", math.nan, math.nan),
+        ("NaoMotion", "setStiffnesses", "angles", NO_UNIT, math.nan, math.nan),
+        ("NaoMotion", "goToPosture", "speed", NO_UNIT, 0.0, 1.0),
+        ("NaoMotion", "moveTo", "values", "m, rad", math.nan, math.nan),
+        ("NaoMotion", "move", "values", "m/s, rad/s", math.nan, math.nan),
+        ("NaoMotion", "recordMotion", "rate", "samples a second", 0.0, 100.0),
+        ("nao_audio_out", "say", "volume", NO_UNIT, 0.0, 1.0),
+        ("nao_audio_out", "say", "speed", "%", 0.0, 400.0),
+        ("nao_audio_out", "setOutputVolume", "volume", "%", 0.0, 100.0),
+        ("nao_audio_out", "playSine", "frequency", "Hz", 20.0, 20000.0),
+        ("nao_audio_in", "listen", "timeout", "s", 0.0, 3600.0),
+        ("NaoVision", "detectBall", "size", "m", 0.0, 100.0),
+        ("NaoVision", "takePicture", "width", "pixels", 0.0, 8192.0),
+    ],
+)
+def test_units_and_limits_are_those_that_people_know(server, function, field, unit, low, high):
+    taken = argument(server, function, field)
+    assert taken.unit == unit
+    assert (taken.minimum, taken.maximum) == pytest.approx((low, high), nan_ok=True)
+
+
+def test_words_that_checks_list_are_choices():
+    assert "green" in argument("NaoLights", "setColor", "str_param").choices
+    assert argument("NaoMotion", "getMoveConfig", "str_param").choices == ("Default", "Min", "Max")
+
+
+# What a message needs besides the field in question, so that the check gets as far as that.
+FILLED = {
+    "str_param": {"nao_audio_out": "x.wav", "nao_audio_in": "x.wav", "NaoVision": "", "NaoBehavior": "x"},
+    "id": {"NaoVision": "x"},
+    "vocabulary": {"nao_audio_in": ["yes"]},
+    "file_name": {"nao_audio_out": "x.wav"},
+}
+
+
+def beyond(server):
+    """Messages with a number beyond the greatest that is allowed, and what is in the others as it should be."""
+    found = SERVERS[server]
+    kind = message_class(found.action().action_goal.goal)
+    for function in functions(server).values():
+        for taken in function.arguments:
+            if math.isnan(taken.maximum):
+                continue
+            number = taken.maximum + 1
+            number = int(number) if taken.type.startswith(("int", "uint")) else number
+            message = kind(function=function.name, **{taken.name: [number] if taken.type.endswith("]") else number})
+            for field, values in FILLED.items():
+                if server in values and field in kind.__slots__:
+                    setattr(message, field, values[server])
+            yield taken, message
+
+
+@pytest.mark.parametrize(
+    "server, at_least",
+    [("NaoLights", 1), ("nao_audio_out", 25), ("nao_audio_in", 8), ("NaoVision", 35), ("NaoBehavior", 1)],
+)
+def test_what_is_beyond_the_limits_is_refused(server, at_least):
+    refused = 0
+    for taken, message in beyond(server):
+        with pytest.raises(FunctionFailed) as caught:
+            SERVERS[server].module.chain.read([message])
+        cause = caught.value.cause
+        # Some get no further than another field without a robot; none gets through.
+        if isinstance(cause, BadGoal) and cause.field == taken.name:
+            assert cause.allowed in taken.allowed
+            refused += 1
+    assert refused >= at_least
+
+
+@pytest.mark.parametrize(
+    "annotation, text",
+    [
+        (None, "nothing"),
+        (float, "number"),
+        ("list[str]", "list of text"),
+        ("list[list[float]]", "list of list of number"),
+        ("str | None", "text or nothing"),
+        ("tuple[int, ...]", "list of whole number"),
+    ],
+)
+def test_answers_are_told_in_words(annotation, text):
+    def function():
+        pass
+
+    function.__annotations__["return"] = annotation
+    assert answers(function) == text
