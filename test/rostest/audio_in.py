@@ -22,6 +22,7 @@ from nao_library_msgs.msg import AudioInFunction, AudioOutFunction
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from cases import case  # noqa: E402
 from sound_fixture import Room, bursts, delay, level, noise, recording, strongest_frequency  # noqa: E402
 
 VOCABULARY = [
@@ -42,6 +43,8 @@ EXTRACTORS = ("ALSpeechRecognition", "ALSoundDetection", "ALSoundLocalization")
 WAIT = Duration(1000)
 # s that a robot which has begun to listen needs before it hears.
 LISTENS_AFTER = 0.5
+# s in which the bip of a robot that has stopped to listen is over.
+BIP = 0.5
 
 
 def f(function, **fields):
@@ -275,7 +278,7 @@ class AudioIn(unittest.TestCase):
             "a wait": f("getLanguage", time=WAIT),
         }
         for name, function in functions.items():
-            with self.subTest(name):
+            with case(name):
                 run = send(self.ears, NaoAudioInGoal([function, f("ping")])).wait_for_function(0)
                 self.robot.advance(1.0)
                 run.cancel()
@@ -283,6 +286,7 @@ class AudioIn(unittest.TestCase):
                 self.assertEqual(run.state, GoalStatus.PREEMPTED, run.text)
                 for module in EXTRACTORS:
                     self.assertEqual(self.robot.module(module).getSubscribersInfo(), [])
+                self.robot.advance(BIP)  # else the next one may detect it
         self.play(f("record", str_param="after.wav", duration=0.5))
 
     def test_a_preempted_recording_is_valid(self):
@@ -316,7 +320,7 @@ class AudioIn(unittest.TestCase):
         first = f("startRecording", str_param="never.wav")
         recording("never.wav").unlink(missing_ok=True)
         for function, text in bad:
-            with self.subTest(function.function, text=text):
+            with case(function.function, text=text):
                 run = self.play(first, function, state=GoalStatus.ABORTED)
                 self.assertRegex(run.text, f"^function 2 .{function.function}.: ")
                 self.assertIn(text, run.text)

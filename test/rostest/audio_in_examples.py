@@ -2,14 +2,12 @@
 """The examples for nao_audio_in, started as users start them."""
 
 import signal
-import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
-import rospkg
 import rospy
 import rostest
 import soundfile
@@ -18,9 +16,9 @@ from nao_library_modules import dialogue_record
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from examples_fixture import start  # noqa: E402
 from sound_fixture import Room, bursts, level, recording  # noqa: E402
 
-EXAMPLES = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples"
 HEAD_YAW = "Device/SubDeviceList/HeadYaw/Position/Sensor/Value"
 
 
@@ -41,8 +39,7 @@ class AudioInExamples(unittest.TestCase):
             self.example.communicate()
 
     def start(self, name, *arguments):
-        command = [sys.executable, str(EXAMPLES / name), *arguments]
-        self.example = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.example = start(name, *arguments)
 
     def finish(self, status=0):
         """What the example printed; it ends with this status."""
@@ -68,14 +65,14 @@ class AudioInExamples(unittest.TestCase):
     def test_a_recording_that_is_interrupted_is_good(self):
         recording("cut.wav").unlink(missing_ok=True)
         self.start("record_sound.py", "cut.wav", "--seconds", "600")
-        wait_until(recording("cut.wav").exists, 40.0, "the recording")
+        # The file is there a few ticks before its first sample.
+        wait_until(lambda: holds_samples(recording("cut.wav")), 40.0, "the first samples")
         self.robot.advance(1.0)
         self.example.send_signal(signal.SIGINT)
         self.example.communicate(timeout=20)
         recorder = self.robot.module("ALAudioRecorder")
         wait_until(lambda: begins_to_record(recorder), 10.0, "the end of the recording")
         recorder.stopMicrophonesRecording()
-        # The second begins and ends between two samples.
         info = soundfile.info(str(recording("cut.wav")))
         self.assertGreaterEqual(info.frames, info.samplerate - 1)
 
@@ -129,6 +126,11 @@ class AudioInExamples(unittest.TestCase):
         self.wait_for_subscriber("ALSpeechRecognition")
         self.room.place("bursts", bursts(), self.room.around(1.0, np.pi), level_db=65.0, loop=True)
         self.assertIn("I did not hear you.", self.finish(status=1))
+
+
+def holds_samples(file):
+    """Whether a recording that grows has more than its header."""
+    return file.exists() and file.stat().st_size > 1000
 
 
 def begins_to_record(recorder):

@@ -74,8 +74,17 @@ class BadGoals(unittest.TestCase):
         self.assertEqual(run.state, GoalStatus.ABORTED)
         for word in ("function 2", "getData", "no/such/key"):
             self.assertIn(word, run.text)
-        self.assertEqual([done.function for done in run.result.results], ["setIntensity"])
+        self.assertEqual([done.function for done in run.result.results], ["setIntensity", "getData"])
+        self.assertEqual(run.result.results[0].error, "")
+        self.assertIn("no/such/key", run.result.results[1].error)
         self.assertEqual(self.robot.led(BRAIN0), 0.5)
+
+    def test_a_function_that_fails_is_skipped_when_the_goal_says_so(self):
+        missing = {"function": "getData", "str_param": "no/such/key", "on_error": "skip"}
+        run = self.play(HALF, missing, {**HALF, "i_values": [0.25]})
+        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
+        self.assertEqual([bool(done.error) for done in run.result.results], [False, True, False])
+        self.assertEqual(self.robot.led(BRAIN0), 0.25)
 
 
 if __name__ == "__main__":

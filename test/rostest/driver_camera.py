@@ -23,6 +23,8 @@ from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
 from camera_fixture import LIMIT, MAGENTA, Geometry, Look, magenta_spot, pixels_of, project  # noqa: E402
+from cases import case  # noqa: E402
+from services import configuration  # noqa: E402
 
 TOP, BOTTOM = 0, 1
 NAMES = ("top", "bottom")
@@ -105,7 +107,7 @@ class DriverCamera(unittest.TestCase):
 
     def test_a_thing_is_seen_where_camera_info_and_tf_say(self):
         for camera, resolution, head in ((TOP, 1, (0.0, -0.2)), (TOP, 2, (0.5, -0.1)), (BOTTOM, 1, (-0.4, -0.5))):
-            with self.subTest(camera=NAMES[camera], size=SIZES[resolution], head=head):
+            with case(camera=NAMES[camera], size=SIZES[resolution], head=head):
                 self.settings[camera].update_configuration({"resolution": resolution})
                 motion = self.robot.module("ALMotion")
                 motion.setStiffnesses("Head", 1.0)
@@ -119,7 +121,7 @@ class DriverCamera(unittest.TestCase):
         for camera in (TOP, BOTTOM):
             hfov, vfov = self.device.getHorizontalFOV(camera), self.device.getVerticalFOV(camera)
             for resolution, (width, height) in SIZES.items():
-                with self.subTest(camera=NAMES[camera], size=(width, height)):
+                with case(camera=NAMES[camera], size=(width, height)):
                     self.settings[camera].update_configuration({"resolution": resolution})
                     with Look(FOLDERS[camera]) as look:
                         image, info = look.now(lambda image, width=width: image.width == width)
@@ -137,7 +139,7 @@ class DriverCamera(unittest.TestCase):
 
     def test_pictures_come_at_the_rate_that_was_asked_for_in_the_robots_time(self):
         for rate, cameras in ((30, (TOP,)), (15, (TOP, BOTTOM)), (5, (BOTTOM,))):
-            with self.subTest(rate=rate), self.robot.at_speed(0.5):
+            with case(rate=rate), self.robot.at_speed(0.5):
                 looks = []
                 for camera in cameras:
                     self.settings[camera].update_configuration({"frame_rate": float(rate)})
@@ -208,7 +210,7 @@ class DriverCamera(unittest.TestCase):
             files = {}
             topic = f"{FOLDERS[TOP]}image_raw/compressed"
             subscriber = rospy.Subscriber(topic, CompressedImage, lambda m, f=files: f.update({m.header.stamp: m}))
-            with self.subTest(kind=kind), Look(FOLDERS[TOP]) as look:
+            with case(kind=kind), Look(FOLDERS[TOP]) as look:
                 known = "bgr8; {} compressed bgr8".format(kind)
                 image, _ = look.now(lambda i, f=files, k=known: i.header.stamp in f and f[i.header.stamp].format == k)
                 file = files[image.header.stamp]
@@ -252,7 +254,7 @@ class DriverCamera(unittest.TestCase):
     def test_parameters_of_the_picture_are_the_cameras(self):
         with Look(FOLDERS[TOP]) as look:
             self.settings[TOP].update_configuration({"exposure": 8, "gain": 16})
-            self.assertEqual(self.settings[TOP].get_configuration()["auto_exposition"], 0)
+            self.assertEqual(configuration(self.settings[TOP])["auto_exposition"], 0)
             self.assertEqual(self.device.getParameter(TOP, AUTO_EXPOSITION), 0)
             dark = np.mean(pixels_of(look.after(rospy.get_time() + 0.2)[0]))
             self.settings[TOP].update_configuration({"brightness": 100})
@@ -270,11 +272,11 @@ class DriverCamera(unittest.TestCase):
         self.assertEqual(self.device.getParameter(BOTTOM, CONTRAST), 60)
 
     def test_what_cannot_be_is_refused(self):
-        before = self.settings[TOP].get_configuration()
+        before = configuration(self.settings[TOP])
         for change in ({"resolution": 6}, {"color_space": 14}, {"camera_info_url": "nowhere"}):
-            with self.subTest(**change), self.assertRaises(DynamicReconfigureCallbackException):
+            with case(**change), self.assertRaises(DynamicReconfigureCallbackException):
                 self.settings[TOP].update_configuration(change)
-        after = self.settings[TOP].get_configuration()
+        after = configuration(self.settings[TOP])
         self.assertEqual({name: after[name] for name in DEFAULTS}, {name: before[name] for name in DEFAULTS})
 
     # --- calibration ----------------------------------------------------------------------------------------------

@@ -2,19 +2,22 @@
 """Footsteps: single ones, sequences with feedback, those that are too long, and those that are taken back."""
 
 import math
-import unittest
+import sys
+from pathlib import Path
 
 import rospy
 import rostest
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
-from rospy import Duration
 
 from nao_library_actions.msg import ExecFootstepsAction, ExecFootstepsGoal
-from nao_library_modules.places import Place, yaw_of_quaternion
+from nao_library_modules.places import Place
 from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import ClipFootstep, StepTargetService
-from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+from nao_sim_bridge.testing import send, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from services import action_client, answer, service  # noqa: E402
+from walking_fixture import WalkingTest  # noqa: E402
 
 LEFT, RIGHT = StepTarget.left, StepTarget.right
 
@@ -31,40 +34,15 @@ def ahead(count, length=0.04):
     return [*steps, step(LEFT, 0.0, 0.1) if count % 2 else step(RIGHT, 0.0, -0.1)]
 
 
-class DriverFootsteps(unittest.TestCase):
+class DriverFootsteps(WalkingTest):
     @classmethod
     def setUpClass(cls):
-        cls.robot = SimulatedRobot()
-        cls.client = SimpleActionClient("footsteps_execution", ExecFootstepsAction)
-        wait_until(lambda: cls.client.wait_for_server(Duration(0.01)), 30.0, "footsteps_execution")
-        for service in ("footstep_srv", "clip_footstep_srv"):
-            rospy.wait_for_service(service, 30.0)
-        cls.step = rospy.ServiceProxy("footstep_srv", StepTargetService)
-        cls.clip = rospy.ServiceProxy("clip_footstep_srv", ClipFootstep)
+        super().setUpClass()
+        cls.client = action_client("footsteps_execution", ExecFootstepsAction)
+        cls.step = service("footstep_srv", StepTargetService)
+        cls.clip = service("clip_footstep_srv", ClipFootstep)
         # It has reached the robot when it refuses what is wrong for the robot's own reasons.
-        wait_until(lambda: "wakeUp" in cls.refusal(step(LEFT, 0.0, 0.1)), 30.0, "nao_footsteps")
-        cls.motion = cls.robot.module("ALMotion")
-
-    @classmethod
-    def refusal(cls, target):
-        try:
-            cls.step(target)
-        except rospy.ServiceException as error:
-            return str(error)
-        return ""
-
-    def setUp(self):
-        self.robot.reset()
-        self.motion.wakeUp()
-        self.robot.advance(0.5)
-
-    def tearDown(self):
-        self.assertFalse(self.motion.moveIsActive(), "the robot still walks")
-
-    def truth(self):
-        pose = self.robot.true_pose()
-        turn = pose.orientation
-        return Place(pose.position.x, pose.position.y, yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w))
+        wait_until(lambda: "wakeUp" in answer(cls.step, step(LEFT, 0.0, 0.1)), 30.0, "nao_footsteps")
 
     def moved_since(self, before):
         return self.truth().seen_from(before)
@@ -160,7 +138,7 @@ class DriverFootsteps(unittest.TestCase):
             ([left], 0.0, "feedback_frequency"),
         ):
             self.assertIn(words, self.play(steps, frequency, GoalStatus.ABORTED).text)
-        self.assertIn("leg", self.refusal(step(3, 0.0, 0.1)))
+        self.assertIn("leg", answer(self.step, step(3, 0.0, 0.1)))
         self.assertLess(self.truth().distance_to(before), 0.005)
         self.motion.rest()
         self.assertIn("wakeUp", self.play([left], 10.0, GoalStatus.ABORTED).text)

@@ -1,15 +1,12 @@
 #!/usr/bin/env python3
 """Joints and poses under the names of nao_robot: topics, services and actions, to success, abort and preemption."""
 
-import subprocess
 import sys
 import unittest
 from pathlib import Path
 
-import rospkg
 import rospy
 import rostest
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from rospy import Duration
 from sensor_msgs.msg import JointState
@@ -28,6 +25,10 @@ from nao_library_actions.msg import (
 )
 from nao_library_msgs.msg import JointAnglesWithSpeed
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from examples_fixture import start  # noqa: E402
+from services import action_client, service  # noqa: E402
 
 CROUCH = (
     [0.0, 0.0, 1.0, 0.4, -1.57, -0.486, 0.0, 0.0, -0.3, 0.057, -0.744, 2.1, -1.122, -0.035]
@@ -56,30 +57,23 @@ class DriverGoals(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.robot = SimulatedRobot()
-        cls.trajectories = cls.client("joint_trajectory", JointTrajectoryAction)
-        cls.stiffness = cls.client("joint_stiffness_trajectory", JointTrajectoryAction)
-        cls.angles = cls.client("joint_angles_action", JointAnglesWithSpeedAction)
-        cls.poses = cls.client("body_pose", BodyPoseAction)
-        cls.postures = cls.client("body_pose_naoqi", BodyPoseWithSpeedAction)
+        cls.trajectories = action_client("joint_trajectory", JointTrajectoryAction)
+        cls.stiffness = action_client("joint_stiffness_trajectory", JointTrajectoryAction)
+        cls.angles = action_client("joint_angles_action", JointAnglesWithSpeedAction)
+        cls.poses = action_client("body_pose", BodyPoseAction)
+        cls.postures = action_client("body_pose_naoqi", BodyPoseWithSpeedAction)
         # Everything that speaks to the robot has reached it.
         near = trajectory(["HeadYaw"], (0.1, [0.0]))
         crouch = BodyPoseWithSpeedGoal("Crouch", 1.0)
         for client, goal in ((cls.trajectories, near), (cls.postures, crouch)):
             wait_until(lambda c=client, g=goal: send(c, g).wait().state == GoalStatus.SUCCEEDED, 30.0, client)
 
-    @classmethod
-    def client(cls, name, action):
-        client = SimpleActionClient(name, action)
-        wait_until(lambda: client.wait_for_server(Duration(0.01)), 30.0, name)
-        return client
-
     def setUp(self):
         self.robot.reset()
         self.serve("body_stiffness/enable")
 
     def serve(self, name):
-        rospy.wait_for_service(name, 10.0)
-        rospy.ServiceProxy(name, Empty)()
+        service(name, Empty, 10.0)()
 
     def play(self, client, goal, end=GoalStatus.SUCCEEDED):
         run = send(client, goal).wait()
@@ -275,24 +269,19 @@ class DriverGoals(unittest.TestCase):
 
     # --- examples --------------------------------------------------------------------------------------------------
 
-    def start_example(self, name, *arguments):
-        path = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples" / name
-        command = [sys.executable, str(path), *arguments]
-        return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-
     def end_of(self, example, status):
         text, _ = example.communicate(timeout=30.0)
         self.assertEqual(example.returncode, status, text)
         return text
 
     def test_examples(self):
-        state = self.start_example("robot_state.py")
-        mistyped = self.start_example("take_pose.py", "--speed", "0.5", "Crowch")
-        moves = self.start_example("joint_trajectory_client.py")
+        state = start("robot_state.py")
+        mistyped = start("take_pose.py", "--speed", "0.5", "Crowch")
+        moves = start("joint_trajectory_client.py")
         self.assertRegex(self.end_of(state, 0), r"torso   x -?0.0\d m, y -?0.0\d m, z 0.[23]\d m")
         self.assertIn("did you mean 'Crouch'", self.end_of(mistyped, 1))
         self.assertEqual(self.end_of(moves, 0).count("succeeded"), 3)
-        self.assertEqual(self.end_of(self.start_example("take_pose.py", "init"), 0).strip(), "init: succeeded")
+        self.assertEqual(self.end_of(start("take_pose.py", "init"), 0).strip(), "init: succeeded")
 
 
 if __name__ == "__main__":

@@ -1,48 +1,39 @@
 #!/usr/bin/env python3
 """A wall in the way of a target: the robot sees it, stops before it, gives the goal up and says why."""
 
-import unittest
+import sys
+from pathlib import Path
 
 import rospy
 import rostest
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
-from rospy import Duration
 
 from nao_library_modules.driver.planar_frames import pose_stamped
 from nao_library_modules.places import Place
-from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+from nao_sim_bridge.testing import send
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from services import action_client  # noqa: E402
+from walking_fixture import WalkingTest  # noqa: E402
 
 WALL_X = 0.96
 """m: the near face of the low wall of the world "obstacles", which is 1 m wide."""
 
 
-class DriverObstacle(unittest.TestCase):
+class DriverObstacle(WalkingTest):
     @classmethod
     def setUpClass(cls):
-        cls.robot = SimulatedRobot()
+        super().setUpClass()
         rospy.wait_for_message("odom", Odometry, 60.0)
-        cls.motion = cls.robot.module("ALMotion")
-
-    @classmethod
-    def client(cls, name, action):
-        client = SimpleActionClient(name, action)
-        wait_until(lambda: client.wait_for_server(Duration(0.01)), 60.0, name)
-        return client
-
-    def setUp(self):
-        self.robot.reset()
-        self.motion.wakeUp()
-        self.robot.advance(0.5)
 
     def tearDown(self):
-        self.assertFalse(self.motion.moveIsActive(), "the robot still walks")
+        super().tearDown()
         self.assertGreater(self.robot.true_pose().position.z, 0.3, "the robot has fallen")
 
     def test_a_target_behind_a_wall_is_given_up(self):
-        client = self.client("walk_target", MoveBaseAction)
+        client = action_client("walk_target", MoveBaseAction, 60.0)
         goal = MoveBaseGoal(pose_stamped(Place(1.5, 0.0, 0.0), "base_footprint", rospy.Time()))
         run = send(client, goal).wait(150.0)
         self.assertEqual(run.state, GoalStatus.ABORTED, run.text)

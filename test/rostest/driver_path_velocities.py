@@ -2,33 +2,35 @@
 """Walking to a target and along a path when the path follower leads by velocities."""
 
 import math
-import unittest
+import sys
+from pathlib import Path
 
 import rospy
 import rostest
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Pose2D, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
-from rospy import Duration
 
 from nao_library_actions.msg import FollowPathAction, FollowPathGoal
 from nao_library_modules.driver.planar_frames import pose_stamped
-from nao_library_modules.places import Place, yaw_of_quaternion
-from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+from nao_library_modules.places import Place
+from nao_sim_bridge.testing import send
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from services import action_client  # noqa: E402
+from walking_fixture import WalkingTest  # noqa: E402
 
 FRAME = "base_footprint"
 NEAR = 0.08
 """m: the threshold of the node, and what odometry is off."""
 
 
-class DriverPathVelocities(unittest.TestCase):
+class DriverPathVelocities(WalkingTest):
     @classmethod
     def setUpClass(cls):
-        cls.robot = SimulatedRobot()
+        super().setUpClass()
         rospy.wait_for_message("odom", Odometry, 60.0)
-        cls.motion = cls.robot.module("ALMotion")
         cls.poses = []
         cls.velocities = []
         cls.subscribers = [
@@ -37,22 +39,11 @@ class DriverPathVelocities(unittest.TestCase):
         ]
 
     def setUp(self):
-        self.robot.reset()
-        self.motion.wakeUp()
-        self.robot.advance(0.5)
+        super().setUp()
         self.velocities.clear()
 
-    def tearDown(self):
-        self.assertFalse(self.motion.moveIsActive(), "the robot still walks")
-
-    def truth(self):
-        pose = self.robot.true_pose()
-        turn = pose.orientation
-        return Place(pose.position.x, pose.position.y, yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w))
-
     def walk(self, name, action, goal, way):
-        client = SimpleActionClient(name, action)
-        wait_until(lambda: client.wait_for_server(Duration(0.01)), 60.0, name)
+        client = action_client(name, action, 60.0)
         before = self.truth()
         with self.robot.at_speed(2.0):  # what the machine delays a command by counts as so much less of the way
             run = send(client, goal).wait(150.0)

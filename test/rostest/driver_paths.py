@@ -2,12 +2,12 @@
 """Walking to targets and along paths, by odometry and by what is true: to the end, replaced, cancelled, stuck."""
 
 import math
-import unittest
+import sys
+from pathlib import Path
 
 import rospy
 import rostest
 import tf2_ros
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
@@ -19,9 +19,13 @@ from std_srvs.srv import Empty as EmptyService
 from nao_library_actions.msg import FollowPathAction, FollowPathGoal
 from nao_library_modules.driver.path_follower_path import WalkPath
 from nao_library_modules.driver.planar_frames import pose_stamped
-from nao_library_modules.places import Place, yaw_of_quaternion
+from nao_library_modules.places import Place
 from nao_library_msgs.srv import SetTransform
-from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+from nao_sim_bridge.testing import send, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from services import action_client  # noqa: E402
+from walking_fixture import WalkingTest, of_pose, seen_from_above  # noqa: E402
 
 NEAR, TURNED = 0.05, math.radians(5.0)
 """The thresholds of the node."""
@@ -40,37 +44,17 @@ def path(places, frame="odom"):
     return goal
 
 
-def seen_from_above(pose):
-    turn = pose.orientation
-    return Place(pose.position.x, pose.position.y, yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w))
-
-
-class DriverPaths(unittest.TestCase):
+class DriverPaths(WalkingTest):
     @classmethod
     def setUpClass(cls):
-        cls.robot = SimulatedRobot()
-        cls.targets = cls.client("walk_target", MoveBaseAction)
-        cls.paths = cls.client("walk_path", FollowPathAction)
+        super().setUpClass()
+        cls.targets = action_client("walk_target", MoveBaseAction)
+        cls.paths = action_client("walk_path", FollowPathAction)
         cls.frames = tf2_ros.Buffer()
         cls.listener = tf2_ros.TransformListener(cls.frames)
         for service in ("wakeup", "stop_walk_srv", "set_odometry_pose"):
             rospy.wait_for_service(service, 30.0)
         rospy.wait_for_message("odom", Odometry, 30.0)
-        cls.motion = cls.robot.module("ALMotion")
-
-    @classmethod
-    def client(cls, name, action):
-        client = SimpleActionClient(name, action)
-        wait_until(lambda: client.wait_for_server(Duration(0.01)), 30.0, name)
-        return client
-
-    def setUp(self):
-        self.robot.reset()
-        self.motion.wakeUp()
-        self.robot.advance(0.5)
-
-    def tearDown(self):
-        self.assertFalse(self.motion.moveIsActive(), "the robot still walks")
 
     def here(self, frame="odom"):
         """The robot between its feet, by a transform of after now."""
@@ -79,13 +63,7 @@ class DriverPaths(unittest.TestCase):
     def at(self, time, frame="odom"):
         """The robot between its feet at a time."""
         transform = self.frames.lookup_transform(frame, "base_footprint", time, Duration(5)).transform
-        turn = transform.rotation
-        return Place(
-            transform.translation.x, transform.translation.y, yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
-        )
-
-    def truth(self):
-        return seen_from_above(self.robot.true_pose())
+        return seen_from_above(transform.translation, transform.rotation)
 
     def play(self, client, goal, end=GoalStatus.SUCCEEDED):
         run = send(client, goal).wait(180.0)
@@ -112,12 +90,12 @@ class DriverPaths(unittest.TestCase):
         run = self.play(self.targets, target(*start.then(way)))
         self.there(self.here(), start.then(way))
         self.walked(before, way)
-        told = [seen_from_above(feedback.base_position.pose) for _, feedback in run.feedback]
+        told = [of_pose(feedback.base_position.pose) for _, feedback in run.feedback]
         self.assertGreater(len(told), 20)
         self.assertLess(told[0].distance_to(start), 0.05)
         self.assertEqual(run.feedback[0][1].base_position.header.frame_id, "odom")
         aim = rospy.wait_for_message("nao_path_follower/target_pose", PoseStamped, 5.0)
-        self.there(seen_from_above(aim.pose), start.then(way))
+        self.there(of_pose(aim.pose), start.then(way))
 
     def test_a_target_in_the_frame_of_the_robot_is_where_it_was_at_the_beginning(self):
         before, start = self.truth(), self.here()
@@ -299,7 +277,7 @@ class DriverPaths(unittest.TestCase):
             self.robot.advance(0.2)
 
         def torso():
-            return seen_from_above(self.after_now("odom", Odometry).pose.pose)
+            return of_pose(self.after_now("odom", Odometry).pose.pose)
 
         def offset(x, y, yaw):
             transform = TransformStamped().transform

@@ -22,6 +22,8 @@ from nao_library_msgs.srv import AudioPlayback, AudioRecorder, GetAudioMasterVol
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from cases import case  # noqa: E402
+from services import configuration  # noqa: E402
 from sound_fixture import Loudspeakers, Room, bursts, delay, noise, recording, strongest_frequency  # noqa: E402
 
 LIMIT = 30.0
@@ -198,7 +200,7 @@ class DriverSound(unittest.TestCase):
         self.settings.update_configuration({"frequency": 16000})
         with self.assertRaises(Exception):  # noqa: B017  the client of dynamic_reconfigure has no narrower one
             self.settings.update_configuration({"frequency": 22050})
-        self.assertEqual(self.settings.get_configuration()["frequency"], 16000)
+        self.assertEqual(configuration(self.settings)["frequency"], 16000)
 
     # --- files and volume -----------------------------------------------------------------------------------------
 
@@ -250,10 +252,10 @@ class DriverSound(unittest.TestCase):
             ("filename", {"file_path": "a.mp3"}, SIDES),
         ]
         for text, change, sides in cases:
-            with self.subTest(text, **change):
+            with case(text, **change):
                 self.assertIn(text, self.answer(self.record, **{**good, **change}, **self.channels(*sides)))
         for text, name in (("no file", "nothing.wav"), (NOT_IN_HOME, "../a.wav"), ("file_path", "")):
-            with self.subTest(text, name=name):
+            with case(text, name=name):
                 self.assertIn(text, self.answer(self.play_file, file_path=name))
         self.assertEqual(self.answer(self.volume), "")
 
@@ -282,7 +284,7 @@ class DriverSound(unittest.TestCase):
         subscriber = rospy.Subscriber(topic, AudioSourceLocalization, found.append)
         wait_until(localisation.getSubscribersInfo, LIMIT, "a subscriber of ALSoundLocalization")
         for bearing in (60, -120):
-            with self.subTest(bearing=bearing):
+            with case(bearing=bearing):
                 place = self.room.around(2.0, math.radians(bearing))
                 self.room.place("burst", bursts(), place, 70.0, loop=True)
                 found.clear()

@@ -19,6 +19,7 @@ from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedback
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from services import answer, configuration, service  # noqa: E402
 from sound_fixture import Loudspeakers, level  # noqa: E402
 
 LIMIT = 60.0
@@ -49,15 +50,6 @@ class DriverSpeech(unittest.TestCase):
     @classmethod
     def say(cls, text):
         return send(cls.speech, SpeechWithFeedbackGoal(text))
-
-    @staticmethod
-    def call(name):
-        """Error text of a service, empty if it did what it was asked."""
-        try:
-            rospy.ServiceProxy(name, Empty)()
-        except rospy.ServiceException as error:
-            return str(error)
-        return ""
 
     def setUp(self):
         self.robot.reset()
@@ -150,9 +142,9 @@ class DriverSpeech(unittest.TestCase):
     def test_a_voice_that_the_robot_does_not_have_is_refused(self):
         with self.assertRaises(Exception):  # noqa: B017  the client of dynamic_reconfigure has no narrower one
             self.configure(voice="nobody")
-        self.assertEqual(self.settings.get_configuration()["voice"], "")
+        self.assertEqual(configuration(self.settings)["voice"], "")
         rospy.set_param("nao_speech/voice", "nobody")
-        self.assertIn("no voice 'nobody': it has", self.call("reconfigure"))
+        self.assertIn("no voice 'nobody': it has", answer(service("reconfigure", Empty)))
         rospy.set_param("nao_speech/voice", "")
         self.succeed("My own voice.")
 
@@ -160,7 +152,7 @@ class DriverSpeech(unittest.TestCase):
         rospy.set_param("nao_speech/volume", 0.25)
         rospy.set_param("nao_speech/vocabulary", ["yes", "no"])
         rospy.set_param("nao_speech/enable_word_spotting", True)
-        self.assertEqual(self.call("reconfigure"), "")
+        self.assertEqual(answer(service("reconfigure", Empty)), "")
         wanted = {"volume": 25, "vocabulary": "yes / no", "word_spotting": True}
 
         def arrived():

@@ -23,6 +23,7 @@ from nao_library_msgs.msg import WordRecognized
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from services import answer, configuration, service  # noqa: E402
 from sound_fixture import Room  # noqa: E402
 
 LIMIT = 60.0
@@ -55,12 +56,7 @@ class DriverSpeechWords(unittest.TestCase):
     @staticmethod
     def call(name):
         """Error text of a service, empty if it did what it was asked."""
-        rospy.wait_for_service(name, LIMIT)
-        try:
-            rospy.ServiceProxy(name, Empty)()
-        except rospy.ServiceException as error:
-            return str(error)
-        return ""
+        return answer(service(name, Empty, LIMIT))
 
     def setUp(self):
         self.robot.reset()
@@ -104,7 +100,7 @@ class DriverSpeechWords(unittest.TestCase):
             run = self.set_vocabulary(*words)
             self.assertEqual((run.state, run.result.success), (GoalStatus.ABORTED, False))
             self.assertIn(text, run.text)
-        self.assertEqual(self.settings.get_configuration()["vocabulary"], "")
+        self.assertEqual(configuration(self.settings)["vocabulary"], "")
 
     def test_it_does_not_take_the_recognition_from_somebody_else(self):
         self.settings.update_configuration({"vocabulary": "yes / no"})

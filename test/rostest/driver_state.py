@@ -141,6 +141,12 @@ class DriverState(unittest.TestCase):
         self.assertGreater(abs(effort["LKneePitch"]) + abs(effort["RKneePitch"]), 0.1)
         self.assertLess(abs(effort["LHand"]), 0.05)
 
+    def test_stiffnesses_are_told_under_the_name_of_the_node(self):
+        state = self.now("nao_joint_states/joint_stiffness", JointState)
+        stiffnesses = dict(zip(state.name, state.effort))
+        self.assertEqual(len(stiffnesses), 26)
+        self.assertAlmostEqual(stiffnesses["LKneePitch"], 1.0, delta=1e-6)  # awake since the beginning
+
     def test_velocities_are_those_of_the_motion(self):
         publisher = rospy.Publisher("joint_angles", JointAnglesWithSpeed, queue_size=1)
         self.addCleanup(publisher.unregister)

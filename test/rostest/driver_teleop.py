@@ -9,6 +9,7 @@ import sys
 import termios
 import threading
 import unittest
+from pathlib import Path
 
 import rospkg
 import rospy
@@ -17,6 +18,9 @@ from sensor_msgs.msg import Joy
 from std_srvs.srv import Empty
 
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from services import answer, service  # noqa: E402
 
 LIMIT = 60.0
 NODE = rospkg.RosPack().get_path("nao_library_modules") + "/nodes/teleop_nao_keyboard"
@@ -73,19 +77,10 @@ class DriverTeleop(unittest.TestCase):
         cls.motion = cls.robot.module("ALMotion")
         cls.joy = rospy.Publisher("joy", Joy, queue_size=10, tcp_nodelay=True)
         wait_until(lambda: cls.joy.get_num_connections() > 0, LIMIT, "teleop_nao_joy")
-        rospy.wait_for_service("stop_walk_srv", 30.0)
-        cls.stop = rospy.ServiceProxy("stop_walk_srv", Empty)
-        for service in ("body_stiffness/enable", "wakeup"):
-            rospy.wait_for_service(service, 30.0)
-        wait_until(lambda: cls.answers(cls.stop), LIMIT, "nao_walker and the robot")
-
-    @staticmethod
-    def answers(service):
-        try:
-            service()
-        except rospy.ServiceException:
-            return False
-        return True
+        cls.stop = service("stop_walk_srv", Empty)
+        for name in ("body_stiffness/enable", "wakeup"):
+            service(name, Empty)
+        wait_until(lambda: answer(cls.stop) == "", LIMIT, "nao_walker and the robot")
 
     def setUp(self):
         self.stop()

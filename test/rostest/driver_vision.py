@@ -19,6 +19,8 @@ from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
 from camera_fixture import LIMIT, Geometry, matrix  # noqa: E402
+from cases import case  # noqa: E402
+from services import answer, service  # noqa: E402
 
 MODULES = {"face": "ALFaceDetection", "motion": "ALMovementDetection", "landmark": "ALLandMarkDetection"}
 TOP = "CameraTop_optical_frame"
@@ -33,26 +35,12 @@ class DriverVision(unittest.TestCase):
         cls.simulation = cls.robot.module("NaoSimulation")
         cls.geometry = Geometry(cls.robot)
         names = [f"nao_vision/{kind}_detection/{change}" for kind in MODULES for change in ("enable", "disable")]
-        cls.switches = {name.split("/", 1)[1]: cls.service(name, Empty) for name in names}
-        cls.learn = cls.service("nao_vision/face_detection/learn_face", LearnFace)
-        cls.forget = cls.service("nao_vision/face_detection/forget_person", LearnFace)
-        cls.sensitivity = cls.service("nao_vision/movement_detection_sensitivity", VisionMotionSensitivity)
+        cls.switches = {name.split("/", 1)[1]: service(name, Empty) for name in names}
+        cls.learn = service("nao_vision/face_detection/learn_face", LearnFace)
+        cls.forget = service("nao_vision/face_detection/forget_person", LearnFace)
+        cls.sensitivity = service("nao_vision/movement_detection_sensitivity", VisionMotionSensitivity)
         enable = cls.switches["landmark_detection/enable"]
-        wait_until(lambda: cls.answer(enable) == "", LIMIT, "nao_vision and the robot")
-
-    @staticmethod
-    def service(name, kind):
-        rospy.wait_for_service(name, LIMIT)
-        return rospy.ServiceProxy(name, kind)
-
-    @staticmethod
-    def answer(call, *fields):
-        """Error text of a service, empty if it did what it was asked."""
-        try:
-            call(*fields)
-        except rospy.ServiceException as error:
-            return str(error)
-        return ""
+        wait_until(lambda: answer(enable) == "", LIMIT, "nao_vision and the robot")
 
     def setUp(self):
         self.robot.reset()
@@ -168,7 +156,7 @@ class DriverVision(unittest.TestCase):
 
     def test_switching_on_and_off_twice_changes_nothing(self):
         for kind in MODULES:
-            with self.subTest(kind=kind):
+            with case(kind=kind):
                 self.assertEqual(self.subscribers(kind), [])
                 for _ in range(2):
                     self.switches[f"{kind}_detection/enable"]()
@@ -180,14 +168,14 @@ class DriverVision(unittest.TestCase):
     def test_the_sensitivity_of_movement_is_that_of_the_robot(self):
         movement = self.robot.module("ALMovementDetection")
         for value in (0.25, 0.75):
-            self.assertEqual(self.answer(self.sensitivity, number(value)), "")
+            self.assertEqual(answer(self.sensitivity, number(value)), "")
             self.assertAlmostEqual(movement.getColorSensitivity(), value, places=5)
         for value in (-0.1, 1.5, math.nan):
-            self.assertIn("0 to 1", self.answer(self.sensitivity, number(value)))
+            self.assertIn("0 to 1", answer(self.sensitivity, number(value)))
         self.assertAlmostEqual(movement.getColorSensitivity(), 0.75, places=5)
 
     def test_what_is_wrong_with_a_name_is_told(self):
-        self.assertIn("empty", self.answer(self.learn, name_of("  ")))
+        self.assertIn("empty", answer(self.learn, name_of("  ")))
         self.assertFalse(self.forget(name_of("nobody")).result.data)
 
 

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import unittest
+from pathlib import Path
 
 import rospkg
 import rospy
@@ -26,6 +27,9 @@ from nao_library_msgs.srv import (
     StepTargetService,
 )
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from services import answer, service  # noqa: E402
 
 LIMIT = 60.0
 """Wall time to wait for something, s."""
@@ -51,22 +55,9 @@ class DriverWalker(unittest.TestCase):
         cls.cmd_step = rospy.Publisher("cmd_step", StepTarget, queue_size=10, tcp_nodelay=True)
         for publisher in (cls.cmd_vel, cls.cmd_pose, cls.cmd_step):
             wait_until(lambda p=publisher: p.get_num_connections() > 0, LIMIT, f"subscriber of {publisher.name}")
-        cls.stop = cls.service("stop_walk_srv", Empty)
-        cls.walk_to = cls.service("cmd_pose_srv", CmdPoseService)
-        wait_until(lambda: cls.answers(cls.stop), LIMIT, "nao_walker and the robot")
-
-    @staticmethod
-    def service(name, kind):
-        rospy.wait_for_service(name, 30.0)
-        return rospy.ServiceProxy(name, kind)
-
-    @staticmethod
-    def answers(service):
-        try:
-            service()
-        except rospy.ServiceException:
-            return False
-        return True
+        cls.stop = service("stop_walk_srv", Empty)
+        cls.walk_to = service("cmd_pose_srv", CmdPoseService)
+        wait_until(lambda: answer(cls.stop) == "", LIMIT, "nao_walker and the robot")
 
     def setUp(self):
         self.stop()
@@ -97,11 +88,7 @@ class DriverWalker(unittest.TestCase):
         ends = []
 
         def run():
-            try:
-                call(*arguments)
-                ends.append("")
-            except rospy.ServiceException as error:
-                ends.append(str(error))
+            ends.append(answer(call, *arguments))
 
         thread = threading.Thread(target=run, daemon=True)
         thread.start()
@@ -161,7 +148,7 @@ class DriverWalker(unittest.TestCase):
         self.assertTrue(self.upright())
 
     def test_a_velocity_of_the_service_lasts_until_the_next_command(self):
-        self.service("cmd_vel_srv", CmdVelService)(velocity(x=0.5))
+        service("cmd_vel_srv", CmdVelService)(velocity(x=0.5))
         self.wait_for_walk()
         self.robot.advance(4 * TIMEOUT)
         self.assertTrue(self.motion.moveIsActive())
@@ -171,14 +158,14 @@ class DriverWalker(unittest.TestCase):
     def test_bad_velocities(self):
         self.cmd_vel.publish(velocity(x=float("nan")))
         with self.assertRaisesRegex(rospy.ServiceException, "linear.y: inf is not allowed: -1 to 1"):
-            self.service("cmd_vel_srv", CmdVelService)(velocity(y=float("inf")))
+            service("cmd_vel_srv", CmdVelService)(velocity(y=float("inf")))
         self.robot.advance(1.0)
         self.assertFalse(self.motion.moveIsActive())
         self.cmd_vel.publish(velocity(x=7.0))  # taken as 1
         self.wait_for_walk()
 
     def test_gait_parameters_and_the_pose_for_walking(self):
-        read, needs_pose = self.service("read_foot_gait_config_srv", Empty), "needs_start_walk_pose_srv"
+        read, needs_pose = service("read_foot_gait_config_srv", Empty), "needs_start_walk_pose_srv"
         for name, value in (
             ("use_foot_gait_config", True),
             ("foot_gait_config", {"MaxStepX": 0.03}),
@@ -187,7 +174,7 @@ class DriverWalker(unittest.TestCase):
             rospy.set_param(f"nao_walker/{name}", value)
             self.addCleanup(rospy.delete_param, f"nao_walker/{name}")
         read()
-        self.service(needs_pose, Empty)()
+        service(needs_pose, Empty)()
         self.walk_to(Pose2D(0.1, 0.0, 0.0))
         self.assertAlmostEqual(self.forward(), 0.1, delta=0.03)
         rospy.set_param("nao_walker/foot_gait_config", {"MaxStepsX": 0.03})
@@ -237,7 +224,7 @@ class DriverWalker(unittest.TestCase):
         with self.assertRaisesRegex(rospy.ServiceException, "pose.x: nan is not allowed: a finite number, in m"):
             self.walk_to(Pose2D(float("nan"), 0.0, 0.0))
         with self.assertRaisesRegex(rospy.ServiceException, "leg"):
-            self.service("cmd_step_srv", StepTargetService)(StepTarget(Pose2D(0.0, 0.1, 0.0), 2))
+            service("cmd_step_srv", StepTargetService)(StepTarget(Pose2D(0.0, 0.1, 0.0), 2))
         self.assertFalse(self.motion.moveIsActive())
 
     def test_limp_legs_are_told(self):
@@ -246,7 +233,7 @@ class DriverWalker(unittest.TestCase):
             self.walk_to(Pose2D(0.3, 0.0, 0.0))
 
     def test_steps(self):
-        step = self.service("cmd_step_srv", StepTargetService)
+        step = service("cmd_step_srv", StepTargetService)
         start = self.motion.getRobotPosition(True)[0]
         step(StepTarget(Pose2D(0.04, 0.1, 0.0), StepTarget.left))
         self.assertFalse(self.motion.moveIsActive())
@@ -260,7 +247,7 @@ class DriverWalker(unittest.TestCase):
         self.assertTrue(self.upright())
 
     def test_arms_swing_as_asked(self):
-        self.service("enable_arms_walking_srv", SetArmsEnabled)(False, True)
+        service("enable_arms_walking_srv", SetArmsEnabled)(False, True)
         self.addCleanup(self.motion.setMoveArmsEnabled, True, True)
         self.assertEqual([self.motion.getMoveArmsEnabled(arm) for arm in ("LArm", "RArm")], [False, True])
 
@@ -278,11 +265,11 @@ class DriverWalker(unittest.TestCase):
         self.assertFalse(self.motion.moveIsActive())
         with self.assertRaisesRegex(rospy.ServiceException, "walking is inhibited by /rosservice"):
             self.walk_to(Pose2D(0.3, 0.0, 0.0))
-        self.service("uninhibit_walk", Empty)()
+        service("uninhibit_walk", Empty)()
         self.wait_for_walk()
 
     def test_whoever_inhibits_walks(self):
-        inhibit, uninhibit = self.service("inhibit_walk", Empty), self.service("uninhibit_walk", Empty)
+        inhibit, uninhibit = service("inhibit_walk", Empty), service("uninhibit_walk", Empty)
         inhibit()
         self.walk_to(Pose2D(0.1, 0.0, 0.0))
         self.assertGreater(self.forward(), 0.05)

@@ -80,7 +80,9 @@ class LostRobot(MortalSimulator, unittest.TestCase):
             self.assertEqual(run.state, GoalStatus.ABORTED, stop)
             # Of the waiting call and of the connection, whichever notices first says it.
             self.assertRegex(run.text, rf"function 2 \(fade\): .*127.0.0.1:{PORT}.*(connection broke|went away)")
-            self.assertEqual([done.function for done in run.result.results], ["setIntensity"])
+            done, lost = run.result.results
+            self.assertEqual((done.function, done.error, lost.function), ("setIntensity", "", "fade"))
+            self.assertIn(lost.error, run.text)
             if stop == signal.SIGSTOP:  # the dead one is started again at once
                 self.wait_for_level(DiagnosticStatus.ERROR)
             self.kill()

@@ -2,38 +2,20 @@
 """The examples for NaoMotion, started as users start them."""
 
 import signal
-import subprocess
 import sys
-import unittest
 from pathlib import Path
 
-import rospkg
 import rospy
 import rostest
 
-from nao_sim_bridge.testing import SimulatedRobot, wait_until
+from nao_sim_bridge.testing import wait_until
 
-EXAMPLES = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples"
-SENSOR = "Device/SubDeviceList/{}/Position/Sensor/Value"
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from examples_fixture import ExampleTest, start  # noqa: E402
 
 
-class MotionExamples(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.robot = SimulatedRobot()
-
-    def setUp(self):
-        self.robot.reset()
-
-    def run_example(self, name, *arguments):
-        """Run an example to its end, which must be a good one; what it printed."""
-        command = [sys.executable, str(EXAMPLES / name), *arguments]
-        ended = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
-        self.assertEqual(ended.returncode, 0, ended.stdout)
-        return ended.stdout
-
-    def angle(self, joint):
-        return self.robot.value(SENSOR.format(joint))
+class MotionExamples(ExampleTest):
+    limit = 60
 
     def test_motion_client(self):
         text = self.run_example("motion_client.py")
@@ -58,20 +40,19 @@ class MotionExamples(unittest.TestCase):
         self.assertGreater(end.z, 0.28)
 
     def test_walks_end_on_both_feet_when_their_example_is_interrupted(self):
-        command = [sys.executable, str(EXAMPLES / "stand_walk_wave.py")]
-        example = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        example = start("stand_walk_wave.py")
         try:
             motion = self.robot.module("ALMotion")
             wait_until(lambda: motion.getRobotVelocity()[0] > 0.01, 40.0, "the robot on its way")
             example.send_signal(signal.SIGINT)
-            example.wait(20.0)
+            example.communicate(timeout=20.0)
             wait_until(lambda: not motion.moveIsActive(), 20.0, "the robot on both feet")
             self.robot.advance(1.0)
             self.assertLess(self.robot.true_pose().position.x, 0.28)
             self.assertGreater(self.robot.true_pose().position.z, 0.28)
         finally:
             example.kill()
-            example.wait()
+            example.communicate()
 
     def test_teach_by_hand(self):
         text = self.run_example("teach_by_hand.py", "rostest_sinking", "--seconds", "2")

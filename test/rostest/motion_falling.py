@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """The robot is pushed over in the middle of a motion; a goal gets it up again, also after one that was cancelled."""
 
-import unittest
+import sys
+from pathlib import Path
 
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal
-from nao_library_msgs.msg import MotionFunction
-from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+from nao_sim_bridge.testing import wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from motion_fixture import MotionTest, f  # noqa: E402
 
 # More than the robot can balance: 1.7 m/s for its centre of mass.
 PUSH_FORCE, PUSH_TIME = 60.0, 0.15
@@ -18,27 +20,13 @@ STANDING_HEIGHT, LYING_HEIGHT = 0.28, 0.2
 LONG = 20.0
 
 
-def f(function, **fields):
-    return MotionFunction(function=function, **fields)
-
-
 GET_UP = f("goToPosture", str_param="Stand")
 
 
-class MotionFalling(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.robot = SimulatedRobot()
-        cls.client = cls.robot.action_client("NaoMotion", NaoMotionAction)
-
+class MotionFalling(MotionTest):
     def setUp(self):
-        self.robot.reset()
+        super().setUp()
         self.play(f("wakeUp"))
-
-    def play(self, *functions):
-        run = send(self.client, NaoMotionGoal(list(functions))).wait(60.0)
-        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
-        return run.result
 
     def height(self):
         return self.robot.true_pose().position.z
@@ -52,7 +40,7 @@ class MotionFalling(unittest.TestCase):
 
     def fall_in_a_motion(self, x, y):
         turn = f("angleInterpolation", names=["HeadYaw"], angles=[1.0], times=[LONG])
-        run = send(self.client, NaoMotionGoal([turn])).wait_for_function(0)
+        run = self.send(turn).wait_for_function(0)
         self.push_over(x, y)
         run.wait()
         self.assertEqual(run.state, GoalStatus.ABORTED)
@@ -61,7 +49,7 @@ class MotionFalling(unittest.TestCase):
         answers = self.play(f("robotIsWakeUp"), f("getStiffnesses", names=["LLeg"])).memList
         self.assertEqual(answers[0], "False")
         self.assertEqual([float(value) for value in answers[1:]], [0.0] * 6)
-        refused = send(self.client, NaoMotionGoal([f("setAngles", names=["HeadYaw"], angles=[0.1])])).wait()
+        refused = self.send(f("setAngles", names=["HeadYaw"], angles=[0.1])).wait()
         self.assertEqual(refused.state, GoalStatus.ABORTED)
         self.assertIn("no stiffness in HeadYaw", refused.text)
 
@@ -83,7 +71,7 @@ class MotionFalling(unittest.TestCase):
 
     def test_getting_up_is_cancelled_on_the_way_and_done_by_the_next_goal(self):
         self.push_over(1.0, 0.0)
-        run = send(self.client, NaoMotionGoal([GET_UP])).wait_for_function(0)
+        run = self.send(GET_UP).wait_for_function(0)
         self.robot.advance(1.5)
         run.cancel()
         run.wait(5.0)

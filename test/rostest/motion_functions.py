@@ -2,7 +2,8 @@
 """Functions of NaoMotion through the real stack, with what the robot's joints then measure."""
 
 import math
-import unittest
+import sys
+from pathlib import Path
 
 import rospy
 import rostest
@@ -10,50 +11,28 @@ from actionlib_msgs.msg import GoalStatus
 from rospy import Duration
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal
-from nao_library_msgs.msg import MotionFunction
-from nao_sim_bridge.testing import SimulatedRobot, send
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from motion_fixture import MotionTest, f  # noqa: E402
 
 ARM = ["RShoulderPitch", "RShoulderRoll", "RElbowYaw", "RElbowRoll", "RWristYaw", "RHand"]
 # What a joint under load may be off its target, rad.
 NEAR = 0.03
-SENSOR = "Device/SubDeviceList/{}/Position/Sensor/Value"
-
-
-def f(function, **fields):
-    return MotionFunction(function=function, **fields)
 
 
 def point(seconds, positions, velocities=()):
     return JointTrajectoryPoint(positions=positions, velocities=velocities, time_from_start=Duration.from_sec(seconds))
 
 
-class MotionFunctions(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.robot = SimulatedRobot()
-        cls.client = cls.robot.action_client("NaoMotion", NaoMotionAction)
-
-    def setUp(self):
-        self.robot.reset()
-
-    def play(self, *functions):
-        run = send(self.client, NaoMotionGoal(list(functions))).wait(60.0)
-        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
-        return run.result
-
+class MotionFunctions(MotionTest):
     def refused(self, *functions):
         """The text with which a goal is aborted."""
-        run = send(self.client, NaoMotionGoal(list(functions))).wait()
+        run = self.send(*functions).wait()
         self.assertEqual(run.state, GoalStatus.ABORTED, run.text)
         self.assertEqual(run.result.results, [])
         return run.text
 
     def head_stiff(self):
         return f("setStiffnesses", names=["Head"], angles=[1.0])
-
-    def angle(self, joint):
-        return self.robot.value(SENSOR.format(joint))
 
     def assert_at(self, result, **angles):
         found = dict(zip(result.name, result.position))

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Motion that is cancelled or replaced ends at once, and the robot holds its pose; lights go on beside it."""
 
-import unittest
+import sys
+from pathlib import Path
 
 import rospy
 import rostest
@@ -9,17 +10,15 @@ from actionlib_msgs.msg import GoalStatus
 from rospy import Duration
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from nao_library_actions.msg import NaoLedAction, NaoLedGoal, NaoMotionAction, NaoMotionGoal
-from nao_library_msgs.msg import LedFunction, MotionFunction
-from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_msgs.msg import LedFunction
+from nao_sim_bridge.testing import send, wait_until
 
-SENSOR = "Device/SubDeviceList/{}/Position/Sensor/Value"
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from motion_fixture import MotionTest, f  # noqa: E402
+
 COMMAND = "Device/SubDeviceList/{}/Position/Actuator/Value"
 BRAIN0 = "Head/Led/Front/Right/1"
-
-
-def f(function, **fields):
-    return MotionFunction(function=function, **fields)
 
 
 def trajectory(target, seconds):
@@ -27,24 +26,17 @@ def trajectory(target, seconds):
     return JointTrajectory(joint_names=["HeadYaw"], points=[point])
 
 
-class MotionPreemption(unittest.TestCase):
+class MotionPreemption(MotionTest):
     @classmethod
     def setUpClass(cls):
-        cls.robot = SimulatedRobot()
-        cls.client = cls.robot.action_client("NaoMotion", NaoMotionAction)
+        super().setUpClass()
         cls.lights = cls.robot.action_client("NaoLights", NaoLedAction)
-
-    def setUp(self):
-        self.robot.reset()
 
     def start(self, *functions):
         """Send a chain and wait until the head is on its way."""
-        run = send(self.client, NaoMotionGoal(list(functions)))
+        run = self.send(*functions)
         wait_until(lambda: self.angle("HeadYaw") > 0.1, 20.0, "the head on its way")
         return run
-
-    def angle(self, joint):
-        return self.robot.value(SENSOR.format(joint))
 
     def assert_holds(self, joint="HeadYaw"):
         """The joint stays where it is, away from its target."""
@@ -73,8 +65,8 @@ class MotionPreemption(unittest.TestCase):
             self.assertEqual(self.robot.module("ALMotion").getTaskList(), [], function.function)
 
     def test_a_posture_is_interrupted_and_the_robot_stays_up(self):
-        send(self.client, NaoMotionGoal([f("wakeUp")])).wait(60.0)
-        run = send(self.client, NaoMotionGoal([f("goToPosture", str_param="Crouch", speed=0.3)]))
+        self.send(f("wakeUp")).wait(60.0)
+        run = self.send(f("goToPosture", str_param="Crouch", speed=0.3))
         before = self.angle("LKneePitch")
         wait_until(lambda: abs(self.angle("LKneePitch") - before) > 0.05, 20.0, "the knee on its way")
         run.cancel()
@@ -88,7 +80,7 @@ class MotionPreemption(unittest.TestCase):
 
     def test_a_new_goal_takes_over_where_the_old_one_was(self):
         old = self.start(f("angleInterpolation", names=["HeadYaw"], angles=[2.0], times=[8.0], stiffness=1.0))
-        new = send(self.client, NaoMotionGoal([f("angleInterpolation", names=["HeadYaw"], angles=[-0.5], times=[2.0])]))
+        new = self.send(f("angleInterpolation", names=["HeadYaw"], angles=[-0.5], times=[2.0]))
         old.wait(5.0)
         new.wait()
         self.assertEqual((old.state, new.state), (GoalStatus.PREEMPTED, GoalStatus.SUCCEEDED), new.text)
@@ -107,10 +99,7 @@ class MotionPreemption(unittest.TestCase):
         self.assertEqual(run.text, "preempted in function 3 (angleInterpolation)")
 
     def test_lights_and_motion_run_at_the_same_time(self):
-        motion = send(
-            self.client,
-            NaoMotionGoal([f("angleInterpolation", names=["HeadYaw"], angles=[1.0], times=[2.0], stiffness=1.0)]),
-        )
+        motion = self.send(f("angleInterpolation", names=["HeadYaw"], angles=[1.0], times=[2.0], stiffness=1.0))
         fade = LedFunction(function="fade", lights=["Brain0"], i_values=[0.0], duration=1.0)
         lights = send(self.lights, NaoLedGoal([fade])).wait()
         motion.wait()

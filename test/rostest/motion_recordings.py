@@ -1,51 +1,39 @@
 #!/usr/bin/env python3
 """Motions recorded from the robot's joints, replayed, mirrored, kept under names; nod, stand and wave as one goal."""
 
-import unittest
+import sys
+from pathlib import Path
 
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal
-from nao_library_msgs.msg import MotionFunction
-from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
+from nao_sim_bridge.testing import wait_until
 
-SENSOR = "Device/SubDeviceList/{}/Position/Sensor/Value"
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from motion_fixture import MotionTest, f  # noqa: E402
+
 NAME = "rostest_turn"
 COPY = "rostest_turn_2"
 
 
-def f(function, **fields):
-    return MotionFunction(function=function, **fields)
-
-
-class MotionRecordings(unittest.TestCase):
+class MotionRecordings(MotionTest):
     @classmethod
     def setUpClass(cls):
-        cls.robot = SimulatedRobot()
-        cls.client = cls.robot.action_client("NaoMotion", NaoMotionAction)
+        super().setUpClass()
         cls.motion = cls.robot.module("ALMotion")
 
     def setUp(self):
-        self.robot.reset()
+        super().setUp()
         for name in self.play(f("listMotions")).memList:
             if name in (NAME, COPY):
                 self.play(f("deleteMotion", str_param=name))
 
-    def play(self, *functions):
-        run = send(self.client, NaoMotionGoal(list(functions))).wait(60.0)
-        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
-        return run.result
-
-    def angle(self, joint):
-        return self.robot.value(SENSOR.format(joint))
-
     def record_a_turn(self, until=0.6):
         """Record while another client turns the head to the left."""
         self.motion.setStiffnesses("Head", 1.0)
-        recording = send(
-            self.client, NaoMotionGoal([f("recordMotion", str_param=NAME, names=["Head"], duration=60.0, rate=20.0)])
+        recording = self.send(
+            f("recordMotion", str_param=NAME, names=["Head"], duration=60.0, rate=20.0)
         ).wait_for_function(0)
         self.motion.angleInterpolation(["HeadYaw"], [until], [1.5], True)
         recording.cancel()
@@ -71,9 +59,7 @@ class MotionRecordings(unittest.TestCase):
 
     def test_joints_that_are_taught_by_hand_are_stiff_again_after_a_cancel(self):
         self.motion.setStiffnesses("Head", 0.8)
-        run = send(
-            self.client, NaoMotionGoal([f("recordMotion", str_param=NAME, names=["Head"], duration=60.0, limp=True)])
-        )
+        run = self.send(f("recordMotion", str_param=NAME, names=["Head"], duration=60.0, limp=True))
         wait_until(lambda: self.motion.getStiffnesses("Head") == [0.0, 0.0], 10.0, "a limp head")
         self.robot.advance(0.5)
         run.cancel()
@@ -90,18 +76,18 @@ class MotionRecordings(unittest.TestCase):
         self.assertIn(COPY, names)
         self.assertNotIn(NAME, names)
         self.play(f("deleteMotion", str_param=COPY))
-        run = send(self.client, NaoMotionGoal([f("playMotion", str_param=COPY)])).wait()
+        run = self.send(f("playMotion", str_param=COPY)).wait()
         self.assertEqual(run.state, GoalStatus.ABORTED)
         self.assertIn(COPY, run.text)
 
     def test_names_stay_in_the_folder(self):
         for name in ("../turn", "a/b", ".hidden", ""):
-            run = send(self.client, NaoMotionGoal([f("recordMotion", str_param=name, duration=0.1)])).wait()
+            run = self.send(f("recordMotion", str_param=name, duration=0.1)).wait()
             self.assertEqual(run.state, GoalStatus.ABORTED, name)
 
     def test_a_replay_is_cancelled_and_the_head_stays(self):
         self.record_a_turn(1.2)
-        run = send(self.client, NaoMotionGoal([f("playMotion", str_param=NAME, speed=0.2)]))
+        run = self.send(f("playMotion", str_param=NAME, speed=0.2))
         wait_until(lambda: 0.1 < self.angle("HeadYaw") < 0.9, 20.0, "the head on its way")
         run.cancel()
         run.wait(5.0)
@@ -119,7 +105,7 @@ class MotionRecordings(unittest.TestCase):
         stand = f("goToPosture", str_param="Stand")
         raised = f("setPose", names=["RArm"], angles=[-1.0, -0.3, 1.2, 0.8, 0.0, 1.0], duration=1.5)
         wave = f("angleInterpolation", names=["RElbowRoll"], angles=[0.4, 1.2, 0.4, 1.2], times=[0.5, 1.0, 1.5, 2.0])
-        run = send(self.client, NaoMotionGoal([nod, stand, raised, wave])).wait(60.0)
+        run = self.send(nod, stand, raised, wave).wait(60.0)
         self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
         self.assertEqual([feedback.index for _, feedback in run.feedback], [0, 1, 2, 3])
         self.assertAlmostEqual(self.angle("RElbowRoll"), 1.2, delta=0.05)

@@ -14,7 +14,8 @@ from nao_library_actions.msg import NaoVisionAction
 from nao_sim_bridge.testing import wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from plan_examples_fixture import PlanExampleTest, start  # noqa: E402
+from examples_fixture import start  # noqa: E402
+from plan_examples_fixture import PlanExampleTest  # noqa: E402
 
 FETCH_LIMIT = 60.0
 """s of simulated time that fetching may take."""

@@ -2,8 +2,10 @@
 """Plans on the simulated robot: what they do is measured on the robot, and when they end it stands."""
 
 import math
+import sys
 import threading
 import unittest
+from pathlib import Path
 
 import rospy
 import rostest
@@ -39,6 +41,9 @@ from nao_library_modules.process_modules.trace import trace_of
 from nao_library_modules.process_modules.waiting import wait_for
 from nao_library_msgs.msg import PlanTree
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from news import News  # noqa: E402
 
 SENSOR = "Device/SubDeviceList/{}/Position/Sensor/Value"
 FRAME_TORSO = 0
@@ -153,15 +158,13 @@ class ProcessModules(unittest.TestCase):
         self.assertGreater(places[-1][0].x, 0.12)
 
     def test_a_sentence_goes_to_the_topic(self):
-        said = []
-        subscriber = rospy.Subscriber("speech", String, lambda message: said.append(message.data))
-        self.addCleanup(subscriber.unregister)
-        self.link.publisher("speech", String)
-        wait_until(subscriber.get_num_connections, 20.0, "the publisher")
-        text_to_speech("I am here.")
-        wait_until(lambda: "I am here." in said, 20.0, "the sentence on the topic")
-        done = self.robot.value
-        wait_until(lambda: done("ALTextToSpeech/CurrentSentence") == "I am here.", 20.0, "the sentence on the robot")
+        self.link.topic("speech", String)
+        news = News()
+        with news.messages("speech", String) as said:
+            text_to_speech("I am here.")
+            news.wait(lambda: String("I am here.") in said, "the sentence on the topic")
+        memory, keys = self.robot.module("ALMemory"), ["ALTextToSpeech/CurrentSentence"]  # it may hold nothing yet
+        wait_until(lambda: memory.getListData(keys) == ["I am here."], 20.0, "the sentence on the robot")
 
     # --- ends ---------------------------------------------------------------------------------------------------------
 

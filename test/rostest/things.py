@@ -2,8 +2,10 @@
 """Things that ROS nodes place in the simulated world, move and remove."""
 
 import math
+import sys
 import threading
 import unittest
+from pathlib import Path
 
 import rospy
 import rostest
@@ -12,6 +14,9 @@ from PIL import Image
 
 from nao_library_msgs.srv import MoveObject, PlaceObject, RemoveObject
 from nao_sim_bridge.testing import SimulatedRobot
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from services import service  # noqa: E402
 
 HALF_TURN = Quaternion(0.0, 0.0, 1.0, 0.0)
 PATIENCE = 20.0
@@ -27,14 +32,9 @@ class Things(unittest.TestCase):
         cls.robot = SimulatedRobot()
         cls.simulation = cls.robot.module("NaoSimulation")
         cls.place, cls.move, cls.remove = (
-            cls.service(name, kind)
+            service(f"nao_sim/{name}_object", kind, PATIENCE)
             for name, kind in (("place", PlaceObject), ("move", MoveObject), ("remove", RemoveObject))
         )
-
-    @staticmethod
-    def service(name, kind):
-        rospy.wait_for_service(f"nao_sim/{name}_object", PATIENCE)
-        return rospy.ServiceProxy(f"nao_sim/{name}_object", kind)
 
     def setUp(self):
         self.robot.pause()
@@ -84,7 +84,7 @@ class Things(unittest.TestCase):
         answers = []
         waiting = threading.Thread(
             target=lambda: answers.append(
-                self.service("move", MoveObject)(
+                service("nao_sim/move_object", MoveObject)(
                     name="p", pose=at(2.0, 1.5, 0.0, HALF_TURN), time=rospy.Duration(1.0), wait=True
                 )
             )

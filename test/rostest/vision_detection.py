@@ -16,6 +16,7 @@ from nao_library_msgs.msg import MotionFunction, VisionFunction
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from cases import case  # noqa: E402
 from things_fixture import FACING, Things, angle_between, point  # noqa: E402
 
 EXTRACTORS = (
@@ -97,7 +98,7 @@ class VisionDetection(unittest.TestCase):
                 (2.0, 0.0, "top", 0.0),
             )
         ):
-            with self.subTest(distance=distance):
+            with case(distance=distance):
                 self.look(pitch=pitch)
                 place = self.things.place(f"ball{number}", (distance, left, 0.03), ball=0.03)
                 (ball,) = self.see(f("detectBall", camera=camera, count=3)).objects

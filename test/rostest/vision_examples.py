@@ -3,55 +3,33 @@
 
 import math
 import re
-import subprocess
 import sys
-import unittest
 from pathlib import Path
 
 import av
 import cv2
 import numpy as np
-import rospkg
 import rospy
 import rostest
 
 from nao_library_actions.msg import NaoVisionAction
-from nao_sim_bridge.testing import SimulatedRobot
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from cases import case  # noqa: E402
+from examples_fixture import ExampleTest  # noqa: E402
 from things_fixture import FACING, Things  # noqa: E402
 
-EXAMPLES = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples"
 BALL = "ball"
 """Of the world lab."""
 NEAR = 0.30
 
 
-def start(name, *arguments):
-    command = [sys.executable, str(EXAMPLES / name), *arguments]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-
-
-class VisionExamples(unittest.TestCase):
+class VisionExamples(ExampleTest):
     @classmethod
     def setUpClass(cls):
-        cls.robot = SimulatedRobot()
+        super().setUpClass()
         cls.robot.action_client("NaoVision", NaoVisionAction)
         cls.things = Things(cls.robot)
-
-    def setUp(self):
-        self.robot.reset()
-
-    def run_example(self, name, *arguments, status=0, limit=150):
-        """What the example printed; it ends with this status."""
-        example = start(name, *arguments)
-        try:
-            output, _ = example.communicate(timeout=limit)
-        except subprocess.TimeoutExpired:
-            example.kill()
-            self.fail(f"{name} did not end within {limit} s: {example.communicate()[0]}")
-        self.assertEqual(example.returncode, status, output)
-        return output
 
     def file_in(self, output, pattern):
         """The file that the example says it wrote."""
@@ -61,7 +39,7 @@ class VisionExamples(unittest.TestCase):
 
     def test_a_picture(self):
         for camera in ("top", "bottom"):
-            with self.subTest(camera=camera):
+            with case(camera=camera):
                 output = self.run_example("take_picture.py", f"example_{camera}.png", "--camera", camera, "--overwrite")
                 picture = cv2.imread(str(self.file_in(output, r"\.png")))
                 self.assertIn(f"{picture.shape[1]} x {picture.shape[0]} pixels", output)

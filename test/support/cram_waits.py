@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from nao_library_modules.process_modules.control import (
-    top_level,
-)
-from nao_library_modules.process_modules.flow import (
-    wait_until,
-)
+from nao_library_modules.process_modules.control import top_level
+from nao_library_modules.process_modules.flow import wait_until
 from nao_library_modules.process_modules.waiting import wait_for
 
 SHORT = 0.02

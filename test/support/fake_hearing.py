@@ -2,33 +2,21 @@
 
 from __future__ import annotations
 
+from fake_subscriptions import FakeSubscriptions
+
 from naoqi.errors import RobotError, UnknownMethod
 
 
-class FakeExtractor:
+class FakeExtractor(FakeSubscriptions):
     """Works for its subscribers.
 
     Attributes:
-        subscribers: Their names.
         parameters: Name -> value.
     """
 
-    name = "ALExtractor"
-
     def __init__(self):
-        self.subscribers = []
+        super().__init__()
         self.parameters = {"Sensitivity": 0.9}
-
-    def subscribe(self, name):
-        self.subscribers.append(name)
-
-    def unsubscribe(self, name):
-        if name not in self.subscribers:
-            raise RobotError(self.name, "unsubscribe", f"{name} is not subscribed")
-        self.subscribers.remove(name)
-
-    def getSubscribersInfo(self):
-        return [[name, 30, 0.0] for name in self.subscribers]
 
     def setParameter(self, name, value):
         self.parameters[name] = value

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import math
 
+from fake_subscriptions import FakeSubscriptions
+
 from nao_library_modules.gaze import load_head
-from naoqi.errors import RobotError, UnknownMethod
+from naoqi.errors import UnknownMethod
 
 HFOV, VFOV = math.radians(56.3), math.radians(43.7)
 TORSO_HEIGHT = 0.33
@@ -18,27 +20,15 @@ PICTURE_TIME = 0.1
 MOUNTS = ("CameraTop", "CameraBottom")
 
 
-class FakeExtractor:
+class FakeExtractor(FakeSubscriptions):
     """Works for its subscribers, through one camera."""
 
-    name = "ALExtractor"
     own_camera = True
 
     def __init__(self):
-        self.subscribers = []
+        super().__init__()
         self.camera = 0
         self.calls = []
-
-    def subscribe(self, name):
-        self.subscribers.append(name)
-
-    def unsubscribe(self, name):
-        if name not in self.subscribers:
-            raise RobotError(self.name, "unsubscribe", f"{name} is not subscribed")
-        self.subscribers.remove(name)
-
-    def getSubscribersInfo(self):
-        return [[name, 30, 0.0] for name in self.subscribers]
 
     def getActiveCamera(self):
         if not self.own_camera:

@@ -89,6 +89,9 @@ class FakeEdge:
         self.shutdown_actions = []
         self.reports = {}
         self.frames = {}
+        self.services = {}
+        self.subscribers = {}
+        self.descriptions = {}
 
     def locate(self, frame):
         if frame not in self.frames:
@@ -107,6 +110,15 @@ class FakeEdge:
     def publish_diagnostics(self, hardware_id, reports):
         self.reports = reports
         return SimpleNamespace(close=lambda: None)
+
+    def serve(self, name, kind, answer):
+        self.services[name] = answer
+
+    def subscribe(self, topic, kind, callback):
+        self.subscribers[topic] = callback
+
+    def serve_description(self, name, answer):
+        self.descriptions[name] = answer
 
     def on_shutdown(self, action):
         self.shutdown_actions.append(action)

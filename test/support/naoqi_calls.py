@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from naoqi_calls_life import LIFE_BEFORE, LIFE_CALLS, LIFE_ELSEWHERE
+
 from nao_sim_bridge.services.api import COMMON
 
 HEAD = ["HeadYaw", "HeadPitch"]
@@ -12,6 +14,8 @@ HAND_MATRIX = [1.0, 0.0, 0.0, 0.12, 0.0, 1.0, 0.0, 0.12, 0.0, 0.0, 1.0, 0.0]
 LINE = [1, 0.0, 0.0]
 NO_CHANGE = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]
 KEY, EVENT = "Test/Key", "Test/Event"
+# Two LEDs as the DCM names them.
+EYES = [f"Face/Led/Red/{side}/0Deg/Actuator/Value" for side in ("Left", "Right")]
 # A sound that is shipped, and the id of one that plays in a loop.
 SOUND, LOADED = "nao_library/bip.ogg", object()
 POSTED = object()  # the id of a call that was posted to the module
@@ -69,6 +73,20 @@ LOOKING_CALLS = {
     "setResolution": (1,),
 }
 CALLS = {
+    "ALTouch": {"getSensorList": (), "getStatus": ()},
+    "ALTactileGesture": {
+        "createGesture": (["000", "110", "000"],),
+        "getGesture": ("000,100,000",),
+        "getGestures": (),
+        "getSequence": ("SingleFront",),
+        "setHoldTime": (0.8,),
+        "setSequenceTime": (0.2,),
+        "setSettleTime": (0.04,),
+    },
+    "ALChestButton": {},
+    "ALFsr": {},
+    "ALSensors": {**EXTRACTOR_CALLS, "run": ()},
+    "ALSonar": {**EXTRACTOR_CALLS, "getFilteredValues": ()},
     "ALBarcodeReader": LOOKING_CALLS,
     "ALLandMarkDetection": {**LOOKING_CALLS, "setParameter": ("pause", False)},
     "ALRedBallDetection": EXTRACTOR_CALLS,
@@ -425,11 +443,36 @@ CALLS = {
         "setVocabulary": (["yes", "no"], False),
         "setWordListAsVocabulary": (["yes", "no"],),
     },
+    "ALBattery": {"enablePowerMonitoring": (True,), "getBatteryCharge": ()},
+    "ALBodyTemperature": {
+        "areNotificationsEnabled": (),
+        "getTemperatureDiagnosis": (),
+        "setEnableNotifications": (True,),
+    },
+    "ALDiagnosis": {
+        "getActiveDiagnosis": (),
+        "getDiagnosisStatus": (),
+        "getPassiveDiagnosis": (),
+        "isNotificationEnabled": (),
+        "setEnableNotification": (True,),
+    },
+    "ALRobotModel": {"getConfig": ()},
+    "ALRobotPose": {"getActualPoseAndTime": (), "getPoseNames": ()},
+    "DCM": {
+        "createAlias": (["TestEyes", EYES],),
+        "getPrefix": (),
+        "getTime": (0,),
+        "preferences": ("Save", "Chest", "Test/Key", 1.0),
+        "set": ([EYES[0], "Merge", [[0.5, 0]]],),
+        "setAlias": ("TestEyes", 0, [0.5, 0.5]),
+    },
     "ALSystem": {
+        "appBackupInfo": (),
         "diskFree": (True,),
         "freeMemory": (),
         "previousSystemVersion": (),
         "reboot": (),
+        "robotIcon": (64,),
         "robotName": (),
         "setRobotName": ("nao",),
         "setTimezone": ("UTC",),
@@ -505,7 +548,6 @@ CALLS = {
         "resetDetection": (),
         "setActiveCamera": (0,),
         "setColorSensitivity": (0.8,),
-        "setDepthSensitivity": (0.3,),
         "setFrameRate": (10,),
         "setResolution": (1,),
     },
@@ -555,12 +597,15 @@ CALLS = {
         "setBodyLanguageModeFromStr": ("contextual",),
         "setBodyTalkEnabled": (True,),
     },
+    **LIFE_CALLS,
 }
 # Answered, but not with success, or not by a robot that is still needed: tests of their own.
 ELSEWHERE = {
+    **LIFE_ELSEWHERE,
     "ALAudioDevice": {"sendLocalBufferToOutput"},
     "ALAudioPlayer": {"playFileInLoop", "playInLoop", "playWebStream"},
     "ALMemory": {"getDataOnChange", "getDataPtr", "getFloatPtr", "getIntPtr"},
+    "ALMovementDetection": {"setDepthSensitivity"},
     "ALSpeechRecognition": {
         "activateAllRules",
         "activateRule",
@@ -578,7 +623,8 @@ ELSEWHERE = {
         "removeWordListFromSlot",
         "setContextParam",
     },
-    "ALSystem": {"shutdown"},
+    "ALSystem": {"changePassword", "factoryReset", "setRobotIcon", "shutdown", "upgrade"},
+    "DCM": {"calibration", "special"},
     "ALVideoDevice": {"getDirectRawImageLocal", "getDirectRawImagesLocal", "getImageLocal", "getImagesLocal"},
     "ALAnimatedSpeech": {"declareAnimationsPackage"},
     "ALTextToSpeech": {"loadVoicePreference"},
@@ -586,6 +632,8 @@ ELSEWHERE = {
 }
 # What has to be called first: module and method -> method, arguments.
 BEFORE = {
+    ("DCM", "setAlias"): ("createAlias", ["TestEyes", EYES]),
+    **LIFE_BEFORE,
     ("ALAudioDevice", "unsubscribe"): ("subscribe", "Listener"),
     ("ALAudioPlayer", "playSoundSetFile"): ("loadSoundSet", "nao_library"),
     ("ALSpeechRecognition", "eraseContextSet"): ("saveContextSet", "test"),
@@ -601,14 +649,6 @@ OF_A_SUBSCRIBER = ("getMyPeriod", "getMyPrecision", "unsubscribe", "updatePeriod
 for extractor in [module for module, calls in CALLS.items() if "getSubscribersInfo" in calls]:
     BEFORE.update({(extractor, method): ("subscribe", "Listener") for method in OF_A_SUBSCRIBER})
 # What would flash the robot's disk or change its users, and its picture: a simulation has neither.
-MISSING_IN_SYSTEM = {
-    "appBackupInfo",
-    "changePassword",
-    "factoryReset",
-    "robotIcon",
-    "setRobotIcon",
-    "upgrade",
-}
 # Answered by a robot on stiff legs only; it may still walk then.
 WALKS = {
     "move",

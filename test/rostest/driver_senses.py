@@ -1,0 +1,224 @@
+#!/usr/bin/env python3
+"""Touch, feet, sonars, temperatures and battery of the robot, as topics and on /diagnostics."""
+
+import json
+import math
+import sys
+import unittest
+from pathlib import Path
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from sensor_msgs.msg import Range
+from std_msgs.msg import Bool
+
+from nao_library_msgs.msg import (
+    Bumper,
+    ChestButton,
+    ConnectionState,
+    Fsr,
+    HandTouch,
+    HeadTouch,
+    StringStamped,
+    TactileTouch,
+)
+from nao_library_msgs.srv import GetRobotInfo
+from nao_sim_bridge.testing import SimulatedRobot, wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+from cases import case  # noqa: E402
+from news import LIMIT, News  # noqa: E402
+
+HEAD = {"Head/Touch/Front": 1, "Head/Touch/Middle": 2, "Head/Touch/Rear": 3}
+HANDS = {
+    "RHand/Touch/Back": HandTouch.RIGHT_BACK,
+    "RHand/Touch/Left": HandTouch.RIGHT_LEFT,
+    "RHand/Touch/Right": HandTouch.RIGHT_RIGHT,
+    "LHand/Touch/Back": HandTouch.LEFT_BACK,
+    "LHand/Touch/Left": HandTouch.LEFT_LEFT,
+    "LHand/Touch/Right": HandTouch.LEFT_RIGHT,
+}
+BUMPERS = {
+    "LFoot/Bumper/Left": Bumper.left,
+    "LFoot/Bumper/Right": Bumper.left,
+    "RFoot/Bumper/Left": Bumper.right,
+    "RFoot/Bumper/Right": Bumper.right,
+}
+BUTTON = "ChestBoard/Button"
+WEIGHT = (4.9 * 9.81, 6.0 * 9.81)
+"""N, that the soles of a standing robot feel together."""
+WALL = "{name: wall, box: [0.1, 3.0, 2.0], position: [%g, 0.0, 1.0]}"
+
+
+class DriverSenses(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = SimulatedRobot()
+        cls.simulation = cls.robot.module("NaoSimulation")
+        cls.news = News()
+        cls.reports = {}
+        cls.latest = {}
+        cls.news.subscribe("/diagnostics", DiagnosticArray, cls.note_reports)
+        topics = {
+            "foot_contact": Bool,
+            "other/foot_contact": Bool,
+            "connection": ConnectionState,
+            "info": StringStamped,
+        }
+        for name, kind in topics.items():
+            cls.news.subscribe(name, kind, lambda message, name=name: cls.latest.update({name: message}))
+        cls.wait_for_report("/nao_tactile: touch", lambda status: status.level == DiagnosticStatus.OK)
+        cls.wait_for_report("/other/nao_tactile: touch", lambda status: status.level == DiagnosticStatus.OK)
+
+    @classmethod
+    def note_reports(cls, message):
+        for status in message.status:
+            # Nodes of the driver put their names before their reports.
+            name = status.name if status.name.startswith(("/", "nao_joint", "nao_power")) else f"/{status.name}"
+            cls.reports[name] = cls.reports[status.name] = status
+
+    @classmethod
+    def wait_for_report(cls, name, condition):
+        cls.news.wait(lambda: name in cls.reports and condition(cls.reports[name]), f"{name} on /diagnostics")
+        return cls.reports[name]
+
+    def setUp(self):
+        self.robot.press([])
+        self.robot.reset()
+
+    def press_each(self, sensors, found):
+        for sensor in sensors:
+            for pressed in ([sensor], []):
+                count = len(found)
+                self.robot.press(pressed)
+                self.news.wait(lambda count=count: len(found) > count, f"a message of {sensor}")
+
+    # --- touch ----------------------------------------------------------------------------------------------------
+
+    def test_head_hands_and_bumpers_say_what_is_touched(self):
+        cases = [
+            ("tactile_touch", TactileTouch, HEAD, "button"),
+            ("head_touch", HeadTouch, HEAD, "button"),
+            ("hand_touch", HandTouch, HANDS, "hand"),
+            ("bumper", Bumper, BUMPERS, "bumper"),
+            ("other/hand_touch", HandTouch, HANDS, "hand"),
+        ]
+        for topic, kind, sensors, field in cases:
+            with case(topic), self.news.messages(topic, kind) as found:
+                self.press_each(sensors, found)
+                expected = [(number, state) for number in sensors.values() for state in (1, 0)]
+                self.assertEqual([(getattr(each, field), each.state) for each in found], expected)
+
+    def test_the_chest_button_counts_clicks(self):
+        with self.news.messages("chest_button", ChestButton) as found:
+            for _ in range(2):
+                self.robot.press([BUTTON])
+                self.robot.advance(0.1)
+                self.robot.press([])
+                self.robot.advance(0.1)
+            self.robot.advance(1.0)
+            self.news.wait(lambda: found and found[-1].clicks, "the clicks")
+        self.assertEqual([(each.state, each.clicks) for each in found], [(1, 0), (0, 0), (1, 0), (0, 0), (0, 2)])
+
+    def test_one_who_comes_late_learns_whether_the_feet_touch_the_ground(self):
+        for topic in ("foot_contact", "other/foot_contact"):
+            self.news.wait(lambda topic=topic: self.latest.get(topic) is not None, topic)
+            self.assertTrue(self.latest[topic].data)
+
+    # --- feet -----------------------------------------------------------------------------------------------------
+
+    def test_the_feet_carry_the_robot(self):
+        self.robot.module("ALMotion").wakeUp()
+        with self.news.messages("nao_robot/fsr/left", Fsr) as left, self.news.messages(
+            "nao_robot/fsr/right", Fsr
+        ) as right:
+            self.news.wait(lambda: len(left) > 5 and len(right) > 5, "forces under the feet")
+        for side, foot in (("l", left[-1]), ("r", right[-1])):
+            self.assertEqual(foot.header.frame_id, f"{side}_sole")
+            self.assertTrue(foot.contact)
+            corners = foot.front_left + foot.front_right + foot.rear_left + foot.rear_right
+            self.assertAlmostEqual(corners, foot.total, delta=0.5)
+            self.assertLess(abs(foot.center_of_pressure.x), 0.1)
+        self.assertTrue(WEIGHT[0] < left[-1].total + right[-1].total < WEIGHT[1], (left[-1], right[-1]))
+
+    def test_frames_carry_the_prefix_of_the_robot(self):
+        with self.news.messages("other/nao_robot/fsr/left", Fsr) as found:
+            self.news.wait(lambda: found, "forces under the left foot")
+        self.assertEqual(found[0].header.frame_id, "other/l_sole")
+
+    # --- sonars ---------------------------------------------------------------------------------------------------
+
+    def test_sonars_measure_while_somebody_listens(self):
+        sonar = self.robot.module("ALSonar")
+        wait_until(lambda: not sonar.getSubscribersInfo(), LIMIT, "sonars that nobody needs")
+        with self.news.messages("nao_robot/sonar/left", Range) as left:
+            self.news.wait(lambda: any(math.isinf(each.range) for each in left), "a free view")
+            self.assertEqual([name for name, *_ in sonar.getSubscribersInfo()], ["ros_nao_sonar"])
+            self.simulation.placeObject(WALL % 0.95)
+            self.addCleanup(self.simulation.removeObject, "wall")
+            self.news.wait(lambda: left[-1].range < 2.0, "the wall on the left")
+            with self.news.messages("nao_robot/sonar/right/sonar", Range) as right:
+                self.news.wait(lambda: right and right[-1].range < 2.0, "the wall on the right")
+        for message, side in ((left[-1], "L"), (right[-1], "R")):
+            self.assertEqual(message.header.frame_id, f"{side}Sonar_frame")
+            # The wall's face is 0.9 m from where the robot stands; the chest is some cm before that.
+            self.assertAlmostEqual(message.range, 0.85, delta=0.08)
+            self.assertEqual(message.radiation_type, Range.ULTRASOUND)
+            self.assertAlmostEqual(message.max_range, 2.55, delta=1e-6)
+        wait_until(lambda: not sonar.getSubscribersInfo(), LIMIT, "the end of the subscription")
+
+    # --- diagnostics ----------------------------------------------------------------------------------------------
+
+    def test_every_joint_has_a_report(self):
+        report = self.wait_for_report("nao_joint: HeadYaw", lambda status: status.message.startswith("Normal: "))
+        joints = [name for name in self.reports if name.startswith("nao_joint: ")]
+        self.assertEqual(len(joints), 26)
+        values = {entry.key: entry.value for entry in report.values}
+        self.assertGreater(float(values["Temperature"]), 20.0)
+        self.assertEqual(report.hardware_id, f"{self.robot.value('Device/DeviceList/ChestBoard/BodyId')}#HeadYaw")
+        self.assertEqual(self.reports["nao_joint: RHipYawPitch"].message, "No temperature sensor")
+        other = self.wait_for_report("/other/nao_joint: HeadYaw", lambda status: status.level == DiagnosticStatus.WARN)
+        self.assertTrue(other.message.startswith("Hot: "), other.message)
+
+    def test_a_hot_joint_is_told(self):
+        for celsius, level, word in ((70.0, DiagnosticStatus.WARN, "Hot"), (78.0, DiagnosticStatus.ERROR, "Too hot")):
+            self.simulation.setTemperature("LKneePitch", celsius)
+            self.wait_for_report(
+                "nao_joint: LKneePitch",
+                lambda status, level=level, word=word: status.level == level and status.message.startswith(f"{word}: "),
+            )
+
+    def test_the_battery_is_told_with_its_flags(self):
+        self.simulation.setBatteryCharge(0.2)
+        report = self.wait_for_report("nao_power: Battery", lambda status: status.level == DiagnosticStatus.WARN)
+        self.assertTrue(report.message.startswith("Low ("), report.message)
+        values = {entry.key: entry.value for entry in report.values}
+        self.assertEqual(len(values), 18)
+        self.assertEqual(values["Discharging flag"], "True")
+        self.assertAlmostEqual(float(values["Percentage"]), 20.0, delta=0.5)
+        self.simulation.plugCharger(True)
+        self.addCleanup(self.simulation.plugCharger, False)
+        self.wait_for_report("nao_power: Battery", lambda status: status.message.startswith("Charging ("))
+        self.wait_for_report("nao_power: Current", lambda status: status.message.endswith("(charging)"))
+        self.assertTrue(self.reports["/nao_cpu: Head Temperature"].message.endswith(" C"))
+        for name in ("/nao_wlan: Status", "/nao_ethernet: Status"):
+            self.assertEqual(self.reports[name].message, "unknown: the robot does not tell")
+
+    def test_the_robot_says_what_it_is_and_that_it_is_there(self):
+        rospy.wait_for_service("get_robot_config", LIMIT)
+        info = rospy.ServiceProxy("get_robot_config", GetRobotInfo)().info
+        version = self.robot.value("RobotConfig/Body/Version")
+        self.assertEqual((info.type, info.model, info.body_version), (info.NAO, "nao_h25", version))
+        self.news.wait(lambda: "info" in self.latest, "facts of the robot")
+        self.assertEqual(json.loads(self.latest["info"].data)["body version"], version)
+        self.news.wait(
+            lambda: self.latest.get("connection", ConnectionState()).state == ConnectionState.CONNECTED,
+            "the state of the connection",
+        )
+        self.assertTrue(self.latest["connection"].address.endswith(f":{self.robot.port}"))
+
+
+if __name__ == "__main__":
+    rospy.init_node("driver_senses_test")
+    rostest.rosrun("nao_library_tests", "driver_senses", DriverSenses)
