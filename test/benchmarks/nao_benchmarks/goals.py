@@ -9,8 +9,8 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoAudioOutGoal, NaoLedAction, NaoLedGoal, NaoMotionGoal
-from nao_library_msgs.msg import AudioOutFunction, LedFunction, MotionFunction
+from nao_library_actions.msg import NaoAudioOutGoal, NaoBehaviorGoal, NaoLedAction, NaoLedGoal, NaoMotionGoal
+from nao_library_msgs.msg import AudioOutFunction, BehaviorFunction, LedFunction, MotionFunction
 
 from .errors import BenchmarkError
 
@@ -44,6 +44,11 @@ def interpolate(joint: str, angle: float, duration: float) -> NaoMotionGoal:
 def say(text: str) -> NaoAudioOutGoal:
     """A goal that says a text and is over when that is said."""
     return NaoAudioOutGoal([AudioOutFunction(function="say", str_param=text)])
+
+
+def run_behavior(name: str) -> NaoBehaviorGoal:
+    """A goal that runs a stored behaviour."""
+    return NaoBehaviorGoal([BehaviorFunction(function="runBehavior", str_param=name)])
 
 
 class GoalClient:

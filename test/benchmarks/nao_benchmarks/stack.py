@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from .places import AUDIO_OUT_NODE, LIGHTS_NODE, MOTION_NODE, PROGRAMS
+from .places import AUDIO_OUT_NODE, BEHAVIOR_NODE, LIGHTS_NODE, MOTION_NODE, PROGRAMS, TACTILE_NODE
 from .program import Program
 from .simulator import Simulator
 
@@ -85,8 +85,7 @@ class Stack:
         from .goals import GoalClient
 
         self.simulator.wake_up()
-        robot = ["--pip", "127.0.0.1", "--pport", str(self.simulator.port)]
-        self._start("nao_motion", [str(MOTION_NODE), *robot])
+        self._start("nao_motion", [str(MOTION_NODE), *self._robot()])
         return GoalClient(MOTION_SERVER, START_LIMIT, NaoMotionAction)
 
     @cached_property
@@ -97,9 +96,27 @@ class Stack:
 
         from .goals import GoalClient
 
-        robot = ["--pip", "127.0.0.1", "--pport", str(self.simulator.port)]
-        self._start("nao_audio_out", [str(AUDIO_OUT_NODE), *robot])
+        self._start("nao_audio_out", [str(AUDIO_OUT_NODE), *self._robot()])
         return GoalClient(AUDIO_OUT_SERVER, START_LIMIT, NaoAudioOutAction)
+
+    def start_tactile(self) -> None:
+        """Start the driver's node for touch."""
+        self.start_ros()
+        self._start("nao_tactile", [str(TACTILE_NODE), *self._robot()])
+
+    def start_behaviors(self, folder: str) -> tuple[GoalClient, GoalClient]:
+        """Start the server for behaviours on a folder; clients of it, and of a server for lights beside it."""
+        self.start_ros()
+        from nao_library_actions.msg import NaoBehaviorAction  # not above: it needs the built workspace
+
+        from .goals import GoalClient
+
+        self._start("nao_behavior_server", [str(BEHAVIOR_NODE), *self._robot(), f"_behavior_dir:={folder}"])
+        self._start("nao_lights of behaviors", [str(LIGHTS_NODE), *self._robot()])
+        return GoalClient("NaoBehavior", START_LIMIT, NaoBehaviorAction), GoalClient(OUR_SERVER, START_LIMIT)
+
+    def _robot(self) -> list[str]:
+        return ["--pip", "127.0.0.1", "--pport", str(self.simulator.port)]
 
     def _goal_servers(self, name: str, forget_after: float | None = None) -> tuple[GoalClient, GoalClient]:
         self.start_ros()
@@ -111,9 +128,8 @@ class Stack:
         if forget_after is not None:
             for server in (ours, bare):
                 rospy.set_param(f"{server}/status_list_timeout", forget_after)
-        robot = ["--pip", "127.0.0.1", "--pport", str(self.simulator.port)]
         remapping = f"__ns:=/{name}"
-        self._start("nao_lights", [str(LIGHTS_NODE), *robot, remapping])
+        self._start("nao_lights", [str(LIGHTS_NODE), *self._robot(), remapping])
         self._start("bare server", [str(PROGRAMS / "bare_action_server.py"), BARE_SERVER, remapping])
         return GoalClient(ours, START_LIMIT), GoalClient(bare, START_LIMIT)
 

@@ -8,12 +8,12 @@ camera's sensor, and comes back as bytes. Prints JSON: `ours` and `reference`, s
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import sys
 
 import pybullet
 from nao_benchmarks.errors import BenchmarkError
+from nao_benchmarks.printing import print_times
 from nao_benchmarks.stats import interleave
 
 from nao_sim_bridge.sim.cameras.optics import CameraOptics
@@ -115,12 +115,7 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=60, help="frames to measure")
     parser.add_argument("--size", choices=RESOLUTIONS, default="320x240", help="of the frames, in pixels (320x240)")
     options = parser.parse_args()
-    try:
-        print(json.dumps(time_frames(options.rounds, options.size)))
-    except BenchmarkError as error:
-        print(error)
-        return 1
-    return 0
+    return print_times(lambda: time_frames(options.rounds, options.size))
 
 
 if __name__ == "__main__":

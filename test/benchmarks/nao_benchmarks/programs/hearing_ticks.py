@@ -8,11 +8,11 @@ JSON: `ours` and `reference`, s of a mean tick of each stretch.
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 
 import numpy as np
 from nao_benchmarks.errors import BenchmarkError
+from nao_benchmarks.printing import print_times
 from nao_benchmarks.robots import awake
 from nao_benchmarks.stats import interleave
 
@@ -68,12 +68,7 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=60, help="stretches to measure")
     rounds = parser.parse_args().rounds
     sys.setswitchinterval(SWITCH_INTERVAL)
-    try:
-        print(json.dumps(time_stretches(rounds)))
-    except BenchmarkError as error:
-        print(error)
-        return 1
-    return 0
+    return print_times(lambda: time_stretches(rounds))
 
 
 if __name__ == "__main__":

@@ -7,11 +7,11 @@ Prints JSON: `ours` and `reference`, s of each tick.
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 
 from nao_benchmarks.errors import BenchmarkError
+from nao_benchmarks.printing import print_times
 from nao_benchmarks.robots import awake
 from nao_benchmarks.stats import interleave
 
@@ -54,21 +54,29 @@ def check_moves(simulation: Simulation, still: Simulation) -> None:
             raise BenchmarkError("a robot has fallen")
 
 
+def time_ticks(rounds: int) -> dict[str, list[float]]:
+    """Alternate ticks of two robots, one of which moves.
+
+    Raises:
+        BenchmarkError: If one of them does something else.
+    """
+    moving, still = awake(), awake()
+    try:
+        keep_moving(moving)
+        ours, reference = interleave([moving.tick, still.tick], rounds, warm_up=100)
+        check_moves(moving, still)
+    finally:
+        moving.close()
+        still.close()
+    return {"ours": list(ours.seconds), "reference": list(reference.seconds)}
+
+
 def main() -> int:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=2000, help="ticks to measure")
     rounds = parser.parse_args().rounds
-    moving, still = awake(), awake()
-    keep_moving(moving)
-    try:
-        ours, reference = interleave([moving.tick, still.tick], rounds, warm_up=100)
-        check_moves(moving, still)
-    except BenchmarkError as error:
-        print(error)
-        return 1
-    print(json.dumps({"ours": ours.seconds, "reference": reference.seconds}))
-    return 0
+    return print_times(lambda: time_ticks(rounds))
 
 
 if __name__ == "__main__":

@@ -7,13 +7,13 @@ The server has all its services registered; nobody calls them. Prints JSON: `our
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import sys
 
 import pybullet
 import qi
 from nao_benchmarks.errors import BenchmarkError
+from nao_benchmarks.printing import print_times
 from nao_benchmarks.stats import interleave
 
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
@@ -88,14 +88,10 @@ def main() -> int:
         session.connect(f"tcp://127.0.0.1:{server.broker.port}")
         session.service("ALMotion").wakeUp()
         server.runner.pause()
-        print(json.dumps(server.runner.call(lambda: time_ticks(server.simulation, rounds), LIMIT)))
-    except BenchmarkError as error:
-        print(error)
-        return 1
+        return print_times(lambda: server.runner.call(lambda: time_ticks(server.simulation, rounds), LIMIT))
     finally:
         session.close()
         server.stop()
-    return 0
 
 
 if __name__ == "__main__":

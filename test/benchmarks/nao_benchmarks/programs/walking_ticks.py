@@ -8,13 +8,13 @@ Prints JSON: `ours` and `reference`, s of processor time of each tick.
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from typing import Any, Callable
 
 import pybullet
 from nao_benchmarks.errors import BenchmarkError
+from nao_benchmarks.printing import print_times
 from nao_benchmarks.robots import awake
 from nao_benchmarks.stats import interleave
 
@@ -129,12 +129,8 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=2000, help="ticks to measure")
     parser.add_argument("--controller", action="store_true", help="the walk's own part against the physics")
     options = parser.parse_args()
-    try:
-        print(json.dumps((time_controller if options.controller else time_ticks)(options.rounds)))
-    except BenchmarkError as error:
-        print(error)
-        return 1
-    return 0
+    measure = time_controller if options.controller else time_ticks
+    return print_times(lambda: measure(options.rounds))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..row import Row
+from .behaviors import BehaviorOverhead
 from .cameras import CameraFrame, CameraRate, PhysicsWithCameras
 from .chained_functions import ChainedFunctions
 from .goal_round_trip import GoalRoundTrip
@@ -14,8 +15,10 @@ from .physics_tick import PhysicsTick
 from .plans import ParOfHundred, PerformOverhead
 from .proxy_call import ProxyCall
 from .real_time_factor import RealTimeFactor
+from .robots_tick import RobotsTick
 from .sound import PhysicsWithSound, RecognitionSpeed
 from .speech import SpeechStart, SpeechStop
+from .touch import TouchEvent
 from .walking_real_time_factor import WalkingRealTimeFactor
 from .walking_tick import WalkController, WalkingTick
 
@@ -26,6 +29,8 @@ ROWS: tuple[Row, ...] = (
     WalkingTick(),
     WalkController(),
     HearingTick(),
+    RobotsTick("three_robots_tick", "tick of three robots in one world"),
+    RobotsTick("three_robots_walking", "tick of three robots that walk", "--walking"),
     CameraFrame("camera_frame", "320x240"),
     CameraFrame("camera_frame_vga", "640x480"),
     RealTimeFactor(),
@@ -41,6 +46,8 @@ ROWS: tuple[Row, ...] = (
     ParOfHundred(),
     MotionStart(),
     MotionStop(),
+    BehaviorOverhead(),
+    TouchEvent(),
     SpeechStart(),
     SpeechStop(),
     Memory(),
