@@ -1,11 +1,13 @@
 # Everything a user types. Each target installs and builds what it needs first; with nothing to do that takes no time.
 
 .DEFAULT_GOAL := help
-.PHONY: docs pictures urdf help setup build demo test unit rostest bench lint format clean
+.PHONY: docs pictures urdf help setup build demo test unit rostest bench soak lint format clean
 
 # Tests for `make unit` and `make rostest`: parts of their names (TESTS="lights walk"). Scenarios at once: JOBS=2.
 TESTS ?=
 JOBS ?= 1
+# Options of `make soak`; see test/soak/run.py --help.
+SOAK ?=
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1|\2/p' Makefile | awk -F'|' '{ printf "%-16s%s\n", $$1, $$2 }'
@@ -31,6 +33,9 @@ rostest: build ## Run the ROS scenarios (TESTS="lights walk": some of them; JOBS
 bench: build ## Print the benchmarks: ratios measured side by side
 	@scripts/ros-env python3 test/benchmarks/run.py
 
+soak: build ## Half an hour of random goals on two machines, with accidents; report in soak_output (SOAK="--minutes 5")
+	@scripts/ros-env python3 test/soak/run.py $(SOAK)
+
 lint: setup ## Check the form of Python files, packages and scripts
 	@scripts/lint
 
@@ -44,8 +49,9 @@ urdf: setup ## Generate the robot's URDF anew from its tables
 docs: build ## Write the tables of README.md anew from the code
 	@scripts/ros-env python3 scripts/readme_tables.py
 
-pictures: setup ## Draw the pictures of README.md anew
+pictures: build ## Draw the pictures of README.md anew
 	@PYTHONPATH=nao_sim_bridge/src:nao_library_modules/src .venv/bin/python scripts/readme_pictures.py
+	@scripts/ros-env python3 scripts/readme_behaviors.py
 
 clean: ## Remove the workspace, the virtual environment and what the demonstration left
-	rm -rf .ws .venv demo_output
+	rm -rf .ws .venv demo_output soak_output

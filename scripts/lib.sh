@@ -36,6 +36,8 @@ packages=(nao_library_msgs nao_library_actions nao_library_modules nao_sim_bridg
 clean_python_environment() {
     unset PYTHONPATH PYTHONHOME PYTHONSTARTUP PYTHONEXECUTABLE VIRTUAL_ENV __PYVENV_LAUNCHER__
     export PYTHONNOUSERSITE=1
+    # Many images forbid Python to keep bytecode: two dozen programs would then compile themselves at every launch.
+    unset PYTHONDONTWRITEBYTECODE
 }
 
 # libqi keeps a machine id under $HOME, and without one under the current directory.

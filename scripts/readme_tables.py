@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables of README.md from the code that they tell about.
+"""Writes the tables of README.md and docs/*.md from the code that they tell about.
 
 A table named NAME stands between `<!-- begin: NAME -->` and `<!-- end: NAME -->`; what is between the two is
 replaced. Needs the messages of the built workspace, but neither a ROS master nor a robot.
@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import argparse
 import ast
-import importlib
 import inspect
-import pkgutil
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -19,18 +17,17 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from unittest.mock import MagicMock
 
-import nao_library_modules
+from nao_library_modules.describe import Description
+from nao_library_modules.describe_offline import offline_servers
 from nao_library_modules.memory_functions import MemoryFunctions
-from nao_library_modules.nao_basic import NaoBasic
 from nao_sim_bridge.cli import parser as simulator_parser
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.services.binding import offered
 from nao_sim_bridge.services.nao_simulation import NaoSimulation
 
 ROOT = Path(__file__).resolve().parents[1]
-README = ROOT / "README.md"
+DOCUMENTS = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
 CLIENT = ROOT / "nao_library_modules" / "examples" / "green_eyes.py"
 LAUNCH_FILES = ROOT / "launch" / "launch"
 MARKED = re.compile(r"<!-- begin: (?P<name>[^>]+) -->\n(?P<body>.*?)<!-- end: (?P<end>[^>]+) -->", re.DOTALL)
@@ -66,9 +63,8 @@ def fill(text: str, tables: Mapping[str, str]) -> str:
     """Put tables between their marks.
 
     Raises:
-        ReadmeError: If a table has no marks, marks have no table, or do not come in pairs.
+        ReadmeError: If marks have no table, or do not come in pairs.
     """
-    seen = []
 
     def replaced(match: re.Match[str]) -> str:
         name = match["name"]
@@ -76,16 +72,18 @@ def fill(text: str, tables: Mapping[str, str]) -> str:
             raise ReadmeError(f"the mark 'begin: {name}' is not followed by its 'end: {name}'")
         if name not in tables:
             raise ReadmeError(f"there is no table {name!r}; there are: {', '.join(tables)}")
-        seen.append(name)
         return f"<!-- begin: {name} -->\n\n{tables[name].strip()}\n\n<!-- end: {name} -->"
 
-    filled = MARKED.sub(replaced, text)
-    if len(seen) != text.count("<!-- begin:") or len(seen) != text.count("<!-- end:"):
+    filled, count = MARKED.subn(replaced, text)
+    if count != text.count("<!-- begin:") or count != text.count("<!-- end:"):
         raise ReadmeError("a mark has no partner")
-    missing = [name for name in tables if name not in seen]
-    if missing:
-        raise ReadmeError(f"the text has no marks for {', '.join(missing)}")
     return filled
+
+
+def untold(texts: Iterable[str], tables: Iterable[str]) -> list[str]:
+    """Names of the tables that no text has marks for."""
+    marks = {match["name"] for text in texts for match in MARKED.finditer(text)}
+    return [name for name in tables if name not in marks]
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -139,31 +137,13 @@ def launch_default(text: str) -> str:
 
 
 def find_servers() -> list[Server]:
-    """The servers of all modules of the library, by name.
-
-    A module is built with stand-ins for robot and ROS, which do nothing and remember what it serves.
-    """
+    """The servers of all modules of the library, by name."""
     servers = []
-    for found in pkgutil.iter_modules(nao_library_modules.__path__):
-        source = importlib.import_module(f"nao_library_modules.{found.name}")
-        classes = [c for c in vars(source).values() if inspect.isclass(c) and c.__module__ == source.__name__]
-        for module in classes:
-            if issubclass(module, NaoBasic):
-                servers += _served(module)
-    return sorted(servers, key=lambda server: server.name.lower())
-
-
-def _served(module: type) -> list[Server]:
-    edge = MagicMock()
-    instance = module("127.0.0.1", 9559, robot=MagicMock(), edge=edge)
-    shared = MemoryFunctions.memory_functions(instance)
-    functions = {name: f for name, f in instance.function_table.items() if name not in shared}
-    servers = []
-    for call in edge.action_server.call_args_list:
-        name, action = call[0][:2]
-        field_type = action().action_goal.goal._slot_types[0]
-        message = field_type.rpartition("/")[2].replace("[]", "")
-        servers.append(Server(name, action.__name__, message, module, functions))
+    for found in offline_servers():
+        shared = MemoryFunctions.memory_functions(found.module)
+        functions = {name: f for name, f in found.module.function_table.items() if name not in shared}
+        message = Description(found.module, found.action).message.rpartition("/")[2]
+        servers.append(Server(found.name, found.action.__name__, message, type(found.module), functions))
     return servers
 
 
@@ -240,25 +220,31 @@ def all_tables() -> dict[str, str]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write README.md anew, or with --check only look; the exit status tells whether all is well."""
+    """Write the documents anew, or with --check only look; the exit status tells whether all is well."""
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    options.add_argument("--check", action="store_true", help="write nothing; fail when it is out of date")
-    options.add_argument("--file", type=Path, default=README, help="the file with the marks")
+    options.add_argument("--check", action="store_true", help="write nothing; fail when one is out of date")
+    options.add_argument("files", nargs="*", type=Path, default=DOCUMENTS, help="the files with the marks")
     parsed = options.parse_args(arguments)
-    text = parsed.file.read_text(encoding="utf-8")
-    try:
-        filled = fill(text, all_tables())
-    except ReadmeError as error:
-        print(f"{parsed.file}: {error}", file=sys.stderr)
-        return 1
-    if filled == text:
-        return 0
-    if parsed.check:
-        print(f"{parsed.file} is out of date; run 'make docs'", file=sys.stderr)
-        return 1
-    parsed.file.write_text(filled, encoding="utf-8")
-    print(f"{parsed.file} is up to date again")
-    return 0
+    texts = {file: file.read_text(encoding="utf-8") for file in parsed.files}
+    tables = all_tables()
+    missing = untold(texts.values(), tables)
+    problems = [f"nobody has marks for {', '.join(missing)}"] if missing else []
+    for file, text in texts.items():
+        try:
+            filled = fill(text, tables)
+        except ReadmeError as error:
+            problems.append(f"{file}: {error}")
+            continue
+        if filled == text:
+            continue
+        if parsed.check:
+            problems.append(f"{file} is out of date; run 'make docs'")
+            continue
+        file.write_text(filled, encoding="utf-8")
+        print(f"{file} is up to date again")
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    return 1 if problems else 0
 
 
 if __name__ == "__main__":

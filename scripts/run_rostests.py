@@ -36,8 +36,12 @@ PATIENCE = 30.0
 """How long an interrupted rostest may take to end its nodes, in s; it gives each of them 15 s."""
 MARK = "NAO_LIBRARY_SCENARIO"
 """Environment variable by which the processes of a scenario are known."""
-PORTS = range(20000, 32000, 2)
+ROBOTS = 4
+"""How many ports in a row a scenario may use: one a robot."""
+PORTS = range(20000, 32000, ROBOTS)
 """Ports for NAOqi: below those that Linux gives to outgoing connections, of which ROS makes many."""
+ALONE = "<!-- alone"
+"""Comment in a scenario that wants the computer for itself: it measures times that no simulated clock rules."""
 
 
 def time_limit(scenario: Path) -> float:
@@ -63,11 +67,20 @@ def _number(text: str | None, default: float) -> float:
 
 
 def free_port() -> int:
-    """Return a TCP port of the loopback interface that nobody uses at the moment, nor the one after it."""
+    """Return a TCP port of the loopback interface that nobody uses at the moment, nor those of further robots."""
     while True:
         port = random.choice(PORTS)
-        if _is_free(port) and _is_free(port + 1):
+        if all(_is_free(port + robot) for robot in range(ROBOTS)):
             return port
+
+
+def in_groups(folder: Path, scenarios: Sequence[Path], jobs: int) -> list[tuple[int, list[Path]]]:
+    """Return what runs after each other: how many at once, and scenarios, those first that may take longest."""
+    if jobs == 1:
+        return [(1, list(scenarios))]
+    alone = [s for s in scenarios if ALONE in (folder / s).read_text(encoding="utf-8", errors="replace")]
+    others = sorted((s for s in scenarios if s not in alone), key=lambda s: -time_limit(folder / s))
+    return [(number, group) for number, group in ((jobs, others), (1, alone)) if group]
 
 
 def _is_free(port: int) -> bool:
@@ -203,16 +216,19 @@ def _verdict(directory: Path, scenario: Path, elapsed: float) -> str:
 
 
 def run_all(runner: Runner, scenarios: Sequence[Path], jobs: int) -> bool:
-    """Run the scenarios, `jobs` at a time, and print a line for each; return False if it was interrupted."""
-    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        futures = {pool.submit(runner.run, scenario): scenario for scenario in scenarios}
-        try:
-            for number, future in enumerate(concurrent.futures.as_completed(futures), start=1):
-                print(f"[{number}/{len(scenarios)}] {futures[future]} ... {future.result()}", flush=True)
-        except KeyboardInterrupt:
-            print("interrupted: ending what runs...", flush=True)
-            runner.stop()
-            return False
+    """Run the scenarios, up to `jobs` at a time, and print a line for each; return False if it was interrupted."""
+    done = 0
+    for at_once, group in in_groups(runner.folder, scenarios, jobs):
+        with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
+            futures = {pool.submit(runner.run, scenario): scenario for scenario in group}
+            try:
+                for future in concurrent.futures.as_completed(futures):
+                    done += 1
+                    print(f"[{done}/{len(scenarios)}] {futures[future]} ... {future.result()}", flush=True)
+            except KeyboardInterrupt:
+                print("interrupted: ending what runs...", flush=True)
+                runner.stop()
+                return False
     return True
 
 

@@ -48,18 +48,25 @@ class Case:
     message: str = ""
 
 
+ON_REQUEST = "<!-- on request"
+"""Comment in a scenario that runs only when it is asked for by its name."""
+
+
 def find_scenarios(folder: Path, patterns: Sequence[str] = ()) -> list[Path]:
     """Return the `.test` files under a folder, as sorted paths relative to it.
 
     Args:
         folder: Where to look, at any depth.
-        patterns: Parts of the relative path, one of which has to occur; everything is returned without any.
+        patterns: Parts of the relative path, one of which has to occur; without any, everything is returned but those
+            that run on request only, because they take many minutes.
 
     Returns:
         Relative paths such as `lights.test`; empty if nothing fits.
     """
     found = sorted(path.relative_to(folder) for path in folder.rglob("*.test"))
-    return [path for path in found if not patterns or any(pattern in str(path) for pattern in patterns)]
+    if patterns:
+        return [path for path in found if any(pattern in str(path) for pattern in patterns)]
+    return [path for path in found if ON_REQUEST not in (folder / path).read_text(encoding="utf-8", errors="replace")]
 
 
 def read_cases(path: Path, run: str) -> list[Case]:

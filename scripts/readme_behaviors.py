@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+"""Draws the contact sheet of README.md anew: the behaviours that come with the library, six moments of each.
+
+It needs the built workspace: `scripts/ros-env python3 scripts/readme_behaviors.py`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+from nao_library_modules.contact_sheet import contact_sheet, save_small
+from nao_library_modules.demo_behaviors import FILM, BehaviorShow
+
+FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
+NAME = "behaviors.png"
+SIDE, COLUMNS, SHARE = 92, 2, 0.74
+
+
+def main() -> int:
+    """Play, film, and draw; the exit status tells whether all went well."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--folder", type=Path, default=FOLDER, help="where the picture goes (default: docs/images)")
+    folder = parser.parse_args().folder
+    failed = []
+
+    def report(asked: str, told: str, good: bool) -> None:
+        if not good:
+            failed.append(f"{asked}: {told}")
+
+    with tempfile.TemporaryDirectory() as kept:
+        with BehaviorShow(Path(kept)) as show:
+            parts = show.play(report)
+        save_small(contact_sheet(Path(kept) / FILM, parts, SIDE, COLUMNS, SHARE), folder / NAME)
+    print(NAME, *failed, sep="\n", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
