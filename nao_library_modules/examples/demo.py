@@ -60,10 +60,10 @@ class Demonstration:
     """
 
     def __init__(self, stack: Stack, output: Path) -> None:
-        import actionlib
         import rospy
 
         from nao_library_actions.msg import NaoLedAction, NaoMotionAction
+        from nao_library_modules.simple_action_client import SimpleActionClient
         from nao_library_msgs.srv import TakePicture
         from naoqi import ALProxy
 
@@ -71,10 +71,10 @@ class Demonstration:
         self.rows: list[tuple[str, str, bool]] = []
         stack.wait_for_master(START_LIMIT)
         rospy.init_node("nao_library_demo", disable_signals=True)
-        self._lights = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
+        self._lights = SimpleActionClient("NaoLights", NaoLedAction)
         if not self._lights.wait_for_server(rospy.Duration(START_LIMIT)):
             raise RuntimeError(f"the server NaoLights did not come up; see {stack.log}")
-        self._walker = actionlib.SimpleActionClient("NaoMotion", NaoMotionAction)
+        self._walker = SimpleActionClient("NaoMotion", NaoMotionAction)
         if not self._walker.wait_for_server(rospy.Duration(START_LIMIT)):
             raise RuntimeError(f"the server NaoMotion did not come up; see {stack.log}")
         rospy.wait_for_service("nao_sim/picture", START_LIMIT)
@@ -91,14 +91,14 @@ class Demonstration:
 
     def greet(self) -> None:
         """Say something, and hear it with its own microphones; what was said is in a file."""
-        import actionlib
         import rospy
 
         import nao_library_actions.msg as actions
+        from nao_library_modules.simple_action_client import SimpleActionClient
         from nao_library_msgs.msg import AudioInFunction, AudioOutFunction
 
-        speaker = actionlib.SimpleActionClient("nao_audio_out", actions.NaoAudioOutAction)
-        listener = actionlib.SimpleActionClient("nao_audio_in", actions.NaoAudioInAction)
+        speaker = SimpleActionClient("nao_audio_out", actions.NaoAudioOutAction)
+        listener = SimpleActionClient("nao_audio_in", actions.NaoAudioInAction)
         for client, name in ((speaker, "nao_audio_out"), (listener, "nao_audio_in")):
             if not client.wait_for_server(rospy.Duration(START_LIMIT)):
                 raise RuntimeError(f"the server {name} did not come up")
@@ -118,13 +118,13 @@ class Demonstration:
 
     def find_ball(self) -> None:
         """Look for the ball that lies in the room, and take a picture with its own eyes when it sees it."""
-        import actionlib
         import rospy
 
         import nao_library_actions.msg as actions
+        from nao_library_modules.simple_action_client import SimpleActionClient
         from nao_library_msgs.msg import VisionFunction
 
-        client = actionlib.SimpleActionClient("NaoVision", actions.NaoVisionAction)
+        client = SimpleActionClient("NaoVision", actions.NaoVisionAction)
         if not client.wait_for_server(rospy.Duration(START_LIMIT)):
             raise RuntimeError("the server NaoVision did not come up")
         look = VisionFunction(function="lookFor", str_param="ball", size=BALL_RADIUS, timeout=STEP_LIMIT)

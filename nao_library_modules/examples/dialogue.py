@@ -17,13 +17,13 @@ import threading
 from pathlib import Path
 from typing import Any, Callable
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point
 
 import nao_library_actions.msg as actions
 from nao_library_modules.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, save
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import AudioInFunction, AudioOutFunction, MotionFunction
 from nao_library_msgs.srv import AdvanceTime, PersonSays
 
@@ -46,7 +46,7 @@ class Servers:
     def __init__(self) -> None:
         """Find them."""
         self._clients = {
-            name: actionlib.SimpleActionClient(name, getattr(actions, f"{action}Action"))
+            name: SimpleActionClient(name, getattr(actions, f"{action}Action"))
             for name, action in (("nao_audio_out", "NaoAudioOut"), ("nao_audio_in", "NaoAudioIn"), ("NaoMotion",) * 2)
         }
         for name, client in self._clients.items():

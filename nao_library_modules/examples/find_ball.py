@@ -13,11 +13,11 @@ import math
 import sys
 from typing import Any
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal, NaoVisionAction, NaoVisionGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import MotionFunction, SeenObject, VisionFunction
 
 LIMIT = rospy.Duration(120)
@@ -51,8 +51,8 @@ class Finder:
             radius: Of the ball, m: how large it is seen tells how far away it is.
         """
         self._radius = radius
-        self._vision = actionlib.SimpleActionClient("NaoVision", NaoVisionAction)
-        self._motion = actionlib.SimpleActionClient("NaoMotion", NaoMotionAction)
+        self._vision = SimpleActionClient("NaoVision", NaoVisionAction)
+        self._motion = SimpleActionClient("NaoMotion", NaoMotionAction)
         for name, client in (("NaoVision", self._vision), ("NaoMotion", self._motion)):
             if not client.wait_for_server(LIMIT):
                 raise RuntimeError(f"there is no server {name}: start one with roslaunch nao_library nao_sim.launch")

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Vector3
 
 from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import MotionFunction
 from nao_library_msgs.srv import PushRobot
 
@@ -24,7 +24,7 @@ FORCE = Vector3(-60.0, 0.0, 0.0)
 PUSH_TIME, FALL_TIME = rospy.Duration.from_sec(0.15), rospy.Duration(3)
 
 
-def play(motion: actionlib.SimpleActionClient, *functions: MotionFunction) -> list[str]:
+def play(motion: SimpleActionClient, *functions: MotionFunction) -> list[str]:
     """Play a chain; its answers.
 
     Raises:
@@ -40,7 +40,7 @@ def main() -> int:
     """Push, wait for the fall, get up; the exit status tells whether the robot stands."""
     rospy.init_node("get_up", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    motion = actionlib.SimpleActionClient("NaoMotion", NaoMotionAction)
+    motion = SimpleActionClient("NaoMotion", NaoMotionAction)
     push = rospy.ServiceProxy("nao_sim/push", PushRobot)
     try:
         push.wait_for_service(SERVER_LIMIT)

@@ -13,11 +13,11 @@ import argparse
 import sys
 from typing import Any
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoAudioOutAction, NaoAudioOutGoal, NaoVisionAction, NaoVisionGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import AudioOutFunction, SeenObject, VisionFunction
 
 LIMIT = rospy.Duration(60)
@@ -30,8 +30,8 @@ class Host:
 
     def __init__(self) -> None:
         """Find the servers."""
-        self._vision = actionlib.SimpleActionClient("NaoVision", NaoVisionAction)
-        self._voice = actionlib.SimpleActionClient("nao_audio_out", NaoAudioOutAction)
+        self._vision = SimpleActionClient("NaoVision", NaoVisionAction)
+        self._voice = SimpleActionClient("nao_audio_out", NaoAudioOutAction)
         for name, client in (("NaoVision", self._vision), ("nao_audio_out", self._voice)):
             if not client.wait_for_server(LIMIT):
                 raise RuntimeError(f"there is no server {name}: start one with roslaunch nao_library nao_sim.launch")

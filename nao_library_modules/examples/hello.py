@@ -4,11 +4,11 @@
 import argparse
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoAudioOutAction, NaoAudioOutGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import AudioOutFunction
 
 
@@ -18,7 +18,7 @@ def main() -> int:
     parser.add_argument("words", nargs="*", default=["Hello,", "world!"], help="what to say")
     words = parser.parse_args(rospy.myargv()[1:]).words
     rospy.init_node("hello", anonymous=True)
-    audio = actionlib.SimpleActionClient("nao_audio_out", NaoAudioOutAction)
+    audio = SimpleActionClient("nao_audio_out", NaoAudioOutAction)
     audio.wait_for_server()
     rospy.on_shutdown(lambda: audio.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE) and audio.cancel_goal())
     hello = AudioOutFunction(function="say", str_param=" ".join(words))

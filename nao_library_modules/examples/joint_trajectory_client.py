@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from std_srvs.srv import Empty
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 
 LIMIT = rospy.Duration(20)
 ARMS = ["LShoulderPitch", "LShoulderRoll", "RShoulderPitch", "RShoulderRoll"]
@@ -46,7 +46,7 @@ def main() -> int:
     """Play the goals one after the other; the exit status tells whether all succeeded."""
     rospy.init_node("joint_trajectory_client", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    client = actionlib.SimpleActionClient("joint_trajectory", JointTrajectoryAction)
+    client = SimpleActionClient("joint_trajectory", JointTrajectoryAction)
     if not client.wait_for_server(LIMIT):
         print("there is no server joint_trajectory: start one with roslaunch nao_library nao_sim.launch")
         return 1

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import LedFunction
 
 EYES = ["LeftFaceLeds", "RightFaceLeds"]
@@ -47,7 +47,7 @@ def main() -> int:
     rospy.init_node("lights_client", anonymous=True)
     # Simulated time begins at zero and jumps with the first message of /clock; limits would be over at once.
     rospy.sleep(0.0)
-    client = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
+    client = SimpleActionClient("NaoLights", NaoLedAction)
     if not client.wait_for_server(SERVER_LIMIT):
         print("there is no server NaoLights: start one with roslaunch nao_library nao_sim.launch")
         return 1

@@ -9,13 +9,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from rospy import Duration
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import MotionFunction
 
 LIMIT = Duration(30)
@@ -36,7 +36,7 @@ def main() -> int:
     """Play the goals; the exit status tells whether the arm is where it should be."""
     rospy.init_node("motion_client", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    motion_client = actionlib.SimpleActionClient("NaoMotion", NaoMotionAction)
+    motion_client = SimpleActionClient("NaoMotion", NaoMotionAction)
     if not motion_client.wait_for_server(LIMIT):
         print("there is no server NaoMotion: start one with roslaunch nao_library nao_sim.launch")
         return 1

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoMotionAction, NaoMotionFeedback, NaoMotionGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import MotionFunction
 
 LIMIT = rospy.Duration(60)
@@ -51,7 +51,7 @@ def main() -> int:
     """Play the chain; the exit status tells whether all of it was done."""
     rospy.init_node("nod_stand_wave", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    motion = actionlib.SimpleActionClient("NaoMotion", NaoMotionAction)
+    motion = SimpleActionClient("NaoMotion", NaoMotionAction)
     if not motion.wait_for_server(LIMIT):
         print("there is no server NaoMotion: start one with roslaunch nao_library nao_sim.launch")
         return 1

@@ -13,11 +13,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoTactileAction, NaoTactileGoal, NaoTactileResult
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import TactileFunction
 
 LIMIT = rospy.Duration(30)
@@ -30,7 +30,7 @@ class Refused(Exception):
     """The server did not do what it was asked for; the text says why."""
 
 
-def feel(client: actionlib.SimpleActionClient, **fields: object) -> NaoTactileResult:
+def feel(client: SimpleActionClient, **fields: object) -> NaoTactileResult:
     """Have the server carry out one function.
 
     Raises:
@@ -41,7 +41,7 @@ def feel(client: actionlib.SimpleActionClient, **fields: object) -> NaoTactileRe
     return client.get_result()
 
 
-def follow(client: actionlib.SimpleActionClient, times: int) -> bool:
+def follow(client: SimpleActionClient, times: int) -> bool:
     """Print each start and end; returns whether the last one ended well, after so many (0: never)."""
     told = (0, False)
     while True:
@@ -69,7 +69,7 @@ def main() -> int:
     # Ctrl-C ends the program, and not the node before it: the link is to be removed.
     rospy.init_node("react_to_touch", anonymous=True, disable_signals=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    client = actionlib.SimpleActionClient("NaoTactile", NaoTactileAction)
+    client = SimpleActionClient("NaoTactile", NaoTactileAction)
     if not client.wait_for_server(LIMIT):
         print("there is no server NaoTactile: start one with roslaunch nao_library nao_sim.launch")
         return 1

@@ -11,11 +11,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoAudioInAction, NaoAudioInGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import AudioInFunction
 
 LIMIT = rospy.Duration(20)
@@ -38,7 +38,7 @@ def main() -> int:
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("record_sound", anonymous=True, disable_signals=True)  # Ctrl-C leaves time to end the recording
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    ears = actionlib.SimpleActionClient("nao_audio_in", NaoAudioInAction)
+    ears = SimpleActionClient("nao_audio_in", NaoAudioInAction)
     if not ears.wait_for_server(LIMIT):
         print("there is no server nao_audio_in: start one with roslaunch nao_library nao_sim.launch")
         return 1

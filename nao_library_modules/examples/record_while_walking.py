@@ -13,11 +13,11 @@ import argparse
 import sys
 from typing import Any
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal, NaoVisionAction, NaoVisionGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import MotionFunction, VisionFunction
 
 LIMIT = rospy.Duration(30)
@@ -82,8 +82,8 @@ def main() -> int:
     # Ctrl-C leaves time to complete the videos.
     rospy.init_node("record_while_walking", anonymous=True, disable_signals=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    vision = actionlib.SimpleActionClient("NaoVision", NaoVisionAction)
-    motion = actionlib.SimpleActionClient("NaoMotion", NaoMotionAction)
+    vision = SimpleActionClient("NaoVision", NaoVisionAction)
+    motion = SimpleActionClient("NaoMotion", NaoMotionAction)
     for name, client in (("NaoVision", vision), ("NaoMotion", motion)):
         if not client.wait_for_server(LIMIT):
             print(f"there is no server {name}: start one with roslaunch nao_library nao_sim.launch")

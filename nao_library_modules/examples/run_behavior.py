@@ -11,11 +11,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoBehaviorAction, NaoBehaviorFeedback, NaoBehaviorGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import BehaviorFunction
 
 SERVER_LIMIT = rospy.Duration(20)
@@ -36,7 +36,7 @@ def main() -> int:
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("run_behavior", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    behaviors = actionlib.SimpleActionClient("NaoBehavior", NaoBehaviorAction)
+    behaviors = SimpleActionClient("NaoBehavior", NaoBehaviorAction)
     if not behaviors.wait_for_server(SERVER_LIMIT):
         print("there is no server NaoBehavior: start one with roslaunch nao_library nao_sim.launch")
         return 1

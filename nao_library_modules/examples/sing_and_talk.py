@@ -10,11 +10,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoAudioOutAction, NaoAudioOutFeedback, NaoAudioOutGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import AudioOutFunction
 
 LIMIT = rospy.Duration(20)
@@ -48,7 +48,7 @@ def main() -> int:
     text = parser.parse_args(rospy.myargv()[1:]).text
     rospy.init_node("sing_and_talk", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    audio = actionlib.SimpleActionClient("nao_audio_out", NaoAudioOutAction)
+    audio = SimpleActionClient("nao_audio_out", NaoAudioOutAction)
     if not audio.wait_for_server(LIMIT):
         print("there is no server nao_audio_out: start one with roslaunch nao_library nao_sim.launch")
         return 1

@@ -11,11 +11,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import VisionFunction
 
 LIMIT = rospy.Duration(30)
@@ -30,7 +30,7 @@ def main() -> int:
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("take_picture", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    vision = actionlib.SimpleActionClient("NaoVision", NaoVisionAction)
+    vision = SimpleActionClient("NaoVision", NaoVisionAction)
     if not vision.wait_for_server(LIMIT):
         print("there is no server NaoVision: start one with roslaunch nao_library nao_sim.launch")
         return 1

@@ -14,11 +14,11 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import MotionFunction
 
 SERVER_LIMIT = rospy.Duration(20)
@@ -45,7 +45,7 @@ def main() -> int:
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("teach_by_hand", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    motion = actionlib.SimpleActionClient("NaoMotion", NaoMotionAction)
+    motion = SimpleActionClient("NaoMotion", NaoMotionAction)
     if not motion.wait_for_server(SERVER_LIMIT):
         print("there is no server NaoMotion: start one with roslaunch nao_library nao_sim.launch")
         return 1

@@ -20,7 +20,6 @@ import threading
 from pathlib import Path
 from typing import Any
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
@@ -32,6 +31,7 @@ from nao_library_actions.msg import (
     NaoTactileAction,
     NaoTactileGoal,
 )
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import AudioOutFunction, BehaviorFunction, TactileFunction
 from nao_library_msgs.srv import TouchSensors
 
@@ -66,8 +66,8 @@ class Study:
         self._hand = rospy.ServiceProxy("nao_sim/touch", TouchSensors) if simulated_hand else None
 
     @staticmethod
-    def _client(name: str, action: type) -> actionlib.SimpleActionClient:
-        client = actionlib.SimpleActionClient(name, action)
+    def _client(name: str, action: type) -> SimpleActionClient:
+        client = SimpleActionClient(name, action)
         if not client.wait_for_server(SERVER_LIMIT):
             raise RuntimeError(f"there is no server {name}: start one with roslaunch nao_library nao_sim.launch")
         return client

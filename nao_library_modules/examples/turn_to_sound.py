@@ -10,11 +10,11 @@ import argparse
 import math
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoAudioInAction, NaoAudioInGoal, NaoMotionAction, NaoMotionGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import AudioInFunction, HeardSound, MotionFunction
 
 LIMIT = rospy.Duration(20)
@@ -43,8 +43,8 @@ def main() -> int:
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("turn_to_sound", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    ears = actionlib.SimpleActionClient("nao_audio_in", NaoAudioInAction)
-    motion = actionlib.SimpleActionClient("NaoMotion", NaoMotionAction)
+    ears = SimpleActionClient("nao_audio_in", NaoAudioInAction)
+    motion = SimpleActionClient("NaoMotion", NaoMotionAction)
     for name, client in (("nao_audio_in", ears), ("NaoMotion", motion)):
         if not client.wait_for_server(LIMIT):
             print(f"there is no server {name}: start one with roslaunch nao_library nao_sim.launch")

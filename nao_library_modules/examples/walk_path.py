@@ -12,12 +12,12 @@ import math
 import sys
 from collections.abc import Sequence
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped
 
 from nao_library_actions.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 
 LIMIT = rospy.Duration(20)
 PIECES = 40
@@ -55,7 +55,7 @@ def main() -> int:
     points = shapes[options.shape](options.size)
     rospy.init_node("walk_path", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    client = actionlib.SimpleActionClient("walk_path", FollowPathAction)
+    client = SimpleActionClient("walk_path", FollowPathAction)
     if not client.wait_for_server(LIMIT):
         print("there is no nao_path_follower: start it with roslaunch nao_library nao_sim.launch")
         return 1

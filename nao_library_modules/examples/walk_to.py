@@ -11,10 +11,11 @@ import argparse
 import math
 import sys
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseFeedback, MoveBaseGoal
+
+from nao_library_modules.simple_action_client import SimpleActionClient
 
 LIMIT = rospy.Duration(20)
 
@@ -53,7 +54,7 @@ def main() -> int:
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("walk_to", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    client = actionlib.SimpleActionClient("walk_target", MoveBaseAction)
+    client = SimpleActionClient("walk_target", MoveBaseAction)
     if not client.wait_for_server(LIMIT):
         print("there is no nao_path_follower: start it with roslaunch nao_library nao_sim.launch")
         return 1

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import rospy
 import rostest
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from rospy import Duration
 from std_msgs.msg import ColorRGBA, String
 from std_srvs.srv import Empty, SetBool, Trigger
 
 from nao_library_actions.msg import BlinkAction, BlinkGoal, RunBehaviorAction, RunBehaviorGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import FadeRGB
 from nao_library_msgs.srv import GetInstalledBehaviors
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import rospy
 import rostest
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from rospy import Duration
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from nao_library_actions.msg import BodyPoseAction, BodyPoseGoal, JointTrajectoryAction, JointTrajectoryGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_sim_bridge.testing import send, wait_until
 from naoqi import ALProxy
 

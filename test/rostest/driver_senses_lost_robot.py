@@ -7,12 +7,12 @@ from pathlib import Path
 
 import rospy
 import rostest
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import Range
 
 from nao_library_actions.msg import BlinkAction, BlinkGoal, RunBehaviorAction, RunBehaviorGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import ConnectionState, FloatStamped, TactileTouch
 from nao_library_msgs.srv import GetMemory
 from nao_sim_bridge.testing import send, wait_until

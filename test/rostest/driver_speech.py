@@ -9,13 +9,13 @@ from pathlib import Path
 import rospkg
 import rospy
 import rostest
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from dynamic_reconfigure.client import Client
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 
 from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import rospy
 import rostest
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from dynamic_reconfigure.client import Client
 from std_msgs.msg import String
@@ -19,6 +18,7 @@ from nao_library_actions.msg import (
     SpeechWithFeedbackAction,
     SpeechWithFeedbackGoal,
 )
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import WordRecognized
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 

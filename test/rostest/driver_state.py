@@ -9,7 +9,6 @@ import unittest
 import rospy
 import rostest
 import tf2_ros
-from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from nav_msgs.msg import Odometry
 from rospy import Duration, Time
@@ -18,6 +17,7 @@ from std_srvs.srv import Empty
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import JointAnglesWithSpeed
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 

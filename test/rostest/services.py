@@ -1,8 +1,8 @@
 """Services and action servers that scenarios call."""
 
 import rospy
-from actionlib import SimpleActionClient
 
+from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_sim_bridge.testing import wait_until
 
 LIMIT = 30.0

@@ -11,8 +11,6 @@ from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 
 from nao_library_actions.msg import NaoLedActionGoal, NaoLedActionResult
 
-ID = GoalID(id="goal")
-
 
 class _LateLock:
     """The lock of a goal; something happens just before it is taken for the first time."""
@@ -40,19 +38,20 @@ class FakeGoal:
         cancelled: State of the client at each cancel.
     """
 
-    def __init__(self, on_transition, in_cancel=lambda: None):
+    def __init__(self, on_transition, in_cancel=lambda: None, name="goal"):
         self._in_cancel = in_cancel
+        self._id = GoalID(id=name)
         self.cancelled = []
-        self._machine = CommStateMachine(NaoLedActionGoal(goal_id=ID), on_transition, None, None, self._on_cancel)
+        self._machine = CommStateMachine(NaoLedActionGoal(goal_id=self._id), on_transition, None, None, self._on_cancel)
         self.handle = ClientGoalHandle(self._machine)
 
     def tell(self, *states):
         """A status message: the goal in this state, or without it."""
-        self._machine.update_status(GoalStatusArray(status_list=[GoalStatus(ID, state, "") for state in states]))
+        self._machine.update_status(GoalStatusArray(status_list=[GoalStatus(self._id, state, "") for state in states]))
 
     def end(self, state, text=""):
         """The result."""
-        self._machine.update_result(NaoLedActionResult(status=GoalStatus(ID, state, text)))
+        self._machine.update_result(NaoLedActionResult(status=GoalStatus(self._id, state, text)))
 
     def just_before_the_cancel(self, action):
         """What happens between the last look at the goal and its cancel."""

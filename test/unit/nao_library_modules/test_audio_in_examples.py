@@ -65,7 +65,7 @@ class FakeClients:
 @pytest.fixture
 def clients(monkeypatch):
     made = FakeClients()
-    monkeypatch.setattr("actionlib.SimpleActionClient", made.client)
+    monkeypatch.setattr("nao_library_modules.simple_action_client.SimpleActionClient", made.client)
     monkeypatch.setattr("rospy.init_node", lambda *args, **options: None)
     monkeypatch.setattr("rospy.sleep", lambda duration: None)
     monkeypatch.setattr("rospy.get_time", lambda: 100.0)

@@ -30,7 +30,9 @@ class FakeWorld:
         self.now = 100.0
         self.options = []
         self.listener = None
-        monkeypatch.setattr("actionlib.SimpleActionClient", lambda name, action: FakeClient(self, name))
+        monkeypatch.setattr(
+            "nao_library_modules.simple_action_client.SimpleActionClient", lambda name, action: FakeClient(self, name)
+        )
         services = {"nao_sim/person_says": self, "nao_sim/advance": self.advance}
         monkeypatch.setattr("rospy.ServiceProxy", lambda name, service: services[name])
         monkeypatch.setattr("rospy.init_node", lambda *args, **options: None)

@@ -146,7 +146,7 @@ def test_the_client_goes_on_after_a_goal_without_result_and_says_so(monkeypatch,
         def get_result(self):
             return SimpleNamespace(lights=["Brain0"], intensities=[0.5])
 
-    monkeypatch.setattr(client.actionlib, "SimpleActionClient", FakeClient)
+    monkeypatch.setattr(client, "SimpleActionClient", FakeClient)
     monkeypatch.setattr(client.rospy, "init_node", lambda *args, **options: None)
     assert client.main() == 1
     assert canceled.is_set()
@@ -248,7 +248,7 @@ class FakeMotionClient:
 def test_what_goes_wrong_is_told_in_a_line_and_in_the_exit_status(monkeypatch, capsys, name, there, told):
     example = load(name)
     monkeypatch.setattr(FakeMotionClient, "there", there)
-    monkeypatch.setattr(example.actionlib, "SimpleActionClient", FakeMotionClient)
+    monkeypatch.setattr(example, "SimpleActionClient", FakeMotionClient)
     monkeypatch.setattr(example.rospy, "init_node", lambda *args, **options: None)
     monkeypatch.setattr(example.rospy, "sleep", lambda duration: None)
     monkeypatch.setattr(example.rospy, "myargv", lambda: ["teach_by_hand.py", "hello"])

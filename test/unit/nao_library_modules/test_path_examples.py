@@ -93,7 +93,7 @@ def play(monkeypatch, capsys):
     def run(name, *arguments, **facts):
         example = load(name)
         client = type("Client", (FakeClient,), facts)
-        monkeypatch.setattr(example.actionlib, "SimpleActionClient", client)
+        monkeypatch.setattr(example, "SimpleActionClient", client)
         monkeypatch.setattr(example.rospy, "init_node", lambda *args, **options: None)
         monkeypatch.setattr(example.rospy, "sleep", lambda duration: None)
         monkeypatch.setattr(example.rospy, "on_shutdown", lambda action: None)

@@ -6,7 +6,6 @@ import queue
 import threading
 from collections.abc import Callable, Sequence
 
-import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist
@@ -16,6 +15,7 @@ from std_srvs.srv import Empty
 from nao_library_actions.msg import BodyPoseAction, BodyPoseGoal
 from nao_library_msgs.msg import JointAnglesWithSpeed
 
+from ..simple_action_client import SimpleActionClient
 from .walk_commands import Velocity
 
 HEAD = ("HeadYaw", "HeadPitch")
@@ -45,7 +45,7 @@ class TeleopClients:
         self._cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
         self._joint_angles = rospy.Publisher("joint_angles", JointAnglesWithSpeed, queue_size=1)
         self._speech = rospy.Publisher("speech", String, queue_size=10)
-        self._poses = actionlib.SimpleActionClient("body_pose", BodyPoseAction)
+        self._poses = SimpleActionClient("body_pose", BodyPoseAction)
         self._jobs: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._run, name="teleoperation", daemon=True)
         self._thread.start()

@@ -62,7 +62,7 @@ def run_example(audio, monkeypatch, capsys):
         ros.init_node = ros.sleep = ros.on_shutdown = lambda *_, **__: None
         ros.myargv = lambda: [name, *arguments]
         monkeypatch.setattr(example, "rospy", ros)
-        monkeypatch.setattr(example.actionlib, "SimpleActionClient", lambda *_: FakeClient(audio))
+        monkeypatch.setattr(example, "SimpleActionClient", lambda *_: FakeClient(audio))
         return example.main(), capsys.readouterr().out
 
     return run
