@@ -61,18 +61,26 @@ class VisionRobot(unittest.TestCase):
         self.assertEqual(run.state, state, run.text)
         return run.result if state == GoalStatus.SUCCEEDED else run
 
-    def picture(self, camera="top", *before):
-        """A picture of now or later. The server's time is late by some ms, which count for more the faster time is."""
-        take = f("takePicture", camera=camera, str_param="look.png", overwrite=True)
+    def play_in_step(self, *functions):
+        """Play them when the server's clock is that of the simulation: it is late, on a busy computer by much.
+
+        What a picture or the end of a recording shows depends on it.
+        """
         self.robot.pause()
         try:
             now = self.robot.advance(0.0)
             knows = lambda: send(self.client, NaoVisionGoal([f("ping")])).wait(LIMIT).server_time >= now  # noqa: E731
             wait_until(knows, LIMIT, f"the server at {now} s")
-            run = send(self.client, NaoVisionGoal([*before, take]))
+            run = send(self.client, NaoVisionGoal(list(functions)))
         finally:
             self.robot.resume()
-        (message,) = run.wait(LIMIT).result.pictures
+        self.assertEqual(run.wait(LIMIT).state, GoalStatus.SUCCEEDED, run.text)
+        return run.result
+
+    def picture(self, camera="top", *before):
+        """A picture of now or later."""
+        take = f("takePicture", camera=camera, str_param="look.png", overwrite=True)
+        (message,) = self.play_in_step(*before, take).pictures
         return cv2.imread(message.path), message
 
     def turn_head(self, yaw):
@@ -204,7 +212,7 @@ class VisionRobot(unittest.TestCase):
         self.frames("look", 3)
         self.turn_head(0.7)
         self.turn_head(-0.7)
-        (video,) = self.play(f("stopRecording", id="look")).recordings
+        (video,) = self.play_in_step(f("stopRecording", id="look")).recordings
         with av.open(video.path) as container:
             pictures = [frame.to_ndarray(format="bgr24") for frame in container.decode(video=0)]
         alike = [likeness(pictures[0], picture) for picture in pictures]
