@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
+
+from naoqi.errors import NaoError
 
 from ..body_devices import FOOT_CONTACT
 from ..event_relay import EventRelay
 from ..health import Level, Report
 from ..tactile_names import BY_EVENT
 from .demand import Demand
+
+log = logging.getLogger(__name__)
 
 MEMORY = "ALMemory"
 ANSWER_LIMIT = 5.0
@@ -93,7 +98,7 @@ class TouchSensors:
         self._touched: dict[str, bool | None] = {s.event: None if s.place == FEET else False for s in sensors}
         self._heard: set[str] = set()
         self._relay = EventRelay(lambda: robot.proxy(MEMORY), self._on_event)
-        self._listening = Demand(robot, "touch sensors", self._begin, self._relay.close)
+        self._listening = Demand(robot, "touch sensors", self._begin, self._relay.close, self._look_again)
         self._listening.want(True)
 
     def report(self) -> Report:
@@ -118,10 +123,25 @@ class TouchSensors:
             self._heard.clear()
         for event in (*self._sensors, *CLICKS):
             self._relay.subscribe(event)
-        keys = [key for sensor in self._sensors.values() for key in sensor.keys]
+        self._read(tuple(self._sensors.values()))
+
+    def _look_again(self) -> bool:
+        """Read the sensors that told something: libqi brings events that follow each other closely in any order."""
+        with self._lock:
+            heard = [sensor for event, sensor in self._sensors.items() if event in self._heard]
+            self._heard.clear()
+        try:
+            if heard:
+                self._read(heard)
+        except NaoError as error:
+            log.debug("touch sensors: %s", error)  # a lost connection is told elsewhere, and all is read after it
+        return True
+
+    def _read(self, sensors: Sequence[Sensor]) -> None:
+        keys = [key for sensor in sensors for key in sensor.keys]
         answer = self._robot.proxy(MEMORY).call_async("getListData", keys).result(timeout=ANSWER_LIMIT)
         values = dict(zip(keys, answer))
-        for sensor in self._sensors.values():
+        for sensor in sensors:
             known = [values[key] for key in sensor.keys if isinstance(values[key], (bool, int, float))]
             if known:
                 self._take(sensor, any(value > 0.5 for value in known), is_event=False)

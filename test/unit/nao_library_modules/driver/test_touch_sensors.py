@@ -107,6 +107,17 @@ def test_an_event_counts_more_than_what_was_read_before_it(make_sensors, memory,
     assert (HEAD, 1, True) in told and (HEAD, 1, False) not in told
 
 
+def test_events_that_come_in_the_wrong_order_are_put_right(make_sensors, memory, told, eventually, monkeypatch):
+    monkeypatch.setattr(demand, "LOOK_PERIOD", 0.01)
+    sensors = make_sensors()
+    eventually(lambda: listening(sensors))
+    told.clear()
+    memory.values[FRONT] = 0.0  # pressed and let go at once
+    memory.raiseEvent("FrontTactilTouched", 0.0)
+    memory.raiseEvent("FrontTactilTouched", 1.0)
+    eventually(lambda: told == [(HEAD, 1, True), (HEAD, 1, False)])
+
+
 def test_numbers_are_those_of_the_messages():
     numbers = {sensor.event: sensor.number for sensor in SENSORS}
     assert numbers["RearTactilTouched"] == TactileTouch.buttonRear
