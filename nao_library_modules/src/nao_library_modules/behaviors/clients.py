@@ -11,7 +11,8 @@ from .recording import Recording
 from .servers import NAMES, server_of
 
 CLOCKS_APART = 1.0
-"""s that the stamp of a goal may lie before its arrival: what is older was stamped by another clock."""
+"""s that the stamp of a goal may lie before its arrival, or after it where simulated time reaches one program later
+than the other: what is further away was stamped by another clock."""
 
 
 class ServerClient(PlanActionClient):
@@ -74,7 +75,7 @@ class GoalLog:
         now = self._clock.now()
         stamp = message.header.stamp.to_sec()
         # The stamp is when the client sent it, the truth if its clock is ours.
-        time = stamp if 0.0 <= now - stamp <= CLOCKS_APART else now
+        time = stamp if abs(now - stamp) <= CLOCKS_APART else now
         with self._lock:
             self._last[server] = message.goal
             recording = self._recording
