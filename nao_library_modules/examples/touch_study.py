@@ -79,11 +79,13 @@ class Study:
         ask = NaoAudioOutGoal([AudioOutFunction(function="say", str_param=self._question)])
         if self._speech.send_goal_and_wait(ask) != GoalStatus.SUCCEEDED:
             return {**row, "problem": self._speech.get_goal_status_text()}
+        waiting = threading.Event()
         self._touch.send_goal(
-            NaoTactileGoal([TactileFunction(function="waitForTouch", sensors=["head"], timeout=self._timeout)])
+            NaoTactileGoal([TactileFunction(function="waitForTouch", sensors=["head"], timeout=self._timeout)]),
+            feedback_cb=lambda feedback: feedback.status == "waiting" and waiting.set(),
         )
         if self._hand is not None:
-            threading.Thread(target=self._touch_the_head, daemon=True).start()
+            threading.Thread(target=self._touch_the_head, args=(waiting,), daemon=True).start()
         self._touch.wait_for_result()
         felt = self._touch.get_result()
         if self._touch.get_state() != GoalStatus.SUCCEEDED or not felt.touched:
@@ -97,8 +99,9 @@ class Study:
         )
         return {**row, "problem": self._behaviors.get_goal_status_text()}
 
-    def _touch_the_head(self) -> None:
-        """Touch it after a while, as a person would."""
+    def _touch_the_head(self, waiting: threading.Event) -> None:
+        """Touch it a while after the robot has begun to wait, as a person would."""
+        waiting.wait()
         rospy.sleep(self._random.uniform(*HAND_DELAY))
         self._hand(sensors=["Head/Touch/Middle"], time=rospy.Duration.from_sec(TOUCH_TIME), wait=False)
 

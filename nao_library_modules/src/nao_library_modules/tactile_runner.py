@@ -15,7 +15,7 @@ from nao_library_msgs.msg import BehaviorFunction
 from naoqi.errors import NaoError
 
 SERVER = "NaoBehavior"
-SERVER_LIMIT = 2.0
+SERVER_LIMIT = 5.0
 """s to wait for the server, when a touch asks for it."""
 
 
