@@ -1,7 +1,7 @@
 """For rostest suites against the simulated NAO: wait for the stack, reset the world, move time, read the robot.
 
 A suite includes `test_stack.launch` of the package `nao_library` in its `.test` file and uses `SimulatedRobot` in its
-Python file. Nothing here waits by sleeping: waits end with a message of the robot, or with a clear error.
+Python file. Nothing here waits for a time: waits end when what a test needs is there, or with a clear error.
 """
 
 from nao_sim_bridge.testing.goal_run import GoalRun, send

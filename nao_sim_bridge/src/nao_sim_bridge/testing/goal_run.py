@@ -26,7 +26,8 @@ class GoalRun:
     """A goal that was sent, and what came back so far.
 
     It stands on actionlib's ActionClient: SimpleActionClient loses the end of a goal that is over before its
-    `send_goal` has returned, which a test of quick goals meets now and then.
+    `send_goal` has returned, which a test of quick goals meets now and then. Feedback that comes after the result, on
+    its own topic, is kept, too; actionlib drops it.
 
     Attributes:
         feedback: (simulated time in s, feedback message) of each feedback.
@@ -41,8 +42,10 @@ class GoalRun:
         self.feedback: list[tuple[float, Any]] = []
         self.sent = rospy.get_time()
         self._news = threading.Condition()
+        self._known = False
         self._end: _End | None = None
         self._handle = client.action_client.send_goal(goal, self._on_transition, self._on_feedback)
+        self._handle.comm_state_machine.update_feedback = self._on_any_feedback
 
     @property
     def state(self) -> int:
@@ -70,7 +73,14 @@ class GoalRun:
         return self._ended().server_time
 
     def cancel(self) -> None:
-        """Ask the server to end the goal, unless it is over: actionlib's client would forget that."""
+        """Ask the server to end the goal, unless it is over: actionlib's client would forget that.
+
+        The server has to know of the goal before: actionlib's client may take one for lost that is cancelled sooner.
+
+        Raises:
+            StackNotReady: The server says nothing of the goal.
+        """
+        self._wait(lambda: self._known, 10.0, "word of the server that it has the goal")
         with self._handle.comm_state_machine.mutex:  # the end does not come in between
             if self._end is None:
                 self._handle.cancel()
@@ -120,7 +130,14 @@ class GoalRun:
             self.feedback.append((rospy.get_time(), feedback))
             self._news.notify_all()
 
+    def _on_any_feedback(self, message: Any) -> None:
+        if message.status.goal_id.id == self._handle.comm_state_machine.action_goal.goal_id.id:
+            self._on_feedback(self._handle, message.feedback)
+
     def _on_transition(self, handle: Any) -> None:
+        with self._news:
+            self._known = True
+            self._news.notify_all()
         if handle.get_comm_state() == actionlib.CommState.DONE:
             with self._news:
                 state, text = handle.get_terminal_state(), handle.get_goal_status_text()

@@ -111,6 +111,7 @@ class SimulatedRobot:
         """Let time pass at another speed for a while: below 1 where a test measures time.
 
         What the machine does meanwhile delays a message by wall time; the slower the simulation, the less that counts.
+        It begins when this node's time is that of the simulation.
 
         Args:
             speed: Simulated seconds per wall second, 0 for as fast as possible.
@@ -119,6 +120,8 @@ class SimulatedRobot:
         before = simulation.speed()
         simulation.setSpeed(speed)
         try:
+            now = self.advance(0.0)
+            wait_until(lambda: rospy.get_time() >= now, 10.0, f"{now} s on /clock")
             yield
         finally:
             simulation.setSpeed(before)

@@ -7,13 +7,16 @@ from typing import Callable
 
 import rospy
 
+PAUSE = 0.002
+"""s of wall time between two looks: who only looks must not take a processor from what it waits for."""
+
 
 class StackNotReady(RuntimeError):
     """Something that a test needs is not there; the text names it."""
 
 
 def wait_until(condition: Callable[[], bool], limit: float, what: str | Callable[[], str]) -> None:
-    """Ask again and again until `condition()` holds; it should itself take a moment, as a call to the robot does.
+    """Ask again and again until `condition()` holds.
 
     Raises:
         StackNotReady: It does not hold within `limit` s of wall time.
@@ -23,6 +26,7 @@ def wait_until(condition: Callable[[], bool], limit: float, what: str | Callable
         if time.monotonic() > give_up or rospy.is_shutdown():
             text = what if isinstance(what, str) else what()
             raise StackNotReady(f"not there within {limit:g} s: {text}")
+        time.sleep(PAUSE)
 
 
 def wait_for_service(name: str, kind: type, limit: float) -> rospy.ServiceProxy:
