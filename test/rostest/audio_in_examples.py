@@ -54,8 +54,9 @@ class AudioInExamples(unittest.TestCase):
 
     def test_a_recording(self):
         recording("example.wav").unlink(missing_ok=True)
-        self.start("record_sound.py", "example.wav", "--seconds", "2", "--all")
-        output = self.finish()
+        with self.robot.at_speed(0.5):
+            self.start("record_sound.py", "example.wav", "--seconds", "2", "--all")
+            output = self.finish()
         self.assertIn("example.wav: succeeded", output)
         self.assertIn("48000 Hz, left, right, front, rear", output)
         info = soundfile.info(str(recording("example.wav")))

@@ -3,7 +3,6 @@
 
 import math
 import sys
-import threading
 import unittest
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from actionlib_msgs.msg import GoalStatus
 from nao_library_actions.msg import NaoAudioOutAction, NaoAudioOutGoal
 from nao_library_modules.memory_functions import MemoryFunctions
 from nao_library_msgs.msg import AudioOutFunction
-from nao_sim_bridge.testing import SimulatedRobot, send
+from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
 from cases import case  # noqa: E402
@@ -179,12 +178,7 @@ class AudioOutGoals(unittest.TestCase):
         before = output.getOutputVolume()
         quiet = AudioOutFunction(function="setOutputVolume", volume=10, revert=True, time=rospy.Duration(1000))
         run = send(self.client, NaoAudioOutGoal([quiet])).wait_for_function(0)
-        seen = threading.Event()
-        for _ in range(200):
-            if output.getOutputVolume() == 10:
-                seen.set()
-                break
-        self.assertTrue(seen.is_set())
+        wait_until(lambda: output.getOutputVolume() == 10, 10.0, "the low volume")
         run.cancel()
         self.assertEqual(run.wait().state, GoalStatus.PREEMPTED)
         self.assertEqual(output.getOutputVolume(), before)

@@ -13,6 +13,7 @@ from nao_library_actions.msg import (
     NaoAudioOutAction,
     NaoAudioOutGoal,
     NaoBehaviorAction,
+    NaoBehaviorActionFeedback,
     NaoBehaviorGoal,
     NaoLedAction,
     NaoLedGoal,
@@ -25,6 +26,7 @@ from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
 from examples_fixture import start  # noqa: E402
+from news import News  # noqa: E402
 
 EYES = "FaceLeds"
 HEAD = "HeadYaw"
@@ -169,7 +171,8 @@ class Behaviors(unittest.TestCase):
         self.assertIn("no_such_file", steps["1"].error)
         self.assertIn("NoSuchLight", steps["3"].error)
         self.assertIn("step 4 (nao_audio_out.playFile)", run.text)
-        self.assertIn(("1", "retried"), {(f.path, f.state) for _, f in run.feedback})
+        retried = lambda: ("1", "retried") in {(f.path, f.state) for _, f in run.feedback}  # noqa: E731
+        wait_until(retried, 10.0, "feedback of the second try")
 
     def test_a_cancel_ends_all_servers_at_once(self):
         run = send(self.client, NaoBehaviorGoal([b("runBehavior", "long")]))
@@ -275,13 +278,12 @@ class Behaviors(unittest.TestCase):
         self.assertRegex(told, r"1\.3 +sequence +ended")
         self.assertIn("three: succeeded", told)
 
-        recording = start("record_behavior.py", "watched", "--seconds", "2")
-        self.assertIn("recording for 2 s", recording.stdout.readline())
-        off = NaoLedGoal([LedFunction(function="off", lights=[EYES])])
-        for _ in range(4):  # the first ones may come before the recording
-            send(self.lights, off).wait(10.0)
-            self.robot.advance(0.4)
+        with News().messages("NaoBehavior/feedback", NaoBehaviorActionFeedback) as news:
+            recording = start("record_behavior.py", "watched", "--seconds", "2")
+            wait_until(lambda: any(m.feedback.function == "recordBehavior" for m in news), 30.0, "the recording")
+        send(self.lights, NaoLedGoal([LedFunction(function="off", lights=[EYES])])).wait(10.0)
         told, _ = recording.communicate(timeout=60)
+        self.assertIn("recording for 2 s", told)
         self.assertEqual(recording.returncode, 0, told)
         self.assertIn("NaoLights.off", told)
 

@@ -59,8 +59,13 @@ class DriverFootsteps(WalkingTest):
     def test_a_sequence_is_made_and_told_of_step_by_step(self):
         before = self.truth()
         steps = ahead(9)
-        run = self.play(steps)
+        with self.robot.at_speed(1.0):
+            run = self.play(steps)
         self.assertEqual(run.result.executed_footsteps, steps)
+        # Feedback and result come on different topics.
+        wait_until(
+            lambda: any(len(told.executed_footsteps) == 9 for _, told in run.feedback), 10.0, "the last feedback"
+        )
         counts = [len(feedback.executed_footsteps) for _, feedback in run.feedback]
         self.assertEqual(counts, sorted(counts))
         self.assertEqual(counts[0], 0)

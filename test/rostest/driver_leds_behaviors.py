@@ -74,10 +74,11 @@ class DriverLedsBehaviors(unittest.TestCase):
 
     def test_fades_follow_each_other(self):
         # Red stays for a second, long enough to be seen by a test that looks now and then.
-        for color, duration in ((RED, 0.5), (RED, 1.0), (GREEN, 0.5)):
-            self.fade.publish(FadeRGB("ChestLeds", color, Duration(duration)))
-        self.robot.wait_for_leds(rgb(CHEST, RED), LIMIT)
-        self.robot.wait_for_leds(rgb(CHEST, GREEN), LIMIT)
+        with self.robot.at_speed(0.5):
+            for color, duration in ((RED, 0.5), (RED, 1.0), (GREEN, 0.5)):
+                self.fade.publish(FadeRGB("ChestLeds", color, Duration(duration)))
+            self.robot.wait_for_leds(rgb(CHEST, RED), LIMIT)
+            self.robot.wait_for_leds(rgb(CHEST, GREEN), LIMIT)
 
     def test_a_fade_that_is_wrong_does_not_end_the_next(self):
         self.fade.publish(FadeRGB("NoLeds", RED, Duration(0.1)))

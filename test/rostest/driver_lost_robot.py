@@ -57,14 +57,14 @@ class DriverLostRobot(MortalSimulator, unittest.TestCase):
 
         self.start()
         self.wait_until_it_works()
-        motion = ALProxy("ALMotion", "127.0.0.1", PORT)
         for client, goal in ((self.trajectories, trajectory(30.0, 1.5)), (self.poses, BodyPoseGoal("slow"))):
             rospy.set_param(
                 "pose_manager/poses",
                 {"slow": {"joint_names": "HeadYaw", "positions": [1.5], "time_from_start": 30.0}},
             )
             run = send(client, goal)
-            wait_until(lambda: motion.getAngles("HeadYaw", False)[0] > 0.001, 20.0, "the motion")
+            motion = ALProxy("ALMotion", "127.0.0.1", PORT)
+            wait_until(lambda motion=motion: motion.getAngles("HeadYaw", False)[0] > 0.001, 20.0, "the motion")
             began = time.monotonic()
             self.kill()
             run.wait(10.0)

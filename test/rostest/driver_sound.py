@@ -186,7 +186,7 @@ class DriverSound(unittest.TestCase):
         self.assertEqual(counts[1], counts[2])
 
     def test_the_example_writes_the_topic_to_a_file(self):
-        self.device.playSine(1000, 80, 0, 20.0, _async=True)
+        self.device.playSine(1000, 80, 0, 600.0, _async=True)
         self.addCleanup(self.device.flushAudioOutputs)
         path = recording("example.wav")
         command = [sys.executable, EXAMPLE, str(path), "--seconds", "2", "--frequency", "48000"]

@@ -79,7 +79,7 @@ class DriverSpeech(unittest.TestCase):
         self.assertEqual([text for text in said if text in texts], texts)
 
     def test_feedback_comes_when_the_robot_begins_and_the_result_when_it_has_ended(self):
-        with self.robot.at_speed(1.0):
+        with self.robot.at_speed(0.3):
             before = self.simulation.time()
             run = self.succeed("Feedback comes first, and the result comes last.")
             after = self.simulation.time()
@@ -133,9 +133,10 @@ class DriverSpeech(unittest.TestCase):
         self.assertLess(loudness(), 0.5 * loud)
         self.assertAlmostEqual(self.voice.getVolume(), 1.0, places=3)
         self.configure(voice=other)
-        run = self.say("In another voice, for a while.")
-        wait_until(lambda: run.feedback, LIMIT, "the beginning")
-        self.assertEqual(self.voice.getVoice(), other)
+        with self.robot.at_speed(0.5):
+            run = self.say("In another voice, for a while.")
+            wait_until(lambda: run.feedback, LIMIT, "the beginning")
+            self.assertEqual(self.voice.getVoice(), other)
         run.wait(LIMIT)
         self.assertEqual((self.voice.getVoice(), self.voice.getLanguage()), before[:2])
 

@@ -161,8 +161,9 @@ class DriverWalker(unittest.TestCase):
             service("cmd_vel_srv", CmdVelService)(velocity(y=float("inf")))
         self.robot.advance(1.0)
         self.assertFalse(self.motion.moveIsActive())
-        self.cmd_vel.publish(velocity(x=7.0))  # taken as 1
+        timer = self.publishing(velocity(x=7.0))  # taken as 1
         self.wait_for_walk()
+        timer.shutdown()
 
     def test_gait_parameters_and_the_pose_for_walking(self):
         read, needs_pose = service("read_foot_gait_config_srv", Empty), "needs_start_walk_pose_srv"

@@ -56,7 +56,7 @@ class MotionFunctions(MotionTest):
         self.assertAlmostEqual(self.angle("HeadPitch"), 0.2, delta=NEAR)
 
     def test_interpolations_take_their_time_and_end_where_asked(self):
-        with self.robot.at_speed(1.0):
+        with self.robot.at_speed(0.25):
             result = self.play(
                 f("angleInterpolation", names=["Head"], angles=[0.4, 0.0, 0.2, 0.1], times=[0.5, 1.0], stiffness=1.0)
             )

@@ -99,7 +99,7 @@ class MotionPreemption(MotionTest):
         self.assertEqual(run.text, "preempted in function 3 (angleInterpolation)")
 
     def test_lights_and_motion_run_at_the_same_time(self):
-        motion = self.send(f("angleInterpolation", names=["HeadYaw"], angles=[1.0], times=[2.0], stiffness=1.0))
+        motion = self.send(f("angleInterpolation", names=["HeadYaw"], angles=[1.0], times=[8.0], stiffness=1.0))
         fade = LedFunction(function="fade", lights=["Brain0"], i_values=[0.0], duration=1.0)
         lights = send(self.lights, NaoLedGoal([fade])).wait()
         motion.wait()

@@ -36,6 +36,7 @@ class MotionRecordings(MotionTest):
             f("recordMotion", str_param=NAME, names=["Head"], duration=60.0, rate=20.0)
         ).wait_for_function(0)
         self.motion.angleInterpolation(["HeadYaw"], [until], [1.5], True)
+        self.robot.advance(0.5)
         recording.cancel()
         recording.wait(5.0)
         self.assertEqual(recording.state, GoalStatus.PREEMPTED, recording.text)

@@ -142,13 +142,13 @@ class MotionWalking(MotionTest):
         self.assert_stands()
 
     def test_lights_go_on_beside_a_walk(self):
-        run = self.send(walk(0.25))
+        run = self.send(walk(0.5))
         fade = LedFunction(function="fade", lights=["Brain0"], i_values=[0.0], duration=1.0)
         lights = send(self.lights, NaoLedGoal([fade])).wait(LIMIT)
         run.wait(LIMIT)
         self.assertEqual((run.state, lights.state), (GoalStatus.SUCCEEDED,) * 2, run.text + lights.text)
         self.assertLess(lights.ended, run.ended)
-        self.assert_walked(0.25)
+        self.assert_walked(0.5)
 
     def test_a_goal_may_leave_it_walking_and_another_one_ends_it(self):
         self.play(f("move", values=[0.08, 0.0, 0.0]))
