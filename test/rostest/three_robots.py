@@ -113,19 +113,22 @@ class ThreeRobots(unittest.TestCase):
 
     def test_a_robot_walks_into_another(self):
         walks, stands = self.robots[0], self.robots[2]
-        for robot in (walks, stands):
-            robot.module("ALMotion").wakeUp()
-        motion, memory = walks.module("ALMotion"), walks.module("ALMemory")
-        self.hear_with_sonars(walks, 0.2, 0.45)
-        motion.setExternalCollisionProtectionEnabled("All", False)
-        walks.pause()
+        walks.pause()  # from here on each run is the same
         self.addCleanup(walks.resume)
+        awake = [robot.module("ALMotion").wakeUp(_async=True) for robot in (walks, stands)]
+        wait_until(lambda: walks.advance(0.5) and all(call.isFinished() for call in awake), LIMIT, "robots that stand")
+        self.hear_with_sonars(walks, 0.2, 0.45)
+        pressed, furthest = [], 0.0
+        for event in ("LeftBumperPressed", "RightBumperPressed"):  # which may be short
+            subscriber = walks.module("ALMemory").subscriber(event)
+            link = subscriber.signal.connect(lambda value: value and pressed.append(value))
+            self.addCleanup(subscriber.signal.disconnect, link)
+        motion = walks.module("ALMotion")
+        motion.setExternalCollisionProtectionEnabled("All", False)
         before = stands.true_pose().position
         motion.moveToward(0.8, 0.0, 0.0)
-        pressed, furthest = False, 0.0
         for _ in range(80):
             walks.advance(0.1)
-            pressed = pressed or any(memory.getData(f"{side}BumperPressed") for side in ("Left", "Right"))
             now = stands.true_pose().position
             furthest = max(furthest, np.hypot(now.x - before.x, now.y - before.y))
             if pressed and furthest > 0.002:
