@@ -75,8 +75,9 @@ class Camera:
     def _run(self):
         number, due = 0, time.monotonic()
         while self._running.wait() and not self._ended.is_set():
-            due = max(due + 1.0 / RATE, time.monotonic() - 1.0 / RATE)
+            # Two are never closer than a period: files that count time in ticks would have no room for both.
             self._ended.wait(max(0.0, due - time.monotonic()))
+            due = max(due, time.monotonic()) + 1.0 / RATE
             number += 1
             stamp = rospy.Time.now()
             self.stamps[number] = stamp.to_sec()
