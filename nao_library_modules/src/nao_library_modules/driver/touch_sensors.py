@@ -126,7 +126,11 @@ class TouchSensors:
         self._read(tuple(self._sensors.values()))
 
     def _look_again(self) -> bool:
-        """Read the sensors that told something: libqi brings events that follow each other closely in any order."""
+        """Read the sensors that told something: libqi brings events that follow each other closely in any order.
+
+        Returns:
+            True: to be put right, nothing has to be started anew.
+        """
         with self._lock:
             heard = [sensor for event, sensor in self._sensors.items() if event in self._heard]
             self._heard.clear()
