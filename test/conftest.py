@@ -1,0 +1,109 @@
+"""What all levels share: which tests run, in which order, and the closing line."""
+
+from __future__ import annotations
+
+import json
+import random
+import signal
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+LEVELS = ("logic", "robot", "ros", "slow")
+HERE = Path(__file__).parent
+DURATIONS = HERE.parent / ".ws" / "test_results" / "durations.json"
+"""How long each file took when it last ran, in s: what takes longest starts first."""
+SLOWEST = 20
+
+# Whoever starts the tests in the background of a shell has them ignore Ctrl-C, and so would the programs that they
+# start and interrupt.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+settings.register_profile("nao", derandomize=True, deadline=None, print_blob=False, database=None)
+settings.load_profile("nao")
+
+
+def pytest_addoption(parser):
+    parser.addoption("--words", default="", help="run tests with one of these words in their path or name")
+    parser.addoption("--shuffle", default="", help="run the files in a random order of this seed")
+
+
+def pytest_configure(config):
+    for level in LEVELS:
+        config.addinivalue_line("markers", f"{level}: a test of the level {level}")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config, items):
+    words = config.getoption("--words").lower().split()
+    if words:
+        chosen = [item for item in items if any(word in item.nodeid.lower() for word in words)]
+        config.hook.pytest_deselected(items=[item for item in items if item not in set(chosen)])
+        items[:] = chosen
+    seed = config.getoption("--shuffle")
+    files = list(dict.fromkeys(_file(item) for item in items))
+    if seed:
+        shuffler = random.Random(seed)
+        shuffler.shuffle(files)
+        shuffler.shuffle(items)
+    else:
+        took = _durations()
+        files.sort(key=lambda file: -took.get(file, 0.0))
+    order = {file: position for position, file in enumerate(files)}
+    stack = {item: "ros/" in _file(item) for item in items}
+    items.sort(key=lambda item: (not stack[item], 0 if seed and stack[item] else order[_file(item)]))
+    for item in items:
+        # The cases of the running stack share it, and those of a file what takes long to start.
+        if item.get_closest_marker("xdist_group") is None:
+            item.add_marker(pytest.mark.xdist_group("ros" if stack[item] else _file(item)))
+
+
+def _file(item):
+    return item.path.relative_to(HERE).as_posix()
+
+
+def _durations():
+    try:
+        return json.loads(DURATIONS.read_text())
+    except (OSError, ValueError):
+        return {}
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    """The slowest tests, how long each file took, and the closing line: a test that was skipped has not passed."""
+    if hasattr(config, "workerinput"):
+        return
+    reports = [r for group in terminalreporter.stats.values() for r in group if hasattr(r, "duration")]
+    took, cases = {}, {}
+    for report in reports:
+        file = report.nodeid.split("::")[0].replace("test/", "", 1)
+        took[file] = took.get(file, 0.0) + report.duration
+        cases[report.nodeid] = cases.get(report.nodeid, 0.0) + report.duration
+    terminalreporter.section(f"slowest {SLOWEST}")
+    for name, duration in sorted(cases.items(), key=lambda case: -case[1])[:SLOWEST]:
+        terminalreporter.line(f"{duration:7.2f} s  {name}")
+    DURATIONS.parent.mkdir(parents=True, exist_ok=True)
+    DURATIONS.write_text(json.dumps({**_durations(), **{file: round(t, 2) for file, t in took.items()}}, indent=0))
+
+
+def pytest_report_header(config):
+    seed = config.getoption("--shuffle")
+    return f"random order, seed {seed}: repeat it with SEED={seed}" if seed else None
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    report = yield
+    if report.skipped and not hasattr(report, "wasxfail"):
+        report.outcome = "failed"
+        report.longrepr = f"skipped, which shows nothing: {call.excinfo.value}"
+    return report
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure(config):
+    reporter = config.pluginmanager.get_plugin("terminalreporter")
+    if hasattr(config, "workerinput") or reporter is None or config.option.collectonly:
+        return
+    count = {name: len(reporter.stats.get(name, [])) for name in ("passed", "failed", "error")}
+    reporter.line(f"{count['passed']} passed, {count['failed'] + count['error']} failed")

@@ -1,0 +1,128 @@
+"""Goals to a real module class that talks libqi to the simulator, without a ROS master."""
+
+from __future__ import annotations
+
+import threading
+from types import SimpleNamespace
+
+from edge import Edge
+from simulator import PATIENCE
+
+from nao_library_modules.robot import Robot
+
+
+class WatchedRobot(Robot):
+    """Proxies whose calls the lockstep knows of."""
+
+    def __init__(self, ip, port, lockstep):
+        super().__init__(ip, port)
+        self._lockstep = lockstep
+        self._watched = {}
+
+    def proxy(self, name):
+        if name not in self._watched:
+            self._watched[name] = _WatchedProxy(super().proxy(name), self._lockstep)
+        return self._watched[name]
+
+
+class _WatchedProxy:
+    def __init__(self, proxy, lockstep):
+        self._proxy = proxy
+        self._lockstep = lockstep
+
+    def call_async(self, method, *arguments):
+        self._lockstep.call_begins()
+        try:
+            call = self._proxy.call_async(method, *arguments)
+        except BaseException:
+            self._lockstep.call_ended()
+            raise
+        call.add_done_callback(self._lockstep.call_ended)
+        return call
+
+    def __getattr__(self, name):
+        return getattr(self._proxy, name)
+
+
+class Goal:
+    """A goal under way, or its end.
+
+    Attributes:
+        feedback: Messages so far.
+    """
+
+    def __init__(self, module, simulator, goal):
+        self._server = module.server
+        self._simulator = simulator
+        self._server.end = None
+        self._server.preempt_requested = False
+        self._server.feedback = self.feedback = []
+        simulator.lockstep.goal_begins()
+        self._thread = threading.Thread(target=self._server.execute, args=(goal,), daemon=True)
+        self._thread.start()
+
+    @property
+    def active(self):
+        return self._thread.is_alive()
+
+    def finish(self):
+        """Let time pass until the goal is over, and no longer."""
+        runner = self._simulator.server.runner
+        runner.resume()
+        self._thread.join(4 * PATIENCE)
+        runner.pause()
+        return self._ended()
+
+    def cancel(self):
+        """Preempt it and wait for its end; no simulated time passes unless its clean-up waits for some."""
+        self._server.preempt()
+        return self.finish()
+
+    def _ended(self):
+        assert not self._thread.is_alive(), "the goal does not end"
+        self._simulator.lockstep.goal_is_over()
+        assert self._server.end is not None, "the goal has no end state"
+        self.state, self.text, self.result = self._server.end, self._server.text, self._server.result
+        return self
+
+
+class ModuleGoals:
+    """A module under test, and goals to it.
+
+    Args:
+        kind: Class of the module.
+        goal: Type of its goals.
+        simulator: The robot that it talks to.
+        options: More arguments of the class.
+    """
+
+    def __init__(self, kind, goal, simulator, **options):
+        self.edge = Edge(SimpleNamespace(now=simulator.lockstep.time, wait=simulator.lockstep.wait))
+        self._simulator = simulator
+        self._goal = goal
+        robot = WatchedRobot(*simulator.address, simulator.lockstep)
+        robot.connection.connect(PATIENCE)
+        self.module = kind(*simulator.address, robot=robot, edge=self.edge, **options)
+
+    def send(self, *functions, **fields):
+        """A goal that has begun; let time pass with `robot.advance`, `goal.finish()` or `goal.cancel()`."""
+        return Goal(self.module, self._simulator, self._goal(list(functions), **fields))
+
+    def play(self, *functions, **fields):
+        """A goal that is over, whatever its end; time passes as it needs it."""
+        return self.send(*functions, **fields).finish()
+
+    def succeed(self, *functions, **fields):
+        """The result of a goal that succeeds."""
+        goal = self.play(*functions, **fields)
+        assert goal.state == "succeeded", goal.text
+        return goal.result
+
+    def refused(self, *functions, **fields):
+        """The text of a goal that is aborted."""
+        goal = self.play(*functions, **fields)
+        assert goal.state == "aborted", goal.state
+        return goal.text
+
+    def close(self):
+        self.module.shut_down()
