@@ -1,16 +1,16 @@
 # Everything a user types. Each target installs and builds what it needs first; with nothing to do that takes no time.
 
 .DEFAULT_GOAL := help
-.PHONY: docs pictures urdf help setup build demo test unit rostest bench soak lint format clean
+.PHONY: docs pictures urdf help setup build demo test test-slow test-all bench soak lint format clean
 
-# Tests for `make unit` and `make rostest`: parts of their names (TESTS="lights walk"). Scenarios at once: JOBS=2.
+# Tests to run: parts of their paths or names (make test TESTS="lights walk"). SEED: their random order.
 TESTS ?=
-JOBS ?= 1
+SEED ?=
 # Options of `make soak`; see test/soak/run.py --help.
 SOAK ?=
 
 help: ## Show this list
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1|\2/p' Makefile | awk -F'|' '{ printf "%-16s%s\n", $$1, $$2 }'
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1|\2/p' Makefile | awk -F'|' '{ printf "%-18s%s\n", $$1, $$2 }'
 
 setup: ## Install the missing Debian packages and the virtual environment .venv
 	@scripts/setup
@@ -21,14 +21,14 @@ build: setup ## Build the catkin workspace .ws
 demo: build ## Play the demonstration in the simulator; pictures, sound and a table in demo_output
 	@scripts/ros-env python3 nao_library_modules/examples/demo.py --output demo_output
 
-test: build ## Run all tests; closes with "N passed, N failed" (JOBS=2: two scenarios at once)
-	@scripts/test all --jobs $(JOBS)
+test: build ## Run the tests of the levels logic, robot and ros; closes with "N passed, N failed" (TESTS="lights walk")
+	@scripts/test test $(TESTS)
 
-unit: setup ## Run the unit tests: no ROS master, and no build unless they use messages (TESTS="lights walk")
-	@scripts/test unit $(TESTS)
+test-slow: build ## Run the level slow: soak, commands of the documents, real-time rates, several robots, big tables
+	@scripts/test slow $(TESTS)
 
-rostest: build ## Run the ROS scenarios (TESTS="lights walk": some of them; JOBS=2: two at once)
-	@scripts/test rostest --jobs $(JOBS) $(TESTS)
+test-all: build ## Run all levels, in random order (SEED=1: in the order of that seed)
+	@SEED="$(SEED)" scripts/test all $(TESTS)
 
 bench: build ## Print the benchmarks: ratios measured side by side
 	@scripts/ros-env python3 test/benchmarks/run.py

@@ -12,7 +12,8 @@ from hypothesis import settings
 
 LEVELS = ("logic", "robot", "ros", "slow")
 HERE = Path(__file__).parent
-DURATIONS = HERE.parent / ".ws" / "test_results" / "durations.json"
+RESULTS = HERE.parent / ".ws" / "test_results"
+DURATIONS = RESULTS / "durations.json"
 """How long each file took when it last ran, in s: what takes longest starts first."""
 SLOWEST = 20
 
@@ -25,6 +26,7 @@ settings.load_profile("nao")
 
 def pytest_addoption(parser):
     parser.addoption("--words", default="", help="run tests with one of these words in their path or name")
+    parser.addoption("--closing", default="", help="file for the closing line")
     parser.addoption("--shuffle", default="", help="run the files in a random order of this seed")
 
 
@@ -76,14 +78,19 @@ def pytest_terminal_summary(terminalreporter, config):
     reports = [r for group in terminalreporter.stats.values() for r in group if hasattr(r, "duration")]
     took, cases = {}, {}
     for report in reports:
-        file = report.nodeid.split("::")[0].replace("test/", "", 1)
+        name = report.nodeid.rpartition("@")[0] or report.nodeid  # without the group of xdist
+        file = name.split("::")[0].replace("test/", "", 1)
         took[file] = took.get(file, 0.0) + report.duration
-        cases[report.nodeid] = cases.get(report.nodeid, 0.0) + report.duration
+        cases[name] = cases.get(name, 0.0) + report.duration
     terminalreporter.section(f"slowest {SLOWEST}")
     for name, duration in sorted(cases.items(), key=lambda case: -case[1])[:SLOWEST]:
         terminalreporter.line(f"{duration:7.2f} s  {name}")
-    DURATIONS.parent.mkdir(parents=True, exist_ok=True)
+    RESULTS.mkdir(parents=True, exist_ok=True)
     DURATIONS.write_text(json.dumps({**_durations(), **{file: round(t, 2) for file, t in took.items()}}, indent=0))
+    count = {name: len(terminalreporter.stats.get(name, [])) for name in ("passed", "failed", "error")}
+    closing = config.getoption("--closing")
+    if closing:
+        Path(closing).write_text(f"{count['passed']} passed, {count['failed'] + count['error']} failed\n")
 
 
 def pytest_report_header(config):
@@ -98,12 +105,3 @@ def pytest_runtest_makereport(item, call):
         report.outcome = "failed"
         report.longrepr = f"skipped, which shows nothing: {call.excinfo.value}"
     return report
-
-
-@pytest.hookimpl(trylast=True)
-def pytest_unconfigure(config):
-    reporter = config.pluginmanager.get_plugin("terminalreporter")
-    if hasattr(config, "workerinput") or reporter is None or config.option.collectonly:
-        return
-    count = {name: len(reporter.stats.get(name, [])) for name in ("passed", "failed", "error")}
-    reporter.line(f"{count['passed']} passed, {count['failed'] + count['error']} failed")

@@ -25,13 +25,21 @@ class OwnStack:
 
     Args:
         log: Where that goes.
-        arguments: Of nao_sim.launch, by name.
+        arguments: Of the launch file, by name.
+        launch_file: Of the package nao_library.
+        ros_port: Of a ROS master that runs already; None for one of its own.
     """
 
-    def __init__(self, log: Path, arguments: Mapping[str, str]) -> None:
-        self.ros_port, self.nao_port = free_port(), free_port()
+    def __init__(
+        self,
+        log: Path,
+        arguments: Mapping[str, str],
+        launch_file: str = "nao_sim.launch",
+        ros_port: int | None = None,
+    ) -> None:
+        self.ros_port, self.nao_port = ros_port or free_port(), free_port()
         self.log = log
-        command = ["roslaunch", "--port", str(self.ros_port), "nao_library", "nao_sim.launch"]
+        command = ["roslaunch", "--port", str(self.ros_port), "nao_library", launch_file]
         command += [f"{name}:={value}" for name, value in {"nao_port": str(self.nao_port), **arguments}.items()]
         with log.open("wb") as output:
             self._process = subprocess.Popen(
@@ -47,6 +55,11 @@ class OwnStack:
     def master_uri(self) -> str:
         """Address of its ROS master."""
         return f"http://127.0.0.1:{self.ros_port}"
+
+    @property
+    def pid(self) -> int:
+        """Process of roslaunch."""
+        return self._process.pid
 
     def alive(self) -> bool:
         """Whether roslaunch still runs."""

@@ -1,0 +1,116 @@
+"""One running stack for all cases of the level ros: a master, simulator, driver and servers, watched for deaths."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from ctypes import CDLL
+from pathlib import Path
+
+import rospy
+
+from nao_library_modules.own_stack import OwnStack, can_connect, free_port
+from nao_sim_bridge.testing import SimulatedRobot
+
+SPEED = 4
+PR_SET_PDEATHSIG = 1
+LIMIT = 60.0
+
+
+def _die_with_parent():
+    CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGINT)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def start_program(*command, **options):
+    """A program that gets Ctrl-C when this process ends, however it ends."""
+    return subprocess.Popen(command, stdin=subprocess.DEVNULL, preexec_fn=_die_with_parent, **options)
+
+
+class RosStack:
+    """A stack on a master of its own; this process is a node of that master.
+
+    The master outlives the stack, so that a stack which a case has broken can be started again.
+
+    Args:
+        folder: For logs and everything else that ROS writes.
+        arguments: Of test_stack.launch.
+    """
+
+    def __init__(self, folder, **arguments):
+        self.folder = folder
+        self._arguments = {"speed": SPEED, **arguments}
+        self._starts = 0
+        self._nodes = {}
+        port = free_port()
+        os.environ.update(
+            ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_HOME=str(folder / "home"), ROS_LOG_DIR=str(folder / "log")
+        )
+        for name in ("home", "log"):
+            (folder / name).mkdir()
+        with (folder / "master.txt").open("wb") as output:
+            self._master = start_program("rosmaster", "--core", "-p", str(port), stdout=output, stderr=output)
+        self._await(lambda: can_connect(port), "the ROS master")
+        self._port = port
+        self.start()
+        rospy.init_node(f"ros_tests_{os.getpid()}", disable_signals=True)
+        self.robot = SimulatedRobot(limit=LIMIT)
+
+    def start(self):
+        self._starts += 1
+        self._nodes = {}
+        self.stack = OwnStack(
+            self.folder / f"stack_{self._starts}.txt",
+            {name: str(value) for name, value in self._arguments.items()},
+            launch_file="test_stack.launch",
+            ros_port=self._port,
+        )
+        self.stack.wait_for_robot(LIMIT)
+
+    def restart(self):
+        self.stack.stop()
+        self.start()
+        self.robot = SimulatedRobot(limit=LIMIT)
+
+    def deaths(self):
+        """Names of the nodes that have ended since the stack was complete."""
+        if not self._nodes:
+            self._nodes = _children(self.stack.pid)
+            return []
+        return [name for pid, name in self._nodes.items() if not _alive(pid)]
+
+    def close(self):
+        rospy.signal_shutdown("the tests are over")
+        self.stack.stop()
+        self._master.terminate()
+        self._master.wait(LIMIT)
+
+    @staticmethod
+    def _await(condition, what):
+        give_up = time.monotonic() + LIMIT
+        while not condition():
+            assert time.monotonic() < give_up, f"not there within {LIMIT:g} s: {what}"
+            time.sleep(0.02)
+
+
+def _children(parent):
+    """Process id -> name of node, of all programs that a roslaunch has started."""
+    found = {}
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            status = (folder / "stat").read_text().rpartition(")")[2].split()
+            words = (folder / "cmdline").read_bytes().decode(errors="replace").split("\0")
+        except OSError:
+            continue  # it has just ended
+        if int(status[1]) == parent:
+            found[int(folder.name)] = next((w[8:] for w in words if w.startswith("__name:=")), words[0])
+    return found
+
+
+def _alive(pid):
+    try:
+        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
