@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from xdist.scheduler import LoadGroupScheduling
 
 LEVELS = ("logic", "robot", "ros", "slow")
 HERE = Path(__file__).parent
@@ -39,29 +40,34 @@ def pytest_configure(config):
 def pytest_collection_modifyitems(config, items):
     words = config.getoption("--words").lower().split()
     if words:
-        chosen = [item for item in items if any(word in item.nodeid.lower() for word in words)]
-        config.hook.pytest_deselected(items=[item for item in items if item not in set(chosen)])
-        items[:] = chosen
+        left_out = [item for item in items if not any(word in item.nodeid.lower() for word in words)]
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in set(left_out)]
     seed = config.getoption("--shuffle")
-    files = list(dict.fromkeys(_file(item) for item in items))
     if seed:
-        shuffler = random.Random(seed)
-        shuffler.shuffle(files)
-        shuffler.shuffle(items)
-    else:
-        took = _durations()
-        files.sort(key=lambda file: -took.get(file, 0.0))
-    order = {file: position for position, file in enumerate(files)}
-    stack = {item: "ros/" in _file(item) for item in items}
-    items.sort(key=lambda item: (not stack[item], 0 if seed and stack[item] else order[_file(item)]))
+        random.Random(seed).shuffle(items)
     for item in items:
         # The cases of the running stack share it, and those of a file what takes long to start.
+        file = item.path.relative_to(HERE).as_posix()
         if item.get_closest_marker("xdist_group") is None:
-            item.add_marker(pytest.mark.xdist_group("ros" if stack[item] else _file(item)))
+            item.add_marker(pytest.mark.xdist_group("ros" if file.startswith("ros/") else file))
 
 
-def _file(item):
-    return item.path.relative_to(HERE).as_posix()
+class LongestFirst(LoadGroupScheduling):
+    """Hands out the running stack first, then the files that took longest when they last ran, or in random order."""
+
+    def _assign_work_unit(self, node):
+        seed, took = self.config.getoption("--shuffle"), _durations()
+
+        def rank(group):
+            return group != "ros", random.Random(seed + group).random() if seed else -took.get(group, 0.0)
+
+        self.workqueue.move_to_end(min(self.workqueue, key=rank), last=False)
+        super()._assign_work_unit(node)
+
+
+def pytest_xdist_make_scheduler(config, log):
+    return LongestFirst(config, log)
 
 
 def _durations():
