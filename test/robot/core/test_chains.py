@@ -1,0 +1,295 @@
+"""Goals as chains of functions: progress, ends, policies, preemption, clean-up. The functions are the test's own."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+
+import pytest
+from genpy import Duration
+
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_modules.errors import BadGoal, Preempted, UnknownFunction
+from nao_library_modules.function_chain import checked_by
+from nao_library_modules.nao_basic import NaoBasic
+from nao_library_msgs.msg import LedFunction
+from naoqi.errors import RobotUnreachable
+
+BRAIN0 = "Head/Led/Front/Right/1"
+
+
+class ChainModule(NaoBasic):
+    """A module whose functions say what they did."""
+
+    def __init__(self, *address, **options):
+        super().__init__(*address, **options)
+        self.done = []
+        for function in (self.say, self.fail, self.crash, self.rasta, self.fades, self.borrow, self.nested):
+            self.function_table[function.__name__] = function
+        self.serve("Module", NaoLedAction)
+
+    def say(self, str_param):
+        self.done.append(str_param)
+        return str_param
+
+    def fail(self, str_param):
+        raise BadGoal("str_param", str_param, "something else")
+
+    def crash(self):
+        raise KeyError("oops")
+
+    def rasta(self):
+        self.call(self.robot.proxy("ALLeds"), "rasta", 60.0)
+
+    def fades(self, lights):
+        return self.call_all(self.robot.proxy("ALLeds"), "fade", [(light, 0.0, 2.0) for light in lights])
+
+    def borrow(self, str_param):
+        self.done.append(f"borrow {str_param}")
+        self.after_wait(lambda: self.done.append(f"return {str_param}"))
+
+    def nested(self):
+        self.borrow("outer")
+        self.run("borrow", ["inner"], 0.0)
+        self.done.append("nested done")
+
+
+def f(function, str_param="", time=0.0, **fields):
+    return LedFunction(function=function, str_param=str_param, time=Duration.from_sec(time), **fields)
+
+
+@pytest.fixture
+def goals(goals_to):
+    return goals_to(ChainModule, NaoLedGoal)
+
+
+@pytest.fixture
+def done(goals):
+    return goals.module.done
+
+
+def test_functions_run_in_order_and_answers_waits_and_progress_are_told(robot, goals, done):
+    began = robot.now.time
+    goal = goals.play(f("say", "one", 0.5), f("ping", "", 1.5), f("say", "two"))
+    assert (goal.state, goal.text, done) == ("succeeded", "", ["one", "two"])
+    assert robot.now.time - began == pytest.approx(2.0, abs=0.2), "the server waits after each function"
+    results = goal.result.results
+    assert [(r.function, r.values, r.error) for r in results] == [
+        ("say", ["one"], ""), ("ping", ["True"], ""), ("say", ["two"], ""),
+    ]  # fmt: skip
+    assert all(result.elapsed.to_sec() < 0.4 for result in results), "waits do not count"
+    assert goal.result.memList == ["one", "True", "two"]
+    told = [(f.index, f.function, f.count, f.waiting) for f in goal.feedback]
+    assert told == [(0, "say", 3, ""), (1, "ping", 3, ""), (2, "say", 3, "")]
+
+
+def test_a_chain_with_an_error_runs_nothing_and_the_server_lives_on(goals, done):
+    goal = goals.play(f("say", "one"), f("sya", "two"))
+    assert (goal.state, done, goal.feedback, goal.result.results) == ("aborted", [], [], [])
+    text = "unknown function 'sya': did you mean 'say'?; `nao list Module --all` tells all"
+    assert goal.text == f"function 2 (sya): {text}"
+    assert "the chain is empty" in goals.refused()
+    assert goals.succeed(f("say", "one")).memList == ["one"]
+
+
+def test_an_error_while_running_keeps_the_results_before_it(goals, done):
+    goal = goals.play(f("say", "one"), f("fail", "x"), f("say", "three"))
+    assert (goal.state, done) == ("aborted", ["one"])
+    assert goal.text == "function 2 (fail): field str_param: 'x' is not allowed: something else"
+    told = [(r.function, r.values, r.error) for r in goal.result.results]
+    assert told == [("say", ["one"], ""), ("fail", [], "field str_param: 'x' is not allowed: something else")]
+
+
+def test_an_error_of_the_robot_is_told_with_its_text(goals):
+    text = goals.refused(f("say", "one"), f("getData", "no/such/key"))
+    assert text.startswith("function 2 (getData): ALMemory.getData failed: ") and "no/such/key" in text
+
+
+def test_a_function_that_may_be_skipped_does_not_end_the_chain(goals, done):
+    result = goals.succeed(f("say", "one"), f("fail", "x", on_error="skip"), f("say", "three"))
+    assert done == result.memList == ["one", "three"]
+    assert [bool(each.error) for each in result.results] == [False, True, False]
+
+
+def test_a_function_is_tried_again_as_often_as_its_goal_says(goals, done):
+    tries = iter(["first", "second"])
+
+    def at_the_third(str_param):
+        failure = next(tries, None)
+        if failure is not None:
+            raise BadGoal("str_param", str_param, failure)
+        return "at last"
+
+    goals.module.function_table["fail"] = at_the_third
+    goal = goals.play(f("say", "one"), f("fail", "x", on_error="retry 2"), f("say", "three"))
+    assert (goal.state, goal.result.memList) == ("succeeded", ["one", "at last", "three"])
+    assert [each.function for each in goal.feedback] == ["say", "fail", "fail", "fail", "say"]
+    assert [each.error for each in goal.result.results] == ["", "", ""]
+
+
+@pytest.mark.parametrize(("on_error", "end"), [("retry 2", "aborted"), ("retry 2 skip", "succeeded")])
+def test_what_becomes_of_a_function_that_fails_at_every_try(goals, on_error, end):
+    calls = []
+    goals.module.function_table["crash"] = lambda: calls.append(1) or {}["oops"]
+    goal = goals.play(f("crash", on_error=on_error), f("say", "on"))
+    assert (goal.state, len(calls)) == (end, 3)
+    assert [r.function for r in goal.result.results] == ["crash", "say"][: 2 if end == "succeeded" else 1]
+
+
+@pytest.mark.parametrize("on_error", ["ignore", "retry", "retry 0", "retry 101", "retry -1", "skip 2"])
+def test_an_unknown_policy_is_refused_before_anything_runs(goals, done, on_error):
+    assert "function 2 (say): field on_error" in goals.refused(f("say", "one"), f("say", "two", on_error=on_error))
+    assert done == []
+
+
+def test_an_unexpected_error_is_logged_with_its_trace_and_the_server_lives_on(goals, caplog):
+    assert goals.refused(f("crash")) == "function 1 (crash): KeyError: 'oops'"
+    assert "Traceback" in caplog.text
+    goals.succeed(f("say", "again"))
+
+
+def test_an_unexpected_error_in_a_check_names_the_function_and_runs_nothing(goals, done, caplog):
+    def check(str_param):
+        raise KeyError("oops")
+
+    goals.module.function_table["odd"] = checked_by(check)(lambda str_param: goals.module.say(str_param))
+    assert goals.refused(f("say", "one"), f("odd", "two")) == "function 2 (odd): KeyError: 'oops'"
+    assert "Traceback" in caplog.text and done == []
+
+
+def test_a_function_is_one_key_value_pair(goals):
+    goals.module.function_table["shout"] = lambda str_param: str_param.upper()
+    assert goals.succeed(f("shout", "hey")).memList == ["HEY"]
+
+
+# Preemption
+
+
+def test_a_cancel_ends_a_wait_and_the_function_before_it_counts_as_done(robot, goals, done):
+    goal = goals.send(f("say", "one", 60.0), f("say", "two"))
+    robot.advance(1.0)
+    before = robot.now.time
+    goal.cancel()
+    assert (goal.state, goal.text, done) == ("preempted", "preempted in function 1 (say)", ["one"])
+    assert [result.values for result in goal.result.results] == [["one"]]
+    assert robot.now.time - before < 0.5
+    assert goals.play(f("say", "two", 0.01)).state == "succeeded", "the next goal is not preempted"
+
+
+@pytest.mark.parametrize("on_error", ["", "retry 5 skip"])
+def test_a_cancel_ends_a_call_on_the_robot_whatever_may_be_skipped(robot, goals, done, on_error):
+    goal = goals.send(f("say", "one"), f("rasta", on_error=on_error), f("say", "never"))
+    robot.advance(0.6)
+    assert goal.cancel().state == "preempted"
+    assert [result.function for result in goal.result.results] == ["say"]
+    colours = robot.led("Face/Led/Green/Left/0Deg"), robot.led("Face/Led/Red/Left/0Deg")
+    robot.advance(3.0)
+    assert colours == (robot.led("Face/Led/Green/Left/0Deg"), robot.led("Face/Led/Red/Left/0Deg"))
+    assert done == ["one"]
+
+
+def test_a_call_that_fails_cancels_those_beside_it(robot, goals):
+    text = goals.refused(f("fades", lights=["Brain0", "nothing"]))
+    assert text.startswith("function 1 (fades): ALLeds.fade failed: ")
+    before = robot.led(BRAIN0)
+    robot.advance(1.0)
+    assert robot.led(BRAIN0) == before > 0.5
+
+
+def test_a_preemption_that_came_before_the_goal_began_counts(goals, done):
+    server = goals.module.server
+    server.preempt_requested = True
+    server.execute(NaoLedGoal([f("say", "one")]))
+    assert (server.end, done) == ("preempted", [])
+
+
+def test_the_end_of_the_node_interrupts_and_cleans_up_before_it_returns(robot, goals, done):
+    goal = goals.send(f("borrow", "a", 60.0))
+    robot.advance(0.2)
+    for action in goals.edge.shutdown_actions:
+        action()
+    assert done == ["borrow a", "return a"]
+    assert goal.finish().state == "preempted"
+    assert goals.play(f("say", "late")).state == "preempted", "no goal begins after the end"
+
+
+class Text(str):
+    """A text that can be watched."""
+
+
+# Not "crash": the log of the test keeps what is logged with its trace.
+@pytest.mark.parametrize(("function", "end"), [("fail", "aborted"), ("sya", "aborted"), ("rasta", "preempted")])
+def test_nothing_of_a_goal_is_kept_when_it_has_failed(goals, function, end):
+    """Goals may hold megabytes, and thousands of them may fail before Python looks for rings of objects."""
+    gc.collect()
+    gc.disable()
+    try:
+        text = Text("x")
+        kept = weakref.ref(text)
+        goal = goals.send(f(function, text))
+        del text
+        assert (goal.cancel() if end == "preempted" else goal.finish()).state == end
+        goals.module.server.result = goal.result = None
+        assert kept() is None
+    finally:
+        gc.enable()
+
+
+# Clean-up
+
+
+def test_what_was_borrowed_is_returned_after_the_wait_and_before_the_next_function(goals, done):
+    goals.succeed(f("borrow", "a", 0.1), f("say", "next"))
+    assert done == ["borrow a", "return a", "next"]
+
+
+def test_what_was_borrowed_is_returned_when_the_function_fails(goals, done):
+    goals.module.function_table["try"] = lambda: goals.module.borrow("a") or goals.module.fail("x")
+    assert goals.refused(f("try")).startswith("function 1 (try): field str_param") and done == ["borrow a", "return a"]
+
+
+def test_a_function_may_run_another_one_each_with_its_own_clean_up(goals, done):
+    goals.succeed(f("nested"))
+    assert done == ["borrow outer", "borrow inner", "return inner", "nested done", "return outer"]
+
+
+def test_clean_up_that_fails_aborts_a_goal_that_went_well_but_hides_no_error(goals, done, caplog):
+    def give_back():
+        raise RobotUnreachable("10.0.0.7", 9559, "gone")
+
+    def borrow(str_param):
+        goals.module.after_wait(give_back)
+        if str_param:
+            goals.module.fail(str_param)
+
+    goals.module.function_table["try"] = borrow
+    assert goals.refused(f("try")) == "function 1 (try): NAOqi at 10.0.0.7:9559: gone."
+    goal = goals.play(f("try", on_error="retry 3 skip"), f("say", "on"))
+    assert (goal.state, done) == ("succeeded", ["on"]), "what was done is not tried again"
+    assert [(r.function, r.error) for r in goal.result.results] == [("try", ""), ("say", "")]
+    assert goals.refused(f("try", "x")).startswith("function 1 (try): field str_param")
+    assert "clean-up failed: NAOqi at 10.0.0.7:9559: gone." in caplog.text
+
+
+# Outside of goals
+
+
+def test_functions_can_be_run_outside_of_goals(goals):
+    module = goals.module
+    assert module.run("say", ["hello"], Duration.from_sec(0.0)) == "hello"
+    with pytest.raises(UnknownFunction):
+        module.run("sya", [], 0.0)
+    with pytest.raises(RuntimeError, match="after_wait"):
+        module.after_wait(lambda: None)
+    module.interrupt.trigger()
+    with pytest.raises(Preempted):
+        module.wait(60.0)
+
+
+def test_reports_are_there_for_the_diagnostics(robot, goals):
+    goals.play(f("sya"))
+    goals.play(f("say"))
+    robot_report, goal_report = (goals.edge.reports[f"Module {what}"]() for what in ("robot", "goals"))
+    assert robot_report.message == "connected" and robot_report.values["address"] == f"127.0.0.1:{robot.port}"
+    assert (goal_report.values["aborted"], goal_report.values["succeeded"]) == ("1", "1")
+    assert "unknown function 'sya'" in goal_report.values["last error"]

@@ -1,0 +1,123 @@
+"""The memory functions that every module has, and events that go from the robot's memory to a topic."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from nao_library_modules.event_relay import EventRelay
+from nao_library_msgs.msg import LedFunction
+from naoqi.errors import RobotError
+
+ACCELEROMETER = "Device/SubDeviceList/InertialSensor/AccelerometerZ/Sensor/Value"
+
+
+def f(function, str_param=""):
+    return LedFunction(function=function, str_param=str_param)
+
+
+def ask(lights, *calls):
+    return lights.succeed(*(f(*call) for call in calls)).memList
+
+
+def test_data_goes_in_and_out_with_its_type(robot, lights):
+    answers = ask(lights, ("insertData", 'Test/Answer=[1, 2.5, "three"]'), ("getData", " Test/Answer "))
+    assert json.loads(answers[-1]) == robot.value("Test/Answer") == [1, 2.5, "three"]
+    assert ask(lights, ("getDataList", "Test/An")) == ["Test/Answer"]
+    assert ask(lights, ("getType", "Test/Answer")) == ["Data"]
+    value, seconds, microseconds = ask(lights, ("getTimestamp", "Test/Answer"))
+    assert json.loads(value) == [1, 2.5, "three"] and int(seconds) >= 0 and 0 <= int(microseconds) < 1e6
+    ask(lights, ("removeData", "Test/Answer"))
+    assert ask(lights, ("getDataList", "Test/An")) == []
+
+
+def test_answers_come_in_the_order_of_the_chain(robot, lights):
+    robot.advance(0.1)
+    result = lights.succeed(f("getListData", f"{ACCELEROMETER}, Nothing,RobotConfig/Body/Type"), f("ping"))
+    down, nothing, body, ping = result.memList
+    assert float(down) == pytest.approx(9.81, abs=0.4)
+    assert (nothing, body, ping) == ("None", "Nao", "True")
+    assert [(each.function, len(each.values)) for each in result.results] == [("getListData", 3), ("ping", 1)]
+
+
+def test_events_raised_through_a_goal_reach_the_robot(robot, lights):
+    heard, micro = robot.heard("Test/FromGoal"), robot.heard("Test/Micro")
+    ask(lights, ("raiseEvent", 'Test/FromGoal={"word": "yes"}'), ("raiseMicroEvent", "Test/Micro=true"))
+    assert (heard.get(timeout=15.0), micro.get(timeout=15.0)) == ({"word": "yes"}, True)
+    assert "Test/FromGoal" in ask(lights, ("getEventList",))
+    assert "Test/Micro" in ask(lights, ("getMicroEventList",))
+    (entry,) = ask(lights, ("getEventHistory", "Test/FromGoal"))
+    assert json.loads(entry)[0] == {"word": "yes"}
+
+
+def events_until(robot, events, last):
+    """Raise `last` and wait for it; the events before it, which came in order."""
+    robot.ALMemory.raiseEvent(last, 0)
+    robot.advance_until(lambda: (last, 0) in events, 15.0, what=last)
+    return [event for event in events if event[0] != last]
+
+
+def test_events_are_passed_on_from_subscription_to_its_end(robot, lights):
+    ask(lights, ("subscribeToEvent", "Test/Event"), ("subscribeToEvent", "Test/Event"), ("subscribeToEvent", "Last"))
+    robot.ALMemory.raiseEvent("Test/Event", [1, "a"])
+    events = lights.edge.events
+    assert events_until(robot, events, "Last") == [("Test/Event", [1, "a"])]
+    ask(lights, ("unsubscribeToEvent", "Test/Event"), ("unsubscribeToEvent", "Nobody"))
+    assert lights.module.events.names == ["Last"]
+    robot.ALMemory.raiseEvent("Test/Event", 2)
+    events.clear()
+    assert events_until(robot, events, "Last") == []
+
+
+def test_bad_arguments_stop_the_chain_before_it_begins(robot, lights):
+    for function, argument, text in (
+        ("getData", " ", "field str_param: it is empty"),
+        ("getListData", ",", "field str_param: it names no key"),
+        ("insertData", "Level", "field str_param: 'Level' is not allowed: 'key=value'"),
+        ("raiseEvent", "", "'key=value'"),
+        ("raiseMicroEvent", "=1", "'key=value'"),
+        *((name, "", "it is empty") for name in ("getEventHistory", "getType", "getTimestamp", "removeData")),
+        *((name, "", "it is empty") for name in ("subscribeToEvent", "unsubscribeToEvent")),
+    ):
+        refusal = lights.refused(f("insertData", "Test/Key=1"), f(function, argument))
+        assert refusal.startswith(f"function 2 ({function}): ") and text in refusal
+    assert robot.ALMemory.getDataList("Test/Key") == []
+
+
+class OneEvent:
+    """ALMemory with subscribers that the test calls or has refused."""
+
+    def __init__(self):
+        self.links, self.signal, self.refuses = [], self, False
+
+    def subscriber(self, name):
+        if self.refuses:
+            raise RobotError("ALMemory", "subscriber", f"no event {name}")
+        return self
+
+    def connect(self, callback):
+        self.links.append(callback)
+        return callback
+
+    def disconnect(self, link):
+        self.links.remove(link)
+
+
+def test_a_relay_keeps_no_subscription_that_failed_and_ends_all_at_its_close(caplog):
+    def full(name, value):
+        raise ValueError("sink is full")
+
+    memory = OneEvent()
+    relay = EventRelay(lambda: memory, full)
+    memory.refuses = True
+    with pytest.raises(RobotError):
+        relay.subscribe("A")
+    assert relay.names == []
+    memory.refuses = False
+    relay.subscribe("A")
+    relay.subscribe("B")
+    memory.links[0](5)
+    assert "sink is full" in caplog.text, "it does not reach the robot"
+    relay.close()
+    assert memory.links == []
