@@ -1,0 +1,275 @@
+"""What all values share: how they are made, compared, changed, listed and printed; typed lists; what is exported."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import importlib
+import pickle
+import sys
+from pathlib import Path
+
+import numpy
+import pytest
+
+import almath
+from almath import AlmathError, Pose2D, Position2D, Position3D, Quaternion, Rotation, Transform, vectorFloat
+
+PACKAGE = Path(almath.__file__).parent
+NAMES = {
+    almath.Pose2D: "x y theta",
+    almath.Position2D: "x y",
+    almath.Position3D: "x y z",
+    almath.Position6D: "x y z wx wy wz",
+    almath.Velocity3D: "xd yd zd",
+    almath.Velocity6D: "xd yd zd wxd wyd wzd",
+    almath.Rotation3D: "wx wy wz",
+    almath.Quaternion: "w x y z",
+    almath.PositionAndVelocity: "q dq",
+}
+LINEAR = [kind for kind in NAMES if kind not in (Quaternion, almath.PositionAndVelocity)]
+KNOWN = """
+AXIS_MASK_VEL PI TO_RAD Pose2D Position2D Position3D Position6D PositionAndVelocity Quaternion Rotation
+Rotation3D Transform TransformAndVelocity6D Velocity3D Velocity6D Displacement vectorFloat vectorPosition2D
+vectorPose2D vectorPosition6D Transform_fromPosition Transform_from3DRotation avoidFootCollision
+clipFootWithEllipse distance modulo2PI pose2DInverse pose2dDiff pose2dInvertInPlace position6DFromTransform
+rotation3DFromQuaternion rotationFromQuaternion transformFromPosition6D transformFromQuaternion
+transformFromRotX transformInverse transformLogarithm transformMean
+"""
+
+
+def numbers_for(kind):
+    return [float(place) for place, _ in enumerate(NAMES[kind].split(), start=1)]
+
+
+def refused(told, function, *arguments):
+    with pytest.raises(AlmathError, match=told):
+        function(*arguments)
+
+
+@pytest.mark.parametrize("kind", NAMES)
+def test_components_have_the_names_of_the_sdk_in_its_order(kind):
+    value = kind(*numbers_for(kind))
+    assert [getattr(value, name) for name in NAMES[kind].split()] == value.toVector() == numbers_for(kind)
+    target = vectorFloat()
+    assert value.toVector(target) is None
+    assert target == numbers_for(kind)
+
+
+@pytest.mark.parametrize("kind", LINEAR)
+def test_nothing_makes_zeros_and_one_number_fills_all(kind):
+    assert kind().toVector() == [0.0] * len(numbers_for(kind))
+    assert kind(0.5).toVector() == [0.5] * len(numbers_for(kind))
+
+
+@pytest.mark.parametrize("kind", [*LINEAR, Quaternion, Transform, Rotation])
+def test_made_from_a_sequence_of_any_kind_or_another_of_its_class(kind):
+    if kind in NAMES:
+        for container in (list, tuple, numpy.array, numpy.float32, vectorFloat):
+            assert kind(container(numbers_for(kind))) == kind(*numbers_for(kind))
+    original = kind()
+    twin = kind(original)
+    name = next(iter(vars(twin)))
+    setattr(twin, name, 9.0)
+    assert getattr(original, name) == getattr(kind(), name) != 9.0
+
+
+@pytest.mark.parametrize(
+    "arguments, told",
+    [
+        ((1.0, 2.0), "Pose2D.*3 numbers.*x, y, theta.*got 2"),
+        (([1.0, 2.0, 3.0, 4.0],), "Pose2D.*got 4"),
+        (("123",), "Pose2D.*'123'"),
+        (([1.0, None, 3.0],), r"Pose2D\[1\].*None"),
+        ((None,), "Pose2D.*None"),
+        ((Position3D(1.0, 2.0, 3.0),), r"Pose2D.*Position3D\(x=1, y=2, z=3\)"),
+    ],
+)
+def test_wrong_arguments_are_refused_and_named(arguments, told):
+    refused(told, Pose2D, *arguments)
+
+
+def test_a_component_only_takes_numbers():
+    pose = Pose2D()
+    refused(r"Pose2D\.theta must be a number, got '90'", setattr, pose, "theta", "90")
+    assert pose == Pose2D()
+    assert almath.PositionAndVelocity().toVector() == [0.0, 0.0]
+    assert almath.PositionAndVelocity(0.5).toVector() == [0.5, 0.0]
+    refused(r"PositionAndVelocity\.dq must be a number", almath.PositionAndVelocity, 0.5, "fast")
+
+
+@pytest.mark.parametrize("kind", LINEAR)
+def test_sums_and_multiples_go_component_by_component(kind):
+    left = numpy.array(numbers_for(kind)) - 2.25
+    right = 0.5 * left[::-1]
+    a, b = kind(left), kind(right)
+    assert (a + b).toVector() == pytest.approx(left + right)
+    assert (a - b).toVector() == pytest.approx(left - right)
+    assert (-a).toVector() == pytest.approx(-left)
+    assert +a == a
+    assert (a * 3).toVector() == (3 * a).toVector() == (numpy.float64(3.0) * a).toVector() == pytest.approx(3.0 * left)
+    assert (a / 4.0).toVector() == pytest.approx(left / 4.0)
+    value = alias = kind(2.0)
+    value += kind(1.0)
+    value *= 4.0
+    value -= kind(2.0)
+    value /= 5.0
+    assert alias is value and alias == kind(2.0)
+
+
+@pytest.mark.parametrize("kind", [*LINEAR, Quaternion])
+def test_division_by_zero_is_an_error_that_names_the_value(kind):
+    refused(f"{kind.__name__}.*by zero", lambda: kind() / 0.0)
+
+
+def test_values_of_different_classes_do_not_mix_and_are_no_keys():
+    point, rotation = Position3D(1.0, 2.0, 3.0), almath.Rotation3D(1.0, 2.0, 3.0)
+    assert point != rotation
+    with pytest.raises(TypeError):
+        point + rotation
+    refused("isNear takes a Position3D", point.isNear, rotation)
+    with pytest.raises(TypeError, match="unhashable"):
+        {Pose2D(): 1}
+
+
+def test_equality_is_exact_and_nearness_is_not():
+    pose, close = Pose2D(1.0, 2.0, 3.0), Pose2D(1.0, 2.0, 3.00009)
+    assert pose == Pose2D(1.0, 2.0, 3.0) and pose != close
+    assert pose.isNear(close) and not pose.isNear(close, 0.00008)
+    assert not pose.isNear(Pose2D(1.0, 2.0, 3.00011))
+
+
+@pytest.mark.parametrize("twin_of", [copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))])
+def test_values_can_be_copied_and_pickled(twin_of):
+    transform = Transform.fromPosition(1.0, 2.0, 3.0, 0.1, 0.2, 0.3)
+    twin = twin_of(transform)
+    assert twin == transform
+    twin.r1_c4 = 7.0
+    assert transform.r1_c4 == 1.0
+
+
+def test_a_subclass_with_its_own_constructor_keeps_its_operators():
+    class Named(Pose2D):
+        def __init__(self, name):
+            super().__init__(1.0, 2.0, 0.0)
+            self.name = name
+
+    assert (Named("start") + Named("end")).toVector() == [2.0, 4.0, 0.0]
+    assert Pose2D(1.0, 2.0, 0.0) == Named("start")
+
+
+@pytest.mark.parametrize(
+    "value, text",
+    [
+        (Pose2D(0.0, 1.3, 2.9), "Pose2D(x=0, y=1.3, theta=2.9)"),
+        (almath.Position6D(0.1, 0.2, 0.3, 0.4, 0.5, 6.0), "Position6D(x=0.1, y=0.2, z=0.3, wx=0.4, wy=0.5, wz=6)"),
+        (almath.Velocity3D(1.0 / 3.0, 0.2, 1e-7), "Velocity3D(xd=0.333333, yd=0.2, zd=1e-07)"),
+        (almath.PositionAndVelocity(0.1, 0.2), "PositionAndVelocity(q=0.1, dq=0.2)"),
+        (Quaternion(), "Quaternion(w=1, x=0, y=0, z=0)"),
+        (vectorFloat([1, 0.25]), "vectorFloat([1, 0.25])"),
+        (almath.vectorPosition2D([Position2D(0.1, 2)]), "vectorPosition2D([Position2D(x=0.1, y=2)])"),
+        (Rotation.fromRotZHalfPi(), "Rotation([0, -1, 0,\n          1, 0, 0,\n          0, 0, 1])"),
+        (Transform(1, 2, 3.5), "Transform([1, 0, 0, 1,\n           0, 1, 0, 2,\n           0, 0, 1, 3.5])"),
+    ],
+)
+def test_values_print_their_class_and_components(value, text):
+    assert repr(value) == text
+    if not isinstance(value, (Rotation, Transform)):
+        assert str(value) == text
+
+
+def test_matrices_print_their_rows():
+    assert str(Rotation.fromRotZHalfPi()) == "[[0, -1, 0]\n [1, 0, 0]\n [0, 0, 1]]"
+    assert str(Transform(1.0, 2.0, 3.5)) == "[[1, 0, 0, 1]\n [0, 1, 0, 2]\n [0, 0, 1, 3.5]]"
+
+
+# Typed lists
+
+
+def test_a_vector_is_made_from_a_sequence_or_from_a_size():
+    assert vectorFloat() == [] and vectorFloat((1, 2.5)) == [1.0, 2.5]
+    assert vectorFloat(2) == [0.0, 0.0] and vectorFloat(2, 0.5) == [0.5, 0.5]
+    assert almath.vectorPose2D(2) == [Pose2D(), Pose2D()]
+
+
+@pytest.mark.parametrize(
+    "arguments, told",
+    [
+        (([1.0, "2"],), "an item of vectorFloat must be a number"),
+        (("12",), "takes a sequence"),
+        ((2.5,), "takes a sequence"),
+        ((-1,), "zero or more"),
+        (([1.0], 2), "a size before an item"),
+        ((1, 2, 3), "a size and an item"),
+    ],
+)
+def test_wrong_arguments_of_a_vector_are_named(arguments, told):
+    refused(told, vectorFloat, *arguments)
+
+
+def test_a_vector_copies_items_in_and_out_and_refuses_other_classes():
+    point = Position2D(1.0, 2.0)
+    points = almath.vectorPosition2D([point])
+    point.x = 9.0
+    points[0].x = 8.0
+    next(iter(points)).x = 7.0
+    points.front().x = 6.0
+    assert points == [Position2D(1.0, 2.0)]
+    told = "vectorPosition2D takes a Position2D, got Pose2D"
+    for store in (points.append, points.push_back, lambda p: points.insert(0, p), lambda p: points.extend([p])):
+        refused(told, store, Pose2D())
+    assert points.size() == 1
+
+
+def test_a_vector_has_the_methods_of_cpp():
+    numbers = vectorFloat()
+    for number in (1.0, 2.0, 3.0):
+        numbers.push_back(number)
+    assert (numbers.size(), numbers.front(), numbers.back(), numbers.empty()) == (3, 1.0, 3.0, False)
+    numbers.pop_back()
+    numbers.resize(4, 7.0)
+    assert numbers == [1.0, 2.0, 7.0, 7.0]
+    assert isinstance(numbers[1:3], vectorFloat)
+    numbers[1:3] = (9,)
+    numbers[0] = 5
+    assert numbers == [5.0, 9.0, 7.0]
+    numbers.insert(1, 4)
+    numbers.resize(2)
+    other = vectorFloat([6.0])
+    numbers.swap(other)
+    assert (numbers, other) == ([6.0], [5.0, 4.0])
+    numbers.assign(3, 0.5)
+    assert numbers == [0.5, 0.5, 0.5]
+    numbers.clear()
+    assert numbers.empty()
+
+
+# The public surface
+
+
+def test_every_public_function_and_class_is_exported_once_in_order():
+    assert almath.__all__ == sorted(set(almath.__all__))
+    assert set(KNOWN.split()) <= set(almath.__all__)
+    assert all(hasattr(almath, name) for name in almath.__all__)
+    for path in PACKAGE.glob("[!_]*.py"):
+        found = importlib.import_module(f"almath.{path.stem}")
+        for node in ast.parse(path.read_text()).body:
+            if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_"):
+                assert getattr(almath, node.name) is getattr(found, node.name)
+                assert node.name in almath.__all__
+
+
+def test_flat_names_are_the_static_methods():
+    flat = [name for name in almath.__all__ if "_from" in name]
+    assert len(flat) == 18
+    for name in flat:
+        kind, method = name.split("_")
+        assert getattr(almath, name) is getattr(getattr(almath, kind), method)
+
+
+def test_only_the_standard_library_is_imported():
+    nodes = [node for path in PACKAGE.glob("*.py") for node in ast.walk(ast.parse(path.read_text()))]
+    names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+    names += [node.module for node in nodes if isinstance(node, ast.ImportFrom)]
+    roots = {name.split(".")[0] for name in names}
+    assert not roots - {"almath"} - set(getattr(sys, "stdlib_module_names", roots))
