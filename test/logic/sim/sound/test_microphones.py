@@ -1,12 +1,22 @@
+"""What microphones hear: the background, the own loudspeakers, files in place of the air; and where they are."""
+
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.errors import BadValue, ConfigError
+from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
+from nao_sim_bridge.sim.sound import settings
+from nao_sim_bridge.sim.sound.poses import PoseTrack
 from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
+from nao_sim_bridge.sim.sound.settings import load_sound_settings
 from nao_sim_bridge.sim.sound.sources import SoundSource
 
 
@@ -51,18 +61,15 @@ def test_own_speech_has_the_level_of_the_loudspeakers(room):
 
 def test_own_speech_arrives_after_the_way_from_the_loudspeaker(room):
     one = room(near_field_m=0.01)
-    click = np.zeros(2000, np.float32)
-    click[0] = 1.0
     one.run(0.1)
-    one.loudspeakers.play(Sound(click), "play", pan=-1.0)
+    one.loudspeakers.play(Sound(np.r_[1.0, np.zeros(1999)].astype(np.float32)), "play", pan=-1.0)
     one.run(0.1)
     speaker = np.asarray(one.model.loudspeakers[0].position)
     for channel, place in zip(one.frames(0.1, 0.15), one.world.microphones.places):
         assert np.argmax(np.abs(channel)) == pytest.approx(np.linalg.norm(place - speaker) / 343.0 * RATE, abs=0.51)
 
 
-def test_parts_fit_together(room):
-    """What is heard does not depend on how it is cut into questions."""
+def test_what_is_heard_does_not_depend_on_how_it_is_cut_into_questions(room):
     one = room(background_db=30.0)
     one.sources.add(SoundSource("it", (1.0, 0.7, 0.2), sine(440.0, 3.0, 0.5)))
     one.loudspeakers.play(sine(700.0, 0.7, 0.5), "say")
@@ -81,15 +88,19 @@ def test_what_is_too_loud_is_cut(room):
     assert heard.max() == 1.0 and heard.min() == -1.0 and (np.abs(heard) == 1.0).mean() > 0.5
 
 
+# --- files in place of the air ----------------------------------------------------------------------------------------
+
+
 def test_a_file_takes_the_place_of_the_air_and_the_past_stays(room):
     one = room(background_db=30.0)
     one.run(0.5)
     before = one.frames(0.0, 0.4).copy()
-    one.microphones.replaced_by = Sound(np.linspace(0.0, 0.5, RATE // 10, dtype=np.float32))
+    rising = np.linspace(0.0, 0.5, RATE // 10, dtype=np.float32)
+    one.microphones.replaced_by = Sound(rising)
     one.run(0.5)
     assert np.array_equal(one.frames(0.0, 0.4), before)
     heard = one.frames(0.5, 0.9)
-    assert heard[3, : RATE // 10] == pytest.approx(np.linspace(0.0, 0.5, RATE // 10), abs=1e-6)
+    assert heard[3, : RATE // 10] == pytest.approx(rising, abs=1e-6)
     assert one.microphones.replaced_by is None
     assert rms(heard[:, RATE // 10 :]) == pytest.approx(rms(before), rel=0.05)  # it is over
     with pytest.raises(BadValue, match="1 or 2 .* or 4"):
@@ -98,29 +109,64 @@ def test_a_file_takes_the_place_of_the_air_and_the_past_stays(room):
 
 def test_a_file_can_be_ended_and_replaced_while_it_is_heard(room):
     one = room()
-    for level in (0.1, 0.2):
-        one.microphones.replaced_by = Sound(np.full((RATE, 2), level, np.float32))
+    for level in ((0.1,) * 2, (0.1, 0.2, 0.3, 0.4)):
+        one.microphones.replaced_by = Sound(np.tile(np.array(level, np.float32), (RATE, 1)))
         one.run(0.1)
     assert one.microphones.replaced_by is not None
     one.microphones.replaced_by = None
     one.run(0.2)
     assert one.microphones.replaced_by is None
-    assert [float(one.microphones.heard(at, at + 0.01).max()) for at in (0.05, 0.15)] == pytest.approx([0.1, 0.2])
+    heard = [one.microphones.heard(at, at + 0.01) for at in (0.05, 0.15)]
+    assert heard[0].max() == pytest.approx(0.1) and heard[1][0].tolist() == pytest.approx([0.1, 0.2, 0.3, 0.4])
     assert not (np.abs(one.microphones.heard(0.2, 0.3)) > 0.001).any()
 
 
-def test_a_file_of_four_channels_keeps_them(room):
-    one = room()
-    one.microphones.replaced_by = Sound(np.tile(np.array([0.1, 0.2, 0.3, 0.4], np.float32), (RATE, 1)))
-    one.run(0.5)
-    assert one.microphones.heard(0.1, 0.2)[0].tolist() == pytest.approx([0.1, 0.2, 0.3, 0.4])
+# --- places and settings ----------------------------------------------------------------------------------------------
 
 
-def test_energies_are_of_the_microphones_at_that_side(room):
-    settings = room().world.settings
-    assert {name: settings.energy_channels(name) for name in settings.energies} == {
-        "left": (0, 2),
-        "right": (1, 3),
-        "front": (2, 3),
-        "rear": (0, 1),
-    }
+def snapshot(tick):
+    turn = from_roll_pitch_yaw(0.1 * tick, -0.05 * tick, 0.3 * tick)
+    return SimpleNamespace(torso=Pose((0.1 * tick, 0.2, 0.3), turn), positions=(0.2 * tick, -0.1 * tick, *[0.0] * 24))
+
+
+def test_points_of_the_head_are_where_the_kinematics_put_them_for_as_long_as_they_are_kept():
+    model = load_model()
+    track = PoseTrack(model, "HeadPitch", 10)
+    for tick in range(60):
+        track.record(tick, snapshot(tick))
+    point = np.array([[0.02, 0.03, 0.1], [-0.02, 0.05, 0.08]])
+    found = track.at(50, 59).place(point)
+    assert len(found) == 10
+    for row, tick in enumerate(range(50, 60)):
+        now = snapshot(tick)
+        torso = transform(quaternion_matrix(now.torso.orientation), now.torso.position)
+        head = torso @ link_transforms(model, now.positions)["HeadPitch"]
+        assert found[row] == pytest.approx((head @ np.c_[point, [1.0, 1.0]].T)[:3].T, abs=1e-9)
+    for first, last in ((49, 55), (55, 60)):
+        with pytest.raises(BadValue):
+            track.at(first, last)
+
+
+def test_the_settings_of_the_package_fit_the_robot():
+    loaded = load_sound_settings()
+    assert set(loaded.order) == {place.name for place in load_model().microphones}
+    assert loaded.peak_of(loaded.microphone_full_scale_db) == 1.0
+    sides = {name: loaded.energy_channels(name) for name in loaded.energies}
+    assert sides == {"left": (0, 2), "right": (1, 3), "front": (2, 3), "rear": (0, 1)}
+
+
+@pytest.mark.parametrize(
+    "change, word",
+    [
+        (lambda c: c.update(loudness=3.0), "loudness"),
+        (lambda c: c.pop("talk_db"), "talk_db"),
+        (lambda c: c.update(speed_of_sound=0.0), "above 0"),
+        (lambda c: c.update(background_db="quiet"), "not a number"),
+        (lambda c: c["channels"].pop("rear"), "rear"),
+        (lambda c: c["energies"].update(front=["MicroTop"]), "MicroTop"),
+    ],
+)
+def test_a_wrong_file_of_settings_is_refused_with_the_place(change_file, change, word):
+    change_file(settings, change)
+    with pytest.raises(ConfigError, match=word):
+        load_sound_settings.__wrapped__()

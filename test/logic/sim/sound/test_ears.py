@@ -1,12 +1,17 @@
+"""Blocks of what is heard, for listeners in threads of their own; and followers of time."""
+
 from __future__ import annotations
 
+import gc
 import threading
+import tracemalloc
 
 import numpy as np
 import pytest
 
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.sound.ears import BLOCK
+from nao_sim_bridge.sim.sound.follower import LONGEST, Follower
 from nao_sim_bridge.sim.sound.samples import RATE, pcm16, sine
 from nao_sim_bridge.sim.sound.sources import SoundSource
 
@@ -35,18 +40,24 @@ def slow_listener(loud, patience):
     return go_on, blocks
 
 
+def times(blocks):
+    return [block.time for block in blocks]
+
+
+def joined(blocks):
+    return np.concatenate([block.samples for block in blocks])
+
+
 def test_blocks_follow_each_other_and_are_what_the_microphones_heard(loud):
     blocks = []
     listener = loud.ears.listen("test", blocks.append)
     loud.run(2.0)
     loud.ears.catch_up()
     listener.close()
-    assert len(blocks) == 11
-    assert [block.time for block in blocks] == pytest.approx([0.17 * k for k in range(11)])
-    samples = np.concatenate([block.samples for block in blocks])
+    assert times(blocks) == pytest.approx([0.17 * k for k in range(11)])
+    samples = joined(blocks)
     assert samples.shape == (11 * BLOCK, 4) and samples.dtype == np.int16
-    wanted = pcm16(loud.microphones.heard(0.0, 11 * 0.17))
-    assert np.abs(samples.astype(int) - wanted).max() <= 1
+    assert np.abs(samples.astype(int) - pcm16(loud.microphones.heard(0.0, 11 * 0.17))).max() <= 1
 
 
 def test_the_first_block_is_the_first_whole_one(loud):
@@ -55,7 +66,7 @@ def test_the_first_block_is_the_first_whole_one(loud):
     loud.ears.listen("test", blocks.append)
     loud.run(0.5)
     loud.ears.catch_up()
-    assert [block.time for block in blocks] == pytest.approx([0.34, 0.51])
+    assert times(blocks) == pytest.approx([0.34, 0.51])
 
 
 def test_one_microphone_at_16_khz(loud):
@@ -66,21 +77,23 @@ def test_one_microphone_at_16_khz(loud):
     loud.run(1.0)
     loud.ears.catch_up()
     assert all(block.samples.shape == (2720, 1) and block.rate == 16000 for block in one + mean)
-    assert [block.time for block in one] == [block.time for block in wide]
-    narrow = np.concatenate([block.samples for block in one])[:, 0].astype(float)
-    every_third = np.concatenate([block.samples for block in wide])[::3].astype(float)
+    assert times(one) == times(wide)
+    narrow, every_third = joined(one)[:, 0].astype(float), joined(wide)[::3].astype(float)
     # A tone of 1 kHz fits into both; noise above 8 kHz does not.
     assert np.abs(narrow - every_third[:, 3])[300:].max() < 40
     assert np.corrcoef(narrow[300:], every_third[300:, 3])[0, 1] > 0.999
-    assert np.concatenate([b.samples for b in mean])[300:, 0] == pytest.approx(every_third[300:].mean(axis=1), abs=40)
+    assert joined(mean)[300:, 0] == pytest.approx(every_third[300:].mean(axis=1), abs=40)
 
 
 @pytest.mark.parametrize("wants, rate", [("48k4", 48000), ("16k1", 16000)])
 def test_an_exact_listener_hears_from_its_first_to_its_last_moment(loud, wants, rate):
     loud.run(0.1)
-    blocks = []
+    blocks, whole = [], []
+    loud.ears.listen("whole", whole.append)  # who waits for a first whole block holds nobody up
     listener = loud.ears.listen("recorder", blocks.append, wants, exact=True)
-    loud.run(1.0)
+    loud.run(0.05)
+    assert not whole
+    loud.run(0.95)
     listener.close()
     loud.run(1.0)
     loud.ears.catch_up()
@@ -90,18 +103,8 @@ def test_an_exact_listener_hears_from_its_first_to_its_last_moment(loud, wants, 
         assert first.end == pytest.approx(second.time)
 
 
-def test_an_exact_listener_can_join_while_others_wait_for_their_first_block(loud):
-    loud.run(0.05)
-    whole, exact = [], []
-    loud.ears.listen("whole", whole.append)
-    listener = loud.ears.listen("exact", exact.append, exact=True)
-    loud.run(0.05)
-    listener.close()
-    assert sum(len(block.samples) for block in exact) == 0.05 * RATE and not whole
-
-
 def test_equal_runs_sound_equal_to_the_last_bit_however_fast_they_are(room):
-    """Once with ears that keep up at each tick, once with all the work at the end."""
+    """Once with ears that keep up at each step, once with all the work at the end."""
     results = []
     for keep_up in (True, False):
         one = room(background_db=30.0)
@@ -110,19 +113,19 @@ def test_equal_runs_sound_equal_to_the_last_bit_however_fast_they_are(room):
         one.moves = lambda time, one=one: setattr(one, "yaw", np.sin(3.0 * time))
         playing = one.loudspeakers.play(sine(300.0, 3.0, 0.3), "say")
         one.sources.add(SoundSource("radio", (1.0, 0.5, 0.3), sine(1000.0, 5.0, 0.5), loop=True))
-        for step in range(40):
+        for step in range(20):
             one.run(0.05)
-            if step == 10:
+            if step == 5:
                 playing.pause()
                 one.sources.move("radio", (2.0, -1.0, 0.3))
-            if step == 20:
+            if step == 10:
                 playing.resume()
                 one.loudspeakers.volume = 40.0
             if keep_up:
                 one.ears.catch_up()
         one.ears.catch_up()
-        results.append(np.concatenate([block.samples for block in blocks]))
-    assert len(results[0]) == 11 * BLOCK and np.array_equal(*results)
+        results.append(joined(blocks))
+    assert len(results[0]) == 5 * BLOCK and np.array_equal(*results)
 
 
 def test_a_listener_that_fails_is_logged_once_and_goes_on(loud, caplog):
@@ -150,20 +153,30 @@ def test_ears_lag_behind_a_slow_listener_and_ask_time_to_wait(loud, slow_listene
     assert loud.ears.lag == 0.0 and not loud.ears.holds() and len(blocks) == 2
 
 
+def test_somebody_who_never_hears_leaves_a_gap_and_not_an_error(loud, slow_listener, patience, caplog):
+    go_on, blocks = slow_listener
+    loud.run(70.0)
+    go_on.set()
+    loud.ears.catch_up(patience)
+    assert "too slow" in caplog.text
+    assert blocks[0].time == 0.0 and blocks[-1].end == pytest.approx(70.2, abs=0.2)
+
+
 def test_no_callback_after_close_and_the_thread_ends_with_the_last(loud, patience):
-    blocks = []
+    others, blocks, again = set(threading.enumerate()), [], []
     listener = loud.ears.listen("test", blocks.append)
     loud.run(0.5)
     loud.ears.catch_up()
-    thread = loud.ears._thread
+    threads = set(threading.enumerate()) - others
     listener.close()
     listener.close()
     heard = len(blocks)
     loud.run(0.5)
     loud.ears.catch_up()
-    thread.join(patience)
-    assert len(blocks) == heard == 2 and not thread.is_alive() and not loud.ears.listening
-    again = []
+    for thread in threads:
+        thread.join(patience)
+    assert len(blocks) == heard == 2 and not loud.ears.listening
+    assert len(threads) == 1 and not any(thread.is_alive() for thread in threads)
     loud.ears.listen("test", again.append)
     loud.run(0.5)
     loud.ears.catch_up()
@@ -191,10 +204,69 @@ def test_wrong_wishes_are_refused(loud):
     assert not loud.ears.listening
 
 
-def test_somebody_who_never_hears_leaves_a_gap_and_not_an_error(loud, slow_listener, patience, caplog):
-    go_on, blocks = slow_listener
-    loud.run(70.0)
+# --- followers of time ------------------------------------------------------------------------------------------------
+
+
+def test_a_follower_is_told_of_all_time_from_its_beginning_to_its_end(room):
+    one, stretches = room(), []
+    one.run(0.5)
+    follower = Follower("test", one.timeline, lambda first, last: stretches.append((first, last)), step=4800)
+    one.run(3.025)  # the last step is not complete
+    follower.close()
+    one.run(0.5)
+    assert stretches[0][0] == 24000 and stretches[-1][1] == 3.525 * 48000
+    assert all(second[0] == first[1] for first, second in zip(stretches, stretches[1:]))
+    assert max(last - first for first, last in stretches) <= LONGEST
+    assert follower.lag == 0.0
+
+
+def test_a_follower_lags_while_it_works(room, patience):
+    one, entered, go_on = room(), threading.Event(), threading.Event()
+
+    def handle(first, last):
+        entered.set()
+        assert go_on.wait(patience)
+
+    follower = Follower("slow", one.timeline, handle, step=4800)
+    one.run(0.2)
+    assert entered.wait(patience)
+    one.run(1.0)
+    assert follower.lag == pytest.approx(1.2)
     go_on.set()
-    loud.ears.catch_up(patience)
-    assert "too slow" in caplog.text
-    assert blocks[0].time == 0.0 and blocks[-1].end == pytest.approx(70.2, abs=0.2)
+    follower.close()
+    assert follower.lag == 0.0
+
+
+def test_a_follower_that_fails_ends_and_says_so(room, caplog, patience):
+    one, others = room(), set(threading.enumerate())
+    follower = Follower("bad one", one.timeline, lambda first, last: 1 / 0, step=4800)
+    (thread,) = set(threading.enumerate()) - others
+    one.run(0.5)
+    thread.join(patience)
+    one.run(0.5)
+    assert "bad one has ended" in caplog.text and follower.lag == 0.0
+
+
+def test_memory_stays_flat(room):
+    """Long runs with sounds that come and go, one that is moved at every tick, and a listener."""
+    one, beep = room(keep_s=1.0), sine(700.0, 0.05)
+    one.ears.listen("test", lambda block: None, "16k1")
+    one.sources.add(SoundSource("fly", (1.0, 0.0, 0.5), sine(500.0, 1.0), loop=True))
+    one.moves = lambda time: one.sources.move("fly", (1.0 + 0.2 * np.sin(time), 0.0, 0.5))
+
+    def live(seconds):
+        for _ in range(round(seconds / 0.2)):
+            one.loudspeakers.play(beep, "play")
+            one.loudspeakers.volume = 50.0 + one.loudspeakers.volume % 50.0 / 2.0
+            one.run(0.2)
+            one.ears.catch_up()
+        gc.collect()
+        return tracemalloc.take_snapshot()
+
+    tracemalloc.start()
+    try:
+        before = live(3.0)
+        grown = sum(line.size_diff for line in live(5.0).compare_to(before, "filename"))
+    finally:
+        tracemalloc.stop()
+    assert grown < 100_000

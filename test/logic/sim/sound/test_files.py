@@ -1,0 +1,92 @@
+"""Sound files: read and written in all kinds; recordings that grow are whole at any moment."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import soundfile
+
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.sound import wav_file
+from nao_sim_bridge.sim.sound.files import SoundFileError, read_sound, write_sound
+from nao_sim_bridge.sim.sound.samples import Sound, sine
+from nao_sim_bridge.sim.sound.wav_file import OggFile, WavFile
+
+
+@pytest.mark.parametrize("name, error", [("a.wav", 2e-5), ("a.flac", 2e-5), ("a.ogg", 0.02), ("a.mp3", 0.02)])
+def test_a_sound_comes_back_from_its_file(tmp_path, name, error):
+    tone = sine(440.0, 0.5, 0.5, 44100)
+    write_sound(tmp_path / name, tone)
+    back = read_sound(tmp_path / name)
+    assert (back.rate, back.channels) == (44100, 1)
+    assert back.frames == pytest.approx(tone.frames, abs=2400)
+    levels = [np.sqrt(np.mean(each.samples[4000:16000] ** 2)) for each in (back, tone)]
+    assert levels[0] == pytest.approx(levels[1], rel=error)
+
+
+@pytest.mark.parametrize("coding", ["PCM_U8", "PCM_24", "PCM_32", "FLOAT", "DOUBLE", "ULAW"])
+def test_wav_files_of_all_codings_are_read(tmp_path, coding):
+    samples = np.stack([np.linspace(-0.9, 0.9, 1000), np.zeros(1000)], axis=1)
+    soundfile.write(tmp_path / "a.wav", samples, 22050, coding)
+    sound = read_sound(tmp_path / "a.wav")
+    assert sound.channels == 2 and sound.rate == 22050
+    assert np.abs(sound.samples - samples).max() < (0.03 if coding in ("PCM_U8", "ULAW") else 1e-5)
+
+
+def test_errors_name_the_file_and_what_is_wrong(tmp_path):
+    (tmp_path / "text.wav").write_text("this is no sound")
+    soundfile.write(tmp_path / "empty.wav", np.zeros((0, 1)), 48000)
+    for name, word in (("missing.wav", "no such"), (".", "not a file"), ("text.wav", "cannot"), ("empty.wav", "0 fr")):
+        with pytest.raises(SoundFileError, match=word) as caught:
+            read_sound(tmp_path / name)
+        assert str(tmp_path) in str(caught.value)
+    with pytest.raises(SoundFileError, match=r"\.wav, \.flac"):
+        write_sound(tmp_path / "a.xyz", Sound(np.zeros(5)))
+
+
+def test_a_long_ogg_can_be_written(tmp_path):
+    long = Sound(np.zeros((300 * 8000, 2), np.float32), 8000)
+    write_sound(tmp_path / "long.ogg", long)
+    assert read_sound(tmp_path / "long.ogg").frames == long.frames
+
+
+@pytest.fixture
+def noise():
+    return np.random.default_rng(0).integers(-20000, 20000, (8160, 4), dtype=np.int16)
+
+
+def test_a_wav_is_whole_after_every_block_and_replaces_a_longer_one(tmp_path, noise):
+    path = tmp_path / "a.wav"
+    path.write_bytes(b"x" * 1000000)
+    file = WavFile(path, 48000, 4)
+    assert soundfile.info(str(path)).frames == 0
+    for count in (1, 2, 3):
+        file.write(noise)
+        samples, rate = soundfile.read(str(path), dtype="int16")
+        assert (rate, samples.shape) == (48000, (8160 * count, 4))
+        np.testing.assert_array_equal(samples[-8160:], noise)
+    file.close()
+    assert path.stat().st_size == 44 + 3 * noise.nbytes
+
+
+def test_a_wav_that_is_full_says_so_and_stays_whole(tmp_path, noise, monkeypatch):
+    monkeypatch.setattr(wav_file, "LARGEST", 100000)
+    path = tmp_path / "a.wav"
+    file = WavFile(path, 48000, 4)
+    file.write(noise)
+    with pytest.raises(BadValue, match="4 GiB"):
+        file.write(noise)
+    file.close()
+    assert soundfile.info(str(path)).frames == 8160
+
+
+def test_an_ogg_holds_what_was_written(tmp_path):
+    path = tmp_path / "a.ogg"
+    tone = (10000 * np.sin(2.0 * np.pi * 440.0 * np.arange(16000) / 16000)).astype(np.int16)[:, np.newaxis]
+    file = OggFile(path, 16000, 1)
+    for first in range(0, 16000, 2720):
+        file.write(tone[first : first + 2720])
+    file.close()
+    facts = soundfile.info(str(path))
+    assert (facts.format, facts.samplerate, facts.channels, facts.frames) == ("OGG", 16000, 1, 16000)
+    assert np.argmax(np.abs(np.fft.rfft(soundfile.read(str(path))[0]))) == 440

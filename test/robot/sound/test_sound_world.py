@@ -1,0 +1,84 @@
+"""Sound in a simulation with physics: resets, kills, and time that waits."""
+
+from __future__ import annotations
+
+import pytest
+
+from nao_sim_bridge.sim.runner import FASTEST, SimulationRunner
+from nao_sim_bridge.sim.sound.samples import sine
+from nao_sim_bridge.sim.sound.sources import SoundSource
+
+PATIENCE = 15.0
+
+
+@pytest.fixture
+def simulation(bench):
+    return bench(posture="Crouch", stiffness=0.0).simulation
+
+
+@pytest.fixture
+def runner(simulation):
+    made = SimulationRunner(simulation, paused=True)
+    made.start()
+    yield made
+    made.stop()
+
+
+def test_a_reset_ends_what_plays_and_time_goes_on(simulation):
+    sound = simulation.sound
+    playing = sound.loudspeakers.play(sine(500.0, 5.0), "say")
+    source = sound.sources.add(SoundSource("radio", (1.0, 0.0, 0.5), sine(500.0, 5.0)))
+    calls = []
+    simulation.after_reset.append(lambda: calls.append(sound.sources.names()))
+    simulation.run(0.5)
+    simulation.reset()
+    assert playing.task.killed and source.task.killed and calls == [[]]
+    simulation.run(0.5)
+    assert sound.time == pytest.approx(1.0)
+    assert sound.loudspeakers.played(0.2, 0.4).samples.any() and not sound.loudspeakers.played(0.6, 1.0).samples.any()
+    assert sound.microphones.heard(0.0, 1.0).shape == (48000, 4)
+
+
+def test_tasks_end_when_the_simulation_does(simulation):
+    playing = simulation.sound.loudspeakers.play(sine(500.0, 5.0), "say")
+    simulation.close()
+    assert playing.task.finished
+
+
+def test_a_kill_from_another_thread_silences(simulation, runner):
+    task = runner.execute(lambda: simulation.sound.loudspeakers.play(sine(500.0, 5.0), "say").task).result(PATIENCE)
+    runner.advance(0.5).result(PATIENCE)
+    task.request_kill()
+    runner.advance(0.5).result(PATIENCE)
+    assert task.killed and not simulation.sound.loudspeakers.played(0.6, 1.0).samples.any()
+
+
+def test_fast_time_waits_for_whoever_holds_it_and_real_time_for_nobody(simulation, runner):
+    held = True
+    simulation.holds.append(lambda: held)
+    advance = runner.advance(0.5)
+    with pytest.raises(TimeoutError):
+        advance.result(0.1)
+    assert simulation.ticks == 0
+    assert runner.execute(lambda: "commands are still taken").result(PATIENCE)
+    held = False
+    simulation.wake()
+    assert advance.result(PATIENCE).tick == 60
+    held = True
+    runner.set_speed(1.0)
+    runner.resume()
+    assert runner.wait_for_tick(65, PATIENCE).tick >= 65
+    runner.set_speed(FASTEST)
+    now = runner.call(lambda: simulation.ticks)
+    assert runner.wait_for_tick(now + 1, 0.1) is None
+    held = False
+    simulation.wake()
+
+
+def test_ears_hear_everything_of_a_fast_run(simulation, runner):
+    blocks = []
+    runner.call(lambda: simulation.sound.loudspeakers.play(sine(500.0, 4.0, 0.5), "say"))
+    simulation.sound.ears.listen("test", blocks.append)
+    runner.advance(2.0).result(PATIENCE)
+    simulation.sound.ears.catch_up(PATIENCE)
+    assert [block.time for block in blocks] == pytest.approx([0.17 * k for k in range(11)])
