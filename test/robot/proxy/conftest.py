@@ -111,6 +111,12 @@ def patience():
 
 
 @pytest.fixture
+def begun(proxy, eventually):
+    """Waits until a call of `begin` has arrived at the robot."""
+    return lambda: eventually(lambda: proxy.begun() > 0, "the call arrives")
+
+
+@pytest.fixture
 def states():
     """Makes a follower of the states of a connection."""
     return States

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import socket
 import threading
 import time
@@ -14,8 +15,8 @@ from naoqi import errors
 from naoqi.robot_connection import Connection
 from naoqi.state import Timing
 
-PROMISED = 2.0
-"""A call under way fails within this time after the robot fell silent, in s."""
+SOON = 10.0
+"""More than any machine needs; the promise itself is of the settings, see Timing."""
 
 
 @pytest.fixture
@@ -24,11 +25,10 @@ def robot(fragile_robot):
 
 
 @pytest.fixture
-def call_under_way(robot, in_thread, eventually):
+def call_under_way(proxy, in_thread, begun):
     """A call that waits for its answer in another thread; has arrived at the robot."""
-    proxy = robot.proxy()
     finish = in_thread(proxy.begin)
-    eventually(lambda: proxy.begun() == 1, "the call arrives")
+    begun()
     return finish
 
 
@@ -36,35 +36,30 @@ def test_a_connection_knows_how_it_is(robot, eventually):
     connection = robot.proxy().connection
     eventually(lambda: connection.latency is not None, "the first heartbeat is answered")
     assert connection.state == "connected"
-    assert 0.0 < connection.latency < PROMISED
+    assert 0.0 < connection.latency < SOON
     assert (connection.generation, connection.last_error) == (1, "")
 
 
-def test_a_killed_robot_fails_the_call_under_way_at_once(robot, call_under_way):
+def test_a_killed_robot_fails_the_calls_under_way_at_once(robot, proxy, call_under_way):
+    task = proxy.post.begin()
     start = time.monotonic()
     robot.kill()
     outcome = call_under_way()
+    with pytest.raises(errors.NaoError):
+        proxy.wait(task, 0)
     assert type(outcome["error"]) is errors.ConnectionLost
     assert outcome["error"].call == "ALTest.begin"
-    assert outcome["ended"] - start < PROMISED
+    assert outcome["ended"] - start < SOON
 
 
-def test_a_silent_robot_fails_the_call_under_way_within_two_seconds(robot, call_under_way):
+def test_a_silent_robot_fails_the_call_under_way_by_its_heartbeat(robot, call_under_way):
     robot.silence()
     start = time.monotonic()
     outcome = call_under_way()
     assert type(outcome["error"]) is errors.ConnectionLost
-    assert outcome["ended"] - start < PROMISED
+    assert outcome["ended"] - start < SOON
     assert "heartbeat" in naoqi.connection(*robot.address, wait=False).last_error
     robot.speak()
-
-
-def test_a_posted_call_fails_too(robot):
-    proxy = robot.proxy()
-    task = proxy.post.begin()
-    robot.kill()
-    with pytest.raises(errors.NaoError):
-        proxy.wait(task, 0)
 
 
 @pytest.mark.parametrize("harm, repair", [("kill", "start"), ("silence", "speak")])
@@ -85,25 +80,11 @@ def test_the_same_proxy_works_again_when_the_robot_is_back(robot, states, harm, 
     assert proxy.connection.generation == 2
 
 
-def test_loss_and_return_are_one_line_each_in_the_log(robot, states, caplog):
+def test_losses_may_follow_one_another_and_are_a_line_each_in_the_log(robot, states, caplog):
     caplog.set_level(logging.INFO, "naoqi")
-    connection = robot.proxy().connection
-    followed = states(connection)
-    robot.kill()
-    followed.wait_for("lost")
-    robot.start()
-    followed.wait_for("lost", "connected")
-    lines = [each.getMessage() for each in caplog.records if each.levelno >= logging.WARNING]
-    assert len(lines) == 2
-    assert "lost" in lines[0] and connection.address in lines[0]
-    assert "is back after" in lines[1] and connection.address in lines[1]
-
-
-def test_losses_may_follow_one_another(robot, states):
     proxy = robot.proxy()
-    followed = states(proxy.connection)
-    expected = []
-    for _ in range(3):
+    followed, expected = states(proxy.connection), []
+    for _ in range(2):
         robot.kill()
         expected.append("lost")
         followed.wait_for(*expected)
@@ -111,6 +92,9 @@ def test_losses_may_follow_one_another(robot, states):
         expected.append("connected")
         followed.wait_for(*expected)
         assert proxy.add(1, 1) == 2
+    lines = [each.getMessage() for each in caplog.records if each.levelno >= logging.WARNING]
+    assert len(lines) == 4 and all(proxy.connection.address in line for line in lines)
+    assert all("lost" in line for line in lines[::2]) and all("is back after" in line for line in lines[1::2])
 
 
 def test_a_robot_that_is_not_there_is_reported_at_once(robot):
@@ -118,7 +102,7 @@ def test_a_robot_that_is_not_there_is_reported_at_once(robot):
     start = time.monotonic()
     with pytest.raises(errors.RobotUnreachable, match="refused.*Check") as caught:
         robot.proxy()
-    assert time.monotonic() - start < 2.0
+    assert time.monotonic() - start < SOON
     assert (caught.value.host, caught.value.port) == robot.address
 
 
@@ -127,7 +111,7 @@ def test_a_port_that_accepts_and_says_nothing_is_reported_in_time():
         start = time.monotonic()
         with pytest.raises(errors.RobotUnreachable, match="no answer"):
             naoqi.ALProxy("ALTest", *mute.getsockname(), connect_timeout=0.3)
-        assert time.monotonic() - start < 2.0
+        assert time.monotonic() - start < SOON
 
 
 def test_an_attempt_that_failed_leaves_no_thread_behind(robot, eventually):
@@ -223,27 +207,18 @@ def test_closing_waits_for_those_who_are_still_inside_libqi(robot, monkeypatch):
     assert waits == [None]  # once, and after the session was gone
 
 
-def test_a_listener_removed_by_another_is_not_called_any_more(robot, states):
+def test_a_removed_listener_hears_nothing_even_if_another_removes_it(robot, states):
     connection = robot.proxy().connection
-    heard = []
-    connection.add_listener(lambda _state: connection.remove_listener(heard.append))
-    connection.add_listener(heard.append)
-    followed = states(connection)
-    connection.close()
-    followed.wait_for("closed")
-    assert heard == []
-
-
-def test_a_removed_listener_hears_nothing(robot, states):
-    connection = robot.proxy().connection
-    heard = []
+    heard, late = [], []
     connection.add_listener(heard.append)
     connection.remove_listener(heard.append)
     connection.remove_listener(heard.append)
+    connection.add_listener(lambda _state: connection.remove_listener(late.append))
+    connection.add_listener(late.append)
     followed = states(connection)
     connection.close()
     followed.wait_for("closed")
-    assert heard == []
+    assert heard == late == []
 
 
 @pytest.mark.parametrize("patience, complaints", [(0.0, 1), (60.0, 0)])
@@ -254,9 +229,13 @@ def test_a_robot_never_reached_is_complained_about_once_but_not_at_once(
     timing = Timing(first_delay=0.01, longest_delay=0.01, patience=patience)
     connection = Connection(*robot.address, timing=timing)
     try:
-        eventually(lambda: connection._failed_attempts > 3, "four failed attempts")
+        eventually(lambda: attempts(connection) > 3, "four failed attempts")
     finally:
         connection.close()
     said = [record for record in caplog.records if record.levelno >= logging.WARNING]
     assert len(said) == complaints
     assert all("trying on" in record.getMessage() for record in said)
+
+
+def attempts(connection):
+    return int(re.search(r"(\d+) failed attempts", str(connection.unreachable())).group(1))

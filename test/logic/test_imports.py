@@ -13,24 +13,10 @@ ROOT = Path(__file__).resolve().parents[2]
 SOURCES = {name: ROOT / name / "src" for name in ("nao_library_modules", "nao_sim_bridge")}
 
 # Import names that stand for ROS: of its Python libraries, and of every message package but our own.
-ROS_LIBRARIES = {
-    "actionlib",
-    "cv_bridge",
-    "diagnostic_updater",
-    "dynamic_reconfigure",
-    "genpy",
-    "rosbag",
-    "rosgraph",
-    "roslaunch",
-    "roslib",
-    "rosnode",
-    "rospy",
-    "rosservice",
-    "rostest",
-    "rostopic",
-    "tf",
-    "tf2_ros",
-}
+ROS_LIBRARIES = set(
+    "actionlib cv_bridge diagnostic_updater dynamic_reconfigure genpy rosbag rosgraph roslaunch roslib rosnode rospy "
+    "rosservice rostest rostopic tf tf2_ros".split()
+)
 OWN_DEFINITIONS = {"nao_library_msgs": "definitions", "nao_library_actions": "definitions"}
 # What scripts for the robot maker's SDK import beside naoqi.
 SDK = {"almath", "motion", "vision_definitions"}
@@ -95,18 +81,10 @@ LAYERS = (
     ),
 )
 # Files and folders of the server layer that ROS may be in; the others run without.
-ROS_SIDE = {
-    "ros_node.py",
-    "ros_side.py",
-    "ros_sounds.py",
-    "ros_things.py",
-    "testing",
-    "ros_robot.py",
-    "ros_hand.py",
-    "ros_film.py",
-    "ros_health.py",
-    "ros_success.py",
-}
+ROS_SIDE = set(
+    "ros_node.py ros_side.py ros_sounds.py ros_things.py testing ros_robot.py ros_hand.py ros_film.py ros_health.py "
+    "ros_success.py".split()
+)
 
 
 def files_of(layer: Layer) -> list[Path]:
@@ -183,31 +161,21 @@ def test_every_file_belongs_to_a_layer():
     assert len(files) == len(set(files))
 
 
-@pytest.mark.parametrize(
-    "module, layer",
-    [
-        ("nao_sim_bridge.sim.runner", "sim"),
-        ("nao_sim_bridge.server.SimulatorServer", "server"),
-        ("nao_library_modules.driver", "driver"),
-        ("nao_library_modules.lights.NaoLights", "modules"),
-        ("geometry_msgs.msg.Pose", "ros"),
-        ("nao_library_msgs.msg.LedFunction", "definitions"),
-        ("motion", "sdk"),
-        ("math", None),
-        ("numpy.linalg", None),
-    ],
-)
-def test_modules_are_told_apart(module, layer):
-    assert layer_of(module) == layer
-
-
-def test_relative_imports_are_followed(monkeypatch, tmp_path):
+def test_modules_are_told_apart_and_relative_imports_followed(monkeypatch, tmp_path):
+    known = {
+        "nao_sim_bridge.sim.runner": "sim",
+        "nao_sim_bridge.server.SimulatorServer": "server",
+        "nao_library_modules.driver": "driver",
+        "nao_library_modules.lights.NaoLights": "modules",
+        "geometry_msgs.msg.Pose": "ros",
+        "nao_library_msgs.msg.LedFunction": "definitions",
+        "motion": "sdk",
+        "numpy.linalg": None,
+    }
+    assert {module: layer_of(module) for module in known} == known
     monkeypatch.setitem(SOURCES, "nao_library_modules", tmp_path)
     file = tmp_path / "nao_library_modules" / "driver" / "node.py"
     file.parent.mkdir(parents=True)
     file.write_text("from . import led\nfrom ..lights import NaoLights\nif True:\n    import qi.path\n")
-    assert list(imported(file)) == [
-        "nao_library_modules.driver.led",
-        "nao_library_modules.lights.NaoLights",
-        "qi.path",
-    ]
+    found = ["nao_library_modules.driver.led", "nao_library_modules.lights.NaoLights", "qi.path"]
+    assert list(imported(file)) == found

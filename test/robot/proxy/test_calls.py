@@ -8,18 +8,7 @@ import weakref
 
 import pytest
 
-from naoqi import errors
-from naoqi.calls import Call
-
-
-@pytest.fixture
-def begun(proxy, eventually):
-    """Waits until a call of `begin` has arrived at the robot."""
-
-    def wait():
-        eventually(lambda: proxy.begun() > 0, "the call arrives")
-
-    return wait
+from naoqi import calls, errors
 
 
 def test_a_posted_call_runs_until_it_is_finished(proxy, begun):
@@ -65,11 +54,14 @@ def test_numbers_of_no_call_are_refused(proxy):
             method(10**9)
 
 
-def test_finished_calls_leave_the_table(proxy, eventually):
-    tasks = [proxy.post.add(number, 1) for number in range(50)]
-    for task in tasks:
+def test_finished_calls_leave_nothing_behind(proxy, eventually):
+    for task in [proxy.post.add(number, 1) for number in range(50)]:
         assert proxy.wait(task) is False
-    eventually(lambda: not proxy.connection.tasks._running, "the table is empty")
+    with pytest.raises(errors.RobotError):
+        proxy.wait(proxy.post.fails())
+    proxy.call_async("fails").add_done_callback(lambda _: 1 / 0)
+    presence = proxy.connection.presence
+    eventually(lambda: presence.wait_until_empty(0.0), "libqi lets go of all callbacks")
 
 
 def test_a_call_object_tells_when_it_is_done(proxy, begun, patience):
@@ -141,19 +133,15 @@ class Asker:
 
 def test_the_error_of_a_call_that_took_its_time_keeps_nobody(proxy, begun, monkeypatch):
     """The error keeps the frames that it went through: none of them may keep it."""
-    wait = Call._wait
-
-    def wait_after_the_first_look(call, timeout):
-        monkeypatch.setattr(Call, "_wait", wait)
-        proxy.breakDown("lost a screw")
-        return wait(call, timeout)
+    monkeypatch.setattr(calls, "FIRST_SLICE_MS", 0)  # to be in the long wait at once
 
     def ask():
         asker = Asker()
         askers.append(weakref.ref(asker))
         call = proxy.call_async("begin")
         begun()
-        monkeypatch.setattr(Call, "_wait", wait_after_the_first_look)
+        breaking = threading.Timer(0.1, proxy.breakDown, ("lost a screw",))
+        breaking.start()
         call.result()
 
     askers = []

@@ -39,11 +39,8 @@ def test_raw_data_arrive_as_bytes(proxy):
     assert proxy.sizeOfRaw(b"\xff\x00\xfe") == 3
 
 
-def test_dir_lists_remote_methods(proxy):
+def test_dir_and_hasattr_tell_what_the_module_has(proxy):
     assert {"add", "setIntensity", "post", "wait"} <= set(dir(proxy))
-
-
-def test_hasattr_tells_what_the_module_has(proxy):
     assert hasattr(proxy, "add")
     assert not hasattr(proxy, "subtract")
 
@@ -91,13 +88,10 @@ def test_what_cannot_travel_is_refused_and_nothing_breaks(proxy, value):
     assert proxy.echo(1) == 1
 
 
-def test_errors_of_a_python_service_carry_its_text(proxy):
+def test_errors_of_a_service_carry_its_text(proxy):
     with pytest.raises(errors.RobotError) as caught:
         proxy.fails()
     assert (caught.value.kind, caught.value.text) == ("ValueError", "too hot: 81 degrees")
-
-
-def test_errors_of_a_robots_own_service_carry_its_text(proxy):
     with pytest.raises(errors.RobotError, match="joint Tail does not exist"):
         proxy.fails_as_robots_do()
 
@@ -106,13 +100,6 @@ def test_a_service_that_checks_its_own_overloads_is_understood(proxy):
     with pytest.raises(errors.BadArguments) as caught:
         proxy.refusesTwo(1, 2)
     assert caught.value.signatures == ["refusesTwo(int64)", "refusesTwo(int64, int64, int64)"]
-
-
-def test_sdk_scripts_catch_everything_as_runtime_error(proxy):
-    with pytest.raises(RuntimeError):
-        proxy.nothing()
-    with pytest.raises(RuntimeError):
-        naoqi.ALProxy("ALMotion", "127.0.0.1", 1)
 
 
 def test_a_time_limit_ends_the_call_on_both_sides(robot, eventually):

@@ -1,0 +1,206 @@
+"""What goes over the wire, libqi's signatures in words, and its texts as the errors that say what happened."""
+
+from __future__ import annotations
+
+import enum
+
+import numpy as np
+import pytest
+
+import naoqi
+from naoqi import errors, wire
+from naoqi.signatures import mentions_raw, readable_call, readable_type
+from naoqi.translate import CallSite, call_error, closest_names, connect_reason
+
+METHODS = ["setIntensity", "getIntensity", "fade"]
+SDK_NAMES = {"ALBroker", "ALModule", "ALProxy"}
+FADE = "Arguments types did not match for fade (resolved to '(s)'):\n  Candidates:\n  fade::(sff) (1)\n"
+TRACE = "\n\nAt:\n  /x.py(3): fade\n"
+
+
+class Speed(enum.IntEnum):
+    FAST = 3
+
+
+class Degrees(float):
+    pass
+
+
+def sent(value, raw=False):
+    (found,) = wire.to_wire((value,), lambda: raw)
+    return found
+
+
+@pytest.mark.parametrize(
+    "given, plain",
+    [
+        (np.float32(0.5), 0.5),
+        (np.int64(7), 7),
+        (np.bool_(True), True),
+        (np.str_("Head"), "Head"),
+        (np.array([[1.0, 2.0], [3.0, 4.0]]), [[1.0, 2.0], [3.0, 4.0]]),
+        ([np.float64(1.5), "a"], [1.5, "a"]),
+        ((1, (np.int32(2),)), [1, [2]]),
+        (Speed.FAST, 3),
+        (Degrees(1.5), 1.5),
+        ({"a": np.int8(1)}, {"a": 1}),
+        ({"a": 1}.keys(), ["a"]),
+        ({"a": 1}.values(), [1]),
+        (range(3), [0, 1, 2]),
+        (map(float, (1, 2)), [1.0, 2.0]),
+        ({4}, [4]),
+        (b"text", "text"),
+    ],
+)
+def test_values_become_plain(given, plain):
+    found = sent(given)
+    assert found == plain
+    assert type(found) is type(plain)
+    if isinstance(found, list):
+        assert [type(member) for member in found] == [type(member) for member in plain]
+
+
+def test_plain_arguments_pass_untouched():
+    arguments = ("Body", 1, 2.5, True, None)
+    assert wire.to_wire(arguments, lambda: False) is arguments
+
+
+def test_raw_bytes_go_where_raw_is_declared_and_what_cannot_go_is_named():
+    assert sent(b"\xff\x00", raw=True) == b"\xff\x00"
+    for fault, send in (
+        ("2 raw bytes", lambda: sent(b"\xff\x00")),
+        ("type object", lambda: sent([object()], raw=True)),
+        ("64 bits", lambda: wire.check_sendable([1, 2**63])),
+        ("Unicode", lambda: wire.check_sendable({"a": "\udcff"})),
+    ):
+        with pytest.raises(wire.UnsendableError, match=fault):
+            send()
+    wire.check_sendable([2**63 - 1, -(2**63)])
+
+
+@pytest.mark.parametrize(
+    "came, expected",
+    [
+        (bytearray(b"\x00\xff"), b"\x00\xff"),
+        ([320, 240, bytearray(b"\x01")], [320, 240, b"\x01"]),
+        ((1, (2, bytearray(b"\x02"))), (1, (2, b"\x02"))),
+        ({"left": [bytearray(b"\x03")]}, {"left": [b"\x03"]}),
+    ],
+)
+def test_raw_data_become_bytes_at_every_depth(came, expected):
+    found = wire.from_wire(came)
+    assert found == expected
+    assert "bytearray" not in repr(found)
+    plain = [1.0, "a", None]
+    assert wire.from_wire(plain) is plain
+
+
+@pytest.mark.parametrize(
+    "signature, words",
+    [
+        ("s", "string"),
+        ("[f]", "list of float"),
+        ("{s[i]}", "map of string to list of int"),
+        ("(sf)", "(string, float)"),
+        ("[(sf)<Led,name,value>]", "list of (string, float)"),
+        ("({s(ii)<Pair<int,int>,a,b>}b)", "(map of string to (int, int), bool)"),
+        ("#m", "any number of any value"),
+        ("?", "?"),
+        ("(s", "(s"),
+        ("ss", "ss"),
+    ],
+)
+def test_types_are_readable(signature, words):
+    assert readable_type(signature) == words
+
+
+def test_calls_are_readable_and_raw_data_are_seen_but_not_in_names():
+    words = {"()": "say()", "(sf)": "say(string, float)", "m": "say(...)", "(m)": "say(any value)", "(?)": "say(?)"}
+    assert {parameters: readable_call("say", parameters) for parameters in words} == words
+    assert [mentions_raw(text) for text in ("(r)", "([(ir)])", "(s)<Frame,raw>", "(s)")] == [True, True, False, False]
+
+
+# Errors
+
+
+def error_of(text, *arguments):
+    site = CallSite("nao", 9559, "ALLeds", "fade", arguments, lambda: ["fade(string, float)"], lambda: METHODS)
+    return call_error(RuntimeError(text), site)
+
+
+@pytest.mark.parametrize(
+    "text, kind",
+    [
+        ("Session closed", errors.ConnectionLost),
+        ("Service removed", errors.ConnectionLost),
+        ("Socket is not connected", errors.RobotUnreachable),
+        ("Future canceled.", errors.CallCanceled),
+        ("Call has been canceled.", errors.CallCanceled),
+        ("Can't find method: fade (resolved to '()')\n", errors.UnknownMethod),
+        (FADE, errors.BadArguments),
+        (
+            "Call argument number 1 conversion failure from String to Float. Function signature: (sf).",
+            errors.BadArguments,
+        ),
+        ("motor too hot", errors.RobotError),
+        # About another method, or out of the mouth of a service: the robot's own trouble.
+        (FADE.replace("fade", "say"), errors.RobotError),
+        (f"RuntimeError: {FADE}{TRACE}", errors.BadArguments),
+        (f"ValueError: {FADE}{TRACE}", errors.RobotError),
+        (f"RuntimeError: Session closed{TRACE}", errors.RobotError),
+    ],
+)
+def test_each_text_has_its_error(text, kind):
+    assert type(error_of(text)) is kind
+
+
+def test_the_candidates_of_libqi_are_listed_in_words():
+    error = error_of(FADE + "  fade::(s[f]) (1)\n", "FaceLeds")
+    assert error.signatures == ["fade(string, float, float)", "fade(string, list of float)"]
+    assert error.given == ("FaceLeds",)
+    assert "fade(string, list of float)" in str(error) and "'FaceLeds'" in str(error)
+
+
+def test_the_class_name_and_trace_of_a_python_service_are_set_apart():
+    error = error_of(f"ValueError: joint Tail\nis unknown{TRACE}  /y.py(1): g\n")
+    assert (error.kind, error.text) == ("ValueError", "joint Tail\nis unknown")
+    assert "/x.py(3): fade" in error.trace
+    assert str(error) == "ALLeds.fade failed: joint Tail\nis unknown"
+    assert "StopIteration" in str(error_of(f"StopIteration: {TRACE}"))
+
+
+def test_an_argument_that_libqi_refuses_is_named():
+    error = error_of("Unable to cast Python instance of type <class 'int'>", 2**70)
+    assert type(error) is errors.BadArguments and "64 bits" in error.reason
+
+
+@pytest.mark.parametrize(
+    "text, word",
+    [
+        ("Connect error: 111: Connection refused", "refused"),
+        ("Connect error: 1: Host not found (authoritative)", "name of the host"),
+        ("Connect error: 113: No route to host", "no route"),
+        ("Connect error: 110: Connection timed out", "no answer"),
+        ("something new", "something new"),
+    ],
+)
+def test_reasons_of_failed_connections_come_with_advice(text, word):
+    reason, check = connect_reason(text)
+    assert word in reason and check
+
+
+def test_closest_names_ignore_case_and_come_best_first():
+    assert closest_names("setintensity", METHODS)[0] == "setIntensity"
+    assert closest_names("walk", METHODS) == []
+
+
+def test_what_is_promised_is_there_and_the_errors_are_one_family():
+    assert SDK_NAMES <= set(naoqi.__all__) and naoqi.__all__ == sorted(naoqi.__all__)
+    assert all(hasattr(naoqi, name) for name in naoqi.__all__)
+    family = [kind for kind in vars(errors).values() if isinstance(kind, type) and kind.__module__ == errors.__name__]
+    assert len(family) > 5
+    assert all(issubclass(kind, errors.NaoError) and issubclass(kind, RuntimeError) for kind in family)
+    assert {kind.__name__ for kind in family} <= set(naoqi.__all__)
+    names = {}
+    exec("from naoqi import *", names)
+    assert set(names) >= SDK_NAMES
