@@ -1,0 +1,131 @@
+"""Errors say what was wrong and what is allowed; settings are read strictly."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+
+from nao_sim_bridge.paths import config_file
+from nao_sim_bridge.sim import balance, errors, fall_manager, settings
+from nao_sim_bridge.sim.errors import BadValue, ConfigError, UnknownName
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.places import CIRCLE, NEAREST, ORIGIN, RobotPlace, checked_places, on_circle, parse_places
+from nao_sim_bridge.sim.scene import Scene
+from nao_sim_bridge.sim.sensors import noise_settings
+
+MODEL = load_model()
+BALANCE, FALLS, NOISE, PHYSICS = balance.FILE, fall_manager.FILE, noise_settings.FILE, settings.FILE
+LOADERS = {
+    BALANCE: (balance, lambda: balance.load_balance(MODEL)),
+    FALLS: (fall_manager, lambda: fall_manager.load_fall_settings(MODEL)),
+    NOISE: (noise_settings, noise_settings.load_noise),
+    PHYSICS: (settings, settings.load_settings),
+}
+
+
+def test_errors_keep_their_facts_and_say_them():
+    family = [errors.TaskKilled, errors.SimulationStopped, ConfigError, UnknownName, BadValue]
+    assert all(issubclass(kind, errors.SimulationError) for kind in family)
+    assert issubclass(errors.SimulationError, RuntimeError)
+    error = UnknownName("joint", "HeadYow", ["RHipRoll", "HeadPitch", "HeadYaw"])
+    assert (error.kind, error.name, error.close) == ("joint", "HeadYow", ["HeadYaw", "HeadPitch"])
+    assert str(error) == "unknown joint 'HeadYow': did you mean 'HeadYaw' or 'HeadPitch'?"
+    assert str(UnknownName("joint", "zzz", ["HeadYaw"])) == "unknown joint 'zzz'"
+    assert all(repr(name) in str(UnknownName("joint", name, ["HeadYaw"])) for name in (3, None, ["HeadYaw"]))
+    error = BadValue("speed", -1.0, "above 0")
+    assert (error.field, error.value, error.allowed) == ("speed", -1.0, "above 0")
+    assert str(error) == "speed is -1.0, allowed is above 0"
+    error = ConfigError("physics.json: motor", "missing 'gain'")
+    assert (error.where, error.problem) == ("physics.json: motor", "missing 'gain'")
+    assert str(error) == "physics.json: motor: missing 'gain'"
+
+
+def test_values_of_megabytes_are_shortened():
+    text = str(BadValue("name", "x" * 1000000, "a short one"))
+    assert text.startswith("name is 'xxx") and text.endswith("xxx... (1000002 characters), allowed is a short one")
+    assert max(len(text), len(str(UnknownName("joint", "x" * 1000000, ["HeadYaw"])))) < 400
+
+
+@pytest.mark.parametrize("file", [PHYSICS, NOISE])
+def test_every_value_is_a_number_of_the_file(file):
+    loaded = LOADERS[file][1]()
+    for name, value in json.loads(config_file(file).read_text()).items():
+        if isinstance(value, dict) and name != "_meta":
+            # Lists of the file are tuples here, which nobody can change.
+            assert json.loads(json.dumps(vars(getattr(loaded, name)))) == value
+        elif name != "_meta":
+            assert getattr(loaded, name) == value
+
+
+def test_a_tick_is_a_whole_number_of_steps_and_an_encoder_has_4096_a_turn():
+    physics = settings.load_settings()
+    # ALMotion's own cycle is 10 to 20 ms: a command must not wait longer here.
+    assert 0.002 <= physics.tick_s == physics.time_step_s * physics.steps_per_tick <= 0.02
+    assert noise_settings.load_noise().joints.angle_step == pytest.approx(2 * math.pi / 4096)
+
+
+@pytest.mark.parametrize(
+    "file, change, message",
+    [
+        (PHYSICS, lambda c: c.update(gravity=9.81), "unknown key 'gravity', did you mean 'gravity_m_s2'"),
+        (PHYSICS, lambda c: c["motor"].popitem(), f"{PHYSICS}: motor: missing"),
+        (PHYSICS, lambda c: c["contact"].popitem(), f"{PHYSICS}: contact: missing"),
+        (PHYSICS, lambda c: c["head"].popitem(), f"{PHYSICS}: head: missing"),
+        (PHYSICS, lambda c: c["battery"].popitem(), f"{PHYSICS}: battery: missing"),
+        (NOISE, lambda c: c["feet"].pop("force"), f"{NOISE}: feet: missing 'force'"),
+        (NOISE, lambda c: c["joints"].update(angel=1), "unknown key 'angel', did you mean 'angle'"),
+        (NOISE, lambda c: c["joints"].update(angle=-1), r"joints\.angle: is -1, allowed is 0 or more"),
+        (NOISE, lambda c: c["inertial"].update(angle_wander_time_s=0), "angle_wander_time_s: is 0, allowed is above 0"),
+        (NOISE, lambda c: c["inertial"].update(gyroscope="much"), r"inertial\.gyroscope: .*not numbers"),
+        (BALANCE, lambda c: c["pitch"].update(AnkleRoll=[1.0, 1.0]), f"{BALANCE}: pitch: unknown key 'AnkleRoll'"),
+        (BALANCE, lambda c: c["pitch"].update(HipPitch=[1.0]), r"pitch.HipPitch: is \[1.0\], not 2"),
+        (FALLS, lambda c: c["protect"]["front"].update(LElbow=0.0), f"{FALLS}: protect.front: no joint 'LElbow'"),
+    ],
+)
+def test_wrong_entries_are_refused_with_their_place(change_file, file, change, message):
+    module, load = LOADERS[file]
+    change_file(module, change)
+    with pytest.raises(ConfigError, match=message):
+        load()
+
+
+# --- what a simulation starts with
+
+
+@pytest.mark.parametrize("name", ["friction", "payload", "sensor_noise", "sensor_delay"])
+def test_amounts_below_zero_or_without_end_are_refused(name):
+    for value in (-0.1, math.inf, math.nan):
+        with pytest.raises(BadValue, match=f"{name} is {value}, allowed is 0 "):
+            Scene(**{name: value})
+    with pytest.raises(BadValue, match="sensor_delay is 1.5, allowed is 0 to 1 s"):
+        Scene(sensor_delay=1.5)
+
+
+@pytest.mark.parametrize("count", [2, 3, 5, 8])
+def test_on_a_circle_all_look_at_the_middle_and_nobody_is_too_near(count):
+    places = checked_places(on_circle(count), count)
+    for place in places:
+        assert math.hypot(place.x, place.y) == pytest.approx(CIRCLE, abs=1e-5)
+        ahead = (place.x + CIRCLE * math.cos(place.yaw), place.y + CIRCLE * math.sin(place.yaw))
+        assert ahead == pytest.approx((0.0, 0.0), abs=1e-5)
+    assert places[0].yaw == 0.0
+    assert on_circle(1) == (ORIGIN,) == (RobotPlace(0.0, 0.0, 0.0),), "one that is alone stands at the origin"
+
+
+def test_places_are_read_from_a_line():
+    expected = RobotPlace(0.0, 0.0, 0.0), RobotPlace(1.5, -2.0, math.pi / 2), RobotPlace(3.0, 4.0, 0.0)
+    assert parse_places("0,0,0; 1.5,-2,90;3,4") == expected
+    for text in ("", "1", "1,2,3,4", "1,2,north", "0,0;", "1e9,0,0", "nan,0,0", "0,0,inf"):
+        with pytest.raises(BadValue, match="place"):
+            parse_places(text)
+
+
+def test_too_few_and_too_near_places_are_refused():
+    near, two = (ORIGIN, RobotPlace(0.2, 0.1)), on_circle(2)
+    wrong = [(two, 3, "one for each of the 3 robots"), (near, 2, f"{NEAREST:g} m or more"), (two, 9, "1 to 8")]
+    for places, count, text in wrong:
+        with pytest.raises(BadValue, match=text):
+            checked_places(places, count)
+    assert checked_places(on_circle(3), 2) == on_circle(3)[:2]

@@ -1,0 +1,237 @@
+"""Forward kinematics against the check values of the tables; rotations, frames, Jacobians and stances against it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nao_sim_bridge.paths import config_file
+from nao_sim_bridge.sim.config import read_json
+from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.frames import FEET, ROBOT, WORLD, Placement, commanded, frame_of, robot_in_world, space_in_torso
+from nao_sim_bridge.sim.glide import Glide, slerp
+from nao_sim_bridge.sim.kinematics import (
+    axis_matrix,
+    center_of_mass,
+    finger_transforms,
+    link_transforms,
+    matrix_quaternion,
+    matrix_rpy,
+    quaternion_matrix,
+    rpy_matrix,
+    transform,
+)
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.motion.body_kinematics import body_kinematics
+from nao_sim_bridge.sim.motion.grounded_pose import Footing, GroundedPose
+from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.rotations import cross, from_roll_pitch_yaw, multiply, roll_pitch_yaw, rotate, rotate_back
+from nao_sim_bridge.sim.stance import StanceReader
+
+CHECKS = read_json(config_file("nao_h25.json"))["fk_check_zero_posture_torso_frame"]["positions_m"]
+MODEL = load_model()
+BODY, STANCES = body_kinematics(MODEL), StanceReader(MODEL)
+ZERO = (0.0,) * 26
+UPRIGHT, HALF = (0.0, 0.0, 0.0, 1.0), math.sqrt(0.5)
+ANGLE = st.floats(-3.1, 3.1)
+RPY = st.tuples(ANGLE, st.floats(-1.57, 1.57), ANGLE)
+
+
+def test_the_zero_posture_meets_the_published_positions():
+    poses = link_transforms(MODEL, ZERO)
+    for name, expected in CHECKS.items():
+        if name == "CoM_V60":
+            found = center_of_mass(MODEL, ZERO)
+        elif name.endswith("_effector"):
+            place = MODEL.effectors[name[: -len("_effector")]]
+            found = (poses[place.parent_link] @ np.append(place.position, 1.0))[:3]
+        else:
+            found = poses[name][:3, 3]
+        assert found == pytest.approx(expected, abs=1e-5), name
+
+
+def test_turning_the_head_left_moves_the_camera_left():
+    angles = list(ZERO)
+    angles[MODEL.joint_index["HeadYaw"]] = math.pi / 2
+    camera = MODEL.cameras[0].place
+    position = link_transforms(MODEL, angles)[camera.parent_link] @ np.append(camera.position, 1.0)
+    assert position[:3] == pytest.approx((0.0, 0.05871, 0.19014), abs=1e-5)
+
+
+def test_fingers_are_straight_when_open_and_curl_towards_the_thumb():
+    straight, closed = finger_transforms(MODEL, 1.0), finger_transforms(MODEL, 0.0)
+    assert straight["Finger13"][:3, 3] - straight["Finger11"][:3, 3] == pytest.approx((2 * 0.01436, 0, 0))
+    assert closed["Finger13"][2, 3] < straight["Finger13"][2, 3] - 0.01
+    assert closed["Thumb2"][2, 3] > straight["Thumb2"][2, 3] + 0.01
+
+
+# --- rotations
+
+
+@given(RPY, RPY, st.tuples(ANGLE, ANGLE, ANGLE))
+@settings(max_examples=50)
+def test_rotations_agree_in_every_form(first, second, vector):
+    matrix, quaternion = rpy_matrix(first), from_roll_pitch_yaw(*first)
+    assert quaternion_matrix(quaternion) == pytest.approx(matrix)
+    assert rpy_matrix(matrix_rpy(matrix)) == pytest.approx(matrix)
+    assert quaternion_matrix(matrix_quaternion(matrix)) == pytest.approx(matrix)
+    assert rpy_matrix(roll_pitch_yaw(quaternion)) == pytest.approx(matrix, abs=1e-6)
+    turned = rotate(quaternion, vector)
+    assert turned == pytest.approx(tuple(matrix @ vector), abs=1e-9)
+    assert rotate_back(quaternion, turned) == pytest.approx(vector, abs=1e-9)
+    other = from_roll_pitch_yaw(*second)
+    assert rotate(multiply(other, quaternion), vector) == pytest.approx(rotate(other, turned), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "quaternion, vector, turned",
+    [
+        ((0, 0, HALF, HALF), (1, 0, 0), (0, 1, 0)),
+        ((HALF, 0, 0, HALF), (0, 1, 0), (0, 0, 1)),
+        ((0, HALF, 0, HALF), (0, 0, 1), (1, 0, 0)),
+        ((0, 0, 1, 0), (1, 2, 3), (-1, -2, 3)),
+    ],
+)
+def test_rotations_follow_the_right_hand_rule(quaternion, vector, turned):
+    assert rotate(quaternion, vector) == pytest.approx(turned)
+    assert axis_matrix((0, 0, 1), math.pi / 2) @ (1, 0, 0) == pytest.approx((0, 1, 0))
+    assert axis_matrix((0, 1, 0), math.pi / 2) @ (0, 0, 1) == pytest.approx((1, 0, 0))
+    assert cross((1, 0, 0), (0, 1, 0)) == (0, 0, 1) and cross((1, 2, 3), (4, 5, 6)) == (-3, 6, -3)
+
+
+@pytest.mark.parametrize("pitch", [math.pi / 2, -math.pi / 2])
+def test_a_pitch_of_ninety_degrees_survives_rounding(pitch):
+    assert roll_pitch_yaw(from_roll_pitch_yaw(0.0, pitch, 0.0))[1] == pytest.approx(pitch)
+    assert rpy_matrix(matrix_rpy(rpy_matrix((0.0, pitch, 0.7)))) == pytest.approx(rpy_matrix((0.0, pitch, 0.7)))
+    # A component a hair above 1 must not leave the range of the arc sine.
+    assert math.isfinite(roll_pitch_yaw((0.0, HALF + 1e-9, 0.0, HALF + 1e-9))[1])
+
+
+def test_a_way_between_two_poses_is_straight_and_turns_the_short_way_round():
+    glide = Glide(Pose((1.0, 0.0, 0.2), UPRIGHT), Pose((1.0, 2.0, 0.2), from_roll_pitch_yaw(0, 0, 1.0)), 10.0, 4.0)
+    assert glide.velocity == pytest.approx((0.0, 0.5, 0.0))
+    halfway = glide.at(12.0)
+    assert halfway.position == pytest.approx((1.0, 1.0, 0.2))
+    assert roll_pitch_yaw(halfway.orientation) == pytest.approx((0.0, 0.0, 0.5))
+    assert not glide.ended(13.99) and glide.ended(14.0)
+    assert glide.at(9.0) == glide.start and glide.at(14.0) is glide.at(99.0) is glide.target
+    for sign in (1.0, -1.0):
+        end = tuple(sign * part for part in from_roll_pitch_yaw(0.0, 0.0, -3.0))
+        yaw = roll_pitch_yaw(slerp(from_roll_pitch_yaw(0.0, 0.0, 3.0), end, 0.5))[2]
+        assert abs(yaw) == pytest.approx(math.pi, abs=1e-6)
+    turn = from_roll_pitch_yaw(0.1, 0.2, 0.3)
+    assert slerp(turn, turn, 0.5) == pytest.approx(turn)
+
+
+# --- frames
+
+
+def test_places_in_the_frames_of_almotion():
+    torso = transform(rpy_matrix((0.0, 0.0, 3.0)), (1.0, 2.0, 0.3))
+    placed = Placement(link_transforms(MODEL, posture(MODEL, "Stand")), torso)
+    frame = space_in_torso(MODEL, ROBOT, placed)
+    left, right = (np.linalg.inv(frame) @ placed.in_torso(frame_of(MODEL, name)) for name in FEET)
+    assert left[:2, 3] + right[:2, 3] == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert left[0, 0] == pytest.approx(right[0, 0], abs=1e-3)
+    assert robot_in_world(MODEL, placed)[2, 2] == pytest.approx(1.0)
+    assert np.linalg.inv(space_in_torso(MODEL, WORLD, placed)) == pytest.approx(torso)
+    # Commands that bend the legs lower the torso and keep the support foot.
+    asked, foot = commanded(MODEL, posture(MODEL, "Crouch"), placed), frame_of(MODEL, "LLeg")
+    assert asked.torso_in_world @ asked.in_torso(foot) == pytest.approx(torso @ placed.in_torso(foot))
+    assert asked.torso_in_world[2, 3] < torso[2, 3] - 0.03
+    assert frame_of(MODEL, "CameraTop").link == "HeadPitch"
+    with pytest.raises(UnknownName, match="CameraTop"):
+        frame_of(MODEL, "CamraTop")
+
+
+# --- the body of whole body control and inverse kinematics
+
+SMALL = 1e-6
+
+
+@pytest.fixture(params=["Stand", "StandInit", "Crouch"])
+def angles(request):
+    return np.array(posture(MODEL, request.param)) + np.random.default_rng(2).uniform(-0.05, 0.05, 26)
+
+
+def nudged(angles, joint):
+    """`angles` with one motor moved a little: that of the hips moves both."""
+    moved = angles.copy()
+    moved[[BODY.left_hip, BODY.right_hip] if joint == BODY.left_hip else joint] += SMALL
+    return moved
+
+
+def test_links_are_where_forward_kinematics_has_them(angles):
+    now = BODY.at(angles)
+    for name, pose in link_transforms(MODEL, angles).items():
+        assert now.poses[BODY.row[name]] == pytest.approx(pose, abs=1e-8)
+    assert now.center_of_mass() == pytest.approx(center_of_mass(MODEL, angles), abs=1e-9)
+    jacobian = now.jacobian(frame_of(MODEL, "RLeg"))
+    assert not jacobian[:, ~BODY.movable].any(), "hands and the right half of the common hip motor"
+    assert jacobian[:, BODY.left_hip].any()
+
+
+@pytest.mark.parametrize("standing", [None, "LLeg", "RLeg"])
+def test_jacobians_say_what_a_small_step_of_a_joint_does(angles, standing):
+    foot = standing and frame_of(MODEL, standing)
+    footing = standing and Footing(foot, BODY.at(angles * 0.9).pose(foot))
+    now = GroundedPose(BODY.at(angles), footing)
+    frames = [frame_of(MODEL, name) for name in ("Head", "LArm", "RArm", "LLeg", "RLeg")]
+    jacobians, of_mass = [now.jacobian(frame) for frame in frames], now.com_jacobian()
+    for joint in np.flatnonzero(BODY.movable):
+        then = GroundedPose(BODY.at(nudged(angles, joint)), footing)
+        assert (then.center_of_mass() - now.center_of_mass()) / SMALL == pytest.approx(of_mass[:, joint], abs=1e-5)
+        for frame, jacobian in zip(frames, jacobians):
+            before, after = now.pose(frame), then.pose(frame)
+            turn = (after - before)[:3, :3] @ before[:3, :3].T / SMALL
+            assert (after - before)[:3, 3] / SMALL == pytest.approx(jacobian[:3, joint], abs=1e-5)
+            assert [turn[2, 1], turn[0, 2], turn[1, 0]] == pytest.approx(jacobian[3:, joint], abs=1e-5)
+    if standing:
+        assert now.pose(foot) == pytest.approx(footing.pose), "a foot that stands does not move"
+        assert now.jacobian(foot) == pytest.approx(np.zeros((6, 26)))
+
+
+def test_limits_of_a_joint_follow_the_joint_that_it_depends_on():
+    angles, limit, joint = np.zeros(26), MODEL.coupled_limits["LAnkleRoll"], MODEL.joint("LAnkleRoll")
+    roll = MODEL.joint_index["LAnkleRoll"]
+    for pitch in limit.table[:, 0]:
+        angles[MODEL.joint_index["LAnklePitch"]] = pitch
+        lower, upper = BODY.limits(angles)
+        least, most = limit.limits_at(pitch)
+        assert (lower[roll], upper[roll]) == pytest.approx((max(least, joint.lower), min(most, joint.upper)))
+
+
+# --- stances
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_stances_agree_with_the_kinematics(seed):
+    chance = np.random.default_rng(seed)
+    angles, (roll, pitch) = chance.uniform(*MODEL.limits_array().T).tolist(), chance.uniform(-1.0, 1.0, 2).tolist()
+    level, links = rpy_matrix((roll, pitch, 0.0)), link_transforms(MODEL, angles)
+    stance = STANCES.read(angles, roll, pitch)
+    assert stance.com == pytest.approx(level @ center_of_mass(MODEL, angles))
+    left, right = (level @ links[f"{side}AnkleRoll"][:3, 3] for side in "LR")
+    assert (stance.left_ankle, stance.right_ankle) == (pytest.approx(left), pytest.approx(right))
+    assert stance.com_from_feet == pytest.approx(stance.com - (left + right) / 2)
+    for side, letter in enumerate("LR"):
+        outline = MODEL.sole_polygon(letter)
+        corners = np.c_[outline, np.full(len(outline), -MODEL.sole_height), np.ones(len(outline))]
+        expected = (level @ (corners @ links[f"{letter}AnkleRoll"].T)[:, :3].T).T
+        assert np.array(STANCES.sole(side, angles, roll, pitch)) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("name, pitch", [("Stand", -0.002), ("StandZero", 0.0), ("StandInit", 0.1), ("Crouch", -0.05)])
+def test_the_lean_of_a_posture_follows_from_flat_soles(name, pitch):
+    angles = posture(MODEL, name)
+    assert STANCES.lean(angles) == pytest.approx((0.0, pitch), abs=1e-3)
+    heights = [corner[2] for side in (0, 1) for corner in STANCES.sole(side, angles, *STANCES.lean(angles))]
+    assert max(heights) - min(heights) < 0.005
+    upright, leaning = STANCES.read(angles, 0.0, 0.0), STANCES.read(angles, 0.0, 0.1)
+    ahead = leaning.com_from_feet[0] - upright.com_from_feet[0]
+    assert ahead == pytest.approx(0.1 * upright.com_from_feet[2], rel=0.05)

@@ -1,0 +1,254 @@
+"""The tables of the robot: joints, links, chains, masses, postures and looks, and that wrong tables are refused."""
+
+from __future__ import annotations
+
+import copy
+import math
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.paths import config_file
+from nao_sim_bridge.sim.appearance import load_appearance
+from nao_sim_bridge.sim.body_mass import center_of_links, convex_hull, links_of, mass_of
+from nao_sim_bridge.sim.config import read_json
+from nao_sim_bridge.sim.errors import ConfigError, UnknownName
+from nao_sim_bridge.sim.kinematics import center_of_mass, rpy_matrix
+from nao_sim_bridge.sim.leds_layout import load_leds
+from nao_sim_bridge.sim.meshes import front_and_rest, stl_bytes, tessellate
+from nao_sim_bridge.sim.model import VERSIONS, load_model
+from nao_sim_bridge.sim.model_reader import ModelReader
+from nao_sim_bridge.sim.postures import load_postures, posture
+from nao_sim_bridge.sim.shapes import SEEN_KINDS, Shape, read_shape
+from nao_sim_bridge.sim.support_polygon import outside
+
+TABLES = read_json(config_file("nao_h25.json"))
+MODEL = load_model()
+HERE = (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("version, mass, head", [("V6", 5.35975, 0.65973), ("V5", 5.30535, 0.60533)])
+def test_versions_differ_in_the_head_alone(version, mass, head):
+    model = load_model(version)
+    assert model.total_mass == pytest.approx(mass, abs=1e-9)
+    assert model.link("HeadPitch").mass == pytest.approx(head)
+    masses = [[link.mass for link in one.links if link.name != "HeadPitch"] for one in (model, MODEL)]
+    assert masses[0] == masses[1]
+    for link in model.links:
+        smallest, middle, largest = np.linalg.eigvalsh(link.inertia)
+        assert smallest > 0.0 and smallest + middle >= largest * 0.999, link.name
+
+
+def test_an_unknown_version_or_posture_offers_the_known_ones():
+    with pytest.raises(ConfigError, match="V7.*V6, V5"):
+        load_model("V7")
+    with pytest.raises(UnknownName, match="'Stan'.*did you mean 'Stand'"):
+        posture(MODEL, "Stan")
+
+
+def test_joints_are_in_body_order_with_hands_in_place_and_chains_make_up_the_body():
+    names = [joint.name for joint in MODEL.joints]
+    arm = ["ShoulderPitch", "ShoulderRoll", "ElbowYaw", "ElbowRoll", "WristYaw", "Hand"]
+    assert names[:8] == ["HeadYaw", "HeadPitch", *("L" + name for name in arm)]
+    assert (names[8], names[14], names[25]) == ("LHipYawPitch", "RHipYawPitch", "RHand")
+    assert [MODEL.joint_index[name] for name in names] == list(range(26))
+    five, chains = ("Head", "LArm", "LLeg", "RLeg", "RArm"), MODEL.chains
+    assert set(five) == set(MODEL.chain_names) and MODEL.chain_names == tuple(TABLES["chains"])
+    assert sum((chains[name] for name in five), ()) == chains["Body"] == tuple(names)
+    assert chains["Actuators"] == ("LHand", "RHand")
+    assert len(chains["Joints"]) == 24 and "LHand" not in chains["Joints"]
+    assert set(chains["Legs"]) == set(chains["LLeg"]) | set(chains["RLeg"])
+
+
+@pytest.mark.parametrize(
+    "name, lower, upper, velocity, torque",
+    [
+        ("HeadYaw", -2.08567, 2.08567, 8.26797, 1.547),
+        ("RKneePitch", -0.0923279, 2.11255, 6.40239, 3.0226),
+        ("LElbowRoll", -1.54462, -0.0349066, 7.19407, 1.532),
+        ("LHand", 0.0, 1.0, 8.33, 0.292),
+    ],
+)
+def test_limits_of_some_joints(name, lower, upper, velocity, torque):
+    joint, limits = MODEL.joint(name), MODEL.limits_array()
+    values = (joint.lower, joint.upper, joint.max_velocity, joint.max_torque)
+    assert values == pytest.approx((lower, upper, velocity, torque))
+    assert joint.is_hand == name.endswith("Hand")
+    assert limits.shape == (26, 2) and tuple(limits[MODEL.joint_index[name]]) == pytest.approx((lower, upper))
+    with pytest.raises(ValueError, match="read-only"):
+        limits[0, 0] = 0.0
+
+
+def test_coupled_limits_interpolate_between_rows():
+    limit = MODEL.coupled_limits["HeadPitch"]
+    assert limit.by_joint == "HeadYaw"
+    assert limit.limits_at(0.0) == pytest.approx((-0.671951, 0.515047))
+    halfway = (0.486074 + 0.756077) / 2.0
+    assert limit.limits_at(halfway) == pytest.approx(((-0.671951 - 0.548033) / 2, (0.422021 + 0.37001) / 2))
+    assert limit.limits_at(9.0) == pytest.approx((-0.449073, 0.330041))
+
+
+def test_the_right_sole_is_the_mirror_image_and_counter_clockwise():
+    left, right = MODEL.sole_polygon("L"), MODEL.sole_polygon("R")
+    assert sorted(map(tuple, right)) == sorted((x, -y) for x, y in left)
+    for x, y in (left.T, right.T):
+        assert np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)) > 0.0
+
+
+@pytest.mark.parametrize(
+    "spoil, message",
+    [
+        (lambda t: t["joints"][3].pop("axis"), r"joints\[3\]: missing 'axis'"),
+        (lambda t: t["links"][2].update(mas=1.0), r"links\[2\]: unknown key 'mas', did you mean 'mass_kg'"),
+        (lambda t: t.update(colour="red"), "unknown key 'colour'"),
+        (lambda t: t["links"][1].update(com_xyz_m=[0, 0]), r"links\[1\]\.com_xyz_m.*not 3 finite numbers"),
+        (lambda t: t["links"][1]["inertia_kg_m2"][0].__setitem__(0, -1.0), "not symmetric and positive"),
+        (lambda t: t["joints"][0].update(lower_rad=3.0), "lower limit 3.0 is not below upper"),
+        (lambda t: t["almotion_body_order"].pop(), "does not name the same joints"),
+    ],
+)
+def test_wrong_tables_are_refused_with_the_place(spoil, message):
+    tables = copy.deepcopy(TABLES)
+    spoil(tables)
+    with pytest.raises(ConfigError, match=message):
+        ModelReader(tables, "V6").read()
+
+
+def test_all_postures_lie_within_the_limits():
+    lower, upper = MODEL.limits_array().T
+    assert len(load_postures().by_name) == 8
+    for name, entry in load_postures().by_name.items():
+        assert np.all(entry.angles >= lower - 5e-3) and np.all(entry.angles <= upper + 5e-3), name
+        clipped = np.array(posture(MODEL, name))
+        assert np.all((clipped >= lower) & (clipped <= upper))
+
+
+def test_the_parts_weigh_as_much_as_the_whole_and_have_its_centre():
+    parts = sum(mass_of(links_of(MODEL, name)) for name in ("Torso", *MODEL.chain_names))
+    assert parts == pytest.approx(MODEL.total_mass)
+    assert mass_of(links_of(MODEL, "Joints")) + mass_of(links_of(MODEL, "Torso")) == pytest.approx(parts)
+    angles = posture(MODEL, "Stand")
+    assert center_of_links(MODEL, links_of(MODEL, "Body"), angles) == pytest.approx(center_of_mass(MODEL, angles))
+    with pytest.raises(UnknownName, match="did you mean 'LArm'"):
+        links_of(MODEL, "LArn")
+
+
+@pytest.mark.parametrize(
+    "point, distance, way",
+    [
+        ((1.5, 1.0), -0.5, (1, 0)),
+        ((1.0, 0.1), -0.1, (0, -1)),
+        ((3.0, 1.0), 1.0, (1, 0)),
+        ((1.0, -0.5), 0.5, (0, -1)),
+        ((-1.0, 3.0), math.sqrt(2.0), (-math.sqrt(0.5), math.sqrt(0.5))),
+        ((2.0, 0.5), 0.0, (1, 0)),
+    ],
+)
+def test_how_far_outside_a_hull_a_point_is_and_the_shortest_way_out(point, distance, way):
+    hull = convex_hull([(0, 0), (1, 0), (2, 0), (2, 2), (0, 2), (1, 1), (2, 1)])
+    assert hull == [(0, 0), (2, 0), (2, 2), (0, 2)], "without inner points and points on edges"
+    assert outside(hull, point) == (pytest.approx(distance), pytest.approx(way))
+
+
+SHAPES = {
+    "box": ((1.0, 2.0, 3.0), 6.0),
+    "sphere": ((1.0,), 4.0 / 3.0 * math.pi),
+    "cylinder": ((1.0, 2.0), 2.0 * math.pi),
+    "capsule": ((1.0, 2.0), 2.0 * math.pi + 4.0 / 3.0 * math.pi),
+    "ellipsoid": ((1.0, 2.0, 3.0), 8.0 * math.pi),
+    "arc": ((0.5, 1.0, 0.2, 40.0), 0.75 * math.pi * 0.2 * 40.0 / 360.0),
+}
+
+
+def corners(mesh):
+    return (mesh.vertices[mesh.faces[:, i]] for i in range(3))
+
+
+def volume(mesh):
+    a, b, c = corners(mesh)
+    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0)
+
+
+@pytest.mark.parametrize("kind", SEEN_KINDS)
+def test_meshes_are_closed_with_the_volume_of_their_shape_and_normals_point_out(kind):
+    size, expected = SHAPES.get(kind, ((1.0, 1.0, 1.0), None))
+    shape = Shape(kind, size, (0.1, 0.2, 0.3), (0.4, -0.5, 0.6))
+    mesh = tessellate(shape)
+    if expected is None:
+        assert kind == "pillow" and math.pi / 6.0 < volume(mesh) < 1.0, "between ellipsoid and box"
+    else:
+        assert volume(mesh) == pytest.approx(expected, rel=0.04)
+    a, b, c = corners(mesh)
+    outwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), mesh.normals[mesh.faces].mean(axis=1))
+    assert outwards.min() > -1e-9
+    assert np.linalg.norm(mesh.normals, axis=1) == pytest.approx(1.0)
+    directions = np.random.default_rng(1).normal(size=(3, 50))
+    original = mesh.placed(shape).vertices * (1.0, -1.0, 1.0)
+    mirrored = tessellate(shape.mirrored()).placed(shape.mirrored()).vertices
+    assert (mirrored @ directions).max(axis=0) == pytest.approx((original @ directions).max(axis=0), abs=1e-9)
+
+
+def test_an_stl_has_one_record_a_triangle():
+    assert len(stl_bytes(tessellate(Shape("box", (1.0, 1.0, 1.0), HERE)))) == 84 + 12 * 50
+
+
+def test_the_front_of_a_box_has_the_whole_picture_upright():
+    front, rest = front_and_rest(tessellate(Shape("box", (0.1, 0.2, 0.3), HERE)))
+    assert len(front.faces) == 2 and len(rest.faces) == 10
+    places = {tuple(vertex): tuple(uv) for vertex, uv in zip(front.vertices.round(6).tolist(), front.uvs.tolist())}
+    # Who looks at it from the front has -Y on the left.
+    assert places[(0.05, -0.1, -0.15)] == (0.0, 0.0) and places[(0.05, 0.1, 0.15)] == (1.0, 1.0)
+
+
+@pytest.mark.parametrize("kind, size", [("sphere", (0.1,)), ("ellipsoid", (0.1, 0.2, 0.3)), ("cylinder", (0.1, 0.4))])
+def test_the_front_of_round_shapes_is_the_half_that_looks_along_x(kind, size):
+    mesh = tessellate(Shape(kind, size, HERE))
+    front, rest = front_and_rest(mesh)
+    assert len(front.faces) + len(rest.faces) == len(mesh.faces)
+    assert front.vertices[:, 0].min() > -1e-9
+    assert front.uvs.min() >= 0.0 and front.uvs.max() <= 1.0
+    assert front.placed(Shape(kind, size, (1.0, 2.0, 3.0))).uvs is front.uvs
+
+
+def test_a_rod_runs_from_end_to_end():
+    shape = read_shape({"capsule": 0.1, "from": [0, 0, 0], "to": [0.3, 0.4, 0.0]}, "here")
+    assert shape.size == pytest.approx((0.1, 0.5)) and shape.xyz == pytest.approx((0.15, 0.2, 0.0))
+    assert rpy_matrix(shape.rpy) @ (0, 0, 1) == pytest.approx((0.6, 0.8, 0.0))
+
+
+@pytest.mark.parametrize(
+    "entry, message",
+    [
+        ({"xyz": [0, 0, 0]}, "exactly one of .*has none"),
+        ({"sphere": 1, "box": [1, 1, 1]}, "has box, sphere"),
+        ({"sphere": -1}, "must be above 0"),
+        ({"sphere": 1, "from": [0, 0, 0], "to": [0, 0, 1]}, "from and to go together"),
+        ({"capsule": 0.1, "from": [0, 0, 0]}, "from and to go together"),
+        ({"cube": 1}, "unknown key 'cube'"),
+        ({"ellipsoid": [1, 1, 1]}, "unknown key 'ellipsoid'"),
+    ],
+)
+def test_wrong_shapes_are_refused(entry, message):
+    with pytest.raises(ConfigError, match=message):
+        read_shape(entry, "here")
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_every_lamp_has_a_figure_on_a_link_of_the_robot(version):
+    figures = load_appearance(version).lamps
+    assert [figure.lamp for figure in figures] == list(load_leds(version).lamps)
+    assert {figure.link for figure in figures} == {"HeadPitch", "Torso", "LAnkleRoll", "RAnkleRoll"}
+
+
+def test_lamps_sit_on_their_side_at_their_angle_and_both_sides_look_alike():
+    lamps, shapes = load_appearance().lamps, load_appearance().shapes
+    at = {one.lamp.name: tessellate(one.shape).placed(one.shape).vertices.mean(axis=0) for one in lamps}
+    top, nose, bottom, outer = (at[f"LeftFaceLed{n}"] for n in (1, 3, 5, 7))
+    assert top[2] > nose[2] > bottom[2] and 0.0 < nose[1] < top[1] < outer[1]
+    assert at["LeftEarLed3"][0] > 0.015 and at["LeftEarLed8"][0] < -0.015
+    assert at["Brain0"][0] > 0.02 > at["Brain5"][0]
+    for lamp in (figure.lamp for figure in lamps):
+        if lamp.side and lamp.part != "foot":
+            assert (at[lamp.name][1] > 0.0) == (lamp.side == "Left"), lamp.name
+    left = [name for name in shapes if name.startswith("L")]
+    assert left and all(len(shapes["R" + name[1:]]) == len(shapes[name]) for name in left)
