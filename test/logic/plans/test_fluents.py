@@ -1,0 +1,283 @@
+"""Fluents: networks, pulses, and no wake-up that is lost, however many threads change them."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+from plan_tools import Beside, Heard, at_once, fails, seen
+
+import nao_library_modules.process_modules as p
+from nao_library_modules.process_modules.fluents import AnyFluent
+
+THREADS, ROUNDS = 4, 100
+
+
+def count(fluent, times=ROUNDS):
+    def body():
+        for _ in range(times):
+            fluent.update(lambda value: value + 1)
+
+    return body
+
+
+def beside(thread_body, plan):
+    """Run a plan while another thread does something."""
+    thread = threading.Thread(target=thread_body, daemon=True)
+    thread.start()
+    try:
+        return p.top_level(plan)
+    finally:
+        thread.join(10.0)
+
+
+def test_networks_follow_their_inputs():
+    a, b = p.Fluent("a", 2), p.Fluent("b", 3)
+    networks = [
+        (a + b, 5, 9), (1 + a, 3, 7), (a - b, -1, 3), (10 - a, 8, 4), (2 * a * b, 12, 36), (b / a, 1.5, 0.5),
+        (6 / a, 3.0, 1.0), (a < b, True, False), (a <= 2, True, False), (a > 1, True, True), (a > 2, False, True),
+        (a >= 2, True, True), (a >= b, False, True), (a.eq(2), True, False), ((a > 1) & (b > 1), True, True),
+        (p.fl_or(a > 5, b > 5), False, True), ((a > 5) | (b > 5), False, True), (~p.fl_or(a > 5, b > 5), True, False),
+        (p.fl_eq(a, b), False, False), (p.fl_not(p.fl_and(a, b)), False, False), (p.fl_funcall(max, a, b, 1), 3, 6),
+    ]  # fmt: skip
+    assert [network.value for network, _, _ in networks] == [before for _, before, _ in networks]
+    a.value = 6
+    assert [network.value for network, _, _ in networks] == [after for _, _, after in networks]
+    assert (a + b * 2).name == "(a + b * 2)"
+
+
+def test_a_value_that_is_set_pulses_unless_it_is_equal():
+    fluent = p.Fluent("a", 1)
+    fluent.value = 1
+    assert fluent.pulses == 0
+    fluent.value = 2
+    fluent.pulse()
+    assert fluent.pulses == 2
+    picture = p.Fluent("values that cannot be compared", np.zeros(2))
+    picture.value = np.zeros(2)
+    assert picture.pulses == 1
+
+
+def test_mistakes_are_told():
+    with pytest.raises(p.PlanError, match="the fluent door is neither true nor false"):
+        bool(p.Fluent("door", True))
+    with pytest.raises(p.PlanError, match="missed is 'twice': never, once or always"):
+        p.pulsed(p.Fluent("a"), "twice")
+    with pytest.raises(TypeError, match="abstract.*pulses.*unlisten.*value"):
+        type("Nothing", (AnyFluent,), {"listen": lambda self, listener: None})("nothing")
+
+
+def test_wait_for_answers_the_value_or_false_when_the_time_is_over():
+    fluent = p.Fluent("a", 0)
+    assert p.top_level(lambda: p.par(lambda: p.wait_for(fluent), lambda: setattr(fluent, "value", 7))) == [7, None]
+    assert p.top_level(lambda: p.wait_for(fluent > 10, timeout=0.01)) is False
+
+
+def test_a_change_of_value_counts_from_when_it_was_asked_for():
+    fluent, ready = p.Fluent("a", 1), p.Fluent("ready", False)
+
+    def changes():
+        changed = p.fl_value_changed(fluent)
+        assert not changed.value
+        ready.value = True
+        p.wait_for(changed)
+        return fluent.value
+
+    assert p.top_level(lambda: p.par(changes, lambda: (p.wait_for(ready), setattr(fluent, "value", 7))))[0] == 7
+
+
+@pytest.mark.parametrize("missed, taken", [("once", 1), ("always", 3)])
+def test_pulses_are_remembered_until_they_are_taken(missed, taken):
+    fluent = p.Fluent("a", 0)
+    pulses = p.pulsed(fluent, missed)
+    for value in (1, 2, 3):
+        fluent.value = value
+    assert [pulses.take() for _ in range(4)] == [True] * taken + [False] * (4 - taken)
+
+
+@pytest.mark.parametrize("missed, bodies", [("never", 1), ("once", 2), ("always", 4)])
+def test_whenever_runs_at_pulses_and_treats_missed_ones_as_it_is_told(missed, bodies):
+    fluent, end, runs = p.Fluent("a", 1), p.Fluent("end", False), []
+
+    def body():
+        runs.append(fluent.value)
+        if len(runs) == 1:
+            for _ in range(3):  # nothing pulses after the first run: what runs then was missed
+                fluent.pulse()
+        end.value = len(runs) == bodies
+
+    p.top_level(lambda: p.pursue(p.do(p.whenever, fluent, body, missed), lambda: p.wait_for(end)))
+    assert len(runs) == bodies
+
+
+def test_whenever_leaves_pulses_out_at_which_it_is_not_true():
+    fluent, end, values = p.Fluent("a", 0), p.Fluent("end", False), []
+
+    def body():
+        values.append(fluent.value)
+        fluent.value = 0
+        end.value = True
+
+    def pulse():
+        fluent.pulse()
+        fluent.value = 5
+        p.wait_for(end)
+
+    p.top_level(lambda: p.pursue(p.do(p.whenever, fluent, body), pulse))
+    assert values == [5]
+
+
+# --- nobody is left listening -----------------------------------------------------------------------------------------
+
+
+def test_nobody_listens_when_waits_have_ended_however_they_ended():
+    a, b = Heard("a", 0), Heard("b", 0)
+    both = p.fl_and(a, b)
+    networks = [a > 5, (a + b) > 5, both, p.fl_or(a, p.fl_not(b)) & p.Fluent("never", False), p.fl_eq(a, b) & both]
+    stay = [p.do(p.wait_for, network) for network in networks]
+
+    def quick():
+        p.wait_for((a + 1) > 0)
+        assert p.wait_for(a > 100, timeout=0.001) is False
+        assert a.listeners and b.listeners
+        return "over"
+
+    assert p.top_level(lambda: p.pursue(*stay, lambda: (p.sleep(0.005), quick())[1])) == "over"
+    fails(p.PlanFailure, "over", lambda: p.par(*stay, lambda: (p.sleep(0.002), p.fail("over"))))
+    fails(ZeroDivisionError, "", lambda: p.wait_for(1 / (a - 0)))
+    too_hot = p.do(p.whenever, a, p.do(p.fail, "too hot").call)
+    fails(p.PlanFailure, "too hot", lambda: p.par(too_hot, lambda: (p.sleep(0.002), setattr(a, "value", 1))))
+    assert a.listeners == b.listeners == []
+
+
+def test_a_timeout_and_a_change_at_the_same_moment_agree():
+    for _ in range(20):
+        fluent = Heard("a", False)
+        timer = threading.Timer(0.002, setattr, (fluent, "value", "there"))
+        timer.start()
+        assert p.top_level(lambda fluent=fluent: p.wait_for(fluent, timeout=0.002)) in (False, "there")
+        timer.join()
+        assert fluent.listeners == []
+
+
+def test_fluents_change_while_plans_are_suspended_and_ended():
+    fluent, stop = Heard("a", 0), threading.Event()
+
+    def hammer():
+        while not stop.is_set():
+            fluent.update(lambda value: value + 1)
+
+    def waits():
+        while True:
+            now = fluent.value
+            p.wait_until(lambda now=now: fluent.value > now, [fluent])
+            p.checkpoint()
+
+    def plans():
+        for _ in range(3):
+            plan = Beside(lambda: p.par(waits, waits))
+            plan.root.suspend()
+            plan.root.wake_up()
+            plan.root.evaporate("over")
+            plan.fails(p.PlanFailure, "over")
+        stop.set()
+
+    assert at_once(hammer, plans) == [None, None]
+    assert fluent.listeners == []
+
+
+# --- many threads -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("missed, most", [("always", THREADS * ROUNDS), ("once", 1)])
+def test_updates_and_pulses_of_many_threads_are_all_counted(missed, most):
+    fluent = p.Fluent("a", 0)
+    pulses = p.pulsed(fluent, missed)
+    at_once(*[count(fluent)] * THREADS)
+    assert fluent.value == fluent.pulses == THREADS * ROUNDS
+    assert [pulses.take() for _ in range(most + 1)] == [True] * most + [False]
+
+
+def test_a_pulse_is_taken_by_one_of_many_who_take():
+    fluent = p.Fluent("a", 0)
+    pulses = p.pulsed(fluent, "always")
+
+    def take():
+        taken = 0
+        while fluent.pulses < 2 * ROUNDS or pulses.value:
+            taken += bool(pulses.take())
+        return taken
+
+    takers = at_once(take, take, count(fluent), count(fluent))[:2]
+    assert sum(takers) == 2 * ROUNDS
+
+
+def test_whenever_with_always_runs_once_for_each_pulse_of_another_thread():
+    fluent, runs, listening = p.Fluent("a", 1), p.Fluent("runs", 0), threading.Event()
+
+    def body():
+        listening.set()
+        runs.update(lambda number: number + 1)
+
+    def hammer():
+        listening.wait(10.0)
+        for _ in range(ROUNDS):
+            fluent.pulse()
+
+    # Once at the beginning, for it is true; then once for each pulse.
+    enough = p.do(p.wait_for, runs >= ROUNDS + 1, 30.0)
+    beside(hammer, lambda: p.pursue(p.do(p.whenever, fluent, body, "always"), enough))
+    assert runs.value == ROUNDS + 1
+
+
+def test_whenever_with_once_sees_the_last_value():
+    fluent, values = p.Fluent("a", 0), []
+    last = p.Fluent("last", False)
+
+    def body():
+        values.append(fluent.value)
+        last.value = values[-1] == ROUNDS
+
+    once = p.do(p.whenever, fluent, body, "once")
+    assert beside(count(fluent), lambda: p.pursue(once, lambda: p.wait_for(last, timeout=30.0)))
+    assert values == sorted(values)
+
+
+def test_networks_of_networks_wake_all_who_wait():
+    inputs = [p.Fluent(f"input {number}", 0) for number in range(5)]
+    total = sum(inputs[1:], inputs[0] + 0)
+    waits = [p.do(p.wait_for, total >= 5 * ROUNDS, 30.0)] * 3
+    hammer = lambda: at_once(*map(count, inputs))  # noqa: E731
+    assert beside(hammer, lambda: p.par(*waits)) == [True] * 3 and total.value == 5 * ROUNDS
+
+
+def test_a_value_is_handed_on_in_a_ring():
+    """Each waits for its number and gives the next one; one lost wake-up would leave all waiting."""
+    token, players, rounds = p.Fluent("token", 0), 5, 30
+
+    def player(number):
+        for turn in range(rounds):
+            p.wait_for(token.eq(turn * players + number))
+            token.value = turn * players + number + 1
+
+    p.top_level(lambda: p.par(*(p.do(player, number) for number in range(players))))
+    assert seen(token) == players * rounds
+
+
+def test_two_counters_chase_each_other():
+    ping, pong, players = p.Fluent("ping", 0), p.Fluent("pong", 0), 4
+
+    def player():
+        for _ in range(ROUNDS):
+            mine = ping.update(lambda number: number + 1)
+            p.wait_for(pong >= mine)
+
+    def echo():
+        last = 0
+        while last < ROUNDS * players:
+            last = p.wait_for(p.fl_funcall(lambda number, last=last: number if number > last else 0, ping))
+            pong.value = last
+
+    p.top_level(lambda: p.par(echo, *[player] * players))
+    assert ping.value == pong.value == ROUNDS * players

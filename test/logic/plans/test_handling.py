@@ -1,0 +1,258 @@
+"""Failures that are handled, retries that are counted, and policies."""
+
+from __future__ import annotations
+
+import pytest
+from plan_tools import Beside, fails, forever, seen
+
+import nao_library_modules.process_modules as p
+from nao_library_modules.process_modules.failures import (
+    LowLevelFailure,
+    ManipulationPoseUnreachable,
+    NavigationGoalNotReached,
+    NavigationHighLevelFailure,
+    NavigationLowLevelFailure,
+    PerceptionObjectNotFound,
+    PlanTimedOut,
+    PolicyCheckConditionMet,
+    PolicyInitFailed,
+    TaskEvaporatedFailure,
+)
+
+
+class KeyedFailure(p.PlanFailure):
+    pass
+
+
+class Stumbling:
+    """Fails so often, then answers."""
+
+    def __init__(self, times, failure=NavigationGoalNotReached):
+        self.tries, self._times, self._failure = 0, times, failure
+
+    def __call__(self):
+        self.tries += 1
+        if self.tries <= self._times:
+            p.fail(self._failure, f"try {self.tries}")
+        return "there"
+
+
+def handled(body, handlers, **counters):
+    def plan():
+        with p.with_retry_counters(**counters):
+            return p.with_failure_handling(body, handlers)
+
+    return plan
+
+
+def handle(body, handlers, **counters):
+    return p.top_level(handled(body, handlers, **counters))
+
+
+def counted(name, **options):
+    """A handler that tries again as long as a counter allows."""
+    return {p.PlanFailure: lambda failure: p.do_retry(name, **options)}
+
+
+# --- handlers ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_body_is_tried_again_as_often_as_it_fails():
+    body = Stumbling(2)
+    assert handle(body, {NavigationLowLevelFailure: lambda failure: p.retry()}) == "there" and body.tries == 3
+    body = Stumbling(2000)  # retries need no deeper stack
+    assert handle(body, {p.PlanFailure: lambda failure: p.retry()}) == "there"
+
+
+def test_a_handler_may_answer_and_the_first_that_fits_counts():
+    handlers = {
+        PerceptionObjectNotFound: lambda failure: p.give("not seen"),
+        (NavigationLowLevelFailure, KeyedFailure): lambda failure: p.give(str(failure)),
+        LowLevelFailure: lambda failure: p.give("something"),
+    }
+    kinds = (NavigationGoalNotReached, KeyedFailure, PerceptionObjectNotFound, LowLevelFailure)
+    answers = [handle(Stumbling(1, kind), handlers) for kind in kinds]
+    assert answers == ["try 1", "try 1", "not seen", "something"]
+
+
+def test_what_a_handler_does_not_answer_goes_to_the_outer_ones():
+    seen_failures = []
+    inner = p.do(p.with_failure_handling, Stumbling(1), {p.PlanFailure: seen_failures.append})
+    assert handle(inner, {p.PlanFailure: lambda failure: p.give("outside")}) == "outside"
+    assert [str(failure) for failure in seen_failures] == ["try 1"]
+    never = {PerceptionObjectNotFound: lambda failure: p.give()}
+    fails(NavigationGoalNotReached, "try 1", handled(Stumbling(1), never))
+
+
+def test_a_handler_may_fail_with_something_else_and_outer_handlers_see_that():
+    worse = lambda failure: p.fail(NavigationHighLevelFailure, f"for good: {failure}")  # noqa: E731
+    inner = p.do(p.with_failure_handling, Stumbling(1), {NavigationGoalNotReached: worse})
+    outer = {NavigationGoalNotReached: p.give, NavigationHighLevelFailure: lambda failure: p.give(str(failure))}
+    assert handle(inner, outer) == "for good: try 1"
+
+
+def test_failures_of_branches_are_handled_around_their_par(stays):
+    tries = []
+
+    def again(failure):
+        tries.append(type(failure))
+        stays.there.value = 0
+        p.retry() if len(tries) < 3 else p.give("enough")
+
+    body = p.do(p.par, stays("walk"), stays.once(1, p.do(p.fail, ManipulationPoseUnreachable, "too far").call))
+    assert handle(body, {ManipulationPoseUnreachable: again}) == "enough"
+    assert stays.ended == ["walk"] * 3 and len(tries) == 3
+
+
+def test_the_end_of_a_task_is_no_failure_that_its_handlers_see(stays):
+    seen_failures = []
+    plan = Beside(handled(stays("a").call, {p.PlanFailure: lambda failure: seen_failures.append(failure) or p.give()}))
+    seen(stays.there)
+    plan.root.evaporate("over")
+    plan.fails(TaskEvaporatedFailure, "over")
+    assert seen_failures == []
+
+
+def test_only_failures_are_handled_and_retry_and_give_belong_into_handlers():
+    fails(p.PlanError, "<class 'ValueError'> is no class of PlanFailure", handled(Stumbling(1), {ValueError: p.give}))
+    fails(ZeroDivisionError, "", handled(lambda: 1 / 0, {p.PlanFailure: lambda failure: p.give()}))
+    for wrong in (p.retry, p.give):
+        fails(p.PlanError, "", lambda wrong=wrong: p.seq(wrong))
+
+
+def test_failures_carry_facts():
+    failure = fails(NavigationGoalNotReached, "too far", p.do(p.fail, NavigationGoalNotReached, "too far", distance=3))
+    assert failure.distance == 3 and failure.details == {"distance": 3}
+    assert str(NavigationGoalNotReached()) == "navigation goal not reached"
+    with pytest.raises(p.PlanError, match="3 is no PlanFailure"):
+        p.fail(3)
+
+
+# --- retry counters ---------------------------------------------------------------------------------------------------
+
+
+def test_counters_say_how_often_and_what_is_done_before():
+    told = []
+
+    def again(failure):
+        told.append(p.get_counter("walk"))
+        p.do_retry("walk", before=lambda: told.append("stood up"))
+        p.fail(NavigationHighLevelFailure, f"gave up after {failure}")
+
+    plan = handled(Stumbling(5), {NavigationLowLevelFailure: again}, walk=2)
+    fails(NavigationHighLevelFailure, "gave up after try 3", plan)
+    assert told == [2, "stood up", 1, "stood up", 0]
+
+
+def test_a_counter_can_be_reset_and_an_unknown_one_is_an_error():
+    def again(failure):
+        if p.get_counter("walk") == 0:
+            p.reset_counter("walk")
+        p.do_retry("walk")
+
+    assert handle(Stumbling(3), {p.PlanFailure: again}, walk=1) == "there"
+    fails(p.PlanError, "no retry counter 'wakl': there are walk", handled(Stumbling(1), counted("wakl"), walk=1))
+
+
+def test_an_inner_retry_does_not_use_up_the_outer_counter():
+    body, counts = Stumbling(99), []
+
+    def outer(failure):
+        counts.append(p.get_counter("tries"))
+        p.do_retry("tries")
+
+    inner = handled(body, counted("tries"), tries=2)
+    fails(p.PlanFailure, "try 6", handled(inner, {p.PlanFailure: outer}, tries=1))
+    assert counts == [1, 0] and body.tries == 6
+
+
+def test_counters_of_branches_count_apart_and_one_from_outside_counts_in_all():
+    def tries(number):
+        body = Stumbling(99)
+        handlers = {p.PlanFailure: lambda failure: (p.do_retry(f"tries {number}"), p.give())}
+        with p.with_retry_counters(**{f"tries {number}": number}):
+            p.with_failure_handling(body, handlers)
+        return body.tries
+
+    def outside():
+        with p.with_retry_counters(all=3):
+            body = Stumbling(99)
+            branch = lambda: p.with_failure_handling(body, {p.PlanFailure: lambda _: (p.do_retry("all"), p.give())})  # noqa: E731
+            p.seq(branch, branch)
+            left = p.get_counter("all")
+            p.reset_counter("all")
+            return body.tries, left, p.get_counter("all")
+
+    assert p.top_level(lambda: p.par(*(p.do(tries, number) for number in range(4)))) == [1, 2, 3, 4]
+    assert p.top_level(outside) == (5, 0, 3)
+
+
+# --- policies ---------------------------------------------------------------------------------------------------------
+
+
+def limited(limit, body):
+    return lambda: p.with_policy(p.timeout_policy(limit), body)
+
+
+def upright(fluent, done=None, **options):
+    told = {} if done is None else {each: lambda each=each: done.append(each) for each in ("recover", "clean_up")}
+    return p.Policy("upright", fluent, **{**told, **options})
+
+
+def test_a_body_that_is_quick_enough_answers_and_one_that_is_too_slow_is_ended(stays):
+    assert p.top_level(limited(1000.0, lambda: "there")) == "there"
+    fails(PlanTimedOut, "policy 'at most 0.01 s' ended what it watched", limited(0.01, stays("slow").call))
+    assert stays.ended == ["slow"]
+
+
+def test_the_parts_of_a_policy_come_in_order(stays):
+    policy = upright(stays.there, stays.ended, init=lambda: stays.ended.append("init") or True)
+    assert fails(PolicyCheckConditionMet, "upright", lambda: p.with_policy(policy, stays("body"))).policy == "upright"
+    assert stays.ended == ["init", "body", "recover", "clean_up"]
+
+
+def test_a_function_is_asked_again_and_again_and_what_it_raises_breaks_the_plan():
+    asked = []
+    third = p.Policy("third time", lambda: asked.append(True) or len(asked) == 3, period=0.001)
+    fails(PolicyCheckConditionMet, "third time", lambda: p.with_policy(third, forever))
+    assert len(asked) == 3
+    fails(ZeroDivisionError, "", lambda: p.with_policy(p.Policy("broken", lambda: 1 / 0, period=0.001), forever))
+
+
+def test_a_policy_that_cannot_begin_does_not_let_the_body_begin():
+    done = []
+    policy = upright(p.Fluent("never", False), done, init=lambda: False)
+    failure = "policy 'upright' could not begin"
+    fails(PolicyInitFailed, failure, lambda: p.with_policy(policy, p.do(done.append, "body")))
+    assert done == []
+
+
+def test_cleaning_up_happens_when_the_body_fails_and_when_the_plan_is_ended(stays):
+    done = []
+    policy = upright(p.Fluent("never", False), done)
+    fails(NavigationGoalNotReached, "try 1", lambda: p.with_policy(policy, Stumbling(1)))
+    assert done == ["clean_up"]
+    plan = Beside(lambda: p.with_policy(policy, stays("a")))
+    seen(stays.there)
+    plan.root.evaporate("over")
+    plan.fails(TaskEvaporatedFailure, "over")
+    assert done == ["clean_up"] * 2
+
+
+@pytest.mark.parametrize("inside", [True, False])
+def test_policies_nest_and_the_one_that_is_met_counts(inside, stays):
+    policies = [p.timeout_policy(1000.0), upright(stays.there)][:: 1 if inside else -1]
+    nested = lambda: p.with_policy(policies[0], lambda: p.with_policy(policies[1], stays("a")))  # noqa: E731
+    fails(PolicyCheckConditionMet, "upright", nested)
+    assert stays.ended == ["a"]
+
+
+def test_a_policy_is_a_failure_that_can_be_handled_and_the_body_tried_again():
+    tries = []
+
+    def body():
+        tries.append(True)
+        return forever() if len(tries) < 3 else "in time"
+
+    again = {PlanTimedOut: lambda failure: p.retry()}
+    assert handle(limited(0.01, body), again) == "in time" and len(tries) == 3
