@@ -1,0 +1,122 @@
+"""Kinematics of legs and walking body, against those of the whole robot."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nao_sim_bridge.sim.frames import FEET, frame_of
+from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
+from nao_sim_bridge.sim.stance import StanceReader
+from nao_sim_bridge.sim.walk.body import WalkingBody
+from nao_sim_bridge.sim.walk.footsteps import middle
+from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT, SIDES, Sole, hip_rotation
+from nao_sim_bridge.sim.walk.matrices import IDENTITY, about_z
+from nao_sim_bridge.sim.walk.whereabouts import foot_on_ground, robot_on_ground
+
+MODEL = load_model()
+BODY = WalkingBody(MODEL)
+LEGS = BODY.legs
+PARTS = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
+# Knees bent, so that there is one solution, rad.
+RANGES = ((-0.3, 0.3), (-0.9, 0.3), (0.15, 1.5), (-0.9, 0.5), (-0.3, 0.3))
+
+
+@st.composite
+def bodies(draw):
+    """(26,) angles: bent legs, with both hip yaws alike as their one motor has them, the rest within its limits, rad."""
+    angles = [draw(st.floats(joint.lower, joint.upper)) for joint in MODEL.joints]
+    hip = draw(st.floats(-0.5, 0.3))
+    for side in SIDES:
+        values = (hip, *(draw(st.floats(*limits)) for limits in RANGES))
+        for index, angle in zip(LEGS.indices[side], values):
+            angles[index] = angle
+    return angles
+
+
+@given(bodies(), st.sampled_from((LEFT, RIGHT)))
+def test_a_leg_is_where_the_whole_robot_has_it_and_finds_back_to_its_angles(angles, side):
+    links = link_transforms(MODEL, angles)
+    hip, *legs = BODY.leg_pose(angles)
+    leg = legs[0 if side == LEFT else 1]
+    moment, ankle, foot = LEGS.state(side, hip, leg)
+    pose = links[f"{SIDES[side]}AnkleRoll"]
+    assert ankle == pytest.approx(pose[:3, 3], abs=1e-6)
+    assert foot == pytest.approx(pose[:3, :3].ravel(), abs=1e-6)
+    parts = [link for link in MODEL.links if link.name in [f"{SIDES[side]}{part}" for part in PARTS]]
+    expected = sum(link.mass * (links[link.name] @ np.append(link.com, 1.0))[:3] for link in parts)
+    assert moment == pytest.approx(expected, abs=1e-6)
+    found, off = LEGS.leg(side, hip, ankle, foot)
+    assert found == pytest.approx(leg, abs=1e-6) and off == pytest.approx(0.0, abs=1e-6)
+
+
+@given(bodies())
+@settings(max_examples=20)
+def test_the_walking_body_has_centre_of_mass_feet_and_weight_of_the_robot(angles):
+    links = link_transforms(MODEL, angles)
+    com, legs = BODY.center_of_mass(BODY.upper_moment(angles), BODY.leg_pose(angles))
+    assert com == pytest.approx(StanceReader(MODEL).read(angles, 0.0, 0.0).com, abs=1e-6)
+    for side, (ankle, foot) in zip("LR", legs):
+        pose = links[f"{side}AnkleRoll"]
+        assert ankle == pytest.approx(pose[:3, 3], abs=1e-6) and foot == pytest.approx(pose[:3, :3].ravel(), abs=1e-6)
+    assert BODY.mass == pytest.approx(MODEL.total_mass)
+    lifted = list(angles)
+    lifted[MODEL.joint_index["LKneePitch"]] = 0.0
+    assert BODY.upper_moment(lifted) == BODY.upper_moment(angles), "legs are no part of what is above them"
+
+
+@given(bodies(), st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(-3.0, 3.0))
+@settings(max_examples=20)
+def test_soles_on_the_ground_are_where_the_whole_robot_has_them(angles, roll, pitch, yaw):
+    torso = Pose((0.4, -0.7, 0.3), from_roll_pitch_yaw(roll, pitch, yaw))
+    links = link_transforms(MODEL, angles)
+    world = transform(quaternion_matrix(torso.orientation), torso.position)
+    feet = [foot_on_ground(BODY, torso, angles, side) for side in (LEFT, RIGHT)]
+    for foot, name in zip(feet, FEET):
+        frame = frame_of(MODEL, name)
+        sole = world @ links[frame.link] @ frame.offset
+        assert foot == pytest.approx((sole[0, 3], sole[1, 3], math.atan2(sole[1, 0], sole[0, 0])), abs=1e-6)
+    assert robot_on_ground(BODY, torso, angles) == pytest.approx(middle(*feet))
+
+
+@pytest.mark.parametrize("turn", [-0.3, 0.0, 0.3])
+@pytest.mark.parametrize("step", [-0.05, 0.0, 0.06])
+def test_both_soles_are_put_where_they_are_asked_for(turn, step):
+    torso, lean = (0.01, 0.005, 0.3), tuple(rpy_matrix((0.02, 0.05, 0.03)).ravel())
+    soles = {
+        LEFT: Sole((step, 0.05, 0.0), about_z(turn)),
+        RIGHT: Sole((-step, -0.05, 0.01), about_z(-turn)),
+    }
+    hip, left, right = LEGS.solve(torso, lean, soles[LEFT], soles[RIGHT], 0.0)
+    matrix = np.array(lean).reshape(3, 3)
+    turned_off = []
+    for side, angles in ((LEFT, left), (RIGHT, right)):
+        _, ankle, foot = LEGS.state(side, hip, angles)
+        sole = matrix @ (np.array(ankle) - LEGS.sole_height * np.array(foot).reshape(3, 3)[:, 2]) + torso
+        assert sole == pytest.approx(soles[side].position, abs=1e-4)
+        off = np.array(soles[side].rotation).reshape(3, 3).T @ matrix @ np.array(foot).reshape(3, 3)
+        assert off[2, 2] == pytest.approx(1.0, abs=1e-6), "the sole is not flat"
+        turned_off.append(math.atan2(off[1, 0], off[0, 0]))
+    # One motor for two hips: what it cannot do is shared out.
+    assert turned_off[0] == pytest.approx(turned_off[1], abs=6e-3)
+    assert abs(turned_off[0]) < 0.1
+
+
+def test_a_sole_out_of_reach_stretches_the_leg():
+    soles = (Sole((0.0, 0.05, 0.0), IDENTITY), Sole((0.0, -0.05, 0.0), IDENTITY))
+    _, left, _ = LEGS.solve((0.0, 0.0, 0.5), IDENTITY, *soles, 0.0)
+    assert left[2] == pytest.approx(0.0, abs=0.1)
+
+
+def test_the_hips_turn_as_mirror_images():
+    mirror = np.diag([1.0, -1.0, 1.0])
+    left, right = (np.array(hip_rotation(side, 0.4)).reshape(3, 3) for side in (LEFT, RIGHT))
+    assert mirror @ left @ mirror == pytest.approx(right)
+    assert left @ left.T == pytest.approx(np.eye(3))

@@ -1,0 +1,108 @@
+"""The body as a pendulum: its planned divergent component, and an observer of the real one."""
+
+from __future__ import annotations
+
+import math
+import random
+
+import pytest
+
+from nao_sim_bridge.sim.walk.observer import PendulumObserver
+from nao_sim_bridge.sim.walk.pattern import Segment, divergent_component
+from nao_sim_bridge.sim.walk.settings import load_walk_settings
+
+OMEGA, DT = 6.1, 1.0 / 120.0
+END = (0.06, 0.0)
+PLAN = [
+    Segment(0.3, (0.0, 0.0), (0.02, -0.05)),
+    Segment(0.33, (0.02, -0.05), (0.02, -0.05)),
+    Segment(0.09, (0.02, -0.05), (0.06, 0.05)),
+    Segment(0.33, (0.06, 0.05), (0.06, 0.05)),
+    Segment(0.3, (0.06, 0.05), END),
+]
+
+
+def test_at_rest_it_stays_where_it_is():
+    assert divergent_component([Segment(1.0, END, END)], END, OMEGA) == pytest.approx(END)
+    assert divergent_component([], END, OMEGA) == END
+
+
+def test_a_point_that_stands_pushes_it_away_exponentially():
+    x, y = divergent_component([Segment(0.4, (0.0, 0.0), (0.0, 0.0))], (0.05, -0.02), OMEGA)
+    assert (x, y) == pytest.approx((0.05 * math.exp(-OMEGA * 0.4), -0.02 * math.exp(-OMEGA * 0.4)))
+
+
+def test_followed_through_the_plan_it_comes_to_rest_at_the_end():
+    x, y = divergent_component(PLAN, END, OMEGA)
+    step = 1e-3
+    grown = math.exp(OMEGA * step)
+    for duration, (ax, ay), (bx, by) in PLAN:
+        count = round(duration / step)
+        for i in range(count):
+            share = (i + 0.5) / count
+            at_x, at_y = ax + share * (bx - ax), ay + share * (by - ay)
+            x, y = at_x + grown * (x - at_x), at_y + grown * (y - at_y)
+    assert (x, y) == pytest.approx(END, abs=4e-4)
+
+
+def test_a_segment_cut_in_two_or_without_time_changes_nothing():
+    first, whole = PLAN[0], divergent_component(PLAN, END, OMEGA)
+    half = tuple((a + b) / 2 for a, b in zip(first.start, first.end))
+    cut = [Segment(0.15, first.start, half), Segment(0.15, half, first.end), *PLAN[1:]]
+    assert divergent_component(cut, END, OMEGA) == pytest.approx(whole)
+    instant = [Segment(0.0, (1.0, 1.0), (2.0, 2.0)), *PLAN]
+    assert divergent_component(instant, END, OMEGA) == pytest.approx(whole)
+
+
+@pytest.fixture
+def observer():
+    settings = load_walk_settings()
+    return PendulumObserver(OMEGA, settings.observer_place, settings.observer_speed)
+
+
+def body(place, speed, ticks, pressure=0.0):
+    """Place and speed of a pendulum after each tick, exactly."""
+    for i in range(1, ticks + 1):
+        c, s = math.cosh(OMEGA * i * DT), math.sinh(OMEGA * i * DT)
+        off = place - pressure
+        yield pressure + off * c + speed * s / OMEGA, off * OMEGA * s + speed * c
+
+
+def test_right_from_the_start_the_observer_stays_right(observer):
+    observer.reset(0.01, 0.05)
+    assert (observer.place, observer.speed) == (0.01, 0.05)
+    assert observer.divergent == pytest.approx(0.01 + 0.05 / OMEGA)
+    for place, speed in body(0.01, 0.05, 40, pressure=0.02):
+        observer.update(place, 0.02, DT)
+        assert observer.place == pytest.approx(place, abs=1e-4)
+        assert observer.speed == pytest.approx(speed, abs=2e-3)
+
+
+@pytest.mark.parametrize("place, speed", [(0.02, 0.0), (0.0, 0.3), (-0.01, -0.2)])
+def test_wrong_at_the_start_the_observer_finds_the_body(observer, place, speed):
+    truth = list(body(0.0, 0.05, 60))
+    observer.reset(place, speed)
+    for measured, _ in truth:
+        observer.update(measured, 0.0, DT)
+    true_place, true_speed = truth[-1]
+    assert observer.place == pytest.approx(true_place, abs=2e-3)
+    assert observer.divergent == pytest.approx(true_place + true_speed / OMEGA, abs=6e-3)
+
+
+def test_the_observer_is_quieter_than_what_is_measured(observer):
+    r = random.Random(1)
+    errors, plain, before = [], [], 0.0
+    for _ in range(2000):
+        measured = r.gauss(0.0, 0.001)
+        observer.update(measured, observer.place, DT)
+        errors.append(observer.divergent)
+        plain.append(measured + (measured - before) / DT / OMEGA)
+        before = measured
+    deviation, of_plain = (math.sqrt(sum(e * e for e in es) / len(es)) for es in (errors[50:], plain[50:]))
+    assert deviation < 0.25 * of_plain
+
+
+def test_a_push_shows_within_a_few_ticks(observer):
+    for place, _ in body(0.0, 0.3, 10):
+        observer.update(place, 0.0, DT)
+    assert observer.divergent > 0.5 * 0.3 / OMEGA

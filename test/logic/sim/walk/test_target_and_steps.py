@@ -1,0 +1,253 @@
+"""Walks to a place and walks of planned steps, with steps that are made exactly as planned."""
+
+from __future__ import annotations
+
+import math
+import random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nao_sim_bridge.sim.walk.clipping import clip_step, step_limits
+from nao_sim_bridge.sim.walk.courses import STANDSTILL, rate_limits
+from nao_sim_bridge.sim.walk.footsteps import FootPose
+from nao_sim_bridge.sim.walk.gait import FeetGait, feet_gait
+from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.sim.walk.settings import load_walk_settings
+from nao_sim_bridge.sim.walk.steps_course import Placement, StepsCourse
+from nao_sim_bridge.sim.walk.target_course import ARRIVED, ARRIVED_TURN, TargetCourse, braking
+
+SETTINGS = load_walk_settings()
+GAIT = FeetGait()
+LIMITS = step_limits()
+ROUNDING = 1e-9
+places = st.builds(FootPose, st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-3.1, 3.1))
+
+# --- to a place -------------------------------------------------------------------------------------------------------
+
+
+def course(*goals, gait=GAIT, steps=1, rate=STANDSTILL, start=None):
+    one = TargetCourse(SETTINGS, gait, [FootPose(*goal) for goal in goals], steps, rate)
+    one.begin_towards(start or FootPose(0.0, 0.0, 0.0))
+    return one
+
+
+def off(goal, robot):
+    x, y, yaw = FootPose(*goal).seen_from(robot)
+    return math.hypot(x, y), abs(yaw)
+
+
+def arrived(goal, robot):
+    distance, turn = off(goal, robot)
+    return distance < ARRIVED and turn < ARRIVED_TURN
+
+
+def least_steps(goal):
+    """Steps that the way takes at full speed; distance and turn are made together."""
+    x, y, yaw = goal
+    longest, aside, turn = rate_limits(GAIT, x >= 0.0)
+    return math.sqrt((x / longest) ** 2 + (y / aside) ** 2 + (yaw / turn) ** 2)
+
+
+@given(start=places, goal=places)
+@settings(max_examples=40)
+def test_from_everywhere_it_arrives_with_steps_that_legs_can_make_coming_closer_all_the_time(
+    walked, feet_at, start, goal
+):
+    one, after, made, rates = course(goal, start=start), None, [], [STANDSTILL]
+    while not one.reached:
+        (after,) = walked(one, 1, after, feet_at(*start))
+        made.append(after)
+        rates.append(one.rate)
+        assert clip_step(after.placement, after.step.side, LIMITS) == pytest.approx(after.placement)
+    assert arrived(goal, after.robot)
+    # Both feet stand beside each other, up to what counts as arrived.
+    assert after.placement == pytest.approx((0.0, after.step.side * 0.1, 0.0), abs=1.5 * ARRIVED_TURN)
+    # One step alone may be the smaller half of a sidestep or of a turn, two are not; a way that turns is longer.
+    left_to_go = [least_steps(goal.seen_from(m.robot)) for m in made]
+    assert all(now < before + 1e-6 for before, now in zip(left_to_go, left_to_go[2:]))
+    for before, now in zip(rates, rates[1:-1]):
+        assert all(abs(b - a) <= most + ROUNDING for a, b, most in zip(before, now, SETTINGS.change))
+
+
+@pytest.mark.parametrize("goal", [(1.0, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 1.5)])
+def test_it_takes_hardly_longer_than_it_must(walked, goal):
+    assert least_steps(goal) <= len(walked(course(goal))) + 1 <= least_steps(goal) + 7
+
+
+@pytest.mark.parametrize("steps", [20, 40])
+def test_it_takes_its_time_when_it_has_time(walked, steps):
+    assert steps <= len(walked(course((0.2, 0.05, 0.3), steps=steps))) <= steps + 4
+
+
+def test_long_steps_get_there_in_fewer(walked):
+    far, wide = (1.0, 0.0, 0.0), feet_gait({"MaxStepX": 0.08})
+    assert len(walked(course(far, gait=wide))) < 0.75 * len(walked(course(far)))
+
+
+def test_it_has_reached_its_goal_with_its_last_step_and_not_before(walked):
+    total = len(walked(course((0.2, 0.0, 0.0))))
+    one = course((0.2, 0.0, 0.0))
+    made = walked(one, total - 1)
+    assert not one.reached
+    walked(one, after=made[-1])
+    assert one.reached
+    there = course((0.0, 0.0, 0.0))
+    assert len(walked(there)) == 1 and there.reached, "where it is already it makes one step"
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_it_goes_through_the_points_before_the_last_one(walked, seed):
+    r = random.Random(seed)
+    points, here = [], FootPose(0.0, 0.0, 0.0)
+    for _ in range(3):
+        here = here.moved(r.uniform(-0.3, 0.3), r.uniform(-0.3, 0.3), r.uniform(-1.0, 1.0))
+        points.append(here)
+    robots = [m.robot for m in walked(course(*points))]
+    # Two steps before a point it may begin to go to the next one.
+    near = [[i for i, robot in enumerate(robots) if off(p, robot)[0] < 0.06 and off(p, robot)[1] < 0.7] for p in points]
+    assert all(near)
+    assert near[0][0] <= near[1][0]
+    assert off(points[-1], robots[-1])[0] < ARRIVED
+
+
+A, B, O = (0.1, 0.0, 0.0), (0.1, 0.1, 0.5), (0.0, 0.0, 0.0)  # noqa: E741
+
+
+@pytest.mark.parametrize("points", [[A, (0.15, 0.05, 0.3)], [B, B, O], [O, A]])
+def test_no_point_on_the_way_is_the_end(walked, points):
+    """Feet that are never put exactly where they should be do not keep it from going on to the next point."""
+    r = random.Random(1)
+    one, made = course(*points), None
+    for _ in range(50):
+        (made,) = walked(one, 1, after=made)
+        if one.reached:
+            break
+        one.frame = FootPose(r.uniform(-0.003, 0.003), r.uniform(-0.003, 0.003), r.uniform(-0.005, 0.005))
+    assert one.reached
+    assert off(points[-1], made.robot)[0] < 2.0 * ARRIVED
+
+
+@pytest.mark.parametrize("goal", [(0.4, 0.2, 0.5), (0.0, -0.3, 0.0), (0.1, 0.0, -1.0)])
+def test_left_and_right_are_mirror_images_of_a_walk_to_a_place(walked, goal):
+    one, other = walked(course(goal)), walked(course((goal[0], -goal[1], -goal[2])))
+    assert len(one) == len(other)
+    for a, b in zip(one, other):
+        x, y, yaw = a.step.landing
+        assert b.step.side == -a.step.side
+        assert b.step.landing == pytest.approx((x, -y, -yaw))
+
+
+def test_a_robot_that_was_moved_on_the_way_still_arrives(walked):
+    one = course((0.6, 0.0, 0.0))
+    made = walked(one, 5)
+    one.frame = FootPose(0.02, -0.04, 0.15)
+    assert arrived((0.6, 0.0, 0.0), one.frame.moved(*walked(one, after=made[-1])[-1].robot))
+
+
+@pytest.mark.parametrize("rate", [(0.04, 0.0, 0.0), (-0.03, 0.0, 0.1), (0.0, 0.02, -0.2)])
+def test_a_walking_robot_turns_to_a_goal_without_a_jerk(walked, rate):
+    one = course((-0.1, -0.1, 0.0), rate=rate)
+    made = walked(one, 1)
+    assert all(abs(b - a) <= most + ROUNDING for a, b, most in zip(rate, one.rate, SETTINGS.change))
+    assert off((-0.1, -0.1, 0.0), walked(one, after=made[-1])[-1].robot)[0] < ARRIVED
+
+
+@pytest.mark.parametrize("goal, side", [((1.0, 0.0, 0.0), LEFT), ((1.0, -0.1, 0.0), RIGHT), ((0.0, 0.0, -1.0), RIGHT)])
+def test_the_foot_on_the_side_of_the_goal_moves_first(feet_at, goal, side):
+    assert course(goal).first_side(feet_at()) == side
+
+
+@pytest.mark.parametrize("change", [0.01, 0.12])
+@pytest.mark.parametrize("distance", [0.0, 0.005, 0.05, 0.5, 2.0])
+def test_braking_comes_to_rest_just_at_the_end(change, distance):
+    """Of the last steps one may be harder by an eighth: they are whole ones."""
+    left, rate = distance, math.inf
+    for _ in range(1000):
+        rate = min(braking(left, change), rate)
+        assert rate <= left + ROUNDING
+        if left - rate > ROUNDING:
+            assert braking(left - rate, change) >= rate - 1.13 * change - 1e-6, "it cannot slow down that fast"
+        left -= rate
+    assert left == pytest.approx(0.0, abs=1e-6)
+
+
+# --- planned steps ----------------------------------------------------------------------------------------------------
+
+
+def step(side, x=0.04, y=None, yaw=0.0, period=0.5):
+    return Placement(side, FootPose(x, side * 0.1 if y is None else y, yaw), period)
+
+
+def planned(*steps, gait=None):
+    return StepsCourse(SETTINGS, gait or FeetGait(), steps)
+
+
+PLAN = [step(LEFT), step(RIGHT, 0.02, -0.12, -0.2), step(LEFT, 0.0, 0.1, 0.0, 0.55), step(RIGHT, 0.0)]
+
+
+def test_it_makes_exactly_the_steps_of_the_plan_and_is_over_after_the_last_one(walked):
+    one = planned(*PLAN)
+    made = walked(one, len(PLAN) - 1)
+    assert not one.reached and one.left == (PLAN[-1],)
+    made += walked(one, after=made[-1])
+    assert one.reached and one.left == ()
+    assert [m.step.side for m in made] == [s.side for s in PLAN]
+    assert [m.placement for m in made] == [pytest.approx(s.beside) for s in PLAN]
+    assert [m.step.period for m in made] == pytest.approx([s.period for s in PLAN])
+
+
+def test_the_foot_of_the_first_step_moves_first(feet_at):
+    assert planned(step(RIGHT), step(LEFT)).first_side(feet_at()) == RIGHT
+    assert planned().first_side(feet_at()) == LEFT
+
+
+def test_feet_that_stand_in_any_way_are_put_side_by_side_before_the_first_step(walked):
+    feet = {LEFT: FootPose(0.05, 0.05, 0.0), RIGHT: FootPose(-0.05, -0.05, 0.0)}
+    first, second = walked(planned(step(RIGHT, 0.0)), feet=feet)
+    assert (first.step.side, second.step.side) == (LEFT, RIGHT)
+    assert first.step.landing == pytest.approx((0.0, 0.05, 0.0))
+    assert second.step.landing == pytest.approx((0.0, -0.05, 0.0))
+
+
+def test_what_legs_cannot_step_is_clipped_and_no_step_is_too_quick(walked):
+    far = step(LEFT, 0.3, 0.3, 1.0)
+    (made,) = walked(planned(far))
+    assert made.placement == pytest.approx(clip_step(far.beside, LEFT, LIMITS))
+    (made,) = walked(planned(step(LEFT, period=0.1)))
+    assert made.step.period == pytest.approx(0.42)
+    (made,) = walked(planned(step(LEFT, period=0.1), gait=feet_gait({"MaxStepFrequency": 0.0})))
+    assert made.step.period == pytest.approx(0.6)
+
+
+def test_between_two_steps_of_one_foot_the_other_one_comes_beside_it(walked):
+    made = walked(planned(step(LEFT), step(LEFT), step(RIGHT, 0.0)))
+    assert [m.step.side for m in made] == [LEFT, RIGHT, LEFT, RIGHT]
+    assert made[1].placement == pytest.approx((0.0, -0.1, 0.0))
+    assert made[2].placement == pytest.approx((0.04, 0.1, 0.0))
+    assert made[2].robot.x == pytest.approx(0.06)
+
+
+def test_steps_can_be_added_or_take_the_place_of_those_to_come(walked):
+    one = planned(*PLAN[:2])
+    made = walked(one, 1)
+    one.add(PLAN[2:], clear=False)
+    assert one.left == tuple(PLAN[1:])
+    made += walked(one, 1, after=made[-1])
+    back = step(LEFT, -0.03)
+    one.add([back], clear=True)
+    assert [m.placement for m in walked(one, after=made[-1])] == [pytest.approx(back.beside)]
+    assert walked(planned()) == []
+    one = planned(*PLAN)
+    made = walked(one, 2)
+    one.add([], clear=True)
+    assert walked(one, after=made[-1]) == []
+
+
+def test_looking_ahead_changes_nothing(feet_at):
+    one = planned(*PLAN)
+    ahead = one.upcoming(feet_at()[RIGHT], LEFT, 10)
+    assert len(ahead) == len(PLAN)
+    assert one.upcoming(feet_at()[RIGHT], LEFT, 10) == ahead
+    assert one.left == tuple(PLAN) and one.rate == STANDSTILL

@@ -1,0 +1,235 @@
+"""Walking at a velocity, with steps that are made exactly as planned."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nao_sim_bridge.sim.walk.clipping import clip_step, step_limits
+from nao_sim_bridge.sim.walk.courses import STANDSTILL, rate_limits
+from nao_sim_bridge.sim.walk.footsteps import FootPose
+from nao_sim_bridge.sim.walk.gait import FeetGait, feet_gait
+from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.sim.walk.settings import load_walk_settings
+from nao_sim_bridge.sim.walk.velocity_course import CLOSING_STEPS, VelocityCourse, within
+
+SETTINGS = load_walk_settings()
+LIMITS = step_limits()
+GAIT = FeetGait()
+AHEAD, BACK = rate_limits(GAIT, forward=True), rate_limits(GAIT, forward=False)
+# Steps after which every velocity is reached.
+SPEEDING_UP = 6
+ROUNDING = 1e-9
+STRAIGHT = [(0.04, 0.0, 0.0), (-0.03, 0.0, 0.0), (0.0, 0.026, 0.0), (0.0, -0.02, 0.0)]
+TURNING = [(0.0, 0.0, 0.3), (0.0, 0.0, -0.2), (0.02, 0.01, -0.1), (-0.01, -0.005, 0.1)]
+any_rate = st.tuples(st.floats(-0.1, 0.1), st.floats(-0.06, 0.06), st.floats(-0.8, 0.8))
+
+
+def course(rate=(0.04, 0.0, 0.0), gait=GAIT, at=STANDSTILL):
+    return VelocityCourse(SETTINGS, gait, rate, at)
+
+
+# --- what is asked for ------------------------------------------------------------------------------------------------
+
+
+def test_the_largest_rates_are_those_of_the_gait():
+    assert AHEAD == pytest.approx((0.04, 0.026, 0.349))
+    assert BACK[0] == pytest.approx(0.04)
+    gait = feet_gait({"MaxStepX": 0.08, "MaxStepY": 0.16, "MaxStepTheta": 0.5})
+    assert rate_limits(gait, forward=True) == pytest.approx((0.08, 0.036, 0.5))
+    assert rate_limits(gait, forward=False)[0] == pytest.approx(0.04), "the step back has no parameter"
+
+
+@given(any_rate)
+def test_together_the_parts_of_a_rate_stay_in_the_ellipsoid(rate):
+    limits = rate_limits(GAIT, rate[0] >= 0.0)
+    size = math.sqrt(sum((part / most) ** 2 for part, most in zip(rate, limits)))
+    assert within(rate, GAIT) == (rate if size <= 1.0 else pytest.approx([part / size for part in rate]))
+
+
+def test_each_part_alone_may_be_as_large_as_its_limit():
+    for rate in [(AHEAD[0], 0.0, 0.0), (-BACK[0], 0.0, 0.0), (0.0, -AHEAD[1], 0.0), (0.0, 0.0, AHEAD[2])]:
+        assert course(rate).wanted == pytest.approx(rate)
+
+
+# --- the steps --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rate", STRAIGHT + TURNING)
+def test_a_rate_is_reached_and_held_and_two_steps_go_twice_the_way_of_one(walked, rate):
+    one = course(rate)
+    before, _, after = walked(one, SPEEDING_UP)[-3:]
+    assert one.rate == pytest.approx(rate)
+    x, y, yaw = after.robot.seen_from(before.robot)
+    assert yaw == pytest.approx(2.0 * rate[2], abs=1e-3)
+    # Of a turn each foot makes a share of its own, about a middle of its own: a few mm of the way come from that.
+    way = 2.0 * math.hypot(rate[0], rate[1])
+    assert math.hypot(x, y) == pytest.approx(way, abs=1e-4 if rate in STRAIGHT else 4e-3)
+    walked(one, 5)
+    assert one.rate == pytest.approx(rate)
+
+
+@given(st.lists(any_rate, min_size=3, max_size=3))
+@settings(max_examples=30)
+def test_rates_change_by_no_more_than_a_step_can_and_no_step_is_larger_than_legs_can(walked, rates):
+    at, after = STANDSTILL, None
+    for wanted in (*rates, STANDSTILL):
+        one = course(wanted, at=at)
+        for _ in range(SPEEDING_UP):
+            (after,) = walked(one, 1, after)
+            assert all(abs(b - a) <= most + ROUNDING for a, b, most in zip(at, one.rate, SETTINGS.change))
+            assert clip_step(after.placement, after.step.side, LIMITS) == pytest.approx(after.placement)
+            at = one.rate
+
+
+def test_a_sidestep_is_made_by_the_outer_foot(walked):
+    outer, inner = walked(course((0.0, 0.02, 0.0)), SPEEDING_UP)[-2:]
+    assert (outer.step.side, inner.step.side) == (LEFT, RIGHT)
+    assert outer.placement.y == pytest.approx(0.1 + 0.028)
+    assert -inner.placement.y == pytest.approx(SETTINGS.min_foot_separation)
+
+
+def test_of_a_turn_the_outer_foot_makes_its_share(walked):
+    outer, inner = walked(course((0.0, 0.0, -0.2)), SPEEDING_UP)[-2:]
+    assert (outer.step.side, inner.step.side) == (RIGHT, LEFT)
+    assert outer.placement.yaw == pytest.approx(-0.4 * SETTINGS.outer_turn)
+    assert inner.placement.yaw == pytest.approx(-0.4 * (1.0 - SETTINGS.outer_turn))
+
+
+@pytest.mark.parametrize("rate", [(0.0, 0.026, 0.0), *TURNING])
+def test_left_and_right_are_mirror_images_of_a_walk_at_a_velocity(walked, rate):
+    mirrored = (rate[0], -rate[1], -rate[2])
+    for one, other in zip(walked(course(rate), 8), walked(course(mirrored), 8)):
+        assert other.step.side == -one.step.side
+        x, y, yaw = one.step.landing
+        assert other.step.landing == pytest.approx((x, -y, -yaw))
+
+
+@pytest.mark.parametrize(
+    "rate, side",
+    [((4, 0, 0), 1), ((0, 2, 0), 1), ((0, -2, 0), -1), ((0, 0, 20), 1), ((4, 0, -20), -1), ((0, 1, -20), 1)],
+)
+def test_the_foot_on_the_side_where_it_goes_moves_first(feet_at, rate, side):
+    assert course([part / 100 for part in rate]).first_side(feet_at()) == side
+
+
+def test_each_foot_steps_at_its_own_gait(walked):
+    gait = feet_gait({"LeftMaxStepX": 0.06, "RightMaxStepX": 0.02, "LeftStepHeight": 0.03, "LeftMaxStepFrequency": 0.0})
+    left, right = walked(course((0.04, 0.0, 0.0), gait), SPEEDING_UP)[-2:]
+    assert (left.placement.x, right.placement.x) == pytest.approx((0.06, 0.02))
+    assert (left.step.gait.step_height, right.step.gait.step_height) == (0.03, 0.02)
+    assert (left.step.period, right.step.period) == pytest.approx((0.6, 0.42))
+
+
+def test_looking_ahead_changes_nothing_and_tells_what_will_be(walked, feet_at):
+    one, support = course((0.03, 0.01, 0.1)), feet_at()[RIGHT]
+    ahead = one.upcoming(support, LEFT, 5)
+    assert one.upcoming(support, LEFT, 5) == ahead
+    assert [made.step for made in walked(one, 5)] == ahead
+
+
+def test_a_body_that_is_off_its_plan_may_use_a_share_of_the_speed(walked):
+    one = course((0.04, 0.0, 0.0))
+    one.haste = 0.25
+    walked(one, SPEEDING_UP)
+    assert one.rate == pytest.approx((0.01, 0.0, 0.0))
+
+
+# --- the end ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rate", STRAIGHT + TURNING)
+def test_told_to_end_it_closes_the_feet_and_is_over(walked, rate):
+    for count in range(7):
+        one = course(rate)
+        made = walked(one, count)
+        one.end()
+        last = walked(one, after=made[-1] if made else None)
+        assert len(last) == CLOSING_STEPS, "at the default speed it need not slow down first"
+        assert last[-1].placement == pytest.approx((0.0, 0.1 * last[-1].step.side, 0.0))
+        assert one.upcoming(last[-1].step.landing, -last[-1].step.side, 3) == []
+        assert one.rate == STANDSTILL
+
+
+def test_feet_that_stand_in_any_way_are_put_side_by_side_in_the_heading_of_the_robot(walked):
+    one = course(STANDSTILL)
+    one.end()
+    robot = FootPose(0.3, -0.2, 0.4)
+    feet = {LEFT: robot.moved(0.04, 0.06, 0.2), RIGHT: robot.moved(-0.04, -0.06, -0.2)}
+    one.begin_at(robot)
+    made = walked(one, feet=feet)
+    assert len(made) == 2
+    assert made[-1].feet[LEFT].seen_from(made[-1].feet[RIGHT]) == pytest.approx((0.0, 0.1, 0.0), abs=1e-6)
+    assert made[-1].robot.seen_from(robot) == pytest.approx((-0.0267, 0.0054, 0.0), abs=1e-3)
+
+
+def test_at_long_steps_it_slows_down_first(walked):
+    one = course((0.08, 0.0, 0.0), feet_gait({"MaxStepX": 0.08}))
+    made = walked(one, 10)
+    one.end()
+    last = walked(one, after=made[-1])
+    assert CLOSING_STEPS < len(last) <= 5
+    ways = [m.robot.x - b.robot.x for b, m in zip([made[-1], *last], last)]
+    assert ways == sorted(ways, reverse=True)
+
+
+def test_it_goes_on_for_ever_unless_told_to_end(walked):
+    assert len(walked(course(), 300)) == 300
+
+
+# --- what it makes up for ---------------------------------------------------------------------------------------------
+
+
+def turned_by(one, walked, turn, steps):
+    """Headings in the world before and after the robot, walking, was turned by somebody, rad."""
+    begun = walked(one, SPEEDING_UP)[-1]
+    before = one.frame.moved(*begun.robot).yaw
+    one.frame = one.frame.moved(*begun.robot).moved(0.0, 0.0, turn)
+    one.frame = one.frame.moved(*FootPose(0.0, 0.0, 0.0).seen_from(begun.robot))
+    return before, [one.frame.moved(*m.robot).yaw for m in walked(one, steps, after=begun)]
+
+
+@pytest.mark.parametrize("turn", [-0.2, 0.15])
+def test_a_robot_that_was_turned_goes_back_to_its_heading(walked, turn):
+    before, headings = turned_by(course(), walked, turn, 30)
+    assert headings[-1] == pytest.approx(before, abs=5e-3)
+    for last, now in zip([before + turn, *headings], headings):
+        assert abs(now - last) <= SETTINGS.turn_hold_limit + ROUNDING
+
+
+def test_a_robot_that_was_turned_round_does_not_turn_all_the_way_back(walked):
+    before, headings = turned_by(course(), walked, 2.0, 60)
+    assert headings[-1] == pytest.approx(before + 1.5, abs=0.02)
+
+
+@pytest.mark.parametrize("aside, made_up_for", [(0.03, 0.03), (-0.03, -0.03), (0.2, 0.05)])
+def test_a_robot_that_was_pushed_aside_comes_back_to_its_line(walked, aside, made_up_for):
+    one = course()
+    begun = walked(one, SPEEDING_UP)[-1]
+    one.frame = one.frame.moved(0.0, aside)
+    made = walked(one, 40, after=begun)
+    assert one.frame.moved(*made[-1].robot).y == pytest.approx(aside - made_up_for, abs=3e-3)
+    for before, now in zip([begun, *made], made):
+        assert abs(now.robot.y - before.robot.y) <= SETTINGS.aside_hold_limit + ROUNDING
+
+
+@pytest.mark.parametrize("ahead", [-0.1, 0.1])
+def test_a_robot_that_was_pushed_along_its_way_just_goes_on(walked, ahead):
+    one, other = course(), course()
+    begun, begun_other = walked(one, SPEEDING_UP)[-1], walked(other, SPEEDING_UP)[-1]
+    one.frame = one.frame.moved(ahead, 0.0)
+    made, made_other = walked(one, 6, after=begun), walked(other, 6, after=begun_other)
+    assert [m.step for m in made] == [m.step for m in made_other]
+
+
+def test_another_velocity_goes_on_from_where_the_robot_should_be(walked):
+    one = course()
+    begun = walked(one, SPEEDING_UP)[-1]
+    one.frame = one.frame.moved(0.0, 0.03)
+    other = course((0.02, 0.0, 0.0), at=one.rate)
+    other.follow(one)
+    last = walked(other, 40, after=begun)[-1]
+    assert other.frame.moved(*last.robot).y == pytest.approx(0.0, abs=3e-3)
