@@ -12,7 +12,7 @@ import pytest
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.sound.ears import BLOCK
 from nao_sim_bridge.sim.sound.follower import LONGEST, Follower
-from nao_sim_bridge.sim.sound.samples import RATE, pcm16, sine
+from nao_sim_bridge.sim.sound.samples import pcm16, sine
 from nao_sim_bridge.sim.sound.sources import SoundSource
 
 

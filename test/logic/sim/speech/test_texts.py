@@ -1,0 +1,205 @@
+"""Texts: tags in them, sentences, pronunciations of words; and languages with their voices."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.speech.dictionary import Pronunciations
+from nao_sim_bridge.sim.speech.parameters import Prosody
+from nao_sim_bridge.sim.speech.sentences import LONGEST, Sentence, sentences
+from nao_sim_bridge.sim.speech.speech import SpeechError
+from nao_sim_bridge.sim.speech.tags import TAG, Bookmark, Gate, Pause, Spoken, TagReader
+from nao_sim_bridge.sim.speech.voices import load_voices
+
+
+@pytest.fixture
+def warnings():
+    return []
+
+
+@pytest.fixture
+def read(warnings):
+    return TagReader(warnings.append).read
+
+
+def spoken(pieces):
+    return "".join(piece.text for piece in pieces if isinstance(piece, Spoken))
+
+
+# --- tags -------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "tag, expected",
+    [
+        (r"\rspd=200\ ", Prosody(speed=2.0)),
+        (r"\rspd=50\ ", Prosody(speed=0.5)),
+        (r"\vct=120\ ", Prosody(pitch=1.2)),
+        (r"\vol=40\ ", Prosody(gain=0.5)),
+        (r"\vol=100\ ", Prosody(gain=1.25)),
+        (r"\style=joyful\ ", Prosody(1.05, 1.12)),
+        (r"\rspd=200\\vct=150\ ", Prosody(2.0, 1.5)),
+        (r"\RSPD=200\ ", Prosody(speed=2.0)),
+        (r"\rspd= 200 \ ", Prosody(speed=2.0)),
+        (r"\rspd=200 ", Prosody(speed=2.0)),
+        (r"\rspd=200 \vct=150\ ", Prosody(2.0, 1.5)),
+    ],
+)
+def test_a_tag_changes_what_comes_behind_it(read, warnings, tag, expected):
+    first, *_, last = read(f"before {tag}behind")
+    assert (first.prosody, last.prosody) == (Prosody(), expected)
+    assert not warnings
+
+
+def test_tags_change_the_parameters_by_their_share_until_a_reset(read):
+    assert read("Hello there.") == [Spoken("Hello there.", Prosody())] and read("") == []
+    (piece,) = read(r"\rspd=50\quick", Prosody(speed=3.0, pitch=1.5))
+    assert piece.prosody == Prosody(1.5, 1.5)
+    (piece,) = read(r"\rspd=400\quick", Prosody(speed=3.0))
+    assert piece.prosody.speed == 4.0
+    pieces = read(r"\rspd=50\\vct=150\\vol=10\\style=didactic\slow \rst\ as before", Prosody(speed=1.2))
+    assert pieces[-1].prosody == Prosody(speed=1.2)
+
+
+def test_pauses_and_bookmarks_stand_where_they_are_written(read):
+    pieces = read(r"one \pau=500\ two \mrk=7\ three \wait=3\ ")
+    marks = [piece for piece in pieces if not isinstance(piece, Spoken)]
+    assert marks == [Pause(0.5), Bookmark(7), Pause(pytest.approx(0.6))]
+    assert isinstance(pieces[1], Pause) and isinstance(pieces[3], Bookmark)
+
+
+def test_spelling_parts_the_letters_and_phonetic_text_is_not_spoken(read, warnings):
+    assert spoken(read(r"a \tn=spell\NAO 6\tn=normal\ robot")).split() == ["a", "N,", "A,", "O,", "6", "robot"]
+    assert spoken(read(r"\readmode=char\ab\readmode=sent\ cd")).split() == ["a,", "b", "cd"]
+    assert not warnings
+    assert spoken(read(r"my name is \toi=lhp\E'mil\toi=orth\ indeed")).split() == ["my", "name", "is", "indeed"]
+    assert len(warnings) == 1
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        r"\emph=2\very \emph=1\good",
+        r"\foo=bar\very \nonsense\good",
+        r"\rspd=1000\very \vct=abc\good",
+        r"\mrk=70000\very \pau=-5\good",
+        r"very \audio=/usr/share/a.wav\good",
+        r'very \audio="/usr/my share/a.wav"\good',
+        r"very \ good",
+        "very\\ good\\",
+    ],
+)
+def test_what_cannot_be_followed_is_never_spoken(read, text):
+    pieces = read(text)
+    assert spoken(pieces).split() == ["very", "good"]
+    assert all(piece.prosody == Prosody() for piece in pieces)
+
+
+def test_a_tag_that_is_left_out_is_told_once(read, warnings):
+    read(r"\emph=2\one \emph=1\two")
+    read(r"\emph=0\three")
+    assert len(warnings) == 1 and "emph" in warnings[0]
+
+
+@given(st.text("ab \\=1rst.", max_size=40))
+def test_any_text_is_read(text):
+    assert "\\" not in spoken(TagReader(lambda _: None).read(text))
+
+
+def test_tags_of_a_long_text_do_not_take_long():
+    assert len(TAG.findall("\\" * 20000)) == 0
+
+
+# --- sentences --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [
+        ("Hello.", ["Hello."]),
+        ("Hello. How are you? Fine!", ["Hello.", "How are you?", "Fine!"]),
+        ("Dr. Smith is here. He waits.", ["Dr. Smith is here.", "He waits."]),
+        ("J. S. Bach wrote it. Yes.", ["J. S. Bach wrote it.", "Yes."]),
+        ("It costs 3.50 euros. See www.example.org now.", ["It costs 3.50 euros.", "See www.example.org now."]),
+        ('He said "no." Then he left.', ['He said "no."', "Then he left."]),
+        ("one line\nanother line", ["one line", "another line"]),
+        ("こんにちは。元気ですか？はい", ["こんにちは。", "元気ですか？", "はい"]),
+        (r"Hello my friends.\eos=0\How are you?", ["Hello my friends, How are you?"]),
+        (r"Hello my friends \eos=1\how are you?", ["Hello my friends", "how are you?"]),
+        (r"It is \vct=120\high\rst\. Is it?", ["It is high.", "Is it?"]),
+        ("", []),
+        ("  \n \n", []),
+    ],
+)
+def test_sentences_end_where_a_reader_would_end_them(text, expected):
+    assert [item.text for item in sentences(TagReader().read(text))] == expected
+
+
+def test_nothing_of_a_long_text_is_lost_and_no_sentence_is_too_long():
+    text = "word, " * 500 + "x" * 1000 + " end. " + "Short one. " * 600
+    pieces = [item.text for item in sentences(TagReader().read(text))]
+    assert max(map(len, pieces)) <= LONGEST
+    assert "".join("".join(pieces).split()) == "".join(text.split())
+
+
+def test_marks_stay_in_their_sentence_and_a_gate_parts_one(read):
+    first, second = sentences(read(r"One \mrk=1\ two. \pau=200\ Three \mrk=2\ "))
+    assert [p for p in first.parts if isinstance(p, Bookmark)] == [Bookmark(1)]
+    assert [p for p in second.parts if isinstance(p, (Bookmark, Pause))] == [Pause(0.2), Bookmark(2)]
+    assert sentences([Bookmark(3)]) == [Sentence((Bookmark(3),))]
+    gate = Gate(lambda: None)
+    before, between, behind = sentences([*read("Look at"), gate, *read(" this.")])
+    assert (before.text, between, behind.text) == ("Look at", gate, "this.")
+
+
+# --- pronunciations ---------------------------------------------------------------------------------------------------
+
+
+def test_whole_words_are_replaced_and_places_lead_back_to_the_text_as_it_is_written():
+    names = Pronunciations().with_entry("Nao", "now").with_entry("H25", "h twenty five")
+    text, _ = names.spoken("NAO is a nao, Naomi is not. An h25!")
+    assert text == "now is a now, Naomi is not. An h twenty five!"
+    written = "a H25 here"
+    text, origins = names.spoken(written)
+    assert len(origins) == len(text)
+    for part_spoken, part in (("a", "a"), ("h twenty", "H25"), ("five", "H25"), ("here", "h")):
+        first, end = origins[text.index(part_spoken)]
+        assert written[first:end] == part
+    again = names.with_entry("NAO", "noah")
+    assert again.spoken("Nao")[0] == "noah"
+    assert not again.without("nao").knows("Nao") and again.without("nao").spoken("Nao")[0] == "Nao"
+
+
+# --- languages and voices ---------------------------------------------------------------------------------------------
+
+
+class Installed:
+    """Engines of a machine."""
+
+    def __init__(self, *engines):
+        self.engines = engines
+
+    def missing(self, engine, voice):
+        return None if engine in self.engines else f"the engine {engine} is not installed"
+
+
+def test_a_language_has_the_robots_own_voice_and_is_available_when_one_of_its_voices_is():
+    voices, both = load_voices(), Installed("flite", "espeak-ng")
+    own = {"English": "naoenu", "French": "naofrf", "German": "naogem", "Spanish": "naosps", "Italian": "naoitv"}
+    for language, voice in own.items():
+        assert voices.languages[language].voices[0] == voice and voices.voices[voice].language == language
+    assert voices.available_languages(Installed("flite")) == ["English"]
+    assert set(voices.available_languages(Installed("espeak-ng"))) == set(voices.languages)
+    assert voices.available_languages(Installed()) == []
+    assert "naoenu" not in voices.available_voices(Installed("espeak-ng"))
+    with pytest.raises(BadValue, match="'Klingon', allowed is one of English, French, German"):
+        voices.language("Klingon", both)
+    with pytest.raises(BadValue, match="'Bob', allowed is one of naoenu, slt"):
+        voices.voice("Bob", both)
+    with pytest.raises(SpeechError, match="'naofrf' cannot speak: the engine espeak-ng is not installed"):
+        voices.voice("naofrf", Installed("flite"))
+    with pytest.raises(SpeechError, match="French cannot be spoken: the engine espeak-ng"):
+        voices.language("French", Installed("flite"))
