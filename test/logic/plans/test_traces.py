@@ -1,0 +1,209 @@
+"""Traces that are drawn and compared, projected plans, chains of joints, numbers, and the plan's side of ROS."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+
+import actionlib
+import numpy as np
+import pytest
+from actionlib import CommState
+from actionlib_msgs.msg import GoalStatus
+from fake_goals import FakeActionClient
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from plan_tools import fails
+
+import nao_library_modules.process_modules as p
+from nao_library_modules.process_modules import told_topic
+from nao_library_modules.process_modules.action_client import PlanActionClient
+from nao_library_modules.process_modules.chains import Chain
+from nao_library_modules.process_modules.failures import ActionlibActionTimedOut
+from nao_library_modules.process_modules.projection import ProjectionFailed, compare, run_program
+from nao_library_modules.process_modules.settings import load_settings
+from nao_library_modules.process_modules.space import head_angles
+from nao_library_modules.process_modules.trace_picture import COLORS, draw, main
+from nao_sim_bridge.paths import urdf_file
+from naoqi.errors import NaoError
+
+URDF = urdf_file("nao_h25.urdf").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def trace():
+    roots = []
+    branch = p.do(p.par, p.do(int, "2", name="two"), p.do(p.fail, "no", name="bad"))
+    plan = lambda: p.seq(p.do(int, "1", name="count"), branch)  # noqa: E731
+    fails(p.PlanFailure, "no", plan, name="plan", observers=[roots.append])
+    return p.trace_of(roots[0])
+
+
+def test_a_trace_is_drawn_with_a_bar_for_each_state_also_by_the_command(trace, tmp_path, capsys):
+    colors = set(draw(trace).getdata())
+    assert COLORS["failed"] in colors and COLORS["succeeded"] in colors
+    assert draw(trace).size[1] == (len(trace.records) + 2) * 22 + 28
+    file, picture = tmp_path / "trace.json", tmp_path / "trace.png"
+    file.write_text(trace.to_json())
+    assert main([str(file), str(picture)]) == 0 and picture.read_bytes()[:4] == b"\x89PNG"
+    file.write_text("{}")
+    assert main([str(file), str(picture)]) == 1 and "trace.json: 'tasks'" in capsys.readouterr().err
+    with pytest.raises(NaoError, match="without a task"):
+        draw(p.Trace(()))
+
+
+def test_what_came_out_otherwise_is_told_with_its_path(trace):
+    assert compare(trace, trace).alike
+    good = [replace(each, state="succeeded", failure="") if each.name == "bad" else each for each in trace.records]
+    extra = replace(trace.records[-1], number=99, name="two")
+    compared = compare(trace, p.Trace((*good, extra)))
+    assert not compared.alike and compared.before == trace.records[0].ended
+    assert [str(each) for each in compared.differences] == [
+        "plan/seq/par/par/bad: failed (SimplePlanFailure) -> succeeded",
+        "plan/seq/par/par/two[2]: not there -> failed (SimplePlanFailure)",
+    ]
+
+
+def test_a_program_of_a_plan_runs_with_another_master(trace, tmp_path):
+    program = tmp_path / "plan.py"
+    program.write_text(
+        "import os, sys\n"
+        "assert os.environ['ROS_MASTER_URI'] == 'http://127.0.0.1:1'\n"
+        f"open(sys.argv[-1], 'w').write({trace.to_json()!r} if sys.argv[1] == 'good' else '')\n"
+        "sys.exit('it is dark')\n"
+    )
+    assert run_program(program, ["good"], "http://127.0.0.1:1", tmp_path) == trace
+    with pytest.raises(ProjectionFailed, match="plan.py kept no trace: it is dark"):
+        run_program(program, ["bad"], "http://127.0.0.1:1", tmp_path)
+
+
+# --- chains of joints -------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module", params=["left", "right"])
+def arm(request):
+    chain = Chain(URDF, "torso", f"{request.param[0]}_gripper")
+    chain.sign = 1.0 if request.param == "left" else -1.0
+    chain.rest = np.array([1.4, 0.2, -1.0, -1.0, 0.0]) * [1.0, *[chain.sign] * 4]
+    return chain
+
+
+def test_the_hand_is_where_the_tables_say_with_all_joints_at_zero(arm):
+    names = ("ShoulderPitch", "ShoulderRoll", "ElbowYaw", "ElbowRoll", "WristYaw")
+    assert arm.joints == tuple(f"{'L' if arm.sign > 0.0 else 'R'}{name}" for name in names)
+    assert arm.tip([0.0] * 5)[:3, 3] == pytest.approx((0.2187, arm.sign * 0.113, 0.08769), abs=2e-4)
+    named = dict(zip(arm.joints, arm.rest), HeadYaw=0.5)
+    assert arm.tip(named) == pytest.approx(arm.tip(arm.rest))
+    del named[arm.joints[2]]
+    with pytest.raises(NaoError, match=f"no angle of {arm.joints[2]} is known"):
+        arm.tip(named)
+
+
+@settings(max_examples=20)
+@given(shares=st.lists(st.floats(0.02, 0.98), min_size=5, max_size=5))
+def test_points_that_the_arm_can_reach_are_reached_within_the_limits(arm, shares):
+    target = arm.tip(np.array(arm.lower) + shares * (np.array(arm.upper) - arm.lower))[:3, 3]
+    found = arm.reach(target, arm.rest)
+    angles = [found.angles[name] for name in arm.joints]
+    assert found.distance < 0.002 and arm.tip(angles)[:3, 3] == pytest.approx(target, abs=0.002)
+    assert np.all(angles >= arm.lower) and np.all(angles <= arm.upper)
+
+
+def test_a_point_too_far_away_is_answered_with_the_nearest_and_one_that_is_reached_changes_nothing(arm):
+    shoulder = np.array((0.0, arm.sign * 0.098, 0.1))
+    target = shoulder + (1.0, 0.0, 0.0)
+    found = arm.reach(target, arm.rest)
+    assert found.distance == pytest.approx(float(np.linalg.norm(target - found.point)), abs=1e-6)
+    # With the arm straight ahead the hand is a little more than 0.2 m from the shoulder.
+    assert np.linalg.norm(np.array(found.point) - shoulder) > 0.215 and found.distance < 0.79
+    found = arm.reach(arm.tip(arm.rest)[:3, 3], arm.rest)
+    assert [found.angles[name] for name in arm.joints] == pytest.approx(arm.rest, abs=1e-6)
+
+
+def test_what_is_no_chain_is_told():
+    with pytest.raises(NaoError, match="no chain from torso to tail: it ends at tail"):
+        Chain(URDF, "torso", "tail")
+    with pytest.raises(NaoError, match="is no XML"):
+        Chain("<robot", "torso", "Head")
+
+
+@pytest.mark.parametrize("point", [(1.0, 0.0, 0.2), (0.5, 0.4, -0.2), (2.0, -1.0, 0.6), (0.3, 0.1, 0.0)])
+def test_the_camera_looks_at_the_point(point):
+    camera = [load_settings().camera[key] for key in ("forward", "up", "neck", "tilt")]
+    frame = Chain(URDF, "torso", "CameraTop_frame").tip(head_angles(*point, camera))
+    ray = np.array(point) - frame[:3, 3]
+    assert frame[:3, 0] @ ray / np.linalg.norm(ray) > np.cos(1e-3)
+
+
+def test_numbers_that_are_wrong_are_told(tmp_path):
+    file = tmp_path / "numbers.yaml"
+    for content, told in (
+        ("gripper: {open: 1.0}\nhands: 3", "unknown hands; missing gripper_t"),
+        ("[1]", "not keys"),
+    ):
+        file.write_text(content)
+        with pytest.raises(NaoError, match=f"numbers.yaml: .*{told}"):
+            load_settings(file)
+
+
+# --- goals and topics of plans ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_a_goal_that_takes_too_long_is_cancelled_when_the_server_knows_it_or_has_ended_before(late, monkeypatch):
+    def on_sent(goal):
+        if late:
+            threading.Timer(0.1, goal.tell, [GoalStatus.ACTIVE]).start()
+            return
+        goal.tell(GoalStatus.ACTIVE)
+        goal.just_before_the_cancel(lambda: goal.end(GoalStatus.SUCCEEDED))
+
+    client, ends = FakeActionClient(on_sent), []
+    monkeypatch.setattr(actionlib, "ActionClient", lambda *_: client)
+    plan = lambda: PlanActionClient("NaoLights", None).call(None, timeout=0.01, on_end=ends.append)  # noqa: E731
+    if late:
+        fails(ActionlibActionTimedOut, "the goal of NaoLights took longer than 0.01 s", plan)
+        assert (client.goals[0].cancelled, ends[0].status) == ([CommState.ACTIVE], GoalStatus.PREEMPTED)
+    else:
+        assert p.top_level(plan) == ends[0] and ends[0].succeeded and client.goals[0].cancelled == []
+
+
+class Listeners:
+    """Listeners that connect after a while, and what the master knows of them."""
+
+    resolved_name = "/speech"
+
+    def __init__(self, connects_at, known):
+        self.connects_at, self.known, self.now, self.told = connects_at, known, 0.0, []
+
+    def get_num_connections(self):
+        return sum(at <= self.now for at in self.connects_at)
+
+    def publish(self, message):
+        self.told.append((message, self.get_num_connections()))
+
+    def getSystemState(self):
+        return [], [["/other", ["/x"] * 9], ["/speech", [f"/node{i}" for i in range(self.known)]]], []
+
+    def sleep(self, duration):
+        self.now += duration
+
+
+@pytest.mark.parametrize(
+    "connects_at, known, told, after",
+    [
+        ([0.1, 1.0], 2, [("hello", 2), ("again", 2)], 1.0),
+        ([0.0], 2, [("hello", 1), ("again", 1)], told_topic.OTHERS_LIMIT),  # one was killed and never comes
+        ([0.0], 0, [("hello", 1), ("again", 1)], 0.0),  # the master does not know the topic yet
+        ([], 1, [], 20.0),
+    ],
+)
+def test_the_first_message_of_a_topic_reaches_all_who_listen(monkeypatch, connects_at, known, told, after):
+    world = Listeners(connects_at, known)
+    monkeypatch.setattr(told_topic, "sleep", world.sleep)
+    monkeypatch.setattr(told_topic.rospy, "Publisher", lambda *arguments, **options: world)
+    monkeypatch.setattr(told_topic.rospy, "get_name", lambda: "/plan")
+    monkeypatch.setattr(told_topic.rosgraph, "Master", lambda name: world)
+    topic = told_topic.ToldTopic("speech", str)
+    assert [topic.tell(message, 10.0) for message in ("hello", "again")] == [bool(told)] * 2
+    assert world.told == told and world.now == pytest.approx(after, abs=4 * told_topic.PERIOD)
