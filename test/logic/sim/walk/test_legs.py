@@ -31,7 +31,7 @@ RANGES = ((-0.3, 0.3), (-0.9, 0.3), (0.15, 1.5), (-0.9, 0.5), (-0.3, 0.3))
 
 @st.composite
 def bodies(draw):
-    """(26,) angles: bent legs, with both hip yaws alike as their one motor has them, the rest within its limits, rad."""
+    """(26,) angles: bent legs, both hip yaws alike as their one motor has them, the rest within limits, rad."""
     angles = [draw(st.floats(joint.lower, joint.upper)) for joint in MODEL.joints]
     hip = draw(st.floats(-0.5, 0.3))
     for side in SIDES:

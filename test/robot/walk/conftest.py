@@ -1,80 +1,21 @@
-"""Walks without physics, whose steps are made exactly as they are planned, and robots that really walk."""
+"""Robots that really walk."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import pytest
 
 from nao_sim_bridge.sim.walk.body import WalkingBody
-from nao_sim_bridge.sim.walk.courses import Step
 from nao_sim_bridge.sim.walk.footsteps import FootPose, middle
 from nao_sim_bridge.sim.walk.gait import FeetGait
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.sim.walk.whereabouts import foot_on_ground
 
-HALF = 0.05
-# No course of a test takes more steps.
-MANY = 400
-
-
-class Made(NamedTuple):
-    """A step that was made: the step, the foot that carried meanwhile, and both feet after it."""
-
-    step: Step
-    support: FootPose
-    feet: dict
-
-    @property
-    def placement(self):
-        """Where the foot was put, in the frame of the other one."""
-        return self.step.landing.seen_from(self.support)
-
-    @property
-    def robot(self):
-        """Half way between the feet."""
-        return middle(self.feet[LEFT], self.feet[RIGHT])
-
-
-def standing_at(x=0.0, y=0.0, yaw=0.0):
-    robot = FootPose(x, y, yaw)
-    return {side: robot.moved(0.0, side * HALF) for side in (LEFT, RIGHT)}
-
-
-@pytest.fixture
-def feet_at():
-    """Makes the feet of a robot that stands somewhere: x and y in m, yaw in rad."""
-    return standing_at
-
-
-@pytest.fixture
-def walked():
-    """Makes the next steps of a course perfectly; goes on from the `Made` that it ended with."""
-
-    def walk(course, count=MANY, after=None, feet=None):
-        feet = dict(after.feet if after else feet or standing_at())
-        side = -after.step.side if after else course.first_side(feet)
-        made = []
-        for _ in range(count):
-            support = feet[-side]
-            steps = course.upcoming(support, side, 1)
-            if not steps:
-                break
-            course.take(support, side)
-            feet[side] = steps[0].landing
-            made.append(Made(steps[0], support, dict(feet)))
-            side = -side
-        return made
-
-    return walk
-
 
 class Walking:
     """A robot that stands in physics and can walk, and what it really does."""
 
-    # No walk of a test takes longer, s.
-    LONGEST = 20.0
     GAIT = FeetGait()
 
     def __init__(self, bench):
@@ -94,16 +35,13 @@ class Walking:
     def move(self, x=0.0, y=0.0, yaw=0.0):
         self.locomotion.move(x, y, yaw, self.GAIT)
 
-    def until(self, task):
+    def until(self, task, longest=20.0):
         """Let time pass until a task ends; its value."""
-        begun = self.now.time
-        while not task.finished and self.now.time < begun + self.LONGEST:
+        end = self.now.time + longest
+        while not task.finished and self.now.time < end:
             self.simulation.tick()
         assert task.finished
         return task.value
-
-    def until_it_stands(self):
-        self.until(self.locomotion.until_finished())
 
     def feet(self):
         """Where the feet really are in the world, m and rad."""
@@ -118,9 +56,16 @@ class Walking:
     def stands(self):
         """Whether both feet carry an upright body that hardly moves."""
         now = self.now
-        loads = now.left_foot.total, now.right_foot.total
         still = math.hypot(*now.linear_velocity) < 0.05
-        return min(loads) > 10.0 and now.torso.position[2] > 0.28 and still
+        return min(now.left_foot.total, now.right_foot.total) > 10.0 and now.torso.position[2] > 0.28 and still
+
+    def stands_still(self):
+        """Whether it stands, and goes on standing where it is."""
+        self.run(0.3)
+        begun = self.place()
+        self.run(0.7)
+        x, y, yaw = self.place().seen_from(begun)
+        return self.stands and math.hypot(x, y) < 0.002 and abs(yaw) < 0.005
 
 
 @pytest.fixture

@@ -1,0 +1,246 @@
+"""How walks end: by a stop at any moment, a kill, what they were for, a reset; what forbids and what ends them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from nao_sim_bridge.sim.errors import MoveRefused
+from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.sim.walk.walk_guard import CONTACT_SWITCH, STIFFNESS_SWITCH
+
+LEG_JOINTS = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
+LEGS = [f"{side}{name}" for side in "LR" for name in LEG_JOINTS]
+
+
+# From the stance over the first step to the walk at full speed, at all parts of a step, s.
+@pytest.mark.parametrize("moment", [0.1, 0.85, 1.45, 2.61, 2.83])
+def test_stopped_at_any_moment_it_stands_still_on_both_feet(walker, moment):
+    walker.move(0.08, 0.0, 0.3)
+    walker.run(moment)
+    begun = walker.now.time
+    walker.until(walker.locomotion.stop())
+    assert walker.now.time - begun < 1.6
+    assert not walker.locomotion.active and walker.failures == []
+    assert walker.stands_still()
+    feet = walker.feet()
+    x, y, yaw = feet[LEFT].seen_from(feet[RIGHT])
+    assert (x, y, yaw) == pytest.approx((0.0, 0.1, 0.0), abs=0.005)
+
+
+def test_a_stopped_walk_has_not_reached_its_goal_and_leaves_the_weight_in_the_middle(walker):
+    task = walker.move_to((2.0, 0.0, 0.0))
+    walker.run(2.0)
+    waiting = walker.locomotion.until_finished()
+    stop = walker.locomotion.stop()
+    assert task.finished and task.value is False
+    assert not waiting.finished
+    walker.until(stop)
+    assert waiting.finished
+    walker.run(0.5)
+    left, right = walker.now.foot_loads
+    assert left / (left + right) == pytest.approx(0.5, abs=0.02)
+
+
+def test_no_velocity_at_all_ends_a_walk_and_begins_none(walker):
+    walker.move()
+    assert not walker.locomotion.active
+    assert walker.locomotion.stop().finished and walker.locomotion.until_finished().finished
+    walker.move(0.06)
+    walker.run(1.5)
+    walker.move()
+    assert walker.locomotion.active
+    walker.until(walker.locomotion.until_finished())
+    assert walker.stands
+
+
+def test_a_walk_that_nobody_waits_for_any_more_ends_on_two_feet(walker):
+    task = walker.move_to((1.0, 0.0, 0.0))
+    walker.run(2.3)
+    task.kill()
+    assert walker.locomotion.active
+    walker.until(walker.locomotion.until_finished())
+    assert walker.stands_still()
+
+
+def test_a_stopped_robot_can_be_told_to_walk_on_before_it_stands(walker):
+    walker.move(0.08)
+    walker.run(2.5)
+    walker.locomotion.stop()
+    walker.run(0.6)
+    assert walker.locomotion.active
+    begun = walker.place()
+    assert walker.until(walker.move_to((0.1, 0.0, 0.0))) is True
+    assert walker.place().seen_from(begun).x == pytest.approx(0.1, abs=0.006)
+
+
+def test_killed_it_ends_in_the_same_tick(walker):
+    task = walker.move_to((1.0, 0.0, 0.0))
+    walker.run(2.4)
+    walker.locomotion.kill()
+    assert not walker.locomotion.active
+    assert task.finished and task.value is False
+    assert walker.robot.motion.tasks() == []
+    assert walker.robot.stability.walk is None
+    commands = walker.now.commands
+    walker.simulation.tick()
+    legs = [walker.model.joint_index[name] for name in LEGS]
+    assert [walker.now.commands[i] for i in legs] == pytest.approx([commands[i] for i in legs], abs=0.02)
+
+
+def test_killed_before_its_first_step_it_can_walk_again(walker):
+    walker.move(0.06)
+    walker.run(0.4)
+    walker.locomotion.kill()
+    walker.run(0.3)
+    assert walker.until(walker.move_to((0.05, 0.0, 0.0))) is True
+
+
+def test_a_reset_ends_a_walk_and_the_new_robot_walks(walker):
+    task = walker.move_to((1.0, 0.0, 0.0))
+    waiting = walker.locomotion.until_finished()
+    walker.run(2.4)
+    walker.simulation.reset()
+    assert task.finished and task.value is False and waiting.finished
+    assert walker.failures == []
+    again = type(walker)(walker.bench)
+    again.stiffen(1.0)
+    again.run(0.3)
+    assert not again.locomotion.active
+    assert again.until(again.move_to((0.05, 0.0, 0.0))) is True
+    assert again.stands
+
+
+# --- it does not begin ------------------------------------------------------------------------------------------------
+
+
+def refused(walker):
+    """The text with which a move was refused."""
+    with pytest.raises(MoveRefused) as error:
+        walker.move(0.05)
+    assert not walker.locomotion.active
+    assert walker.robot.motion.tasks() == []
+    assert [(started, obstacle) for _, started, obstacle in walker.failures] == [(False, None)]
+    assert walker.failures[0][0] in str(error.value)
+    return str(error.value)
+
+
+def test_limp_legs_do_not_walk(walker_in):
+    text = refused(walker_in("Crouch", stiffness=0.0))
+    assert "stiffness" in text and "LHipYawPitch" in text and "wakeUp" in text
+
+
+def test_one_soft_joint_is_enough_for_every_kind_of_move_and_is_named(walker):
+    walker.stiffen(0.7, *LEGS)
+    walker.stiffen(0.6, "RAnkleRoll")
+    text = refused(walker)
+    assert "RAnkleRoll" in text and "LAnkleRoll" not in text
+    locomotion = walker.locomotion
+    for call in (
+        lambda: walker.move_to((0.1, 0.0, 0.0)),
+        lambda: locomotion.set_steps([], walker.GAIT, clear=False),
+        locomotion.init,
+        lambda: locomotion.move_toward(1.0, 0.0, 0.0, walker.GAIT),
+    ):
+        with pytest.raises(MoveRefused, match="stiffness of RAnkleRoll"):
+            call()
+    assert not locomotion.active
+    walker.stiffen(0.7, "RAnkleRoll")
+    assert walker.until(walker.move_to((0.04, 0.0, 0.0))) is True, "stiff enough is stiff enough"
+
+
+@pytest.mark.parametrize("posture, family", [("Sit", "Sitting"), ("LyingBack", "LyingBack")])
+def test_who_does_not_stand_does_not_walk(walker_in, posture, family):
+    walker = walker_in(posture)
+    walker.run(0.5)
+    assert f"is {family}, it walks only from standing or crouching" in refused(walker)
+
+
+# --- it ends before its time ------------------------------------------------------------------------------------------
+
+
+def walk_fails(walker, task):
+    """The cause with which a walk that has begun fails, by the time at which its task has ended."""
+    assert walker.until(task) is False
+    assert not walker.locomotion.active
+    ((cause, started, obstacle),) = walker.failures
+    assert started and obstacle is None
+    return cause
+
+
+def lift(walker):
+    """Somebody takes the robot up, for half a second."""
+    walker.push((0.0, 0.0, 1.2 * walker.model.total_mass * 9.81), 0.5)
+
+
+def test_legs_that_become_soft_end_a_walk_at_once(walker):
+    task = walker.move_to((1.0, 0.0, 0.0))
+    walker.run(2.0)
+    walker.stiffen(0.5, "LKneePitch")
+    walker.simulation.tick()
+    assert task.finished
+    assert "LKneePitch" in walk_fails(walker, task)
+
+
+def test_a_robot_that_is_lifted_stops_walking_and_in_the_air_begins_no_walk(walker):
+    task = walker.move_to((1.0, 0.0, 0.0))
+    walker.run(2.0)
+    begun = walker.now.time
+    lift(walker)
+    assert "lost the ground" in walk_fails(walker, task)
+    assert walker.now.time - begun == pytest.approx(0.24, abs=0.04)
+    walker.failures.clear()
+    assert "no ground" in refused(walker)
+
+
+def test_without_protections_soft_legs_and_a_lifted_robot_walk_on(walker):
+    for switch in (STIFFNESS_SWITCH, CONTACT_SWITCH):
+        walker.robot.reflexes.switches[switch] = False
+    walker.stiffen(0.6, *LEGS)
+    walker.move(0.04)
+    walker.run(1.5)
+    lift(walker)
+    walker.run(0.35)
+    assert walker.locomotion.active and walker.failures == []
+
+
+def test_a_robot_that_falls_walks_no_more(walker):
+    task = walker.move_to((1.0, 0.0, 0.0))
+    walker.run(2.5)
+    walker.push((0.0, 70.0, 0.0), 0.12)
+    assert "fall" in walk_fails(walker, task)
+    assert walker.robot.stability.falls.falling
+    with pytest.raises(MoveRefused, match="falling"):
+        walker.move(0.05)
+
+
+def test_an_obstacle_ahead_ends_the_walk_on_two_feet(walker_in):
+    walker = walker_in("StandInit", world="lab")
+    walker.move(0.09)
+    walker.until(walker.locomotion.until_finished())
+    ((cause, started, place),) = walker.failures
+    assert started and "obstacle" in cause
+    assert place[0] - walker.now.odometry.position[0] == pytest.approx(0.32, abs=0.04)
+
+
+# --- it goes on -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("force", [(10.0, -10.0, 0.0), (-10.0, 10.0, 0.0)])
+def test_a_push_on_the_way_does_not_keep_it_from_arriving(walker, force):
+    start = walker.locomotion.position(use_sensors=True)
+    task = walker.move_to((0.15, 0.0, 0.0))
+    walker.run(2.2)
+    walker.push(force, 0.1)
+    assert walker.until(task) is True
+    x, y, yaw = walker.locomotion.position(use_sensors=True).seen_from(start)
+    assert math.hypot(x - 0.15, y) < 0.005 and abs(yaw) < 0.012
+    assert walker.failures == []
+
+
+def test_it_steps_on_a_low_plate_and_off_it(walker_in, world_file):
+    bump = "{name: plate, box: [0.04, 0.6, 0.004], position: [0.14, 0.0, 0.002], mass: 0}"
+    walker = walker_in("StandInit", world=world_file(bump))
+    assert walker.until(walker.move_to((0.25, 0.0, 0.0))) is True
+    assert walker.stands
