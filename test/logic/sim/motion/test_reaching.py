@@ -1,0 +1,247 @@
+"""Inverse kinematics, paths of effectors as curves of the joints, and the aims of whole body control."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.sim.frames import FEET, ROBOT, TORSO, WORLD, Placement, frame_of
+from nao_sim_bridge.sim.kinematics import axis_matrix, link_transforms, transform
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.motion.body_kinematics import body_kinematics
+from nao_sim_bridge.sim.motion.cartesian_move import CartesianMove, EffectorMove
+from nao_sim_bridge.sim.motion.cartesian_path import PosePath, SolvedPath, joint_curves, sample_times
+from nao_sim_bridge.sim.motion.grounded_pose import Footing, GroundedPose
+from nao_sim_bridge.sim.motion.inverse_kinematics import Goal, rotation_vector, solve
+from nao_sim_bridge.sim.motion.task_solver import Wish, ranked_step
+from nao_sim_bridge.sim.motion.whole_body_aims import PathAim, TargetAim
+from nao_sim_bridge.sim.postures import posture
+
+MODEL = load_model()
+BODY = body_kinematics(MODEL)
+STAND, INIT = (np.array(posture(MODEL, name)) for name in ("Stand", "StandInit"))
+ARM, LEFT, RIGHT = (frame_of(MODEL, name) for name in ("LArm", *FEET))
+NOW = BODY.at(INIT)
+PLACED = Placement(link_transforms(MODEL, INIT), transform(np.eye(3), -NOW.pose(LEFT)[:3, 3]))
+Z = (0.0, 0.0, 1.0)
+
+
+def chain(*names):
+    return [MODEL.joint_index[j] for name in names for j in MODEL.chains[name] if not MODEL.joint(j).is_hand]
+
+
+def shifted(pose, *by):
+    moved = pose.copy()
+    moved[:3, 3] += by
+    return moved
+
+
+# --- ranked wishes of joints
+
+WIDE, EVEN, NOTHING = np.full(4, 10.0), np.ones(4), np.zeros(4)
+
+
+def wish(rows, change, damping=1e-7):
+    return Wish(np.array(rows, dtype=float), np.array(change, dtype=float), damping)
+
+
+SUM, FIRST = wish([[1, 1, 1, 1]], [2.0]), wish([[1, 0, 0, 0]], [5.0])
+
+
+def test_the_first_wish_holds_and_later_ones_and_the_preferred_step_as_far_as_they_can():
+    step = ranked_step([FIRST, wish([[1, 0, 0, 0]], [-3.0]), SUM], NOTHING, -WIDE, WIDE, EVEN)
+    assert (step[0], step.sum()) == (pytest.approx(5.0, abs=1e-3), pytest.approx(2.0))
+    step = ranked_step([FIRST], np.array([1.0, 2.0, 3.0, 4.0]), -WIDE, WIDE, EVEN)
+    assert step == pytest.approx([5.0, 2.0, 3.0, 4.0], abs=1e-5)
+    step = ranked_step([SUM], NOTHING, -WIDE, WIDE, np.array([9.0, 1.0, 1.0, 1.0]))
+    assert (step[0], step.sum()) == pytest.approx((9.0 * step[1], 2.0)), "mobile joints do more of the work"
+    faint = wish([[1e-4, 0, 0, 0]], [1.0], damping=1e-4)
+    assert abs(ranked_step([faint], NOTHING, -WIDE, WIDE, EVEN)[0]) <= 1.0 + 1e-9, "damped"
+
+
+def test_others_make_up_for_a_joint_at_its_bound_and_no_bound_is_overstepped():
+    step = ranked_step([SUM], NOTHING, -WIDE, np.array([0.1, 10.0, 10.0, 10.0]), EVEN)
+    assert (step[0], step.sum()) == pytest.approx((0.1, 2.0))
+    tight = np.full(4, 0.25)
+    assert ranked_step([SUM], NOTHING, -tight, tight, EVEN) == pytest.approx(tight)
+    lower, upper = np.array([0.0, 0.5, -10.0, -10.0]), np.array([0.0, 0.6, 10.0, 10.0])
+    step = ranked_step([SUM], NOTHING, lower, upper, EVEN)
+    assert step[0] == 0.0 and 0.5 <= step[1] <= 0.6 and step.sum() == pytest.approx(2.0)
+
+
+# --- poses
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-8, 0.5, 3.0, math.pi])
+def test_a_rotation_vector_is_axis_times_angle(angle):
+    axis = np.array([0.6, 0.0, 0.8])
+    assert rotation_vector(axis_matrix(axis, angle)) == pytest.approx(axis * angle, abs=1e-7)
+
+
+@pytest.mark.parametrize("names, mask", [(["LArm"], 7), (["LArm", "RArm"], 63), (["LLeg", "RLeg"], 63)])
+def test_reachable_poses_are_reached_within_the_limits_by_the_joints_that_are_named(names, mask):
+    chance, indices, frames = np.random.default_rng(1), chain(*names), [frame_of(MODEL, name) for name in names]
+    others = [i for i in range(26) if i not in indices]
+    for _ in range(5):
+        angles = STAND.copy()
+        angles[indices] += chance.uniform(-0.25, 0.25, len(indices))
+        angles[BODY.right_hip] = angles[BODY.left_hip]
+        wanted = BODY.at(np.clip(angles, *BODY.limits(angles)))
+        found = solve(BODY, indices, [Goal(frame, wanted.pose(frame), mask) for frame in frames], STAND)
+        lower, upper = BODY.limits(found)
+        assert np.all(found[indices] >= lower[indices] - 1e-9) and np.all(found[indices] <= upper[indices] + 1e-9)
+        assert found[BODY.right_hip] == found[BODY.left_hip] and found[others] == pytest.approx(STAND[others])
+        for frame in frames:
+            assert BODY.at(found).pose(frame)[:3, 3] == pytest.approx(wanted.pose(frame)[:3, 3], abs=1e-3)
+
+
+@pytest.mark.parametrize("mask", [7, 63])
+def test_a_target_out_of_reach_stretches_the_arm_towards_it(mask):
+    target = transform(np.eye(3), (1.0, 0.1, 0.1))
+    found = BODY.at(solve(BODY, chain("LArm"), [Goal(ARM, target, mask)], STAND)).pose(ARM)
+    shoulder = MODEL.joint("LShoulderPitch").origin
+    toward, reach = target[:3, 3] - shoulder, found[:3, 3] - shoulder
+    assert np.linalg.norm(reach) > 0.2
+    assert reach @ toward / np.linalg.norm(reach) / np.linalg.norm(toward) > 0.99
+
+
+def test_axes_outside_the_mask_do_not_matter_and_what_must_hold_holds():
+    target = shifted(BODY.at(STAND).pose(ARM), 9.0, 9.0, 0.03)
+    found = solve(BODY, chain("LArm"), [Goal(ARM, target, 4)], STAND)
+    assert BODY.at(found).pose(ARM)[2, 3] == pytest.approx(target[2, 3], abs=1e-4)
+    now = BODY.at(STAND)
+    turned = now.pose(LEFT) @ transform(axis_matrix(Z, 0.5), (0.0, 0.0, 0.02))
+    goals = [Goal(RIGHT, now.pose(RIGHT), rank=0), Goal(LEFT, turned)]
+    found = BODY.at(solve(BODY, chain("LLeg", "RLeg"), goals, STAND))
+    assert found.pose(RIGHT) == pytest.approx(now.pose(RIGHT), abs=1e-4)
+    assert found.pose(LEFT)[2, 3] > now.pose(LEFT)[2, 3] + 0.005
+
+
+def test_legs_with_knees_bent_backwards_lower_the_torso_all_the_same():
+    now = BODY.at(STAND)
+    assert STAND[MODEL.joint_index["LKneePitch"]] < 0.0
+    raised = [now.pose(foot) @ transform(np.eye(3), (0.0, 0.0, 0.03)) for foot in (LEFT, RIGHT)]
+    goals = [Goal(foot, pose, 7) for foot, pose in zip((LEFT, RIGHT), raised)]
+    found = BODY.at(solve(BODY, chain("LLeg", "RLeg"), goals, STAND))
+    for foot, pose in zip((LEFT, RIGHT), raised):
+        assert found.pose(foot)[:3, 3] == pytest.approx(pose[:3, 3], abs=1e-4)
+
+
+# --- paths
+
+
+def whole(moves, moment):
+    """(26,) angles at a time of moves that take a second."""
+    move, angles = CartesianMove(BODY, moves, PLACED), INIT.copy()
+    curves = joint_curves(BODY, move.indices, move.goals_at, [1.0], INIT, move.footing_at)
+    for time in np.linspace(0.0, moment, 11):  # curves are solved in the order of time
+        for index, curve in curves.items():
+            angles[index] = curve.value(time)
+    return angles
+
+
+def on_the_left_foot(angles):
+    """The body in the frame of the torso as it was before."""
+    return GroundedPose(BODY.at(angles), Footing(LEFT, NOW.pose(LEFT)))
+
+
+def straight(start, *by):
+    return PosePath((0.0, 1.0), [start, shifted(start, *by)]).pose
+
+
+def test_samples_hold_every_key_time_and_are_solved_when_time_comes_near_them():
+    expected = [0.0, 0.04, 0.08, 0.12, 0.12 + 0.13 / 3, 0.12 + 0.26 / 3, 0.25]
+    assert sample_times((0.12, 0.25)) == pytest.approx(expected) and sample_times((0.05,)) == [0.0, 0.05]
+    times, asked = sample_times((10.0,)), []
+    path = SolvedPath(times, np.zeros(1), lambda moment, before: asked.append(moment) or np.array([moment]))
+    for tick in range(1201):
+        path.angles(tick / 120.0)
+        assert len(asked) <= len([t for t in times if t <= tick / 120.0]) + 2
+    assert asked == times[1:]
+
+
+def test_an_interpolated_path_passes_through_its_samples_and_rests_at_its_ends():
+    values = {0.1: 1.0, 0.2: 3.0, 0.3: 2.0}
+    path = SolvedPath([0.0, *values], np.zeros(1), lambda moment, before: np.array([values[moment]]))
+    assert [path.angles(t)[0] for t in (0.0, *values)] == pytest.approx([0.0, 1.0, 3.0, 2.0])
+    assert (path.angles(0.001)[0], path.angles(0.299)[0]) == pytest.approx((0.0, 2.0), abs=1e-3)
+    assert max(path.angles(t)[0] for t in np.linspace(0.0, 0.3, 61)) <= 3.0
+    assert (path.angles(-1.0)[0], path.angles(9.0)[0]) == (0.0, 2.0)
+
+
+def test_the_path_of_a_hand_is_straight():
+    way = straight(NOW.pose(ARM), 0.04, 0.0, 0.04)
+    for moment in np.linspace(0.0, 1.0, 6):
+        found = BODY.at(whole([EffectorMove("LArm", TORSO, 7, way)], moment)).pose(ARM)
+        assert found[:3, 3] == pytest.approx(way(moment)[:3, 3], abs=5e-4)
+
+
+@pytest.mark.parametrize("space", [TORSO, WORLD, ROBOT])
+def test_the_torso_moves_over_feet_that_stay(space):
+    start = np.eye(4) if space == TORSO else PLACED.torso_in_world
+    # The frame of the robot is between the feet: the same shift, another origin.
+    moves = [EffectorMove("Torso", WORLD if space == ROBOT else space, 63, straight(start, 0.01, 0.02, -0.03))]
+    for moment in (0.3, 1.0):
+        now = on_the_left_foot(whole(moves, moment))
+        assert now.torso[:3, 3] == pytest.approx(
+            straight(start, 0.01, 0.02, -0.03)(moment)[:3, 3] - start[:3, 3], abs=1e-3
+        )
+        for foot in (LEFT, RIGHT):
+            assert now.pose(foot) == pytest.approx(NOW.pose(foot), abs=5e-4)
+
+
+def test_each_effector_goes_its_own_way_while_others_stay():
+    torso, hand = PLACED.torso_in_world, frame_of(MODEL, "RArm")
+    held, foot = torso @ NOW.pose(hand), torso @ NOW.pose(RIGHT)
+    down = EffectorMove("Torso", WORLD, 63, straight(torso, 0.0, 0.02, -0.02))
+    end = on_the_left_foot(whole([down, EffectorMove("RArm", WORLD, 7, lambda _: held)], 1.0))
+    assert end.pose(hand)[:3, 3] == pytest.approx(NOW.pose(hand)[:3, 3], abs=1e-3)
+    lifts = [
+        EffectorMove("Torso", WORLD, 63, lambda _: torso),
+        EffectorMove("RLeg", WORLD, 63, straight(foot, 0, 0, 0.02)),
+    ]
+    end = on_the_left_foot(whole(lifts, 1.0))
+    assert end.pose(RIGHT)[:3, 3] - NOW.pose(RIGHT)[:3, 3] == pytest.approx([0.0, 0.0, 0.02], abs=1e-3)
+    assert end.torso == pytest.approx(np.eye(4), abs=1e-3)
+    way = straight(NOW.pose(LEFT), 0.02, 0.01, 0.03)
+    end = BODY.at(whole([EffectorMove("LLeg", TORSO, 63, way)], 1.0))
+    assert end.pose(LEFT)[:3, 3] == pytest.approx(way(1.0)[:3, 3], abs=1e-3)
+    assert end.pose(RIGHT) == pytest.approx(NOW.pose(RIGHT), abs=1e-4)
+
+
+# --- aims
+
+TICK, SPEED = 1.0 / 120.0, (0.1, 1.0)
+
+
+def at(x, turn=0.0):
+    return transform(axis_matrix(Z, turn), (x, 0.0, 0.0))
+
+
+def watched(aim, seconds):
+    """Positions along X, one a tick."""
+    return np.array([aim.advance(TICK) or aim.goal.pose[0, 3] for _ in range(round(seconds / TICK))])
+
+
+def test_a_path_is_followed_and_its_end_is_kept():
+    aim = PathAim(Goal(ARM, np.eye(4)), lambda elapsed: at(0.1 * elapsed), 1.0)
+    assert watched(aim, 0.5)[-1] == pytest.approx(0.05) and not aim.resting
+    assert watched(aim, 1.0)[-1] == pytest.approx(0.1) and aim.resting
+
+
+def test_a_target_is_reached_at_limited_speed_without_overshoot_or_jerk():
+    aim = TargetAim(Goal(ARM, np.eye(4)), at(0.2, 0.5), SPEED)
+    places = watched(aim, 5.0)
+    assert np.diff(places).max() <= SPEED[0] * TICK + 1e-12 and places.max() <= 0.2 + 1e-6
+    assert aim.resting and aim.goal.pose == pytest.approx(at(0.2, 0.5))
+    aim.aim(at(0.2, 2.5))
+    watched(aim, 1.0)
+    assert 1.0 < np.arctan2(aim.goal.pose[1, 0], aim.goal.pose[0, 0]) <= 1.5, "turns have a limited speed, too"
+    aim = TargetAim(Goal(ARM, np.eye(4)), at(0.2), SPEED)
+    before = watched(aim, 0.6)
+    aim.aim(at(0.0))
+    places = np.concatenate((before, watched(aim, 5.0)))
+    # Acceleration stays below what a spring of the approach would do.
+    assert np.abs(np.diff(places, 2)).max() / TICK**2 < 8.0 and places[-1] == pytest.approx(0.0, abs=1e-5)
