@@ -1,0 +1,503 @@
+"""Walking: commands, orders, pace, watchdog, inhibition, gaits, footsteps, feet, odometry and messages of the state."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from types import SimpleNamespace
+
+import pytest
+from geometry_msgs.msg import Transform
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rospy import Time
+
+from almath import Pose2D, areTwoBoxesInCollision, computeBox
+from nao_library_modules.driver import state_messages as messages
+from nao_library_modules.driver import walk_commands as commands
+from nao_library_modules.driver.feet import LEG_JOINTS, footprint, sole
+from nao_library_modules.driver.footsteps import read_step, read_steps, step_target
+from nao_library_modules.driver.footsteps_clipping import LEFT_BOX, RIGHT_BOX, check_legs, clip
+from nao_library_modules.driver.footsteps_walk import Step
+from nao_library_modules.driver.gait_config import read_gait_config, read_share
+from nao_library_modules.driver.joint_sensors import Reading
+from nao_library_modules.driver.odometry_offset import OdometryOffset
+from nao_library_modules.driver.odometry_services import read_transform
+from nao_library_modules.driver.rotation import about, from_roll_pitch_yaw, inverse, product, rotate, yaw_of
+from nao_library_modules.driver.slope import SlopeEstimator
+from nao_library_modules.driver.walk_commands import Target, Velocity
+from nao_library_modules.driver.walk_inhibition import NotInhibited, WalkInhibition
+from nao_library_modules.driver.walk_orders import Order, OrderBox, Stop, WalkEnded
+from nao_library_modules.driver.walk_pace import PACE, REFRESH, WalkPace
+from nao_library_modules.driver.walk_report import WalkJournal
+from nao_library_modules.driver.walk_watchdog import WalkWatchdog
+from nao_library_modules.errors import BadGoal
+from nao_library_modules.health import Level
+from nao_library_modules.places import Place
+from nao_library_msgs.msg import StepTarget
+from naoqi.errors import NaoError
+
+NAN, INFINITE = math.nan, math.inf
+QUARTER = math.pi / 2
+FORWARD, STAND = Velocity(0.5, 0.0, 0.0), Velocity(0.0, 0.0, 0.0)
+ANGLES = st.floats(-3.1, 3.1)
+
+
+def refused(words, function, *arguments, error=NaoError):
+    with pytest.raises(error, match=words):
+        function(*arguments)
+
+
+# Commands
+
+
+def twist(x, y, turn):
+    return SimpleNamespace(linear=SimpleNamespace(x=x, y=y, z=9.0), angular=SimpleNamespace(x=9.0, y=9.0, z=turn))
+
+
+def pose(x, y, theta):
+    return SimpleNamespace(x=x, y=y, theta=theta)
+
+
+def test_a_velocity_is_forward_left_and_turning_and_clamped_when_out_of_range():
+    assert commands.read_velocity(twist(0.5, -0.25, 1.0)) == (Velocity(0.5, -0.25, 1.0), "")
+    velocity, clamped = commands.read_velocity(twist(1.5, 0.2, -3.0))
+    assert velocity == Velocity(1.0, 0.2, -1.0)
+    assert clamped == "linear.x is 1.5, taken as 1, angular.z is -3, taken as -1"
+    assert Velocity(0.0009, -0.0009, 0.0).is_zero and not Velocity(0.0, 0.0, 0.0011).is_zero
+
+
+def test_targets_and_steps_are_read():
+    assert commands.read_target(pose(1, -0.5, 3.1)) == Target(1.0, -0.5, 3.1)
+    for leg, name in ((0, "RLeg"), (1, "LLeg")):
+        message = SimpleNamespace(leg=leg, pose=pose(0.04, 0.1, 0.2))
+        assert commands.read_step(message) == commands.Step(name, 0.04, 0.1, 0.2)
+
+
+@pytest.mark.parametrize(
+    "read, message, field, words",
+    [
+        (commands.read_velocity, twist(NAN, 0, 0), "linear.x", "-1 to 1"),
+        (commands.read_velocity, twist(0, INFINITE, 0), "linear.y", "-1 to 1"),
+        (commands.read_velocity, twist(0, 0, -INFINITE), "angular.z", "-1 to 1"),
+        (commands.read_target, pose(1.0, 0.0, NAN), "pose.theta", "nan is not allowed: a finite number, in rad"),
+        (commands.read_step, SimpleNamespace(leg=2, pose=pose(0.0, 0.1, 0.0)), "leg", ""),
+        (commands.read_step, SimpleNamespace(leg=0, pose=pose(0.0, INFINITE, 0.0)), "pose.y", ""),
+    ],
+)
+def test_what_is_no_command_is_refused_by_its_field(read, message, field, words):
+    with pytest.raises(BadGoal, match=words) as caught:
+        read(message)
+    assert caught.value.field == field
+
+
+# Orders, pace, watchdog, inhibition, report
+
+STEP = commands.Step("LLeg", 0.02, 0.1, 0.0)
+
+
+def put(box, *orders):
+    orders = [Order(command, f"source {n}") for n, command in enumerate(orders)]
+    for order in orders:
+        box.put(order)
+    return orders
+
+
+def test_the_newest_order_replaces_what_waits_and_says_so():
+    box = OrderBox()
+    first, second, third = put(box, FORWARD, Target(1.0, 0.0, 0.0), STAND)
+    assert list(iter(box.take, None)) == [third]
+    for old, newer in ((first, 1), (second, 2)):
+        refused(f"source {newer} came after it", old.answer.result, 0, error=WalkEnded)
+    orders = put(box, FORWARD, STEP, STEP)
+    assert list(iter(box.take, None)) == orders  # steps queue up
+
+
+def test_a_stop_is_never_left_out_and_leaves_steps_out():
+    box = OrderBox()
+    step, stop, velocity = put(box, STEP, Stop(), FORWARD)
+    assert box.halts
+    assert list(iter(box.take, None)) == [stop, velocity]
+    assert step.answer.done() and not stop.answer.done()
+    assert not box.halts and box.first is None
+    halts = [Order(command, "me").halts for command in (Stop(), STAND, FORWARD, STEP)]
+    assert halts == [True, True, False, False]
+
+
+def test_the_first_end_of_an_order_counts():
+    order = Order(Target(1.0, 0.0, 0.0), "me")
+    order.succeed()
+    order.fail(ValueError())
+    order.overtaken("late")
+    assert order.answer.result(0) is None
+
+
+def sent_times(velocity, period, count):
+    """At which of many equal commands, one each period, the robot is told."""
+    pace, times = WalkPace(), []
+    for n in range(count):
+        if pace.is_news(velocity, 10.0 + n * period):
+            pace.sent(velocity, 10.0 + n * period)
+            times.append(n * period)
+    return times
+
+
+def test_commands_keep_a_distance_and_lasting_ones_are_repeated_once_a_second():
+    pace = WalkPace()
+    assert pace.pause(10.0) <= 0.0
+    pace.sent(FORWARD, 10.0)
+    assert pace.pause(10.01) == pytest.approx(PACE - 0.01)
+    assert pace.pause(10.0 + PACE) <= 1e-9
+    assert sent_times(FORWARD, 0.02, 160) == pytest.approx([0.0, REFRESH, 2 * REFRESH, 3 * REFRESH], abs=0.021)
+    assert sent_times(STAND, 0.02, 500) == [0.0]  # an idle stick
+    assert sent_times(STAND, 1.5, 3) == [0.0, 1.5, 3.0]  # after a break
+
+
+def test_changes_and_what_follows_another_command_are_news():
+    pace = WalkPace()
+    assert pace.is_news(FORWARD, 10.0)
+    pace.sent(FORWARD, 10.0)
+    assert pace.is_news(STAND, 10.1) and not pace.is_news(FORWARD, 10.2)
+    pace.sent(None, 10.3)
+    assert pace.is_news(FORWARD, 10.4)
+
+
+def test_the_watchdog_watches_from_the_first_command_on_until_it_rests():
+    watchdog, for_ever = WalkWatchdog(0.5), WalkWatchdog(0.0)
+    assert watchdog.left(7.0) is None
+    watchdog.feed(10.0)
+    assert watchdog.left(10.2) == pytest.approx(0.3)
+    watchdog.feed(10.4)
+    assert (watchdog.left(10.5), watchdog.left(11.0)) == pytest.approx((0.4, -0.1))
+    watchdog.feed(1000.0)
+    assert watchdog.left(1.0) == pytest.approx(0.5)  # a clock that is set back gives the whole time again
+    assert watchdog.left(1.6) == pytest.approx(-0.1)
+    watchdog.rest()
+    assert watchdog.left(20.0) is None
+    for_ever.feed(10.0)
+    assert for_ever.left(20.0) is None
+
+
+def test_inhibition_is_counted_and_means_the_others():
+    inhibition = WalkInhibition()
+    assert [inhibition.inhibit(name) for name in ("/path", "/path", "/me")] == [1, 2, 3]
+    assert inhibition.owners == ["/path", "/me"]
+    assert inhibition.against("/joystick") == ["/path", "/me"] and inhibition.against("/path") == ["/me"]
+    assert (inhibition.let_go("/path"), inhibition.let_go("/path")) == (2, 1)
+    assert inhibition.against("/me") == []
+    inhibition.inhibit("/path")
+    assert inhibition.let_go("/rosservice_2") == 1  # whoever has no hold takes off the first
+    assert inhibition.owners == ["/path"]
+    inhibition.let_go("/path")
+    with pytest.raises(NotInhibited):
+        inhibition.let_go("/path")
+
+
+def test_the_report_tells_what_was_commanded_and_who_inhibits():
+    journal = WalkJournal()
+    journal.commanded("cmd_vel from /stick", 10.0)
+    journal.succeeded()
+    report = journal.report(10.5, "walks at (0.5, 0, 0)", True, [], 2)
+    assert (report.level, report.message) == (Level.OK, "walks")
+    assert report.values["last command"] == "cmd_vel from /stick"
+    assert report.values["last command (s ago)"] == "0.5"
+    assert report.values["stopped because commands ceased"] == "2"
+    assert journal.report(0.0, "nothing", False, ["/path", "/me"], 0).message == "stands, inhibited by /path, /me"
+
+
+def test_a_failure_is_a_warning_until_a_command_succeeds_and_logged_once_in_a_while(caplog):
+    journal = WalkJournal()
+    for _ in range(5):
+        journal.failed("cmd_vel", ValueError("limp"))
+        journal.failed("cmd_pose", ValueError("fallen"))
+        journal.warn("range", "clamped")
+    assert [record.getMessage() for record in caplog.records] == ["cmd_vel: limp", "cmd_pose: fallen", "clamped"]
+    report = journal.report(0.0, "nothing", None, [], 0)
+    assert (report.level, report.message) == (Level.WARN, "unknown; cmd_pose: fallen")
+    assert report.values["commands that failed"] == "10"
+    journal.succeeded()
+    report = journal.report(0.0, "nothing", False, [], 0)
+    assert (report.level, report.values["last failure"]) == (Level.OK, "cmd_pose: fallen")
+
+
+# Gait parameters
+
+
+def test_gaits_are_pairs_or_dictionaries():
+    for value in ([["MaxStepX", 0.03], ["StepHeight", 1]], {"MaxStepX": 0.03, "StepHeight": 1}):
+        assert read_gait_config("~gait", value) == [["MaxStepX", 0.03], ["StepHeight", 1.0]]
+    assert read_gait_config("~gait", ()) == []
+    assert [read_share("~step_frequency", value) for value in (0, 0.5, 1.0)] == [0, 0.5, 1.0]
+
+
+@pytest.mark.parametrize(
+    "value, words",
+    [
+        ("MaxStepX", "~gait is 'MaxStepX'"),
+        (0.03, "~gait is 0.03"),
+        (["MaxStepX", 0.03], "~gait.*entry 'MaxStepX'"),
+        ([["MaxStepX"]], "~gait.*entry"),
+        ([[1, 0.03]], "~gait.*entry"),
+        ([["MaxStepX", "far"]], "~gait.*MaxStepX is 'far': a number"),
+        ([["MaxStepX", True]], "~gait.*MaxStepX is True"),
+        ([["MaxStepX", NAN]], "~gait.*MaxStepX is nan"),
+    ],
+)
+def test_what_is_no_gait_is_told(value, words):
+    refused(words, read_gait_config, "~gait", value)
+    for share in (-0.1, 1.1, NAN, True, "fast"):
+        refused("~step_frequency is .*: 0 to 1", read_share, "~step_frequency", share)
+
+
+# Footsteps
+
+SIDES = pytest.mark.parametrize("leg, side", [("LLeg", 1.0), ("RLeg", -1.0)])
+
+
+@SIDES
+def test_a_step_is_the_same_there_and_back(leg, side):
+    step = Step(leg, Place(0.04, side * 0.1, 0.2))
+    assert read_step(step_target(step)) == step
+    assert step_target(step).leg == (StepTarget.left if leg == "LLeg" else StepTarget.right)
+
+
+def test_the_first_step_that_will_not_do_is_named():
+    good, bad = StepTarget(leg=1), StepTarget(leg=0)
+    bad.pose.theta = NAN
+    refused(r"footsteps\[1\]\.pose\.theta", read_steps, [good, bad], error=BadGoal)
+    words = r"footsteps\[0\]\.leg: 7 is not allowed: 0 \(right\) or 1 \(left\)"
+    refused(words, read_steps, [StepTarget(leg=7)], error=BadGoal)
+    refused("no leg 'Left'", clip, Place(0.0, 0.1, 0.0), "Left")
+    refused(r"pose\.y.*finite", clip, Place(0.0, NAN, 0.0), "LLeg")
+    refused(r"footsteps\[2\]\.leg.*RLeg made the step before", check_legs, ["LLeg", "RLeg", "RLeg"])
+
+
+@SIDES
+@pytest.mark.parametrize(
+    "step, clipped",
+    [
+        ((0.04, 0.1, 0.1), (0.04, 0.1, 0.1)),
+        ((-0.03, 0.1, 0.0), (-0.03, 0.1, 0.0)),
+        ((0.0, 0.16, 0.0), (0.0, 0.16, 0.0)),
+        ((0.3, 0.088, 0.0), (0.08, 0.088, 0.0)),
+        ((-0.3, 0.088, 0.0), (-0.04, 0.088, 0.0)),
+        ((0.0, 0.5, 0.0), (0.0, 0.16, 0.0)),
+        ((0.0, 0.01, 0.0), (0.0, 0.088, 0.0)),
+        ((0.0, -0.1, 0.0), (0.0, 0.088, 0.0)),  # on the wrong side
+        ((0.0, 0.15, 2.0), (0.0, 0.15, 0.5)),
+    ],
+)
+def test_each_direction_has_its_limit(leg, side, step, clipped):
+    x, y, theta = step
+    expected = Place(clipped[0], side * clipped[1], side * clipped[2])
+    assert clip(Place(x, side * y, side * theta), leg) == pytest.approx(expected)
+
+
+def test_far_ahead_and_far_aside_at_once_is_too_far():
+    step = clip(Place(0.08, 0.16, 0.0), "LLeg")
+    assert (step.x / 0.08) ** 2 + ((step.y - 0.088) / 0.072) ** 2 == pytest.approx(1.0)
+    assert step.x / 0.08 == pytest.approx((step.y - 0.088) / 0.072)
+
+
+@settings(max_examples=40)
+@given(st.floats(-1.0, 1.0), st.floats(-0.2, 1.0), st.floats(-1.0, 1.0))
+def test_clipped_steps_tread_on_no_foot_and_are_not_clipped_again(x, y, theta):
+    step, moved = clip(Place(x, y, theta), "LLeg"), []
+    assert clip(step, "LLeg") == pytest.approx(step, abs=1e-4)
+    computeBox(LEFT_BOX, Pose2D(*step), moved)
+    assert not areTwoBoxesInCollision(RIGHT_BOX, moved)
+
+
+def test_a_turn_is_taken_back_inwards_only():
+    inwards, outwards = clip(Place(0.0, 0.09, -0.5), "LLeg").yaw, clip(Place(0.0, 0.09, 0.3), "LLeg").yaw
+    assert -0.5 < inwards <= 0.0 and outwards > inwards + 0.2
+
+
+# Feet and rotations
+
+STRAIGHT = dict.fromkeys((joint for joints in LEG_JOINTS.values() for joint in joints), 0.0)
+
+
+@pytest.mark.parametrize(
+    "angles, vector, turned",
+    [
+        ((QUARTER, 0, 0), (0, 1, 0), (0, 0, 1)),
+        ((0, QUARTER, 0), (0, 0, 1), (1, 0, 0)),
+        ((0, 0, QUARTER), (1, 0, 0), (0, 1, 0)),
+        ((QUARTER, 0, QUARTER), (0, 1, 0), (0, 0, 1)),  # roll first, then yaw
+    ],
+)
+def test_turns_follow_the_right_hand(angles, vector, turned):
+    assert rotate(from_roll_pitch_yaw(*angles), vector) == pytest.approx(turned, abs=1e-12)
+
+
+@settings(max_examples=30)
+@given(ANGLES, ANGLES, ANGLES)
+def test_rotations_are_a_group(a, b, c):
+    turn, other, vector = from_roll_pitch_yaw(a, b, c), about((0.6, 0.0, 0.8), b), (0.3, -0.2, 0.9)
+    assert product(turn, inverse(turn)) == pytest.approx((0, 0, 0, 1), abs=1e-12)
+    assert rotate(product(turn, other), vector) == pytest.approx(rotate(turn, rotate(other, vector)))
+    assert yaw_of((2.0 * math.cos(a), 2.0 * math.sin(a), 5.0)) == pytest.approx(a)
+
+
+def test_soles_of_straight_and_bent_legs_are_where_the_published_lengths_say():
+    for side, y in (("L", 0.05), ("R", -0.05)):
+        place, toes = sole(side, [0.0] * 6)
+        assert place == pytest.approx((0.0, y, -0.33309)) and toes == pytest.approx((1.0, 0.0, 0.0))
+        place, _ = sole(side, [0.0, 0.0, -0.4, 0.8, -0.4, 0.0])
+        assert place[0] == pytest.approx((0.1 - 0.1029) * math.sin(0.4))
+        assert place[2] == pytest.approx(-0.085 - (0.1 + 0.1029) * math.cos(0.4) - 0.04519)
+    left, right = (yaw_of(sole(side, [-0.3, 0, 0, 0, 0, 0])[1]) for side in "LR")
+    assert left == pytest.approx(-right) and abs(left) > 0.2  # the hip turns both feet outwards or inwards
+
+
+def test_the_footprint_is_level_and_lies_under_the_lower_foot():
+    place, turn = footprint(STRAIGHT, 0.1, -0.2)
+    tilt = from_roll_pitch_yaw(0.1, -0.2, 0.0)
+    assert rotate(product(tilt, turn), (0.0, 0.0, 1.0)) == pytest.approx((0.0, 0.0, 1.0), abs=1e-12)
+    assert rotate(tilt, place)[2] < -0.3
+    place, _ = footprint({**STRAIGHT, **dict(zip(LEG_JOINTS["L"], (0, 0, -0.5, 1.0, -0.5, 0)))}, 0.0, 0.0)
+    assert place[2] == pytest.approx(-0.33309)
+    with pytest.raises(KeyError):
+        footprint({"HeadYaw": 0.0}, 0.0, 0.0)
+
+
+# Odometry
+
+TORSO = (1.0, 2.0, 0.33, 0.02, -0.03, QUARTER)
+
+
+def moved(torso, way):
+    """The torso of the robot's own odometry after a way in its own frame."""
+    place = Place(torso[0], torso[1], torso[5]).then(way)
+    return (place.x, place.y, *torso[2:5], place.yaw)
+
+
+def corrected(offset, torso):
+    place, corrected.jumps = offset.correct(torso)
+    return place
+
+
+@pytest.fixture
+def offset():
+    offset = OdometryOffset()
+    assert corrected(offset, TORSO) == pytest.approx(TORSO) and corrected.jumps == 0
+    return offset
+
+
+def test_a_set_pose_holds_at_once_and_ways_go_on_from_there(offset):
+    offset.set(Place(5.0, -1.0, 0.0))
+    assert corrected(offset, TORSO) == pytest.approx((5.0, -1.0, 0.33, 0.02, -0.03, 0.0))
+    after = corrected(offset, moved(TORSO, Place(0.5, 0.1, 0.2)))
+    assert after == pytest.approx((5.5, -0.9, 0.33, 0.02, -0.03, 0.2))
+
+
+def test_an_offset_is_told_in_the_frame_of_the_torso_and_adds_up(offset):
+    offset.move_by(Place(0.5, 0.0, QUARTER))  # it looks along Y
+    assert corrected(offset, TORSO) == pytest.approx((1.0, 2.5, 0.33, 0.02, -0.03, math.pi))
+    offset.move_by(Place(0.5, 0.0, 0.0))
+    assert corrected(offset, TORSO)[:2] == pytest.approx((0.5, 2.5))
+    assert corrected.jumps == 2
+
+
+def test_while_paused_it_stands_still_but_for_height_and_tilt(offset):
+    offset.pause()
+    offset.pause()
+    carried = list(moved(TORSO, Place(3.0, 1.0, 1.0)))
+    carried[2:5] = 0.6, 0.5, 0.4
+    assert corrected(offset, carried) == pytest.approx((1.0, 2.0, 0.6, 0.5, 0.4, QUARTER))
+    assert offset.paused
+    offset.resume()
+    assert not offset.paused
+    assert corrected(offset, carried) == pytest.approx((1.0, 2.0, 0.6, 0.5, 0.4, QUARTER))
+    assert corrected(offset, moved(carried, Place(0.1, 0.0, 0.0)))[:2] == pytest.approx((1.0, 2.1))
+    assert corrected.jumps == 0
+    offset.pause()
+    offset.set(Place(0.0, 0.0, 0.0))
+    assert corrected(offset, moved(TORSO, Place(9.0, 9.0, 1.0)))[:2] == pytest.approx((0.0, 0.0))
+
+
+def test_before_the_first_reading_there_is_nothing_to_change():
+    fresh, here = OdometryOffset(), Place(0, 0, 0)
+    for change in (lambda: fresh.set(here), lambda: fresh.move_by(here), fresh.pause):
+        refused("no odometry", change)
+
+
+def transform(x, y, z, *turn):
+    message = Transform()
+    message.translation.x, message.translation.y, message.translation.z = x, y, z
+    message.rotation.x, message.rotation.y, message.rotation.z, message.rotation.w = turn
+    return message
+
+
+def test_of_a_transform_what_lies_in_the_plane_of_the_floor_counts():
+    turn = from_roll_pitch_yaw(0.1, 0.0, 0.8)
+    assert read_transform(transform(1.0, 2.0, 9.0, *turn)) == pytest.approx((1.0, 2.0, 0.8))
+    refused(r"offset\.rotation", read_transform, transform(0, 0, 0, 0, 0, 0, 0), error=BadGoal)
+    refused(r"offset\.translation\.x", read_transform, transform(NAN, 0, 0, 0, 0, 0, 1), error=BadGoal)
+    refused(r"offset\.translation\.y", read_transform, transform(0, INFINITE, 0, 0, 0, 0, 1), error=BadGoal)
+
+
+# Velocities from uneven samples
+
+
+def test_even_motion_has_its_speed_whatever_the_times():
+    slopes = SlopeEstimator()
+    assert slopes.add(0.0, [0.0, 1.0]) == [0.0, 0.0]  # the first sample tells nothing
+    for time in (0.02, 0.037, 0.061, 0.08, 0.1):
+        found = slopes.add(time, [0.5 * time, 1.0 - 2.0 * time])
+    assert found == pytest.approx([0.5, -2.0])
+    for jump in (-10.0, 20.0):  # it starts anew when time jumps
+        assert slopes.add(jump, [5.0, 5.0]) == [0.0, 0.0]
+    slopes.add(20.1, [7.0, 0.0])
+    assert slopes.add(20.1, [6.0, 5.0]) == pytest.approx([10.0, 0.0])  # two samples of one moment are one
+
+
+def test_readings_of_a_slower_cycle_do_not_upset_it():
+    slopes, cycle = SlopeEstimator(), 0.012
+    times = [100.0 + i * 0.02 for i in range(200)]
+    found = [slopes.add(time, [cycle * (time // cycle)])[0] for time in times]  # 1 rad/s, seen in steps
+    assert max(abs(each - 1.0) for each in found[5:]) < 0.15  # of two samples each: 0.4
+
+
+# Messages of the state
+
+STAMP = Time(12, 500)
+READING = Reading(
+    positions=(0.5, -0.25),
+    efforts=(0.1, NAN),
+    roll=0.0,
+    pitch=0.0,
+    angular_velocity=(0.0, 0.0, 0.3),
+    acceleration=(0.0, 0.0, 9.81),
+    torso=(1.0, 2.0, 0.33, 0.0, 0.0, QUARTER),
+)
+
+
+def test_joint_state_keeps_the_order():
+    message = messages.joint_state(STAMP, ("HeadYaw", "LHand"), READING, [0.2, 0.0])
+    assert (message.header.stamp, message.effort[0]) == (STAMP, 0.1)
+    assert (message.name, message.position, message.velocity) == (["HeadYaw", "LHand"], (0.5, -0.25), [0.2, 0.0])
+    assert messages.diagonal(1.0, 2.0, 3.0) == [1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0]
+
+
+def test_pose_and_frame_of_odometry_are_the_same_and_its_velocity_is_that_of_the_torso():
+    message = messages.odometry(STAMP, "odom", "base_link", READING, (0.0, 0.1, 0.0))
+    frame = messages.odometry_transform(STAMP, "odom", "base_link", READING)
+    assert (message.header.frame_id, message.child_frame_id) == ("odom", "base_link")
+    ahead = message.twist.twist.linear
+    assert (ahead.x, ahead.y, ahead.z) == pytest.approx((0.1, 0.0, 0.0))  # it looks along Y, and goes there
+    assert message.twist.twist.angular.z == 0.3
+    assert frame.child_frame_id == "base_link"
+    assert (frame.transform.translation.x, frame.transform.translation.y) == (1.0, 2.0)
+    assert frame.transform.rotation == message.pose.pose.orientation
+    assert message.pose.pose.orientation.z == pytest.approx(math.sin(QUARTER / 2))
+
+
+def test_the_heading_of_the_inertial_unit_is_that_of_odometry_or_unknown():
+    known = messages.imu(STAMP, "base_link", READING)
+    unknown = messages.imu(STAMP, "base_link", dataclasses.replace(READING, torso=None))
+    assert known.orientation.z == pytest.approx(math.sin(QUARTER / 2))
+    assert unknown.orientation.w == 1.0
+    assert unknown.orientation_covariance[8] > 1e3 * known.orientation_covariance[8]
+    assert known.linear_acceleration.z == 9.81
