@@ -59,6 +59,8 @@ class Rules:
         self._rules = [r for r in self._rules if r.pattern != rule.pattern and not self._covers(rule, r)]
         if rule.on or any(r.on for r in self._rules):
             self._rules.append(rule)
+        else:
+            self._rules.clear()
 
     def copy(self) -> Rules:
         """The same rules, which do not change with these."""
