@@ -1,0 +1,275 @@
+"""The robot's memory as topics: names, patterns, rules, types, and the pace of a key."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rosgraph.names import is_legal_name
+
+from nao_library_modules.driver.memory_key import WatchedKey
+from nao_library_modules.driver.memory_names import is_pattern, matches, matching, topic_of, topics_of
+from nao_library_modules.driver.memory_rules import Rule, Rules, read_rules
+from nao_library_modules.driver.memory_values import converted, kind_of, parse_value, type_of
+from nao_library_modules.errors import BadGoal
+from naoqi.errors import NaoError
+
+KNOWN = ["Battery/Charge", "Battery/Current", "Head/Front", "Head/Rear"]
+
+
+# Names
+
+
+@pytest.mark.parametrize(
+    "key, pattern, same",
+    [
+        ("FrontTactilTouched", "FrontTactilTouched", True),
+        ("FrontTactilTouched", "*TactilTouched", True),
+        ("FrontTactilTouched", "fronttactiltouched", False),
+        ("Device/SubDeviceList/Battery/Charge/Sensor/Value", "Device/*/Battery/*", True),
+        ("Device/SubDeviceList/US/Left/Sensor/Value1", "*/US/*/Sensor/Value?", True),
+        ("Device/SubDeviceList/US/Left/Sensor/Value", "*/US/*/Sensor/Value?", False),
+        ("a[b]", "a[b]", True),
+        ("ab", "a[b]", False),
+    ],
+)
+def test_patterns_match_keys(key, pattern, same):
+    assert matches(key, pattern) is same
+
+
+def test_an_empty_pattern_lists_all():
+    assert matching(["b", "a"], "") == ["a", "b"] and matching(["b", "a"], "b*") == ["b"]
+    assert not is_pattern("a[b]") and is_pattern("a?")
+
+
+@pytest.mark.parametrize(
+    "key, topic",
+    [
+        ("Face/Led/Blue/Left/0Deg/Actuator/Value", "Face/Led/Blue/Left/0Deg/Actuator/Value"),
+        ("my-key.2 of:all", "my_key_2_of_all"),
+        ("/leading//twice/", "leading/twice"),
+        ("3rd", "key_3rd"),
+        ("_x", "key__x"),
+        ("größe", "gr__e"),
+        ("éa", "key__a"),
+        ("/", "key__"),
+    ],
+)
+def test_topics_look_like_their_keys(key, topic):
+    assert topic_of(key) == topic
+
+
+@settings(max_examples=50)
+@given(st.lists(st.text("aB1_-./ é", min_size=1, max_size=6), max_size=6, unique=True))
+def test_topics_are_legal_and_no_two_keys_have_the_same(keys):
+    topics = topics_of(keys, ["c"])
+    assert set(topics) == set(keys) and len({*topics.values(), "c"}) == len(keys) + 1
+    assert all(is_legal_name(topic) for topic in topics.values())
+    assert topics_of(["a-b", "a_b", "c"], ["c"]) == {"a-b": "a_b", "a_b": "a_b_2", "c": "c_2"}
+
+
+# Rules
+
+
+def rules_of(*rules):
+    rules_ = Rules()
+    for rule in rules:
+        rules_.add(rule)
+    return rules_
+
+
+def test_the_last_rule_for_a_key_counts():
+    wanted = rules_of(Rule("*", 1.0), Rule("Head/*", 5.0), Rule("Head/Rear", on=False)).wanted_of(KNOWN)
+    rates = {key: rule.rate for key, rule in wanted.items()}
+    assert rates == {"Battery/Charge": 1.0, "Battery/Current": 1.0, "Head/Front": 5.0}
+    by_name = rules_of(Rule("New/Key"), Rule("New/*"))
+    assert list(by_name.wanted_of(KNOWN)) == ["New/Key"] and by_name.has_patterns  # before it is there
+
+
+def test_what_is_ended_leaves_nothing_behind_and_a_copy_does_not_change():
+    rules = rules_of(Rule("Head/Front"), Rule("Battery/*"), Rule("*", on=False))
+    assert not rules and rules.wanted_of(KNOWN) == {}
+    rules.add(Rule("Head/*"))
+    former = rules.copy()
+    rules.add(Rule("Battery/*"))
+    assert former.rule_for("Battery/Charge") is None and rules.rule_for("Battery/Charge") is not None
+    for pattern in ("Head/*", "Battery/*"):
+        rules.add(Rule(pattern, on=False))
+    assert not rules
+
+
+@pytest.mark.parametrize(
+    "rule, words",
+    [
+        (Rule(" "), "pattern: it is empty"),
+        (Rule("a", -1.0), "0 to 100 Hz"),
+        (Rule("a", float("nan")), "0 to 100 Hz"),
+        (Rule("a", kind="double"), "one of bool, int"),
+    ],
+)
+def test_rules_that_make_no_sense_are_told(rule, words):
+    with pytest.raises(BadGoal, match=words):
+        rule.check()
+
+
+def test_rules_are_read_from_a_parameter():
+    entries = ["FrontTactilTouched", {"key": "Battery/*", "rate": 2, "type": "float"}]
+    assert read_rules(entries, "~keys") == [Rule("FrontTactilTouched"), Rule("Battery/*", 2.0, "float")]
+    assert read_rules("a, b c", "~keys") == [Rule("a"), Rule("b"), Rule("c")]
+    assert read_rules("", "~keys") == []
+
+
+@pytest.mark.parametrize(
+    "entries, words",
+    [
+        (7, r"~keys is 7"),
+        (["a", 7], r"~keys\[1\] is 7"),
+        ([{"rate": 2}], r"~keys\[0\]"),
+        ([{"key": "a", "hz": 2}], r"~keys\[0\]"),
+        ([{"key": "a", "rate": "fast"}], "rate 'fast'"),
+        ([{"key": "a", "rate": 1000}], r"~keys\[0\].*0 to 100 Hz"),
+    ],
+)
+def test_a_wrong_parameter_is_told(entries, words):
+    with pytest.raises(NaoError, match=words):
+        read_rules(entries, "~keys")
+
+
+# Values
+
+
+@pytest.mark.parametrize(
+    "value, type_, kind",
+    [
+        (True, "bool", "bool"),
+        (3, "int", "int"),
+        (2**31, "int", "string"),
+        (0.5, "float", "float"),
+        ("a", "string", "string"),
+        ([1, 2], "int[]", "int[]"),
+        ([1, 2**40], "int[]", "string"),
+        ([1, 2.5], "float[]", "float[]"),
+        (["a", "b"], "string[]", "string[]"),
+        ([True, 1.0], "list", "string"),
+        ([], "list", "string"),
+        ([["Head", True]], "list", "string"),
+        ({"a": 1}, "object", "string"),
+        (None, "null", "string"),
+    ],
+)
+def test_types_of_values_and_kinds_of_messages(value, type_, kind):
+    assert (type_of(value), kind_of(value)) == (type_, kind)
+
+
+@pytest.mark.parametrize(
+    "value, kind, message",
+    [
+        (1, "float", 1.0),
+        (True, "float", 1.0),
+        (True, "int", 1),
+        (1.5, "int", None),
+        (2**31, "int", None),
+        (1, "bool", None),
+        ("a", "float", None),
+        ("a", "string", "a"),
+        ([1, "b"], "string", '[1, "b"]'),
+        (None, "string", "null"),
+        ([1, 2], "float[]", [1.0, 2.0]),
+        ([], "int[]", []),
+        ([1, "b"], "int[]", None),
+        (["a"], "string[]", ["a"]),
+        (3, "int[]", None),
+    ],
+)
+def test_values_widen_and_lose_nothing(value, kind, message):
+    result = converted(value, kind)
+    assert result == message and type(result) is type(message)
+
+
+def test_what_is_no_json_is_text():
+    values = {"[1, 2]": [1, 2], "hello there": "hello there", '"3"': "3"}
+    assert {text: parse_value(text) for text in values} == values
+
+
+# The pace of one key, and its topic
+
+
+class Topic:
+    """Publishes to a list; `tell` says whether somebody listens."""
+
+    def __init__(self, kind, tell):
+        self.kind, self.tell, self.messages, self.open = kind, tell, [], True
+
+    def publish(self, value):
+        self.messages.append(value)
+
+    def close(self):
+        self.open = False
+
+
+@pytest.fixture
+def opened():
+    return []
+
+
+@pytest.fixture
+def watched(opened):
+    def make_topic(name, kind, tell):
+        opened.append(Topic(kind, tell))
+        return opened[-1]
+
+    def make(rate=0.0, kind="", event=False):
+        key = WatchedKey("Some/Key", "topic", Rule("Some/Key", rate, kind), make_topic)
+        key.is_event = event
+        return key
+
+    return make
+
+
+def test_data_is_due_at_even_times_that_all_keys_of_a_rate_share(watched):
+    key, other = watched(5.0), watched(5.0)
+    assert key.wait(10.07) == 0.0 and other.wait(10.13) == 0.0
+    key.was_read(10.07)
+    other.was_read(10.13)
+    assert (10.07 + key.wait(10.07), 10.13 + other.wait(10.13)) == pytest.approx((10.2, 10.2))
+    assert key.wait(3.0) == 0.0  # a clock that is set back delays nothing
+
+
+def test_of_events_that_come_too_fast_the_newest_follows(watched):
+    key = watched(2.0, event=True)
+    assert key.hold("first", 10.0) == 0.0
+    assert key.hold("second", 10.1) == pytest.approx(0.4)
+    assert key.hold("third", 10.2) == pytest.approx(0.3)
+    assert key.release(10.2) == (pytest.approx(0.3), None)
+    assert key.release(10.5) == (0.0, "third")
+    assert key.release(10.6) == (None, None)
+    assert key.hold("fourth", 10.6) == pytest.approx(0.4)
+    unlimited = watched(event=True)
+    assert [unlimited.hold(i, 10.0) for i in range(3)] == [0.0] * 3
+
+
+def test_the_first_value_tells_the_type_unless_it_was_asked_for(watched, opened):
+    key, typed = watched(), watched(kind="float", event=True)
+    key.open(None, lambda: None)
+    assert not key.kind and not key.deliver(1.5)
+    key.open(1.5, lambda: None)
+    assert key.kind == "float" and key.deliver(2) and key.deliver(None)
+    assert opened[-1].messages == [2.0]
+    typed.open(None, lambda: None)
+    assert typed.deliver("text") and typed.deliver(1) and opened[-1].messages == [1.0]
+    empty = watched(event=True, kind="string")
+    empty.open(None, lambda: None)
+    assert empty.deliver(None) and opened[-1].messages == ["null"]
+
+
+def test_another_type_needs_another_topic_and_old_listeners_mean_nothing(watched, opened):
+    key = watched()
+    key.open(3, lambda: None)
+    first = opened[0]
+    first.tell(True)
+    assert key.wanted and not key.deliver(0.5)
+    key.open(0.5, lambda: None)
+    assert [topic.kind for topic in opened] == ["int", "float"] and not first.open
+    opened[1].tell(True)
+    first.tell(False)
+    assert key.wanted
