@@ -1,0 +1,293 @@
+"""Angles, trajectories, poses and stiffness: where the joints go, what is refused, how motions end."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from genpy import Duration
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from nao_library_msgs.msg import MotionFunction
+
+ARM = ["RShoulderPitch", "RShoulderRoll", "RElbowYaw", "RElbowRoll", "RWristYaw", "RHand"]
+NEAR = 0.03
+"""What a joint under load may be off its target, rad."""
+SLACK = 0.2
+"""Simulated time that a call may take on a busy computer, s."""
+YAW = {"names": ["HeadYaw"], "stiffness": 1.0}
+
+
+def f(function, time=0.0, **fields):
+    return MotionFunction(function=function, time=Duration.from_sec(time), **fields)
+
+
+def trajectory(*points, joints=("HeadYaw",)):
+    points = [
+        JointTrajectoryPoint(positions=p, velocities=v, time_from_start=Duration.from_sec(t)) for t, p, v in points
+    ]
+    return JointTrajectory(joint_names=list(joints), points=points)
+
+
+@pytest.fixture
+def at(angle):
+    """Joints of a result are named, and are where they should be, as told and as measured."""
+
+    def check(result, **angles):
+        told = dict(zip(result.name, result.position))
+        for joint, wanted in angles.items():
+            assert told[joint] == pytest.approx(wanted, abs=NEAR), joint
+            assert angle(joint) == pytest.approx(wanted, abs=NEAR), joint
+
+    return check
+
+
+# Angles
+
+
+def test_angles_are_told_with_their_names_in_one_order(robot, motion):
+    result = motion.succeed(f("getAngles", names=["RArm", "HeadYaw"]))
+    assert result.name == [*ARM, "HeadYaw"]
+    assert list(result.position) == pytest.approx(robot.ALMotion.getAngles(result.name, True), abs=1e-3)
+    assert result.memList == [], "the answers have fields of their own"
+    assert list(map(float, result.results[0].values)) == pytest.approx(list(result.position), abs=1e-3)
+
+
+def test_angles_go_out_change_and_come_back(stiff_robot, motion, at):
+    result = motion.succeed(f("setAngles", 1.0, names=["Head"], angles=[0.5, 0.2]), f("getAngles", names=["HeadPitch"]))
+    at(result, HeadYaw=0.5, HeadPitch=0.2)
+    at(motion.succeed(f("changeAngles", 1.0, names=["HeadYaw"], angles=[-0.2])), HeadYaw=0.3)
+    at(motion.succeed(f("setAngles", 1.0, names=["Head"], angles=[0.1], relative=True)), HeadYaw=0.4, HeadPitch=0.3)
+    at(motion.succeed(f("setAngles", 1.0, names=["HeadPitch", "HeadYaw"], angles=[0.0])), HeadYaw=0.0, HeadPitch=0.0)
+    motion.succeed(f("setAngles", names=["HeadYaw"], angles=[1.0], speed=0.05))
+    told = motion.succeed(f("getAngles", names=["HeadYaw"], commanded=True), f("getAngles", names=["HeadPitch"]))
+    assert 0.0 <= told.position[0] < 0.9
+
+
+@pytest.mark.parametrize("speeds, shares", [({"speed": 0.03}, (0.03, 0.03)), ({"speeds": [0.02, 0.05]}, (0.02, 0.05))])
+def test_joints_turn_at_shares_of_their_top_speeds(stiff_robot, motion, angle, speeds, shares):
+    motion.succeed(f("setAngles", names=["Head"], angles=[1.5, 0.5], **speeds))
+    stiff_robot.advance(0.3)
+    before = angle("HeadYaw"), angle("HeadPitch")
+    stiff_robot.advance(0.5)
+    for joint, start, share in zip(("HeadYaw", "HeadPitch"), before, shares):
+        top = stiff_robot.ALMotion.getLimits(joint)[0][2]
+        assert angle(joint) - start == pytest.approx(0.5 * share * top, rel=0.15), joint
+
+
+def test_interpolations_go_through_their_keys_joint_by_joint_in_their_time(robot, motion, angle, at):
+    goal = motion.send(
+        f("angleInterpolation", names=["Head"], angles=[0.6, 0.0, 0.2, 0.1], times=[1, 2], stiffness=1.0)
+    )
+    robot.advance_until(lambda: angle("HeadYaw") > 0.55, 2.0)
+    assert angle("HeadPitch") == pytest.approx(0.2, abs=0.05)
+    goal.finish()
+    assert goal.result.results[0].elapsed.to_sec() == pytest.approx(2.0, abs=SLACK)
+    at(goal.result, HeadYaw=0.0, HeadPitch=0.1)
+    at(motion.succeed(f("angleInterpolation", names=["HeadYaw"], angles=[0.3], times=[1.0])), HeadYaw=0.3)
+    at(
+        motion.succeed(f("angleInterpolation", names=["HeadYaw"], angles=[0.2], times=[1.0], relative=True)),
+        HeadYaw=0.5,
+    )
+    result = motion.succeed(f("angleInterpolationWithSpeed", names=["HeadYaw"], angles=[-0.6], speed=0.1))
+    at(result, HeadYaw=-0.6)
+    assert result.results[0].elapsed.to_sec() == pytest.approx(1.1 / (0.1 * 8.27), abs=0.4)
+
+
+def test_trajectories_with_and_without_velocities(robot, motion, angle, at):
+    goal = motion.send(
+        f("setTrajectory", trajectory=trajectory((1.0, [0.3], [0.4]), (2.0, [0.5], [0.0])), stiffness=1.0)
+    )
+    robot.advance_until(lambda: angle("HeadYaw") > 0.29, 3.0)
+    before = angle("HeadYaw")
+    robot.advance(0.1)
+    assert angle("HeadYaw") - before == pytest.approx(0.04, abs=0.008), "it passes its point at the speed asked for"
+    at(goal.finish().result, HeadYaw=0.5)
+    curve = trajectory((1.0, [0.2], [0.0]), joints=())
+    at(motion.succeed(f("angleInterpolationBezier", names=["HeadYaw"], trajectory=curve)), HeadYaw=0.2)
+    line = trajectory((0.6, [0.0, 0.1], ()), (1.2, [-0.4, 0.2], ()), joints=["Head"])
+    at(motion.succeed(f("setTrajectory", trajectory=line, stiffness=1.0)), HeadYaw=-0.4, HeadPitch=0.2)
+    further = trajectory((0.6, [0.1], ()))
+    at(motion.succeed(f("setTrajectory", trajectory=further, relative=True)), HeadYaw=-0.3)
+
+
+def test_poses_of_chains_as_points_and_by_name(stiff_robot, motion, at, tmp_path):
+    left, right = [1.0, 0.3, -1.0, -0.5, 0.2, 0.5], [1.2, -0.4, 1.1, 0.6, -0.2, 0.3]
+    result = motion.succeed(f("setPose", names=["LArm", "RArm"], angles=left + right, duration=1.5))
+    at(result, LShoulderPitch=1.0, LShoulderRoll=0.3, LElbowRoll=-0.5, RShoulderRoll=-0.4, RElbowRoll=0.6)
+    assert result.results[0].elapsed.to_sec() == pytest.approx(1.5, abs=SLACK)
+    at(
+        motion.succeed(f("setPose", names=["Head"], trajectory=trajectory((1.0, [0.5, 0.25], ()), joints=()))),
+        HeadYaw=0.5,
+    )
+    result = motion.succeed(f("setPose", str_param="ArmsForward", names=["LArm"], duration=1.5))
+    at(result, LShoulderPitch=0.2, LElbowYaw=-1.2)
+    assert all(name.startswith("L") for name in result.name)
+    (tmp_path / "mine.xap").write_text(
+        "<poses><position><name>Look</name><version>2</version><Motors>"
+        "<Motor><name>HeadYaw</name><value>0.7</value></Motor>"
+        "<Motor><name>Tail</name><value>0.1</value></Motor></Motors></position></poses>"
+    )
+    at(motion.succeed(f("setPose", str_param="mine.xap:Look")), HeadYaw=0.7)
+    assert "Look" in motion.refused(f("setPose", str_param="mine.xap:Luck"))
+
+
+def test_hands_open_and_close(robot, motion, angle):
+    motion.succeed(f("openHand", names=["LHand", "RHand"]))
+    assert min(angle("LHand"), angle("RHand")) > 0.9
+    assert motion.succeed(f("closeHand", names=["LHand"])).name == ["LHand"]
+    assert angle("LHand") < 0.1 < 0.9 < angle("RHand")
+
+
+def test_the_arm_a_little_further_as_in_the_paper(stiff_robot, motion, at):
+    before = motion.succeed(f("getAngles", names=["RArm"]))
+    pose = [a if name == "RShoulderRoll" else min(a + 0.5, 1) for name, a in zip(before.name, before.position)]
+    point = JointTrajectoryPoint(time_from_start=Duration(1.0), positions=pose)
+    trajectory_msg = JointTrajectory(joint_names=before.name, points=[point])
+    result = motion.succeed(f("setPose", names=before.name, trajectory=trajectory_msg))
+    assert result.name == before.name
+    at(result, **dict(zip(before.name, pose)))
+
+
+# What is refused before anything moves
+
+REFUSED = [
+    (f("setAngles", names=["HeadYow"], angles=[0.5]), "did you mean 'HeadYaw'"),
+    (f("setAngles", names=["HeadYaw"], angles=[3.0]), "HeadYaw cannot go to 3.0000: -2.0857 to 2.0857"),
+    (f("setAngles", names=["HeadYaw"], angles=[math.nan]), "HeadYaw cannot go to nan"),
+    (f("setAngles", names=["Head"], angles=[0.1, 0.2, 0.3]), "3 values for 2 joints"),
+    (f("setAngles", angles=[0.1]), "no joint is named"),
+    (f("setAngles", names=["HeadYaw"], angles=[0.1], speed=2.0), "field speed"),
+    (f("setAngles", names=["RArm"], angles=[0.1]), "no stiffness in RShoulderPitch"),
+    (f("setAngles", names=["RArm"], angles=[0.1], stiffness=1.1), "field stiffness"),
+    (f("changeAngles", names=["HeadYaw"], angles=[2.0]), "HeadYaw cannot go to 2.5000"),
+    (f("angleInterpolation", names=["HeadYaw"], angles=[-2.0], times=[0.1]), "at least 0.3"),
+    (f("angleInterpolation", names=["HeadYaw"], angles=[1.5]), "field times"),
+    (f("angleInterpolation", names=["Head"], angles=[0.1, 0.2, 0.3], times=[1.0, 2.0]), "3 values for 2 joints"),
+    (f("angleInterpolationWithSpeed", names=["HeadYaw"], angles=[0.1], speed=-1.0), "field speed"),
+    (f("angleInterpolationBezier", trajectory=trajectory((1.0, [0.2], ()))), "velocities"),
+    (f("setTrajectory", names=["HeadYaw"]), "there is no point"),
+    (f("setPose", names=["HeadYaw"]), "there is no pose"),
+    (f("setPose", names=["HeadYaw"], angles=[0.0], str_param="Wave"), "there is more than one pose"),
+    (f("setPose", names=["HeadYaw"], angles=[0.0], duration=-1.0), "field duration"),
+    (f("closeHand", names=["HeadYaw"]), "'HeadYaw' is no hand"),
+    (f("setStiffnesses", names=["Body"], angles=[1.5]), "1.5 is no stiffness"),
+    (f("stiffnessInterpolation", names=["Body"], angles=[1.0], times=[0.5, 1.0]), "2, one a time"),
+    (f("goToPosture", str_param="Standd"), "did you mean 'Stand'"),
+    (f("applyPosture", str_param="Stand"), "no stiffness in"),
+    (f("setMaxTryNumber", values=[21]), "one whole number from 1 to 20"),
+    (f("setPosition", names=["Tail"], values=[0.0] * 6), "'Tail' is no effector"),
+    (f("setPosition", names=["LArm"], values=[0.0] * 5, stiffness=1.0), "6 finite numbers"),
+    (f("setTransform", names=["LArm"], values=[0.0] * 6, stiffness=1.0), "12 finite numbers"),
+    (f("setPosition", names=["LArm"], values=[0.0] * 6, axis_mask=64), "field axis_mask"),
+    (f("positionInterpolation", names=["RArm"], values=[0.0] * 6, times=[1.0], frame=3), "field frame"),
+    (f("positionInterpolation", names=["RArm"], values=[0.0] * 6, stiffness=1.0), "field times"),
+    (f("getPosition"), "nothing is named"),
+    (f("getCOM", frame=-1), "field frame"),
+    (f("lookAt", values=[1.0, 0.0]), "x, y, z"),
+    (f("lookAt", values=[1.0, 0.0, 0.0], str_param="Camera"), "CameraTop"),
+    (f("lookAt", values=[1.0, 0.0, 0.0], duration=-1.0), "field duration"),
+    (f("setBreathEnabled", names=["Leg"]), "'Leg' is not known"),
+    (f("getBreathEnabled"), "nothing is named"),
+    (f("setBreathConfig", texts=["Bpm"]), "one for each of Bpm"),
+    (f("wbFootState", texts=["Loose"], str_param="LLeg"), "'Loose' is not known"),
+    (f("wbGoToBalance", str_param="LLeg"), "field duration"),
+    (f("wbSetEffectorControl", names=["Head"], values=[0.0]), "field values"),
+    (f("killTask", values=[0.5]), "the number of one task"),
+    (f("getAngles", time=-1.0, names=["Head"]), "field time"),
+]
+
+
+def test_what_is_wrong_is_told_and_nothing_moves(robot, motion, angle):
+    chain = f("setStiffnesses", names=["Head"], angles=[1.0]), f("setAngles", names=["HeadYaw"], angles=[0.5])
+    for function, text in REFUSED:
+        goal = motion.play(*chain, function)
+        assert (goal.state, goal.result.results) == ("aborted", []), function
+        assert goal.text.startswith(f"function 3 ({function.function}): ") and text in goal.text
+    robot.advance(0.5)
+    assert angle("HeadYaw") == pytest.approx(0.0, abs=NEAR)
+    assert robot.ALMotion.getStiffnesses("Body") == [0.0] * 26
+
+
+def test_limp_joints_are_refused_or_stiffened(robot, motion):
+    robot.ALMotion.setStiffnesses("HeadPitch", 1.0)
+    head = {"names": ["Head"], "angles": [0.3]}
+    assert "no stiffness in HeadYaw" in motion.refused(f("setAngles", **head))
+    motion.succeed(f("setAngles", stiffness=0.8, **head))
+    assert robot.ALMotion.getStiffnesses("Head") == pytest.approx([0.8, 1.0])
+
+
+def test_a_dry_run_moves_nothing_and_tells_times_and_the_pose_at_the_end(stiff_robot, motion, angle):
+    result = motion.succeed(
+        f("angleInterpolation", 0.5, names=["HeadYaw"], angles=[0.5, 1.0], times=[1.0, 2.0]),
+        f("angleInterpolationWithSpeed", names=["HeadYaw"], angles=[-1.0], speed=0.5, dry_run=True),
+    )
+    assert [entry.values for entry in result.results] == [["2.500"], ["0.484"]]
+    assert (result.name, list(result.position)) == (["HeadYaw"], [-1.0])
+    stiff_robot.advance(0.5)
+    assert angle("HeadYaw") == pytest.approx(0.0, abs=NEAR)
+
+
+# Stiffness
+
+
+def test_stiffness_changes_at_once_and_along_a_time(robot, motion):
+    result = motion.succeed(
+        f("setStiffnesses", names=["Head"], angles=[0.2, 0.6]),
+        f("getStiffnesses", names=["Head"]),
+        f("stiffnessInterpolation", names=["Head"], angles=[0.5, 0.0], times=[0.2, 0.4]),
+        f("getStiffnesses", names=["Head"]),
+    )
+    assert list(map(float, result.memList)) == pytest.approx([0.2, 0.6, 0.0, 0.0], abs=1e-6)
+    assert result.results[2].elapsed.to_sec() == pytest.approx(0.4, abs=SLACK)
+
+
+# How motions end
+
+KINDS = [
+    f("angleInterpolation", angles=[2.0], times=[8.0], **YAW),
+    f("angleInterpolationWithSpeed", angles=[2.0], speed=0.03, **YAW),
+    f("setTrajectory", trajectory=trajectory((8.0, [2.0], [0.0])), stiffness=1.0),
+    f("setPose", angles=[2.0], duration=8.0, **YAW),
+    f("setAngles", 30.0, angles=[2.0], speed=0.03, **YAW),
+    f("lookAt", values=[0.0, 1.0, 0.1], duration=8.0, stiffness=1.0),
+]
+
+
+@pytest.mark.parametrize("function", KINDS, ids=lambda function: function.function)
+def test_every_kind_of_motion_ends_where_it_is_when_it_is_cancelled(robot, motion, angle, function):
+    first = f("getAngles", names=["HeadPitch"])
+    goal = motion.send(first, function, f("rest"))
+    robot.advance_until(lambda: angle("HeadYaw") > 0.1, 4.0)
+    assert goal.cancel().state == "preempted"
+    assert goal.text == f"preempted in function 2 ({function.function})"
+    done = [entry.function for entry in goal.result.results]
+    assert done == ["getAngles", "setAngles"][: 1 + (function.function == "setAngles")]
+    assert "HeadYaw" in goal.result.name and robot.ALMotion.getTaskList() == []
+    robot.advance(0.2)
+    stopped = angle("HeadYaw")
+    robot.advance(0.8)
+    assert angle("HeadYaw") == pytest.approx(stopped, abs=0.02) and stopped < 1.0
+    at = motion.succeed(f("angleInterpolation", names=["HeadYaw"], angles=[stopped - 0.2], times=[0.5])).position[0]
+    assert at == pytest.approx(stopped - 0.2, abs=NEAR), "the next goal takes over where it was"
+
+
+@pytest.mark.parametrize("function", [*KINDS[:2], KINDS[3]], ids=lambda function: function.function)
+def test_a_motion_that_somebody_stops_is_an_error_with_where_the_joints_are(robot, motion, angle, function):
+    goal = motion.send(function, f("setAngles", names=["HeadPitch"], angles=[0.3], stiffness=1.0))
+    robot.advance_until(lambda: angle("HeadYaw") > 0.2, 6.0)
+    robot.ALMotion.killTasksUsingResources(["HeadYaw"])
+    goal.finish()
+    assert goal.state == "aborted"
+    assert "the motion was stopped: HeadYaw got to 0." in goal.text and "instead of 2.000" in goal.text
+    assert angle("HeadPitch") < 0.0, "the chain went on"
+
+
+def test_lights_and_motion_run_beside_each_other(robot, motion, lights, angle):
+    from nao_library_msgs.msg import LedFunction
+
+    goal = motion.send(f("angleInterpolation", angles=[1.0], times=[2.0], **YAW))
+    fade = LedFunction(function="fade", lights=["Brain0"], i_values=[0.0], duration=1.0)
+    lights.succeed(fade)
+    assert goal.active and robot.led("Head/Led/Front/Right/1") == 0.0
+    assert goal.finish().state == "succeeded" and angle("HeadYaw") == pytest.approx(1.0, abs=NEAR)

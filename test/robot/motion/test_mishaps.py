@@ -1,0 +1,130 @@
+"""Falls, heat, an empty battery: what ends a motion or keeps it from beginning."""
+
+from __future__ import annotations
+
+import pytest
+from genpy import Duration
+
+from nao_library_msgs.msg import MotionFunction
+
+FALLING = "ALMotion/RobotIsFalling"
+DISABLED = "ALMotion/Protection/DisabledDevicesChanged"
+STANDING, LYING = 0.28, 0.2
+"""Height of the torso, m."""
+HEAD = {"names": ["HeadYaw"], "angles": [0.5]}
+TURN = {"names": ["HeadYaw"], "angles": [1.0], "times": [20.0]}
+
+
+def f(function, time=0.0, **fields):
+    return MotionFunction(function=function, time=Duration.from_sec(time), **fields)
+
+
+GET_UP = f("goToPosture", str_param="Stand")
+
+
+@pytest.fixture
+def height(robot):
+    return lambda: robot.now.torso.position[2]
+
+
+def test_a_fall_ends_the_motion_and_leaves_the_robot_limp_until_a_goal_gets_it_up(stiff_robot, motion, angle, height):
+    robot = stiff_robot
+    robot.ALMotion.wakeUp(_async=True)
+    robot.advance(3.0)
+    goal = motion.send(f("angleInterpolation", **TURN), f("setAngles", names=["HeadPitch"], angles=[0.4]))
+    robot.advance(0.5)
+    robot.NaoSimulation.push([60.0, 0.0, 0.0], 0.15, "torso")
+    robot.advance_until(lambda: not robot.value("robotIsWakeUp"), 5.0, what="the robot notices that it has fallen")
+    goal.finish()
+    text = "the robot fell and its motors are off: goToPosture gets it up again"
+    assert (goal.state, goal.text) == ("aborted", f"function 1 (angleInterpolation): {text}")
+    robot.advance(1.5)
+    assert height() < LYING and set(robot.ALMotion.getStiffnesses("LLeg")) == {0.0}
+    assert "no stiffness in HeadYaw" in motion.refused(f("setAngles", **HEAD))
+    goal = motion.send(GET_UP)
+    robot.advance(1.5)
+    assert goal.cancel().state == "preempted"
+    robot.advance(0.5)
+    assert height() < STANDING and robot.ALMotion.getTaskList() == []
+    assert motion.succeed(GET_UP, f("getPosture")).memList == ["Stand"]
+    assert height() > STANDING
+
+
+def test_only_what_moves_is_ended_by_the_news_of_a_fall(stiff_robot, motion):
+    robot = stiff_robot
+    motion.succeed(f("getAngles", names=["Head"]))
+    robot.ALMotion.setAngles("HeadYaw", 0.1, 0.5)
+    robot.ALMemory.raiseEvent(FALLING, True)
+    robot.settled()
+    motion.succeed(f("getAngles", names=["Head"]))
+    goal = motion.send(f("getAngles", 2.0, names=["Head"]))
+    robot.advance(0.5)
+    robot.ALMemory.raiseEvent(FALLING, True)
+    assert goal.finish().state == "succeeded", "a chain that only asks goes on"
+    goal = motion.send(f("setAngles", 60.0, **HEAD))
+    robot.advance(0.5)
+    robot.ALMemory.raiseEvent(FALLING, True)
+    goal.finish()
+    assert goal.state == "aborted" and "the robot fell" in goal.text
+
+
+@pytest.mark.parametrize("chain", ["Head", "Body"])
+def test_a_chain_that_is_put_to_rest_ends_the_goal_that_moves_it(stiff_robot, motion, chain):
+    goal = motion.send(f("angleInterpolation", **TURN))
+    stiff_robot.advance(0.3)
+    stiff_robot.ALMemory.raiseEvent(DISABLED, [["LArm", True], ["Head", False]])
+    stiff_robot.advance(0.3)
+    assert goal.active
+    stiff_robot.ALMemory.raiseEvent(DISABLED, [[chain, True]])
+    goal.finish()
+    reason = "a motor is too hot or broken, or the battery is empty"
+    assert goal.text == f"function 1 (angleInterpolation): the robot put {chain} to rest: {reason}"
+
+
+MOVES = [
+    f("setAngles", **HEAD), f("angleInterpolation", times=[1.0], **HEAD), f("angleInterpolationWithSpeed", **HEAD),
+    f("setPose", **HEAD),
+]  # fmt: skip
+
+
+def test_motors_that_are_too_hot_are_not_moved(stiff_robot, motion, angle):
+    robot = stiff_robot
+    robot.NaoSimulation.setTemperature("HeadYaw", 76.0)
+    robot.advance(0.05)
+    for function in MOVES:
+        assert "too hot to move: HeadYaw 76 degC: rest until they are below 74 degC" in motion.refused(function)
+    assert angle("HeadYaw") == pytest.approx(0.0, abs=0.03)
+    motion.succeed(f("setAngles", names=["HeadPitch"], angles=[0.1]))
+    robot.NaoSimulation.setTemperature("RHipRoll", 80.0)
+    robot.advance(0.05)
+    for function in (f("wakeUp"), GET_UP):
+        assert "too hot to move: RHipRoll 80 degC" in motion.refused(function)
+    assert motion.play(f("rest")).state == "succeeded", "that is never refused"
+
+
+def test_a_hot_motor_is_moved_at_half_speed_at_most(stiff_robot, motion, angle):
+    stiff_robot.NaoSimulation.setTemperature("HeadYaw", 70.0)
+    stiff_robot.advance(0.05)
+    for speed, share in ((0.9, 0.5), (0.2, 0.2)):
+        motion.succeed(f("setAngles", 1.0, names=["HeadYaw"], angles=[-1.5], speed=0.5))
+        motion.succeed(f("setAngles", names=["HeadYaw"], angles=[1.5], speed=speed))
+        stiff_robot.advance(0.2)
+        before = angle("HeadYaw")
+        stiff_robot.advance(0.1)
+        assert (angle("HeadYaw") - before) / 0.1 == pytest.approx(share * 8.27, rel=0.2)
+
+
+def test_an_empty_battery_moves_nothing_and_a_low_one_does_not_walk(stiff_robot, motion):
+    robot = stiff_robot
+    robot.NaoSimulation.setBatteryCharge(0.04)
+    robot.advance(0.05)
+    walk = f("moveTo", values=[0.1, 0.0, 0.0])
+    assert "the battery is too low to walk (4% left): plug the charger in" in motion.refused(walk)
+    motion.succeed(f("setAngles", **HEAD))
+    robot.NaoSimulation.setBatteryCharge(0.01)
+    robot.advance(0.05)
+    for function in (f("wakeUp"), GET_UP, walk, f("setAngles", **HEAD)):
+        assert "the battery is empty (1% left): plug the charger in" in motion.refused(function)
+    robot.NaoSimulation.plugCharger(True)
+    robot.advance(1.0)
+    motion.succeed(f("setAngles", **HEAD))

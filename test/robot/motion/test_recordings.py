@@ -1,0 +1,149 @@
+"""Motions recorded from the joints, replayed, mirrored, kept under names; nod, stand and wave as one goal."""
+
+from __future__ import annotations
+
+import pytest
+from genpy import Duration
+
+from nao_library_modules.recorded_motion import RecordedMotion
+from nao_library_msgs.msg import MotionFunction
+
+NEAR = 0.03
+WAVE = RecordedMotion(("RShoulderRoll",), (0.0, 1.0, 2.0), ((-0.5,), (-1.0,), (-0.6,)))
+
+
+def f(function, time=0.0, **fields):
+    return MotionFunction(function=function, time=Duration.from_sec(time), **fields)
+
+
+def record(name="turn", **fields):
+    return f("recordMotion", str_param=name, **{"names": ["Head"], "duration": 60.0, **fields})
+
+
+def play(name="turn", **fields):
+    return f("playMotion", str_param=name, **fields)
+
+
+@pytest.fixture
+def store(motion):
+    return motion.module.store
+
+
+def test_what_somebody_else_moves_is_recorded_until_a_cancel_and_replayed_and_mirrored(
+    stiff_robot, motion, store, angle
+):
+    goal = motion.send(record(rate=20.0))
+    stiff_robot.finish("ALMotion", "angleInterpolation", ["HeadYaw"], [0.6], [1.0], True, after=1.5)
+    assert goal.cancel().state == "preempted"
+    turn = store.load("turn")
+    assert turn.joints == ("HeadYaw", "HeadPitch") and motion.succeed(f("listMotions")).memList == ["turn"]
+    assert turn.duration == pytest.approx(1.5, abs=0.2) and 20 < len(turn.times) <= 36
+    assert (turn.angles[0][0], turn.angles[-1][0]) == (pytest.approx(0.0, abs=NEAR), pytest.approx(0.6, abs=NEAR))
+    motion.succeed(f("setAngles", 1.0, names=["HeadYaw"], angles=[0.0]))
+    result = motion.succeed(play(speed=2.0))
+    assert angle("HeadYaw") == pytest.approx(0.6, abs=0.06) and "HeadYaw" in result.name
+    motion.succeed(play(mirror=True))
+    assert angle("HeadYaw") == pytest.approx(-0.6, abs=0.06)
+
+
+def test_a_recording_for_a_time_samples_at_its_rate(stiff_robot, motion, store):
+    goal = motion.send(record(duration=1.0, rate=4.0))
+    stiff_robot.post("ALMotion", "angleInterpolation", ["HeadYaw"], [0.8], [1.0], True)
+    goal.finish()
+    assert goal.state == "succeeded" and goal.result.results[0].elapsed.to_sec() == pytest.approx(1.0, abs=0.3)
+    turn = store.load("turn")
+    assert turn.times[0] == 0.0 and len(turn.times) == 5
+    assert turn.times == pytest.approx((0.0, 0.25, 0.5, 0.75, 1.0), abs=0.15)
+    assert [row[0] for row in turn.angles] == sorted(row[0] for row in turn.angles)
+
+
+@pytest.mark.parametrize("end", ["over", "cancelled"])
+def test_joints_that_are_taught_by_hand_are_limp_meanwhile_and_stiff_again_where_they_are(robot, motion, store, end):
+    robot.ALMotion.setStiffnesses(["HeadYaw", "HeadPitch"], [0.8, 0.0])
+    robot.ALMotion.setAngles(["HeadPitch"], [-0.5], 0.5)
+    goal = motion.send(record(duration=1.0 if end == "over" else 60.0, limp=True))
+    robot.advance(0.5)
+    assert robot.ALMotion.getStiffnesses("Head") == [0.0, 0.0]
+    assert (goal.finish() if end == "over" else goal.cancel()).state in ("succeeded", "preempted")
+    assert robot.ALMotion.getStiffnesses("Head") == pytest.approx([0.8, 0.0])
+    told, is_at = (robot.ALMotion.getAngles("Head", measured) for measured in (False, True))
+    assert told == pytest.approx(is_at, abs=0.02), "it does not jump back to its old target"
+    assert store.names() == ["turn"]
+
+
+def test_a_motion_is_replayed_from_its_first_pose_on_and_stays_where_a_cancel_meets_it(
+    stiff_robot, motion, store, angle
+):
+    store.save("wave", WAVE)
+    goal = motion.send(play("wave"))
+    stiff_robot.advance_until(lambda: angle("RShoulderRoll") < -0.45, 5.0)
+    stiff_robot.advance_until(lambda: angle("RShoulderRoll") < -0.95, 2.0)
+    goal.finish()
+    assert (goal.state, goal.result.name) == ("succeeded", ["RShoulderRoll"])
+    assert angle("RShoulderRoll") == pytest.approx(-0.6, abs=NEAR)
+    motion.succeed(play("wave", speed=2.0, mirror=True))
+    assert angle("LShoulderRoll") == pytest.approx(0.6, abs=NEAR)
+    goal = motion.send(play("wave", speed=0.2))
+    stiff_robot.advance_until(lambda: angle("RShoulderRoll") < -0.65, 8.0)
+    goal.cancel()
+    stiff_robot.advance(0.2)
+    at = angle("RShoulderRoll")
+    stiff_robot.advance(1.0)
+    assert goal.state == "preempted" and angle("RShoulderRoll") == pytest.approx(at, abs=0.02) and at > -0.9
+
+
+def test_names_are_changed_deleted_and_used_within_a_chain(stiff_robot, motion, store):
+    store.save("wave", WAVE)
+    motion.succeed(f("renameMotion", str_param="wave", texts=["greet"]))
+    assert motion.succeed(f("listMotions")).memList == store.names() == ["greet"]
+    motion.succeed(
+        record("new", duration=0.5), f("renameMotion", str_param="new", texts=["newer"]), play("newer"),
+        f("deleteMotion", str_param="newer"), f("deleteMotion", str_param="greet"),
+    )  # fmt: skip
+    assert store.names() == []
+    motion.succeed(play("wave"))  # that of the library
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_a_joint_that_leant_on_its_stop_is_replayed_to_the_limit(stiff_robot, motion, store, angle, mirror):
+    joint, limit = ("RShoulderRoll", -1.3265) if mirror else ("LShoulderRoll", 1.3265)
+    store.save("stop", RecordedMotion((joint,), (0.0, 1.0), ((0.0,), (limit * 1.004,))))
+    motion.succeed(play("stop", mirror=mirror))
+    assert angle("LShoulderRoll") == pytest.approx(1.3265, abs=NEAR)
+
+
+REFUSED = [
+    (play("wafe"), "did you mean 'wave'"),
+    (play("mine", speed=100.0), "RShoulderRoll cannot go"),
+    (play("mine", speed=-1.0), "field speed"),
+    (play("wide", mirror=True), "RShoulderRoll cannot go to -1.5000"),
+    (record("../x"), "is no name for a motion"),
+    (record(".hidden"), "is no name for a motion"),
+    (record(""), "is no name for a motion"),
+    (record("x", duration=0.0), "field duration"),
+    (record("x", rate=1000.0), "field rate"),
+    (f("renameMotion", str_param="mine"), "field texts"),
+    (f("renameMotion", str_param="mine", texts=["wide"]), "there is a motion 'wide' already"),
+    (f("renameMotion", str_param="wafe", texts=["greet"]), "did you mean 'wave'"),
+    (f("deleteMotion", str_param="nothing"), "there is no motion 'nothing'"),
+]
+
+
+def test_what_is_wrong_is_told_and_nothing_moves(stiff_robot, motion, store, angle):
+    store.save("mine", WAVE)
+    store.save("wide", RecordedMotion(("LShoulderRoll",), (0.0, 2.0), ((0.5,), (1.5,))))
+    for function, text in REFUSED:
+        refusal = motion.refused(f("angleInterpolation", names=["HeadYaw"], angles=[0.5], times=[1.0]), function)
+        assert refusal.startswith("function 2") and text in refusal
+    assert angle("HeadYaw") == pytest.approx(0.0, abs=NEAR) and store.names() == ["mine", "wide"]
+
+
+def test_nod_stand_and_wave_are_one_goal(robot, motion, angle):
+    goal = motion.play(
+        f("angleInterpolation", names=["HeadPitch"], angles=[0.3, -0.2, 0.0], times=[0.5, 1.0, 1.5], stiffness=1.0),
+        f("goToPosture", str_param="Stand"),
+        f("setPose", names=["RArm"], angles=[-1.0, -0.3, 1.2, 0.8, 0.0, 1.0], duration=1.5),
+        f("angleInterpolation", names=["RElbowRoll"], angles=[0.4, 1.2], times=[0.5, 1.0]),
+    )
+    assert (goal.state, [each.index for each in goal.feedback]) == ("succeeded", [0, 1, 2, 3])
+    assert angle("RElbowRoll") == pytest.approx(1.2, abs=0.05) and robot.now.torso.position[2] > 0.28
