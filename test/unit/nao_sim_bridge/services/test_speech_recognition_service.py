@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fake_speech import RATE, spoken
+from spoken_words import RATE, spoken
 
 from nao_sim_bridge.sim.sound.samples import RATE as WORLD_RATE
 from nao_sim_bridge.sim.sound.samples import Sound

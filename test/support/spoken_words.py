@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 from functools import lru_cache
 
 import numpy as np
@@ -17,13 +18,16 @@ ROOM = 10.0 ** (-74.0 / 20.0)
 
 
 @lru_cache(maxsize=None)
+def _engines():
+    made = Engines()
+    atexit.register(made.close)
+    return made
+
+
+@lru_cache(maxsize=None)
 def spoken(text, voice="slt"):
     """(n,) samples of a text as flite says it, with the level of a person 1 m away."""
-    engines = Engines()
-    try:
-        speech = engines.synthesise(Utterance("flite", voice, text))
-    finally:
-        engines.close()
+    speech = _engines().synthesise(Utterance("flite", voice, text))
     samples = Sound(np.asarray(speech.samples), speech.rate).at_rate(RATE).mono().samples[:, 0]
     loud = np.abs(samples) > 0.1 * np.abs(samples).max()
     return samples * (LEVEL / np.sqrt(np.mean(samples[loud] ** 2)))

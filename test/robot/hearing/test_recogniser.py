@@ -1,0 +1,167 @@
+"""Words are recognised in real speech, and only there: by an ear of its own, and in the process of the recogniser."""
+
+from __future__ import annotations
+
+import os
+import signal
+from time import monotonic
+
+import numpy as np
+import pytest
+from spoken_words import LEVEL, RATE, blocks, in_a_room, spoken
+
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.hearing.bnf import parse_bnf
+from nao_sim_bridge.sim.hearing.contexts import Contexts
+from nao_sim_bridge.sim.hearing.grammar import vocabulary
+from nao_sim_bridge.sim.hearing.listening import Listening, Recognised
+from nao_sim_bridge.sim.hearing.pronunciation import NoPronunciation, Pronouncer, read_by_rules
+from nao_sim_bridge.sim.hearing.recogniser import Recogniser, RecogniserRefused
+from nao_sim_bridge.sim.hearing.settings import load_recognition
+from nao_sim_bridge.sim.hearing.speech_likeness import likeness
+from nao_sim_bridge.sim.hearing.voice_activity import SpeechChange
+
+ROOM = Listening((vocabulary("v", ["yes", "good morning"]),))
+
+
+def recognised(events):
+    return [event for event in events if isinstance(event, Recognised)]
+
+
+def found(events):
+    return [[h.phrase for h in event.hypotheses] for event in recognised(events)]
+
+
+def grammars(text, name="house"):
+    contexts = Contexts()
+    contexts.add(name, parse_bnf(f"#BNF+EM V2.1; !grammar g; !start <s>; <s>: {text}"))
+    return tuple(contexts.grammars())
+
+
+def test_phrases_are_recognised_as_they_were_written_and_other_speech_is_not(heard):
+    said = [spoken("stand up"), spoken("room twenty one"), spoken("the weather in the mountains is nice today")]
+    events = heard(in_a_room(*said))
+    assert found(events) == [["Stand up!"], ["room 21"], []]
+    events += heard(in_a_room(spoken("good morning"), spoken("red", "awb"), noise=LEVEL / 10.0))
+    assert found(events)[3:] == [["good morning"], ["red"]]
+    assert all(0.5 < e.hypotheses[0].confidence <= 1.0 for e in recognised(events) if e.hypotheses)
+
+
+def test_the_times_of_an_utterance_are_those_of_the_speech(heard):
+    speech = spoken("good morning", "awb")
+    changes = [e for e in heard(in_a_room(speech)) if isinstance(e, SpeechChange)]
+    assert [c.present for c in changes] == [True, False]
+    loud = np.flatnonzero(np.abs(speech) > 0.1 * np.abs(speech).max()) / RATE
+    assert changes[0].time == pytest.approx(1.1 + loud[0], abs=0.1)
+    assert changes[1].time == pytest.approx(1.1 + loud[-1], abs=0.15)
+
+
+def test_several_hypotheses_come_best_first_and_one_phrase_has_one(heard):
+    phrases = ["red", "bread", "read", "what is your name"]
+    (utterance,) = recognised(heard(in_a_room(spoken("red")), phrases, hypotheses=3))
+    said, confidences = zip(*((h.phrase, h.confidence) for h in utterance.hypotheses))
+    assert len(set(said)) == len(said) >= 2 and said[0] in ("red", "read")
+    assert list(confidences) == sorted(confidences, reverse=True)
+    stream = in_a_room(spoken("good morning"))
+    assert found(heard(stream, ["good morning"], hypotheses=3)) == [["good morning"]]
+    assert found(heard(stream, grammars=grammars("<...>;"))) == [[]]  # other speech alone is no phrase
+
+
+def test_a_word_is_spotted_when_it_is_all_that_is_said_and_inside_of_longer_speech(heard):
+    for text in ("good morning", "hello my friend good morning to everybody"):
+        events = heard(in_a_room(spoken(text)), ["what is your name", "good morning"], word_spotting=True)
+        assert found(events) == [["<...> good morning <...>"]]
+    assert found(heard(in_a_room(spoken("the river is deep", "awb")), word_spotting=True)) == [[]]
+
+
+def test_a_grammar_with_rules_is_recognised(heard):
+    rules = grammars("turn (on | off) the (light | radio) [please];")
+    events = heard(in_a_room(spoken("turn off the radio please"), spoken("turn on the light", "awb")), grammars=rules)
+    assert found(events) == [["turn off the radio please"], ["turn on the light"]]
+    assert {h.grammar for e in recognised(events) for h in e.hypotheses} == {"house"}
+
+
+def test_grammars_that_are_too_large_are_refused(ear):
+    rules = "".join(f"<r{i}>: <r{i + 1}> <r{i + 1}>;\n" for i in range(40))
+    with pytest.raises(BadValue, match="smaller"):
+        ear.listen(Listening(grammars(f"<r0>;\n{rules}<r40>: word;\n")))
+
+
+@pytest.mark.parametrize("text", ["yes", "good morning", "stop", "six", "sit down"])
+def test_speech_is_within_the_bounds_of_speech_whatever_its_level(text):
+    bounds, sound = load_recognition().speech_likeness, spoken(text)
+    measured, quiet = likeness(sound), likeness(1e-3 * sound)
+    assert measured.voice > bounds.least_voice and measured.tone < bounds.most_tone
+    assert measured.change > bounds.least_change
+    assert (quiet.voice, quiet.tone, quiet.change) == pytest.approx(
+        (measured.voice, measured.tone, measured.change), rel=1e-3
+    )
+
+
+def test_words_that_no_dictionary_has_are_read_by_rules_or_named(tmp_path, monkeypatch):
+    (tmp_path / "words.dict").write_text("robot R OW B AA T\n")
+    assert Pronouncer(tmp_path / "words.dict").phones("nao") == ["N AW"]
+    with pytest.raises(NoPronunciation, match="猫"):
+        read_by_rules("猫")
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(NoPronunciation, match="'blorp'.*espeak-ng.*is missing"):
+        read_by_rules("blorp")
+
+
+# --- the process ------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def recogniser():
+    events = []
+    made = Recogniser(events.append)
+    made.events = events
+    made.listen(ROOM)
+    yield made
+    made.close()
+
+
+def hear_all(recogniser, begin=0.0):
+    for time, samples in blocks(in_a_room(spoken("good morning"))):
+        recogniser.hear(begin + time, samples)
+    recogniser.catch_up()
+
+
+def test_the_process_recognises_and_is_started_again_when_it_has_died(recogniser):
+    hear_all(recogniser)
+    first = recogniser.pid
+    os.kill(first, signal.SIGKILL)
+    hear_all(recogniser, 10.0)
+    assert recogniser.pid not in (None, first)
+    assert found(recogniser.events) == [["good morning"], ["good morning"]]
+    assert recogniser.lag == 0.0
+
+
+def test_what_is_refused_leaves_the_vocabulary_as_it_was(recogniser):
+    with pytest.raises(RecogniserRefused, match="猫"):
+        recogniser.listen(Listening((vocabulary("v", ["猫"]),)))
+    with pytest.raises(RecogniserRefused, match=r"'aaaaaaaaaaaaaaaaaaaa...': it is longer than 64 letters") as refused:
+        recogniser.listen(Listening((vocabulary("v", ["yes", "a" * 100000]),)))
+    assert len(str(refused.value)) < 200
+    hear_all(recogniser)
+    assert found(recogniser.events) == [["good morning"]]
+
+
+def test_sound_that_waits_is_lag_and_a_process_that_hangs_does_not_hold_up_the_end(recogniser, caplog):
+    pid, stream = recogniser.pid, blocks(in_a_room())[:3]
+    os.kill(pid, signal.SIGSTOP)
+    for time, samples in stream:
+        recogniser.hear(time, samples)
+    assert recogniser.lag == pytest.approx(3 * 0.17)
+    os.kill(pid, signal.SIGCONT)
+    recogniser.catch_up()
+    assert recogniser.lag == 0.0
+    os.kill(pid, signal.SIGSTOP)
+    for time, samples in stream:
+        recogniser.hear(1.0 + time, samples)
+    begin = monotonic()
+    recogniser.close()
+    assert monotonic() - begin < 10.0
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+    assert not caplog.records
