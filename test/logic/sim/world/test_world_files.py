@@ -1,0 +1,368 @@
+"""World files: floors, things, cards, people, robots and sounds are read strictly."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from PIL import Image
+
+from nao_sim_bridge.sim.kinematics import rpy_matrix
+from nao_sim_bridge.sim.landmarks import load_landmarks
+from nao_sim_bridge.sim.meshes import tessellate
+from nao_sim_bridge.sim.places import RobotPlace
+from nao_sim_bridge.sim.rotations import rotate
+from nao_sim_bridge.sim.shapes import Shape
+from nao_sim_bridge.sim.sound.files import write_sound
+from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
+from nao_sim_bridge.sim.world import MOST_PARTS, WorldError, load_world, world_names
+from nao_sim_bridge.sim.world_cards import CARDS
+from nao_sim_bridge.sim.world_objects import read_object
+from nao_sim_bridge.sim.world_pictures import WorldPicture
+from nao_sim_bridge.sim.world_reader import read_world
+from nao_sim_bridge.sim.world_sounds_made import make_sound, noise, tone
+
+BALL = {"name": "ball", "sphere": 0.04, "position": [0.5, 0.0, 0.2], "mass": 0.1, "color": [1, 0, 0]}
+TABLE = {"name": "table", "box": [0.4, 0.6, 0.3], "position": [1.0, 0.0, 0.15], "friction": 0.9}
+CHAIR = {"name": "chair", "position": [2.0, 1.0, 0.0], "parts": [{"box": [0.4, 0.4, 0.02], "xyz": [0, 0, 0.3]}]}
+RUG = {"center": [1.0, 0.5], "size": [1.0, 0.5], "color": [0, 0, 1]}
+BUMPS = {"count": 30, "size": [0.05, 0.2], "height": [0.003, 0.008], "area": [[-1, -1], [2, 1]], "seed": 4}
+DOCUMENT = Path(__file__).parents[4] / "docs" / "worlds.md"
+
+
+def read(content, folder=None):
+    return read_world(content, "test", "test.yaml", folder)
+
+
+def floor(**entries):
+    return {"floor": {"friction": 1, **entries}}
+
+
+def of(*objects):
+    return {**floor(), "objects": list(objects)}
+
+
+def robot(entry):
+    return {**floor(), "robots": [entry]}
+
+
+@pytest.mark.parametrize(
+    "content, message",
+    [
+        ({"flor": {}}, "unknown key 'flor', did you mean 'floor'"),
+        ({}, "missing 'floor'"),
+        (floor(friction=-1), r"floor\.friction: is -1, allowed is 0 or more"),
+        (floor(friction="much"), r"floor\.friction"),
+        ({**floor(), "light": {"direction": [1, 0, -1]}}, "light must be above"),
+        (floor(color=[0, 0, 2]), r"floor\.color: .* allowed is 0..1"),
+        ({**floor(), "objects": {"a": 1}}, "objects: .*not a list"),
+        (of({**BALL, "mas": 1}), r"objects\[0\]: unknown key 'mas'"),
+        (of({**BALL, "box": [1, 1, 1]}), "exactly one of"),
+        (of({**TABLE, "box": [1, 1]}), "not 3 finite numbers"),
+        (of({**TABLE, "box": [1, 1, 0]}), "must be above 0"),
+        (of(BALL, BALL), r"objects\[1\]\.name: 'ball' is taken"),
+        (of({**BALL, "name": "floor"}), "'floor' is taken"),
+        (of({**CHAIR, "box": [1, 1, 1]}), "parts and a shape of its own"),
+        (of({**CHAIR, "parts": []}), r"objects\[0\]\.parts: has 0 entries"),
+        (of({**CHAIR, "parts": CHAIR["parts"] * 17}), r"has 17 .* allowed is 1\.\.16"),
+        (of({**CHAIR, "parts": [{"xyz": [0, 0, 0]}]}), r"parts\[0\]: .*exactly one"),
+        (of({**CHAIR, "parts": {"box": [1, 1, 1]}}), "parts: .*not a list"),
+        (floor(slope_deg=[3]), r"floor\.slope_deg: .*not 2 finite numbers"),
+        (floor(slope_deg=[0, -40]), r"slope_deg: .*allowed is -30\.\.30"),
+        (floor(rugs=[{**RUG, "size": [1, 0]}]), r"rugs\[0\]\.size: .*above 0"),
+        (floor(rugs=[{"center": [0, 0]}]), r"rugs\[0\]: missing 'size', 'color'"),
+        ({**floor(), "background": {"haze": 0}}, r"background\.haze: is 0, allowed is 0\.1 or more"),
+        (floor(bumps={**BUMPS, "count": 0}), r"bumps\.count: is 0, allowed is 1\.\.500"),
+        (floor(bumps={**BUMPS, "count": 2.5}), r"bumps\.count: is 2\.5, not a whole number"),
+        (floor(bumps={**BUMPS, "height": [0.01, 0.005]}), r"bumps\.height: .*smaller one first"),
+        (floor(bumps={**BUMPS, "keep_free": 3}), r"keep_free: is 3 m, which leaves no room"),
+        (floor(bumps={**BUMPS, "area": [0, 1]}), r"bumps\.area: .*not 2 x 2 finite numbers"),
+        (robot({"position": [1]}), r"test.yaml: robots\[0\]"),
+        (robot({"yaw": 1}), r"test.yaml: robots\[0\]"),
+        (robot({"position": [1, 2], "turn": 3}), r"test.yaml: robots\[0\]"),
+        (robot({"position": [99, 0]}), r"test.yaml: robots\[0\]"),
+        (robot(7), r"test.yaml: robots\[0\]"),
+        (["floor"], "not a mapping"),
+    ],
+)
+def test_wrong_worlds_are_refused_with_the_place(content, message):
+    with pytest.raises(WorldError, match=message):
+        read(content)
+
+
+def test_worlds_are_found_by_name_and_path(tmp_path):
+    names = {"empty", "gallery", "lab", "obstacles", "party", "slope_3deg", "uneven", "wall"}
+    assert set(world_names()) == names
+    assert all(load_world(name).name == name and load_world(name).description for name in names)
+    empty = load_world("empty")
+    assert (empty.floor.friction, empty.objects, empty.robots, empty.sounds) == (1.0, (), (), ())
+    path = tmp_path / "mine.yaml"
+    path.write_text(
+        "floor: {friction: 0.5}\nobjects:\n- {name: cube, box: [1, 1, 1], position: [0, 0, 2]}\n"
+        "sounds:\n- {name: bell, on: cube, tone: 440}\n"  # `on` without quotes
+        "robots: [{position: [1, 2], yaw: 0.5}, {position: [-1, 0]}]\n"
+    )
+    world = load_world(str(path))
+    assert (world.name, world.floor.friction, world.objects[0].name, world.sounds[0].on) == (
+        "mine",
+        0.5,
+        "cube",
+        "cube",
+    )
+    assert world.robots == (RobotPlace(1.0, 2.0, 0.5), RobotPlace(-1.0, 0.0, 0.0))
+    path.write_text("floor: [")
+    for wrong, message in (("moon", "'moon'.*empty"), (str(tmp_path / "no.yaml"), r"no\.yaml: cannot be read")):
+        with pytest.raises(WorldError, match=message):
+            load_world(wrong)
+    with pytest.raises(WorldError, match=r"mine\.yaml: cannot be read"):
+        load_world(str(path))
+
+
+def test_the_world_of_the_documents_can_be_read(tmp_path):
+    (tmp_path / "music.ogg").touch()
+    texts = re.findall(r"```yaml\n(.*?)```", DOCUMENT.read_text(encoding="utf-8"), re.DOTALL)
+    world = read(yaml.safe_load("".join(texts)), tmp_path)
+    assert [sound.name for sound in world.sounds] == ["anna", "radio", "hum", "knock"]
+    assert [thing.name for thing in world.objects][:2] == ["ball", "chair"]
+    assert {thing.kind for thing in world.objects} >= set(CARDS) - {"image"} | {"person", "nao", "ball"}
+    assert len(world.floor.rugs) == 1 and len(world.floor.bumps) == 20
+
+
+def test_a_floor_that_rises_ahead_and_to_the_left():
+    slope = read(floor(slope_deg=[3, 5])).floor
+    assert slope.height_at(1.0, 0.0) == pytest.approx(math.tan(math.radians(3.0)))
+    assert slope.height_at(0.0, 1.0) == pytest.approx(math.tan(math.radians(5.0)))
+    assert rotate(slope.orientation, (0.0, 0.0, 1.0)) == pytest.approx(slope.normal)
+    x, y, z = (0.4 * axis for axis in slope.normal)
+    assert slope.height_at(x, y, above=0.4) == pytest.approx(z)
+    # What heads ahead on it still heads ahead, seen from above.
+    x, y, _ = rotate(slope.orientation, (1.0, 0.0, 0.0))
+    assert math.atan2(y, x) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_bumps_are_as_many_and_as_large_as_asked_for_leave_the_start_free_and_follow_their_seed():
+    def bumps(**changes):
+        return read(floor(bumps={**BUMPS, **changes})).floor.bumps
+
+    assert bumps() == bumps() != bumps(seed=5)
+    plates = bumps(keep_free=0.3)
+    assert len(plates) == 30
+    for (length, width, height), (x, y, z) in ((plate.size, plate.xyz) for plate in plates):
+        assert 0.05 <= length <= 0.2 and 0.05 <= width <= 0.2 and 0.003 <= height <= 0.008
+        assert -1.0 <= x <= 2.0 and -1.0 <= y <= 1.0 and z == height / 2 and math.hypot(x, y) > 0.3
+
+
+# --- things known by name
+
+
+def thing(**entry):
+    return read_object({"name": "it", "position": [1.0, 0.0, 0.5], **entry}, "it", Path)
+
+
+def heights(one):
+    """Lowest and highest point over the floor of what is to be seen of a thing, m."""
+    points = np.vstack([tessellate(part.shape).placed(part.shape).vertices for part in one.parts])
+    points = points @ rpy_matrix(one.rpy).T + one.position
+    return points[:, 2].min(), points[:, 2].max()
+
+
+@pytest.mark.parametrize(
+    "entry, width, height",
+    [
+        ({"landmark": 64}, 0.115, 0.115),
+        ({"landmark": 64, "size": 0.2}, 0.25, 0.25),
+        ({"qr": "hello", "size": 0.1}, 0.1, 0.1),
+        ({"face": "anna", "size": 0.24}, 0.24, 0.30),
+        ({"poster": "hills", "size": 0.6}, 0.6, 0.8),
+    ],
+)
+def test_cards_have_the_size_that_was_asked_for(entry, width, height):
+    assert thing(**entry).parts[0].shape.size == pytest.approx((0.006, width, height))
+    disc = thing(landmark=64).parts[0].shape.size[1] / (1.0 + load_landmarks().margin)
+    assert disc == pytest.approx(0.092), "as large as printed ones"
+
+
+@pytest.mark.parametrize("stand", [False, True])
+def test_the_middle_of_a_card_is_at_its_position_and_a_stand_reaches_up_to_it_from_behind(stand):
+    one = thing(landmark=119, heading=math.pi, stand=stand)
+    for point in (one.parts[0].shape.xyz, one.origin):
+        assert rpy_matrix(one.rpy) @ point + one.position == pytest.approx((1.0, 0.0, 0.5))
+    assert (one.parts[0].picture, one.kind, one.mass) == (WorldPicture("landmark", "119"), "landmark", 0.0)
+    if stand:
+        assert heights(one) == (pytest.approx(0.0, abs=1e-9), pytest.approx(0.5575))
+        pole = one.parts[1].shape
+        assert (rpy_matrix(one.rpy) @ pole.xyz + one.position)[0] - pole.size[0] >= 1.003 - 1e-9
+
+
+def test_a_card_from_a_file_has_its_proportions(tmp_path):
+    Image.new("RGB", (40, 10)).save(tmp_path / "wide.png")
+    entry = {"name": "it", "position": [0, 0, 1], "image": "wide.png", "size": 0.8}
+    card = read_object(entry, "it", lambda name: tmp_path / name).parts[0]
+    assert card.shape.size[1:] == pytest.approx((0.8, 0.2))
+    assert card.picture == WorldPicture("file", str(tmp_path / "wide.png"))
+    assert thing(box=[0.1, 0.2, 0.3], picture="pattern:oak").parts[0].picture == WorldPicture("pattern", "oak")
+
+
+def test_a_ball_is_red_light_and_rolls():
+    one = thing(ball=0.03)
+    assert one.parts[0].shape == Shape("sphere", (0.03,), (0.0, 0.0, 0.0))
+    red, green, blue = one.parts[0].color
+    assert red > 4 * green and red > 4 * blue
+    assert one.mass == 0.03 and one.rolling_friction < 0.001 and one.kind == "ball"
+    assert thing(ball=0.03, mass=0, color=[0, 0, 1]).mass == 0.0
+
+
+@pytest.mark.parametrize("height", [0.9, 1.65, 1.9])
+def test_a_person_stands_on_the_floor_as_tall_as_told_and_looks_ahead_and_down(height):
+    one = thing(person="ben", height=height, position=[2, 1, 0], clothes=[0.1, 0.2, 0.3], trousers=[0.7, 0.6, 0.5])
+    assert heights(one) == (pytest.approx(0.0, abs=0.005), pytest.approx(height, abs=0.03))
+    assert rpy_matrix(one.rpy) @ one.origin + one.position == pytest.approx((2.0, 1.0, 0.0))
+    assert len(one.touched) <= MOST_PARTS
+    assert {(0.1, 0.2, 0.3), (0.7, 0.6, 0.5)} <= {part.color for part in one.parts}
+    people = thing(person="ben"), thing(person="ben", nod=0)
+    (head,), (level,) = ([part for part in who.parts if part.picture is not None] for who in people)
+    assert head.picture == WorldPicture("head", "ben") and 0.2 < head.shape.rpy[1] < 0.6
+    assert level.shape.rpy == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("posture, low, high", [("Stand", 0.55, 0.60), ("Sit", 0.35, 0.45), ("LyingBack", 0.1, 0.3)])
+def test_another_nao_is_on_the_floor_in_its_posture_with_its_lights(posture, low, high):
+    dark, lit = (thing(nao=posture, position=[1, 0, 0], **leds) for leds in ({}, {"leds": [0.1, 0.6, 1.0]}))
+    lowest, highest = heights(dark)
+    assert lowest == pytest.approx(0.0, abs=0.002) and low < highest < high
+    assert len(dark.touched) <= MOST_PARTS
+    assert {shape.kind for shape in dark.touched} <= {"box", "sphere", "capsule"}
+    assert not any(part.shining for part in dark.parts)
+    assert [part.color for part in lit.parts if part.shining] == [(0.1, 0.6, 1.0)] * 51
+
+
+@pytest.mark.parametrize(
+    "entry, message",
+    [
+        ({}, "needs exactly one of box, sphere, .*nao, has none"),
+        ({"ball": 0.03, "box": [1, 1, 1]}, "exactly one of .*, has box, ball"),
+        ({"ball": -1}, "sizes must be above 0"),
+        ({"ball": 0.03, "stand": True}, "unknown key 'stand'"),
+        ({"landmark": 65}, r"it\.landmark: landmark is '65', allowed is one of 64"),
+        ({"landmark": 64, "size": 0}, r"it\.size: is 0, allowed is 0.01..4"),
+        ({"landmark": 64, "stand": "yes"}, r"it\.stand: is 'yes', not true or false"),
+        ({"poster": "hills", "size": 2.0, "stand": True}, r"it\.position: has z 0.5: a card of 2.67 m"),
+        ({"landmark": 64, "heading": 1, "rpy": [0, 0, 1]}, "rpy and heading: one of both"),
+        ({"qr": "x" * 301}, "1 to 300 bytes"),
+        ({"barcode": "123"}, "12 or 13 digits"),
+        ({"barcode": 4006381333931}, r"it\.barcode: is 4006381333931, not a text: put it between quotes"),
+        ({"landmark": True}, "landmark is 'True', allowed is one of 64"),
+        ({"image": "nowhere.png"}, "a file that is there"),
+        ({"person": "nobody"}, "allowed is one of anna"),
+        ({"person": "anna", "height": 3}, r"it\.height: is 3, allowed is 0.9..1.9"),
+        ({"person": "anna", "trouser": [0, 0, 0]}, "did you mean 'trousers'"),
+        ({"nao": "Handstand"}, r"it\.nao: unknown posture 'Handstand'"),
+        ({"nao": "Stand", "leds": [2, 0, 0]}, r"it\.leds: .* allowed is 0..1 each"),
+        ({"box": [1, 1, 1], "picture": "oak"}, r"it\.picture: is 'oak', not a kind and a name"),
+        ({"box": [1, 1, 1], "picture": "file:/etc/passwd"}, "not a kind and a name"),
+        ({"box": [1, 1, 1], "picture": "pattern:gold"}, "allowed is one of oak"),
+    ],
+)
+def test_wrong_things_are_refused(entry, message):
+    with pytest.raises(WorldError, match=message):
+        thing(**entry)
+
+
+# --- sounds
+
+HUM = {"name": "hum", "tone": 100, "position": [1, 2, 3]}
+HERE = {"name": "n", "position": [0, 0, 1]}
+
+
+def sounds(*entries, folder=None):
+    return read({**of(BALL, TABLE), "sounds": list(entries)}, folder).sounds
+
+
+def made(entry, folder=None):
+    """The sound of an entry; a text takes 0.1 s a letter."""
+    return make_sound(*sounds(entry, folder=folder), lambda text, voice: sine(300.0, 0.1 * len(text), 0.5))
+
+
+def test_a_sound_has_sensible_defaults():
+    (hum,) = sounds(HUM)
+    assert (hum.kind, hum.content, hum.position, hum.on) == ("tone", (100.0,), (1.0, 2.0, 3.0), None)
+    assert (hum.level_db, hum.start, hum.loop, hum.pause, hum.duration) == (65.0, 0.0, False, 0.0, None)
+    kinds = {sound.name: sound.kind for sound in load_world("party").sounds}
+    assert (kinds["anna"], kinds["fan"], kinds["radio_1"]) == ("say", "noise", "tone")
+
+
+@pytest.mark.parametrize(
+    "entry, message",
+    [
+        ("loud", "is 'loud', not a mapping"),
+        ({**HUM, "levl_db": 3}, "unknown key 'levl_db', did you mean 'level_db'"),
+        ({"tone": 100, "position": [1, 2, 3]}, "missing 'name'"),
+        ({**HUM, "name": ""}, "name: is '', not a name"),
+        ({"name": "hum", "tone": 100}, "missing 'position', or 'on'"),
+        (HERE, "has nothing to sound, needs exactly one of file, tone, noise, say"),
+        ({**HUM, "noise": "white"}, "has tone and noise to sound"),
+        ({**HUM, "position": [1, 2]}, "not 3 finite numbers"),
+        ({"name": "hum", "on": "dog", "tone": 1}, r"on: is 'dog', allowed is an object of this world \(ball, table\)"),
+        ({**HUM, "tone": -5}, "tone: is -5, allowed is above 0 to 20000 Hz"),
+        ({**HUM, "tone": []}, "tone"),
+        ({**HUM, "tone": "A4"}, "tone: .*not"),
+        ({**HERE, "noise": "blue"}, "noise: is 'blue', allowed is white or pink"),
+        ({**HERE, "say": " "}, "say: is ' ', not a text"),
+        ({**HUM, "voice": "slt"}, "voice: is for a text to say"),
+        ({**HUM, "loop": "yes please"}, "loop: is 'yes please', allowed is true or false"),
+        ({**HUM, "pause": 1.0}, "pause: is for what is repeated"),
+        ({**HUM, "start": -1}, "start: is -1, allowed is 0 or more"),
+        ({**HUM, "level_db": 200}, r"level_db: is 200, allowed is -20\.\.140"),
+        ({**HERE, "say": "hi", "duration": 2}, "duration: is for tones and noises"),
+        ({**HUM, "duration": 0}, "duration: is 0"),
+        ({**HERE, "file": "a.wav"}, "file: a world without a file"),
+    ],
+)
+def test_wrong_sounds_are_refused(entry, message):
+    with pytest.raises(WorldError, match=message) as raised:
+        sounds(entry)
+    assert str(raised.value).startswith("test.yaml: sounds[0]")
+
+
+def test_names_of_sounds_are_unique_and_files_are_beside_the_world_file(tmp_path):
+    with pytest.raises(WorldError, match=r"sounds\[1\]\.name: 'hum' is taken"):
+        sounds(HUM, HUM)
+    (tmp_path / "world").mkdir()
+    (tmp_path / "a.wav").touch()
+    inside = "allowed is a name inside"
+    for name, message in (("../a.wav", inside), ("/a.wav", inside), ("b.wav", "there is no file 'b.wav'")):
+        with pytest.raises(WorldError, match=message):
+            sounds({**HERE, "file": name}, folder=tmp_path / "world")
+
+
+def spectrum(sound):
+    return np.fft.rfftfreq(sound.frames, 1.0 / sound.rate), np.abs(np.fft.rfft(sound.samples[:, 0]))
+
+
+def test_tones_have_their_frequencies_and_pink_noise_as_much_in_every_octave():
+    frequencies, values = spectrum(made({**HUM, "tone": [440.0, 1000.0]}))
+    assert sorted(frequencies[np.argsort(values)[-2:]]) == pytest.approx([440.0, 1000.0], abs=0.1)
+    frequencies, values = spectrum(noise("pink"))
+    powers = [np.sum(values[(frequencies >= low) & (frequencies < 2 * low)] ** 2) for low in (100, 400, 1600, 6400)]
+    assert max(powers) < 1.2 * min(powers)
+
+
+@pytest.mark.parametrize("sound", [tone([123.4]), noise("white"), noise("pink", seed=3)])
+def test_what_does_not_end_repeats_without_a_seam(sound):
+    wave = sound.samples[:, 0]
+    assert abs(wave[0] - wave[-1]) <= np.abs(np.diff(wave)).max()
+    assert 0.05 < np.sqrt(np.mean(wave**2)) and np.abs(wave).max() < 1.0
+
+
+def test_files_texts_and_pauses_have_their_lengths_and_noise_follows_its_seed(tmp_path):
+    write_sound(tmp_path / "a.wav", Sound(np.zeros((4410, 2), np.float32) + 0.1, 44100))
+    assert made({**HERE, "file": "a.wav"}, tmp_path).duration == pytest.approx(0.1)
+    assert made({**HERE, "say": "Hello"}).duration == pytest.approx(0.5)
+    burst = made({**HUM, "duration": 0.2, "loop": True, "pause": 0.3})
+    assert burst.duration == pytest.approx(0.5) and np.all(burst.samples[round(0.2 * RATE) :] == 0.0)
+    first, again, other = (noise("white", 0.1, seed=seed).samples for seed in (1, 1, 2))
+    assert np.array_equal(first, again) and not np.array_equal(first, other)
