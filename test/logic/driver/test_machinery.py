@@ -1,0 +1,498 @@
+"""What the driver's nodes are made of: goals side by side, demand, polling, pace, and parameters that can change."""
+
+from __future__ import annotations
+
+import threading
+from types import SimpleNamespace
+
+import pytest
+from dynamic_reconfigure.encoding import decode_description, encode_description
+
+from nao_library_modules.clock import WallClock
+from nao_library_modules.driver import demand as demand_module
+from nao_library_modules.driver import polling as polling_module
+from nao_library_modules.driver import reconfigure
+from nao_library_modules.driver.demand import Demand
+from nao_library_modules.driver.goal_crowd import GoalCrowd, Outcome, Replaced
+from nao_library_modules.driver.pacer import Pacer
+from nao_library_modules.driver.polling import Polling
+from nao_library_modules.driver.reconfigure import Field, description_of
+from nao_library_modules.errors import BadGoal, Preempted, RobotLost
+from nao_library_modules.interrupt import Interrupt
+from naoqi.errors import NaoError
+
+PATIENCE = 10.0
+
+
+def soon(condition, what="it"):
+    """Wait for what another thread brings about."""
+    pause = threading.Event()
+    for _ in range(int(PATIENCE / 0.001)):
+        if condition():
+            return
+        pause.wait(0.001)
+    raise AssertionError(f"{what} did not come about")
+
+
+# Goals side by side
+
+
+class Handle:
+    """A goal of actionlib: names of joints."""
+
+    def __init__(self, *joints):
+        self.joints, self.accepted, self.end, self.feedback = joints, False, None, []
+        self.publish_feedback = self.feedback.append
+        self._ended = threading.Event()
+        for state in ("succeeded", "canceled", "aborted"):
+            setattr(self, f"set_{state}", lambda result, text="", state=state: self._set(state, result, text))
+
+    def get_goal(self):
+        return self.joints
+
+    def set_accepted(self):
+        self.accepted = True
+
+    def _set(self, *end):
+        assert self.end is None, "a goal ends once"
+        self.end = end
+        self._ended.set()
+
+    def wait(self):
+        assert self._ended.wait(PATIENCE), "the goal did not end"
+        return self.end
+
+
+class Work:
+    """An executor whose goals run until the test, or an interrupt, ends them."""
+
+    def __init__(self):
+        self.running = {}
+
+    def __call__(self, joints, interrupt):
+        finish = self.running[joints] = threading.Event()
+        with interrupt.waking(finish.set):
+            assert finish.wait(PATIENCE), "nobody ended this goal"
+        try:
+            interrupt.check()
+        except Preempted:
+            return Outcome(f"stopped {joints}", preempted=True)
+        return Outcome(f"done {joints}")
+
+    def begun(self, *joints):
+        soon(lambda: joints in self.running, f"the start of {joints}")
+        return self.running[joints]
+
+
+@pytest.fixture
+def work():
+    return Work()
+
+
+@pytest.fixture
+def crowd(work):
+    return GoalCrowd(frozenset, work)
+
+
+def send(crowd, *joints):
+    handle = Handle(*joints)
+    crowd.on_goal(handle)
+    assert handle.accepted
+    return handle
+
+
+def test_goals_for_different_joints_run_side_by_side_and_are_cancelled_apart(crowd, work):
+    head, arm, leg = (send(crowd, joint) for joint in ("HeadYaw", "LArm", "LLeg"))
+    for joint in ("HeadYaw", "LLeg"):
+        work.begun(joint)
+    work.begun("LArm").set()
+    assert arm.wait() == ("succeeded", "done ('LArm',)", "")
+    assert crowd.counter.report().values["succeeded"] == "1"
+    crowd.on_cancel(head)
+    assert head.wait() == ("canceled", "stopped ('HeadYaw',)", "canceled")
+    assert leg.end is None
+    crowd.interrupt_all(RobotLost("nao:9559", "silence"))
+    assert leg.wait() == ("aborted", None, "the robot at nao:9559 went away: silence")
+
+
+def test_a_goal_for_the_same_joint_ends_the_older_one_first(crowd, work):
+    old = send(crowd, "HeadYaw", "HeadPitch")
+    work.begun("HeadYaw", "HeadPitch")
+    new = send(crowd, "HeadYaw")
+    finish = work.begun("HeadYaw")
+    assert old.end == ("canceled", "stopped ('HeadYaw', 'HeadPitch')", "a newer goal needs HeadYaw")
+    finish.set()
+    assert new.wait()[0] == "succeeded"
+
+
+def test_of_many_goals_for_one_joint_only_the_last_is_left(crowd, work):
+    goals = [send(crowd, "HeadYaw", f"{i}") for i in range(20)]
+    assert [goal.wait()[0] for goal in goals[:-1]] == ["canceled"] * 19
+    work.begun("HeadYaw", "19")
+    assert goals[-1].end is None
+    crowd.close(PATIENCE)
+    assert goals[-1].end == ("canceled", "stopped ('HeadYaw', '19')", "canceled")
+    assert send(crowd, "HeadYaw").wait() == ("canceled", None, "canceled")  # it takes no more
+
+
+def test_goals_that_will_not_do_abort_with_their_text_and_feedback_goes_to_its_goal(work):
+    def claims(joints):
+        raise BadGoal("joint_names", joints, "joints")
+
+    def execute(joints, interrupt, publish):
+        publish(f"half of {joints[0]}")
+        return Outcome("done")
+
+    assert send(GoalCrowd(claims, work), "Tail").wait()[0] == "aborted"
+    assert "division by zero" in send(GoalCrowd(frozenset, lambda *_: 1 / 0), "HeadYaw").wait()[2]
+    handle = send(GoalCrowd(frozenset, execute, with_feedback=True), "HeadYaw")
+    assert handle.wait()[0] == "succeeded" and handle.feedback == ["half of HeadYaw"]
+
+
+@pytest.mark.parametrize("newer, signal", [(True, Replaced), (False, Preempted)], ids=["newer goal", "cancel"])
+def test_an_executor_knows_whether_a_newer_goal_takes_over(newer, signal):
+    started, reasons = threading.Event(), []
+
+    def execute(joints, interrupt):
+        if started.is_set():
+            return Outcome("second")
+        started.set()
+        assert interrupt.wait(PATIENCE)
+        try:
+            interrupt.check()
+        except Preempted as reason:
+            reasons.append(type(reason))
+            raise
+
+    crowd = GoalCrowd(frozenset, execute)
+    old = send(crowd, "HeadYaw")
+    assert started.wait(PATIENCE)
+    if newer:
+        assert send(crowd, "HeadYaw").wait()[0] == "succeeded"
+    else:
+        crowd.on_cancel(old)
+    assert old.wait()[0] == "canceled"
+    assert reasons == [signal]
+
+
+# Something that runs on the robot, or is read from it, exactly while it is wanted
+
+
+class Connection:
+    """A connection that comes and goes as the test says."""
+
+    def __init__(self):
+        self.state, self.generation, self._listeners = "connected", 1, []
+
+    def add_listener(self, listener):
+        self._listeners.append(listener)
+
+    def remove_listener(self, listener):
+        self._listeners = [each for each in self._listeners if each != listener]
+
+    def become(self, state):
+        self.generation += state == "connected"
+        self.state = state
+        for listener in list(self._listeners):
+            listener(state)
+
+    def wait_connected(self, timeout):
+        return self.state == "connected"
+
+
+@pytest.fixture
+def robot(monkeypatch):
+    for name, seconds in (("RETRY", 0.01), ("FIRST_RETRY", 0.01), ("LOOK_PERIOD", 0.01)):
+        monkeypatch.setattr(demand_module, name, seconds)
+    monkeypatch.setattr(polling_module, "RETRY", 0.01)
+    return SimpleNamespace(connection=Connection())
+
+
+class Thing:
+    def __init__(self):
+        self.calls, self.failures, self.alive = [], [], True
+
+    def start(self):
+        self.calls.append("start")
+        if self.failures:
+            raise self.failures.pop()
+
+    def stop(self):
+        self.calls.append("stop")
+
+
+@pytest.fixture
+def thing():
+    return Thing()
+
+
+@pytest.fixture
+def demand(robot, thing):
+    demand = Demand(robot, "thing", thing.start, thing.stop, lambda: thing.alive)
+    yield demand
+    demand.close(PATIENCE)
+
+
+def test_it_runs_while_it_is_wanted_and_its_owner_takes_it_along(demand, thing, robot):
+    assert thing.calls == []
+    demand.want(True)
+    soon(lambda: demand.running)
+    demand.want(False)
+    soon(lambda: not demand.running)
+    demand.want(True)
+    soon(lambda: demand.running)
+    demand.close(PATIENCE)
+    assert thing.calls == ["start", "stop"] * 2
+    robot.connection.become("lost")
+    robot.connection.become("connected")
+    assert thing.calls == ["start", "stop"] * 2
+
+
+def test_it_is_tried_again_until_it_works(demand, thing):
+    thing.failures = [NaoError("not yet"), ValueError("a mistake"), NaoError("not yet")]
+    demand.want(True)
+    soon(lambda: demand.running)
+    assert thing.calls == ["start"] * 4 and demand.problem == ""
+
+
+def test_it_waits_for_the_robot_and_starts_again_after_a_loss(demand, robot, thing):
+    robot.connection.become("lost")
+    demand.want(True)
+    assert thing.calls == []
+    for count in (1, 2):
+        robot.connection.become("connected")
+        soon(lambda count=count: thing.calls == ["start"] * count and demand.running)
+        robot.connection.become("lost")
+        assert not demand.running
+    demand.want(False)
+    robot.connection.become("connected")
+    demand.stop_now()
+    assert thing.calls == ["start"] * 2  # nothing is stopped on a robot that forgot it
+
+
+def test_started_in_the_calling_thread_it_tells_what_is_wrong(demand, thing):
+    thing.failures = [NaoError("not yet")]
+    with pytest.raises(NaoError, match="not yet"):
+        demand.start_now()
+    assert not demand.wanted and not demand.running
+    demand.start_now()
+    demand.start_now()
+    assert demand.running and thing.calls == ["start", "start"]
+    demand.stop_now()
+    assert not demand.running and thing.calls[2:] == ["stop"]
+
+
+def test_a_change_or_one_that_is_not_alive_starts_it_anew(demand, thing):
+    demand.start_now()
+    demand.restart()
+    soon(lambda: thing.calls == ["start", "stop", "start"] and demand.running)
+    thing.alive = False
+    soon(lambda: thing.calls[3:5] == ["stop", "start"])
+
+
+class HandClock:
+    """Time that the test turns; waits end when it does."""
+
+    def __init__(self):
+        self.time = 100.0
+        self._turned = threading.Condition()
+
+    def now(self):
+        return self.time
+
+    def turn(self, seconds=0.0):
+        with self._turned:
+            self.time += seconds
+            self._turned.notify_all()
+
+    def wait(self, duration, interrupt):
+        with interrupt.waking(self.turn), self._turned:
+            end = self.time + duration
+            self._turned.wait_for(lambda: self.time >= end - 1e-9 or interrupt.is_set())
+        return not interrupt.is_set()
+
+
+class Sensor:
+    def __init__(self):
+        self.readings, self.error = 0, None
+
+    def read(self):
+        if self.error is not None:
+            raise self.error
+        self.readings += 1
+
+
+@pytest.fixture
+def clock():
+    return HandClock()
+
+
+@pytest.fixture
+def sensor():
+    return Sensor()
+
+
+@pytest.fixture
+def polling(robot, clock, sensor):
+    polling = Polling(robot, "sensor", 10.0, clock, sensor.read)
+    yield polling
+    polling.close()
+
+
+def test_it_reads_at_its_rate_while_it_is_wanted(polling, clock, sensor):
+    assert polling.report().message == "nobody listens"
+    polling.want(True)
+    soon(lambda: sensor.readings == 1)
+    for count in range(2, 6):
+        clock.turn(0.1)
+        soon(lambda count=count: sensor.readings == count)
+    polling.want(False)
+    clock.turn(10.0)
+    polling.want(True)
+    soon(lambda: sensor.readings == 6)
+    soon(lambda: polling.report().values["readings"] == "6")
+
+
+def test_failures_and_a_lost_robot_are_told_and_it_goes_on(polling, robot, sensor):
+    robot.connection.become("lost")
+    polling.want(True)
+    soon(lambda: "not connected" in polling.report().message)
+    assert sensor.readings == 0
+    sensor.error = NaoError("the cable is loose")
+    robot.connection.become("connected")
+    soon(lambda: polling.report().message == "the sensor cannot be read: the cable is loose")
+    sensor.error = ValueError("a mistake")
+    soon(lambda: "unexpected error: ValueError" in polling.report().message)
+    sensor.error = None
+    soon(lambda: polling.report().message == "read")
+
+
+# Pace
+
+
+class PassingClock:
+    """Time that passes by waiting only, and by the test."""
+
+    time = 100.0
+
+    def now(self):
+        return self.time
+
+    def wait(self, duration, interrupt):
+        self.time += duration
+        return not interrupt.is_set()
+
+
+def test_work_and_delays_do_not_add_up_and_a_long_round_is_made_up_for_once():
+    clock = PassingClock()
+    pacer, moments = Pacer(clock, 0.02, 0.0, Interrupt()), []
+    for work in (0.0, 0.013, 0.004, 0.019, 0.03, 0.0, 0.0):
+        assert pacer.wait()
+        moments.append(clock.time - 100.0)
+        clock.time += work
+    assert moments == pytest.approx([0.0, 0.02, 0.04, 0.06, 0.08, 0.11, 0.12])
+
+
+@pytest.mark.parametrize("jump", [5.0, -50.0])
+def test_after_a_break_or_a_clock_set_back_it_begins_anew_until_an_interrupt(jump):
+    clock, interrupt = PassingClock(), Interrupt()
+    pacer = Pacer(clock, 0.02, 0.0, interrupt)
+    pacer.wait()
+    clock.time += jump
+    now = clock.time
+    pacer.wait()
+    assert clock.time == now
+    pacer.wait()
+    assert clock.time == pytest.approx(now + 0.02)
+    interrupt.trigger()
+    assert not pacer.wait()
+
+
+def test_fast_simulated_time_does_not_shorten_the_rest():
+    pacer, wall = Pacer(PassingClock(), 0.02, 0.01, Interrupt()), WallClock()
+    pacer.wait()
+    began = wall.now()
+    for _ in range(5):
+        pacer.wait()
+    assert wall.now() - began >= 0.049
+
+
+# Parameters that can change
+
+FIELDS = (
+    Field("volume", -1, "how loud", -1, 100),
+    Field("voice", "", "who speaks"),
+    Field("beep", True, "whether it beeps"),
+    Field("speed", 1.5, "how fast"),
+    Field("frequency", 16000, "samples a second", 16000, 48000, {16000: "one channel", 48000: "four channels"}),
+)
+
+
+def test_descriptions_are_what_the_tools_of_dynamic_reconfigure_understand():
+    group = decode_description(encode_description(description_of(FIELDS)))  # to a client and back
+    found = {each["name"]: each for each in group["parameters"]}
+    assert {name: (each["type"], each["default"]) for name, each in found.items()} == {
+        "volume": ("int", -1),
+        "voice": ("str", ""),
+        "beep": ("bool", True),
+        "speed": ("double", 1.5),
+        "frequency": ("int", 16000),
+    }
+    volume = found["volume"]
+    assert (volume["description"], volume["min"], volume["max"], volume["edit_method"]) == ("how loud", -1, 100, "")
+    assert found["speed"]["min"] == float("-inf") and found["speed"]["max"] == float("inf")
+    assert (found["beep"]["min"], found["beep"]["max"]) == (False, True)
+    assert len({each["level"] for each in found.values()}) == len(FIELDS)
+    enum = eval(found["frequency"]["edit_method"])["enum"]  # as the tools do
+    choices = [(entry["value"], entry["description"]) for entry in enum]
+    assert choices == [(16000, "one channel"), (48000, "four channels")]
+
+
+@pytest.mark.parametrize(
+    "name, value, allowed",
+    [
+        ("volume", 101, "~volume is 101: a whole number from -1 to 100"),
+        ("volume", -2, "~volume is -2: a whole number from -1 to 100"),
+        ("volume", 50.0, "~volume is 50.0: a whole number from -1 to 100"),
+        ("volume", True, "~volume is True: a whole number from -1 to 100"),
+        ("voice", 3, "~voice is 3: a text"),
+        ("beep", "yes", "~beep is 'yes': true or false"),
+        ("speed", "fast", "~speed is 'fast': a number"),
+        ("frequency", 22050, r"~frequency is 22050: 16000 \(one channel\) or 48000 \(four channels\)"),
+    ],
+)
+def test_what_a_parameter_cannot_be_is_told_when_the_node_begins(monkeypatch, name, value, allowed):
+    monkeypatch.setattr(reconfigure, "Server", lambda *_: pytest.fail("the server takes it"))
+    monkeypatch.setattr(reconfigure.rospy, "get_param", lambda key, default: value if key == f"~{name}" else default)
+    with pytest.raises(NaoError, match=allowed):
+        reconfigure.serve(FIELDS, lambda before, after: after)
+
+
+class Server:
+    """That of dynamic_reconfigure, as far as it calls back."""
+
+    def __init__(self, description, callback):
+        self._config, self._callback = dict(description.defaults), callback
+        self.update_configuration({})
+
+    def update_configuration(self, changes):
+        self._config = self._callback({**self._config, **changes}, 0)
+
+
+def test_what_is_refused_is_the_error_that_it_was(monkeypatch):
+    refused, seen = NaoError("not so loud"), []
+
+    def changed(before, after):
+        if after["volume"] > 50:
+            raise refused
+        seen.append((before.get("volume"), after["volume"]))
+        return after
+
+    monkeypatch.setattr(reconfigure, "Server", Server)
+    monkeypatch.setattr(reconfigure.rospy, "get_param", lambda key, default: default)
+    server = reconfigure.serve(FIELDS, changed)
+    with pytest.raises(NaoError) as caught:
+        reconfigure.update(server, {"volume": 80})
+    assert caught.value is refused
+    reconfigure.update(server, {"volume": 20})
+    assert seen == [(None, -1), (-1, 20)]

@@ -1,0 +1,321 @@
+"""Sound, speech and vision: requests, blocks of sound, settings of speech, and the values of the robot's events."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from std_msgs.msg import Header
+
+from nao_library_modules.driver import microphone_blocks as blocks
+from nao_library_modules.driver import vision_values as vision
+from nao_library_modules.driver.audio_directions import read_direction
+from nao_library_modules.driver.audio_requests import file_on_robot, read_recording, read_volume
+from nao_library_modules.driver.microphone_blocks import BlockClock, channel_map, read_samples
+from nao_library_modules.driver.speech_recognition import read_heard
+from nao_library_modules.driver.speech_settings import (
+    from_config,
+    given_parameters,
+    join_vocabulary,
+    percent,
+    split_vocabulary,
+)
+from nao_library_modules.driver.vision_messages import to_face, to_landmarks, to_movement
+from nao_library_modules.driver.vision_values import Face, Landmark, Movement, MovementReader, Shape, View
+from nao_library_modules.errors import BadGoal
+from nao_library_msgs.msg import FaceDetected
+from naoqi.errors import NaoError
+
+
+def refused(words, function, *arguments, error=NaoError, **more):
+    with pytest.raises(error, match=words):
+        function(*arguments, **more)
+
+
+# Requests to nao_audio
+
+
+@pytest.mark.parametrize(
+    "name, full",
+    [
+        ("a.wav", "/home/nao/a.wav"),
+        ("music/rock.ogg", "/home/nao/music/rock.ogg"),
+        ("/music/rock.ogg", "/home/nao/music/rock.ogg"),
+        ("/home/nao/a.wav", "/home/nao/a.wav"),
+        ("a/../b.wav", "/home/nao/b.wav"),
+    ],
+)
+def test_files_are_in_the_home_of_the_robot(name, full):
+    assert file_on_robot(name) == full
+
+
+@pytest.mark.parametrize("name", ["", " ", "..", "../etc/passwd", "/home/nao/../root/a/../../..", "a/", ".", "a\0b"])
+def test_other_files_are_refused(name):
+    refused("file_path", file_on_robot, name, error=BadGoal)
+
+
+def test_a_recording_in_the_words_of_naoqi():
+    request = read_recording("day/one", 5, 1, (False, False, True, False), 16000)
+    assert (request.file, request.kind) == ("/home/nao/day/one.ogg", "ogg")
+    assert (request.seconds, request.rate, request.channels) == (5, 16000, (0, 0, 1, 0))
+    assert read_recording("one.wav", 5, 0, (True,) * 4, 48000).file == "/home/nao/one.wav"
+    assert (read_volume(0), read_volume(100)) == (0, 100)
+
+
+@pytest.mark.parametrize(
+    "change, field",
+    [
+        ({"seconds": 0}, "secs"),
+        ({"seconds": 3601}, "secs"),
+        ({"kind": 2}, "audio_type"),
+        ({"rate": 44100}, "samplerate"),
+        ({"channels": (False,) * 4}, "channels"),
+        ({"file": "../a.wav"}, "file_path"),
+    ],
+)
+def test_what_is_wrong_with_a_request_is_named(change, field):
+    request = {"file": "a.wav", "seconds": 1, "kind": 0, "channels": (True,) * 4, "rate": 48000}
+    refused(field, read_recording, error=BadGoal, **{**request, **change})
+    for volume in (-1, 101):
+        refused("master_volume", read_volume, volume, error=BadGoal)
+
+
+# Blocks of sound
+
+BLOCK = 0.17
+
+
+def test_microphones_are_in_the_corners_of_the_head_or_on_the_sides_of_older_heads():
+    for version in ("6.0.0", "V6.0", "", "unknown"):
+        corners = (blocks.REAR_LEFT, blocks.REAR_RIGHT, blocks.FRONT_LEFT, blocks.FRONT_RIGHT)
+        assert channel_map(4, version) == corners and channel_map(1, version) == (blocks.FRONT_LEFT,)
+    for version in ("5.0.0", "V4.0", "4"):
+        sides = (blocks.FRONT_LEFT, blocks.FRONT_RIGHT, blocks.FRONT_CENTER, blocks.REAR_CENTER)
+        assert channel_map(4, version) == sides and channel_map(1, version) == (blocks.FRONT_CENTER,)
+
+
+def test_samples_are_signed_and_little_end_first():
+    assert list(read_samples(b"\x01\x00\xff\xff\x00\x80\xff\x7f", 2, 2)) == [1, -1, -32768, 32767]
+    refused("4 channels and 2 frames has 15 bytes", read_samples, bytes(15), 4, 2)
+
+
+def stamp(seconds):
+    return [int(seconds), round(1e6 * (seconds - int(seconds)))]
+
+
+def test_times_of_the_first_sample_follow_the_quickest_blocks():
+    clock, ahead = BlockClock(), 1000.0
+    off = []
+    for n, delay in enumerate([0.05, 0.03, 0.2, 0.01, 0.3, 0.02]):
+        heard = 5.0 + n * BLOCK
+        time = clock.take(stamp(heard), BLOCK, heard + BLOCK + ahead + delay)
+        assert time.robot == pytest.approx(heard)
+        off.append(time.ros - ahead - heard)
+    assert off == pytest.approx([0.05, 0.03, 0.03, 0.01, 0.01, 0.01], abs=1e-3)
+    assert clock.lost == 0
+
+
+def test_clocks_that_run_apart_are_followed():
+    clock = BlockClock()
+    for n in range(3000):
+        heard = n * BLOCK
+        time = clock.take(stamp(heard), BLOCK, (heard + BLOCK) * 1.00005 + 0.01)
+    assert time.ros - heard * 1.00005 == pytest.approx(0.01, abs=0.005)
+
+
+def test_gaps_are_counted_in_blocks_but_a_robot_that_starts_again_has_lost_nothing():
+    clock = BlockClock()
+    for n in (0, 1, 2, 5, 6, 8):
+        clock.take(stamp(n * BLOCK), BLOCK, n * BLOCK)
+    assert clock.lost == 3
+    clock = BlockClock()
+    clock.take(stamp(100.0), BLOCK, 1100.0)
+    assert clock.take(stamp(0.0), BLOCK, 2000.0).ros == pytest.approx(2000.0 - BLOCK)
+    clock.restart()
+    clock.take(stamp(50.0), BLOCK, 2050.0)
+    assert clock.lost == 0
+
+
+# Settings of speech, in the forms of today and of the first versions
+
+CONFIG = {"voice": " naoenu ", "language": "", "volume": -1, "vocabulary": "", "audio_expression": True}
+CONFIG.update(visual_expression=False, word_spotting=False)
+
+
+def test_settings_leave_open_what_is_not_set():
+    found = from_config(CONFIG)
+    assert (found.voice, found.language, found.volume, found.vocabulary) == ("naoenu", "", None, ())
+    assert found.audio_expression and not found.visual_expression
+    assert from_config({**CONFIG, "volume": 80}).volume == pytest.approx(0.8)
+    assert from_config({**CONFIG, "volume": 0}).volume == 0.0
+
+
+def test_volume_is_percent_or_a_share_with_a_point():
+    results = [(0, 0), (1, 1), (100, 100), (-1, -1), (0.0, 0), (1.0, 100), (0.55, 55)]
+    assert [percent(volume) for volume, _ in results] == [result for _, result in results]
+    for volume in (101, -2, 1.5, -0.5, True, "50", float("nan"), float("inf")):
+        refused("~volume", percent, volume)
+
+
+def test_parameters_of_former_versions_are_understood():
+    given = {"pip": "10.0.0.7", "volume": 0.4, "vocabulary": ["yes", " good morning "], "enable_word_spotting": True}
+    given.update(enable_audio_expression=False, audio_expression=True)
+    expected = {"volume": 40, "vocabulary": "yes / good morning", "word_spotting": True, "audio_expression": False}
+    assert given_parameters(given) == expected
+
+
+@pytest.mark.parametrize(
+    "parameters", [{"voice": 3}, {"vocabulary": [1]}, {"vocabulary": 1}, {"word_spotting": 1}, {"volume": "loud"}]
+)
+def test_parameters_of_a_wrong_kind_are_named(parameters):
+    refused("~" + next(iter(parameters)), given_parameters, parameters)
+
+
+def test_vocabulary_as_one_text_and_back():
+    words = split_vocabulary(" yes / good morning //no/")
+    assert words == ("yes", "good morning", "no") == split_vocabulary(join_vocabulary(words))
+    refused("separates words", join_vocabulary, ["and/or"])
+    refused("is empty", join_vocabulary, ["yes", " "])
+
+
+@pytest.mark.parametrize(
+    "value, words",
+    [
+        (["<...> good morning <...>", 0.5], ("good morning",)),
+        (["yes", 0.5, "", 0.0], ("yes",)),
+        (["yes"], None),
+        ([], None),
+        (None, None),
+        ("", None),
+        (["<...> <...>", 0.5], None),
+    ],
+)
+def test_events_of_words_are_read(value, words):
+    heard = read_heard(value)
+    assert (heard.words if heard else None) == words
+
+
+def test_an_event_of_a_direction_is_read():
+    found = read_direction([[12, 500000], [0.5, -0.1, 0.9, 0.04], [0.0, 0.0, 0.1265, 0.0, 0.1, 0.2], [0.0] * 6])
+    assert found.time == pytest.approx(12.5)
+    assert (found.azimuth, found.elevation, found.confidence, found.energy) == (0.5, -0.1, 0.9, 0.04)
+    assert found.head_in_torso == (0.0, 0.0, 0.1265, 0.0, 0.1, 0.2)
+    for value in (None, [], [[1, 2], [], [0.0] * 6], [[1, 2], [0.1, 0.2, 0.3], [0.0]]):
+        assert read_direction(value) is None
+
+
+# Vision: the layouts of the robot's documentation
+
+STAMP = [12, 500000]
+TORSO = [0.05, 0.01, 0.2, 0.0, 0.02, 0.5]
+FEET = [0.06, 0.02, 0.5, 0.0, 0.03, 0.6]
+LEFT_EYE = [0.01 * number for number in range(6)] + [0.0] * 8
+RIGHT_EYE = [-0.01 * number for number in range(6)] + [0.0] * 8
+MOUTH = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6] + [0.0] * 10
+EXTRA = [3, 0.75, "ada", LEFT_EYE, RIGHT_EYE, [], [], [0.5, 0.6, 0.7, 0.8, 0.9, 1.0], MOUTH]
+
+
+def test_faces_with_all_their_points_and_what_is_new_about_them_is_no_face():
+    second = [[0, -0.3, 0.0, 0.1, 0.1], [4, 0.0, ""]]
+    value = [STAMP, [[[0, 0.1, -0.2, 0.15, 0.18], EXTRA], second, [2, ["ada"]]], TORSO, FEET, 1]
+    view, (face, other) = vision.read_faces(value)
+    assert view == View(12.5, 1, tuple(TORSO), tuple(FEET))
+    assert face.shape == Shape(0.1, -0.2, 0.15, 0.18)
+    assert (face.number, face.score, face.label) == (3, 0.75, "ada")
+    assert face.points["left_eye_earSideLimit"] == (0.04, 0.05)
+    assert face.points["right_eye_noseSideLimit"] == (-0.02, -0.03)
+    assert face.points["nose_bottomRightLimit"] == (0.9, 1.0)
+    assert face.points["mouth_topLimit"] == (0.5, 0.6)
+    assert not any("eyebrow" in name for name in face.points)
+    assert (other.number, other.label, other.points) == (4, "", {})
+
+
+def test_landmarks_are_read_and_their_number_may_be_bare():
+    marks = [[[1, 0.1, 0.2, 0.05, 0.06, 0.0], [84]], [[1, -0.1, 0.3, 0.07, 0.08, 0.0], 119]]
+    view, found = vision.read_landmarks([STAMP, marks, TORSO, FEET, "CameraBottom"])
+    assert (view.time, view.camera, view.in_robot) == (12.5, 1, tuple(FEET))
+    assert found == [Landmark(Shape(0.1, 0.2, 0.05, 0.06), 84), Landmark(Shape(-0.1, 0.3, 0.07, 0.08), 119)]
+
+
+@pytest.mark.parametrize("value", [[], None, 0, [STAMP]])
+def test_nothing_seen_is_none(value):
+    assert vision.read_faces(value) is None and MovementReader().read(value) is None
+    if value != [STAMP]:
+        assert value == 0 or vision.read_landmarks(value) is None
+    for empty in ([[]], [[4]]):
+        assert vision.read_faces([STAMP, empty, TORSO, FEET, 0]) is None
+    assert vision.read_landmarks([STAMP, [], TORSO, FEET, "CameraTop"]) is None
+    assert MovementReader().read([STAMP, [], TORSO, FEET, 0]) is None
+
+
+def movement(time, *clusters):
+    return [[int(time), round(time % 1 * 1e6)], [list(cluster) for cluster in clusters], TORSO, FEET, 0]
+
+
+def test_what_moved_and_how_fast_from_one_time_to_the_next():
+    reader = MovementReader()
+    first = reader.read(movement(5.0, ([0.2, 0.1], [0.25, 0.05, 0.1, 0.1], 0.5), ([-0.3, 0.0], [0, 0, 0.1, 0.1], 0.5)))
+    assert first.points == ((0.2, 0.1), (-0.3, 0.0)) and first.view == View(5.0, 0, tuple(TORSO), tuple(FEET))
+    assert first.centre == (pytest.approx(-0.05), pytest.approx(0.05))
+    assert first.velocity == (0.0, 0.0) and first.velocities == ((0.0, 0.0), (0.0, 0.0))
+    then = reader.read(movement(5.2, ([-0.3, 0.02], [0, 0, 0.1, 0.1], 0.5), ([0.3, 0.1], [0, 0, 0.1, 0.1], 0.5)))
+    assert then.velocities == ((0.0, pytest.approx(0.1)), (pytest.approx(0.5), 0.0))
+    assert then.velocity == (pytest.approx(0.25), pytest.approx(0.05))
+    for time in (9.0, 2.0):  # over a long time or backwards there is no speed
+        assert reader.read(movement(time, ([0.1, 0.0], [0, 0, 0.1, 0.1], 0.5))).velocities == ((0.0, 0.0),)
+
+
+def test_what_moves_more_counts_more():
+    big, small = ([0.4, 0.0], [0, 0, 0.2, 0.2], 0.75), ([0.0, 0.0], [0, 0, 0.1, 0.1], 1.0)
+    assert MovementReader().read(movement(5.0, big, small)).centre == (pytest.approx(0.3), 0.0)
+    nothing = ([0.4, 0.0], [0, 0, 0.0, 0.0], 0.0)
+    assert MovementReader().read(movement(5.0, nothing, nothing)).centre == (pytest.approx(0.4), 0.0)
+
+
+def test_the_layout_of_robots_before_2_0():
+    found = MovementReader().read([[[0.1, 0.2], [0.3, 0.4], [[0.1, 0.2], [0.5, 0.6]], [[0.3, 0.4], [0.7, 0.8]]]])
+    assert (found.view, found.centre, found.velocity) == (None, (0.1, 0.2), (0.3, 0.4))
+    assert found.points[1] == (0.5, 0.6) and found.velocities[1] == (0.7, 0.8)
+
+
+# Vision: messages
+
+VIEW = View(5.0, 1, (0.1, 0.2, 0.3, 0.0, 0.0, math.pi / 2), (0.4, 0.5, 0.6, math.pi, 0.0, 0.0))
+HEADER = Header(frame_id="CameraBottom_optical_frame")
+
+
+def test_every_point_of_a_face_has_its_field():
+    names = [f"{part}_{point}" for part, points in vision.PARTS for point in points]
+    points = {name: (0.01 * place, -0.01 * place) for place, name in enumerate(names)}
+    message = to_face(Face(Shape(0.1, -0.2, 0.15, 0.18), 3, 0.75, "ada", points), VIEW, HEADER)
+    found = {name: (getattr(message, f"{name}_x").data, getattr(message, f"{name}_y").data) for name in names}
+    assert found == points
+    fields = {name for name in FaceDetected.__slots__ if name.endswith(("_x", "_y"))}
+    assert fields == {f"{name}_{axis}" for name in names for axis in "xy"}
+    assert (message.face_id.data, message.score_reco.data, message.face_label.data) == (3, 0.75, "ada")
+    assert (message.shape_alpha.data, message.shape_sizeY.data, message.camera_id.data) == (0.1, 0.18, 1)
+    assert message.header.frame_id == HEADER.frame_id
+
+
+def test_landmarks_are_in_one_message_with_the_poses_of_the_camera():
+    marks = [Landmark(Shape(0.1, 0.2, 0.05, 0.06), 84), Landmark(Shape(-0.1, 0.3, 0.07, 0.08), 119)]
+    message = to_landmarks(marks, VIEW, HEADER)
+    assert [each.data for each in message.mark_ids] == [84, 119]
+    assert [each.data for each in message.shape_beta] == [0.2, 0.3]
+    assert [each.data for each in message.shape_sizex] == [0.05, 0.07]
+    assert [each.data for each in message.shape_sizey] == [0.06, 0.08]
+    local, world = message.camera_local_pose, message.camera_world_pose
+    assert (local.position.x, local.position.y, local.position.z) == (0.1, 0.2, 0.3)
+    assert (local.orientation.z, local.orientation.w) == (pytest.approx(math.sqrt(0.5)), pytest.approx(math.sqrt(0.5)))
+    assert (world.orientation.x, world.orientation.w) == (pytest.approx(1.0), pytest.approx(0.0))
+    assert message.camera_name.data == "CameraBottom"
+
+
+def test_movement_has_a_point_and_a_speed_for_each_part():
+    message = to_movement(
+        Movement(VIEW, (0.1, 0.2), (0.3, 0.4), ((0.1, 0.2), (0.5, 0.6)), ((0.3, 0.4), (0.7, 0.8))), HEADER
+    )
+    assert (message.gravity_center.x, message.gravity_center.y) == (0.1, 0.2)
+    assert (message.mean_velocity.x, message.mean_velocity.y) == (0.3, 0.4)
+    assert [(each.x, each.y) for each in message.points_poses] == [(0.1, 0.2), (0.5, 0.6)]
+    assert [(each.x, each.y) for each in message.points_speeds] == [(0.3, 0.4), (0.7, 0.8)]

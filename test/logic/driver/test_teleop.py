@@ -1,0 +1,371 @@
+"""Gamepads, keyboards and terminals: what sticks, buttons and keys ask for, and what the node sends for it."""
+
+from __future__ import annotations
+
+import os
+import pty
+import subprocess
+import sys
+import termios
+import threading
+from types import SimpleNamespace
+
+import pytest
+
+from nao_library_modules.driver import joy_control, teleop_nao_joy
+from nao_library_modules.driver.joy_control import JoyControl, JoySettings
+from nao_library_modules.driver.keyboard_control import FIRST_HOLD, REPEAT_HOLD, KeyboardControl, Kind, Request
+from nao_library_modules.driver.terminal_keys import TerminalKeys, decode
+from nao_library_modules.driver.walk_commands import Velocity
+from naoqi.errors import NaoError
+
+ENABLE, INIT, CROUCH, HEAD = 8, 0, 9, 5
+PATIENCE = 10.0
+
+
+def axes(**values):
+    """Axes by what they do with the default settings."""
+    return [values.get(name, 0.0) for name in ("turn", "none", "y", "x", "yaw", "pitch")]
+
+
+def buttons(*pressed):
+    return [int(index in pressed) for index in range(12)]
+
+
+# Gamepad
+
+
+@pytest.fixture
+def joy():
+    joy = JoyControl(JoySettings())
+    joy.update(axes(), buttons())
+    assert joy.update(axes(), buttons(ENABLE)) == [joy_control.Request.ENABLE]
+    assert joy.update(axes(), buttons()) == []
+    return joy
+
+
+def test_without_control_nothing_moves():
+    joy = JoyControl(JoySettings())
+    assert joy.update(axes(), buttons(ENABLE)) == []  # held at the very first
+    assert joy.update(axes(x=1.0, yaw=1.0), buttons(HEAD)) == []
+    assert joy.update(axes(x=1.0), buttons(INIT, CROUCH)) == []
+    assert joy.velocity.is_zero and joy.head is None and not joy.enabled
+
+
+def test_sticks_walk_up_to_the_limits_and_release_holds_nothing(joy):
+    for given, velocity in (
+        (axes(x=1.0, y=-0.5, turn=1.0), (1.0, -0.5, 0.5)),
+        (axes(x=3.0, turn=-2.0), (1.0, 0.0, -0.5)),
+        (axes(), (0.0, 0.0, 0.0)),
+        (axes(x=1.0), (1.0, 0.0, 0.0)),
+    ):
+        joy.update(given, buttons())
+        assert joy.velocity == Velocity(*velocity)
+    joy.release()
+    assert joy.velocity.is_zero and joy.enabled
+
+
+def test_the_control_button_toggles_once_each_time_it_is_pressed(joy):
+    assert joy.update(axes(x=1.0), buttons(ENABLE)) == [joy_control.Request.DISABLE]
+    assert joy.velocity.is_zero
+    assert joy.update(axes(x=1.0), buttons(ENABLE)) == []
+    joy.update(axes(), buttons())
+    assert joy.update(axes(x=1.0), buttons(ENABLE)) == [joy_control.Request.ENABLE]
+    assert joy.velocity.x == 1.0
+
+
+def test_poses_are_asked_for_once(joy):
+    assert joy.update(axes(), buttons(INIT)) == [joy_control.Request.INIT_POSE]
+    assert joy.update(axes(), buttons(INIT, CROUCH)) == [joy_control.Request.CROUCH]
+    assert joy.update(axes(), buttons(INIT, CROUCH)) == []
+
+
+def test_with_the_head_button_the_axes_move_the_head_and_the_robot_stands(joy):
+    joy.update(axes(x=1.0, yaw=0.5, pitch=-1.0), buttons(HEAD))
+    assert joy.velocity.is_zero and joy.head == pytest.approx((0.5 * 2.0943, -0.7853))
+    joy.update(axes(x=1.0, yaw=0.5), buttons())
+    assert joy.head is None and joy.velocity.x == 1.0
+
+
+def test_settings_assign_axes_and_buttons_and_those_that_are_missing_rest(joy):
+    other = JoyControl(JoySettings(axis_x=1, axis_turn=-1, btn_enable_control=2, max_vx=0.4))
+    other.update([0.0, 0.0], [0, 0, 0])
+    assert other.update([1.0, 1.0], [0, 0, 1]) == [joy_control.Request.ENABLE]
+    assert other.velocity == Velocity(0.4, 0.0, 0.0)
+    assert joy.missing() == []
+    assert joy.update([0.0, 0.0, 0.0, 1.0], buttons()[:9]) == []
+    assert joy.velocity == Velocity(1.0, 0.0, 0.0)
+    assert joy.missing() == ["axis_head_yaw 4", "axis_head_pitch 5", "btn_crouch 9"]
+
+
+# The node of the gamepad
+
+
+class Clients:
+    """What the node sends and asks for, in lists."""
+
+    def __init__(self, tell):
+        self.velocities, self.heads, self.asked = [], [], []
+        self.walk, self.turn_head = self.velocities.append, self.heads.append
+
+    def say(self, text):
+        self.asked.append(text)
+
+    def call(self, service, done=""):
+        self.asked.append(service)
+
+    def take_pose(self, name, then=""):
+        self.asked.append((name, then))
+
+    def close(self):
+        self.asked.append("close")
+
+
+@pytest.fixture
+def parameters(monkeypatch):
+    parameters = {"~motion_publish_rate": 20.0}
+    monkeypatch.setattr(teleop_nao_joy.rospy, "get_param", lambda name, default: parameters.get(name, default))
+    return parameters
+
+
+@pytest.fixture
+def gamepad(monkeypatch, parameters):
+    """Starts the node with control; `move` is what a person does, `publishers` how many send messages."""
+    pads = []
+
+    def start():
+        pad = SimpleNamespace(publishers=1)
+        pads.append(pad)
+
+        def subscribe(topic, kind, callback, **options):
+            pad.tell = callback
+            return SimpleNamespace(get_num_connections=lambda: pad.publishers, resolved_name="/joy")
+
+        def clients(tell):
+            pad.clients = Clients(tell)
+            return pad.clients
+
+        monkeypatch.setattr(teleop_nao_joy.rospy, "Subscriber", subscribe)
+        monkeypatch.setattr(teleop_nao_joy, "TeleopClients", clients)
+        pad.node = teleop_nao_joy.TeleopNaoJoy()
+        pad.move = lambda pressed=(), **values: pad.tell(
+            SimpleNamespace(axes=axes(**values), buttons=buttons(*pressed))
+        )
+        for pressed in ([], [ENABLE], []):
+            pad.move(pressed)
+        return pad
+
+    yield start
+    for pad in pads:
+        pad.node.close()
+
+
+def soon(condition):
+    pause = threading.Event()
+    for _ in range(int(PATIENCE / 0.005)):
+        if condition():
+            return
+        pause.wait(0.005)
+    raise AssertionError("it did not come about")
+
+
+@pytest.mark.parametrize(
+    "name, value, words",
+    [
+        ("~axis_x", 1.5, "~axis_x is 1.5: the number of an axis"),
+        ("~btn_crouch", -2, "~btn_crouch is -2"),
+        ("~btn_crouch", True, "~btn_crouch is True"),
+        ("~max_vx", 1.2, "~max_vx is 1.2: 0 to 1"),
+        ("~max_head_yaw", "far", "~max_head_yaw is 'far': 0 to 3.1416"),
+    ],
+)
+def test_wrong_parameters_are_told(parameters, name, value, words):
+    parameters.update({"~axis_y": -1, "~max_vw": 1, "~btn_head_mod": 7})
+    settings = teleop_nao_joy.read_settings()
+    assert (settings.axis_y, settings.max_vw, settings.btn_head_mod, settings.axis_x) == (-1, 1.0, 7, 3)
+    parameters[name] = value
+    with pytest.raises(NaoError, match=words):
+        teleop_nao_joy.read_settings()
+
+
+def test_a_velocity_is_repeated_and_a_standstill_sent_once(gamepad):
+    pad = gamepad()
+    sent = pad.clients.velocities
+    pad.move(x=0.5)
+    soon(lambda: len(sent) >= 3)
+    assert set(sent) == {Velocity(0.5, 0.0, 0.0)}
+    pad.move()
+    count = len(sent)
+    assert sent[-1].is_zero
+    pad.move([HEAD], yaw=0.5)
+    soon(lambda: len(pad.clients.heads) >= 2)  # rounds in which no velocity is sent
+    assert len(sent) == count
+    assert pad.clients.heads[-1] == pytest.approx((0.5 * 2.0943, 0.0))
+
+
+def test_buttons_ask_for_what_they_are_for(gamepad):
+    pad = gamepad()
+    for button in (INIT, CROUCH, ENABLE):
+        pad.move([button])
+        pad.move()
+    asked = ["body_stiffness/enable", "Gamepad control enabled", ("init", ""), ("crouch", "body_stiffness/disable")]
+    assert pad.clients.asked == [*asked, "stop_walk_srv", "Gamepad control disabled"]
+
+
+def test_a_gamepad_that_goes_away_falls_silent_or_ends_stops_the_robot(gamepad, parameters):
+    gone = gamepad()
+    parameters["~joy_timeout"] = 0.2
+    silent = gamepad()
+    for pad in (gone, silent):
+        pad.move(x=0.5)
+        soon(lambda pad=pad: pad.clients.velocities)
+    gone.publishers = 0
+    for pad in (gone, silent):
+        soon(lambda pad=pad: pad.clients.velocities[-1].is_zero)
+    assert "nobody publishes /joy" in gone.node.report().message
+    assert silent.node.report().message == "control is enabled"
+    silent.move(x=0.5)
+    soon(lambda: not silent.clients.velocities[-1].is_zero)
+    silent.node.close()
+    assert silent.clients.velocities[-1].is_zero and silent.clients.asked[-1] == "close"
+
+
+# Keyboard
+
+
+@pytest.fixture
+def keyboard():
+    return KeyboardControl(["init", "crouch"], speed=0.5)
+
+
+@pytest.mark.parametrize(
+    "key, velocity",
+    [
+        ("w", (0.5, 0.0, 0.0)),
+        ("up", (0.5, 0.0, 0.0)),
+        ("s", (-0.5, 0.0, 0.0)),
+        ("left", (0.0, 0.5, 0.0)),
+        ("d", (0.0, -0.5, 0.0)),
+        ("q", (0.0, 0.0, 0.5)),
+        ("E", (0.0, 0.0, -0.5)),
+    ],
+)
+def test_keys_walk_and_the_last_one_counts(keyboard, key, velocity):
+    keyboard.press("w", 9.9)
+    assert keyboard.press(key, 10.0) is None
+    assert keyboard.velocity(10.1) == Velocity(*velocity)
+
+
+def test_a_key_walks_while_a_terminal_repeats_it_and_no_longer(keyboard):
+    keyboard.press("w", 5.0)
+    assert keyboard.velocity(5.0 + FIRST_HOLD).is_zero and keyboard.velocity(5.1).is_zero  # what has ended stays so
+    keyboard.press("w", 10.0)
+    assert not keyboard.velocity(10.0 + FIRST_HOLD - 0.01).is_zero
+    for n in range(20):
+        last = 10.6 + n * 0.04
+        keyboard.press("w", last)
+    assert not keyboard.velocity(last + REPEAT_HOLD - 0.01).is_zero
+    assert keyboard.velocity(last + REPEAT_HOLD + 0.01).is_zero
+
+
+def test_speed_changes_in_steps_and_has_limits_while_it_walks(keyboard):
+    keyboard.press("w", 10.0)
+    assert keyboard.press("+", 10.1) == Request(Kind.SPEED, "60 % of the top speed")
+    assert keyboard.velocity(10.2).x == 0.6
+    for key, limit in (("=", 1.0), ("-", 0.1)):
+        for _ in range(20):
+            keyboard.press(key, 10.2)
+        assert keyboard.speed == limit
+
+
+@pytest.mark.parametrize(
+    "key, request_",
+    [
+        ("1", Request(Kind.POSE, "init")),
+        ("2", Request(Kind.POSE, "crouch")),
+        ("3", Request(Kind.UNKNOWN, "3")),
+        (" ", Request(Kind.STOP)),
+        ("m", Request(Kind.WAKE_UP)),
+        ("n", Request(Kind.REST)),
+        ("?", Request(Kind.HELP)),
+        ("x", Request(Kind.QUIT)),
+        ("escape", Request(Kind.QUIT)),
+        ("ctrl-d", Request(Kind.QUIT)),
+    ],
+)
+def test_other_keys_end_a_walk_and_ask_for_something(keyboard, key, request_):
+    keyboard.press("w", 10.0)
+    assert keyboard.press(key, 10.0) == request_
+    assert keyboard.velocity(10.1).is_zero
+    for word in ("1 init   2 crouch", "forward", "turn to the left", "stop", "speed", "motors on", "end"):
+        assert word in keyboard.help
+
+
+# Terminal
+
+
+@pytest.fixture
+def terminal():
+    """Both ends of a terminal: the one with the keyboard, and the one of the program."""
+    keyboard, program = pty.openpty()
+    yield keyboard, program
+    for file in (keyboard, program):
+        try:
+            os.close(file)
+        except OSError:
+            pass
+
+
+def flags(file):
+    return termios.tcgetattr(file)[3] & (termios.ICANON | termios.ECHO)
+
+
+@pytest.mark.parametrize(
+    "text, keys",
+    [
+        ("w", ["w"]),
+        ("ww1 ", ["w", "w", "1", " "]),
+        ("\x1b[A\x1b[B\x1b[C\x1b[D", ["up", "down", "right", "left"]),
+        ("\x1bOAw", ["up", "w"]),
+        ("\x1b", ["escape"]),
+        ("\x1b[15~w", ["another key", "w"]),
+        ("\x1b[1;5Aw", ["up", "w"]),
+        ("\x1b[", ["another key"]),
+        ("\x03\x04", ["ctrl-c", "ctrl-d"]),
+    ],
+)
+def test_characters_and_sequences_become_keys(text, keys):
+    assert decode(text) == keys
+
+
+def test_keys_count_at_once_and_the_settings_come_back_also_after_an_error(terminal):
+    keyboard, program = terminal
+    before = flags(program)
+    with pytest.raises(RuntimeError), TerminalKeys(program) as keys:
+        assert before and flags(program) == 0
+        os.write(keyboard, b"w\x1b[A")
+        assert keys.read(PATIENCE) == ["w", "up"]
+        assert keys.read(0.0) == []
+        raise RuntimeError("whatever")
+    assert flags(program) == before
+    with TerminalKeys(program) as keys:
+        os.close(keyboard)
+        assert keys.read(PATIENCE) == ["ctrl-d"]
+
+
+def test_a_program_that_exits_without_leaving_the_block_restores_the_terminal(terminal):
+    _, program = terminal
+    before = flags(program)
+    code = "import sys; from nao_library_modules.driver.terminal_keys import TerminalKeys\n"
+    code += "keys = TerminalKeys(0).__enter__(); sys.exit(3)"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    ended = subprocess.run([sys.executable, "-c", code], stdin=program, env=environment, timeout=60)
+    assert ended.returncode == 3 and flags(program) == before
+
+
+def test_a_pipe_is_no_terminal():
+    reading, writing = os.pipe()
+    with pytest.raises(NaoError, match="keys need a terminal"):
+        TerminalKeys(reading)
+    os.close(reading)
+    os.close(writing)
