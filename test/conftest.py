@@ -50,7 +50,7 @@ def pytest_collection_modifyitems(config, items):
         # The cases of the running stack share it, and those of a file what takes long to start.
         file = item.path.relative_to(HERE).as_posix()
         if item.get_closest_marker("xdist_group") is None:
-            item.add_marker(pytest.mark.xdist_group("ros" if file.startswith("ros/") else file))
+            item.add_marker(pytest.mark.xdist_group("ros" if "stack" in item.fixturenames else file))
 
 
 class LongestFirst(LoadGroupScheduling):

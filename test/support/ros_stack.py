@@ -42,6 +42,7 @@ class RosStack:
     def __init__(self, folder, **arguments):
         self.folder = folder
         self._arguments = {"speed": SPEED, **arguments}
+        self.broken = False
         self._starts = 0
         self._nodes = {}
         port = free_port()
@@ -64,21 +65,23 @@ class RosStack:
         self.stack = OwnStack(
             self.folder / f"stack_{self._starts}.txt",
             {name: str(value) for name, value in self._arguments.items()},
-            launch_file="test_stack.launch",
+            launch=("nao_library_tests", "whole_stack.launch"),
             ros_port=self._port,
         )
+        os.environ["NAO_PORT"] = str(self.stack.nao_port)
         self.stack.wait_for_robot(LIMIT)
 
-    def restart(self):
-        self.stack.stop()
-        self.start()
-        self.robot = SimulatedRobot(limit=LIMIT)
+    def ensure(self):
+        """Start the stack again if a case has broken it."""
+        if self.broken:
+            self.stack.stop()
+            self.start()
+            self.robot = SimulatedRobot(limit=LIMIT)
+            self.broken = False
 
     def deaths(self):
-        """Names of the nodes that have ended since the stack was complete."""
-        if not self._nodes:
-            self._nodes = _children(self.stack.pid)
-            return []
+        """Names of the nodes that have ended since the stack was started."""
+        self._nodes.update(_children(self.stack.pid))
         return [name for pid, name in self._nodes.items() if not _alive(pid)]
 
     def close(self):

@@ -7,7 +7,7 @@ import signal
 import socket
 import subprocess
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 START_LIMIT = 90.0
@@ -26,7 +26,7 @@ class OwnStack:
     Args:
         log: Where that goes.
         arguments: Of the launch file, by name.
-        launch_file: Of the package nao_library.
+        launch: What roslaunch starts: package and launch file, or the path of one.
         ros_port: Of a ROS master that runs already; None for one of its own.
     """
 
@@ -34,12 +34,12 @@ class OwnStack:
         self,
         log: Path,
         arguments: Mapping[str, str],
-        launch_file: str = "nao_sim.launch",
+        launch: Sequence[str] = ("nao_library", "nao_sim.launch"),
         ros_port: int | None = None,
     ) -> None:
         self.ros_port, self.nao_port = ros_port or free_port(), free_port()
         self.log = log
-        command = ["roslaunch", "--port", str(self.ros_port), "nao_library", launch_file]
+        command = ["roslaunch", "--port", str(self.ros_port), *launch]
         command += [f"{name}:={value}" for name, value in {"nao_port": str(self.nao_port), **arguments}.items()]
         with log.open("wb") as output:
             self._process = subprocess.Popen(

@@ -1,16 +1,13 @@
-#!/usr/bin/env python3
 """Keys and events of the robot's memory as topics, read only while somebody listens; and written from ROS."""
 
 import json
 import subprocess
-import sys
 import unittest
 from contextlib import ExitStack
-from pathlib import Path
 
 import rospy
-import rostest
 from diagnostic_msgs.msg import DiagnosticArray
+from news import LIMIT, News
 from rospy import get_published_topics
 
 from nao_library_msgs.msg import (
@@ -24,9 +21,6 @@ from nao_library_msgs.msg import (
 )
 from nao_library_msgs.srv import GetMemory, ListMemory, SetMemory, UnwatchMemory, WatchMemory
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from news import LIMIT, News  # noqa: E402
 
 CHARGE = "Device/SubDeviceList/Battery/Charge/Sensor/Value"
 ANGLE = "Device/SubDeviceList/InertialSensor/AngleX/Sensor/Value"
@@ -202,8 +196,3 @@ class DriverMemory(unittest.TestCase):
         self.assertEqual(len(self.unwatch("Device/SubDeviceList/Head/Touch/*").keys), 3)
         wait_until(lambda: name not in self.topics(), LIMIT, "the end of the topic")
         self.assertIn("/nao_memory/Device/SubDeviceList/Head/Temperature/Sensor/Value", self.topics())
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_memory_test")
-    rostest.rosrun("nao_library_tests", "driver_memory", DriverMemory)

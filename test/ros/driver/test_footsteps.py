@@ -1,23 +1,17 @@
-#!/usr/bin/env python3
 """Footsteps: single ones, sequences with feedback, those that are too long, and those that are taken back."""
 
 import math
-import sys
-from pathlib import Path
 
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
+from services import action_client, answer, service
+from walking_fixture import WalkingTest
 
 from nao_library_actions.msg import ExecFootstepsAction, ExecFootstepsGoal
 from nao_library_modules.places import Place
 from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import ClipFootstep, StepTargetService
 from nao_sim_bridge.testing import send, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from services import action_client, answer, service  # noqa: E402
-from walking_fixture import WalkingTest  # noqa: E402
 
 LEFT, RIGHT = StepTarget.left, StepTarget.right
 
@@ -147,8 +141,3 @@ class DriverFootsteps(WalkingTest):
         self.assertLess(self.truth().distance_to(before), 0.005)
         self.motion.rest()
         self.assertIn("wakeUp", self.play([left], 10.0, GoalStatus.ABORTED).text)
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_footsteps_test")
-    rostest.rosrun("nao_library_tests", "driver_footsteps", DriverFootsteps)

@@ -1,14 +1,13 @@
-#!/usr/bin/env python3
 """Lights that fade and blink, behaviours of the robot by name, and its autonomous life, under nao_robot's names."""
 
-import sys
 import unittest
-from pathlib import Path
 
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
+from cases import case
+from news import LIMIT, News
 from rospy import Duration
+from services import answer, service
 from std_msgs.msg import ColorRGBA, String
 from std_srvs.srv import Empty, SetBool, Trigger
 
@@ -17,11 +16,6 @@ from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import FadeRGB
 from nao_library_msgs.srv import GetInstalledBehaviors
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from cases import case  # noqa: E402
-from news import LIMIT, News  # noqa: E402
-from services import answer, service  # noqa: E402
 
 RED, GREEN, BLUE = ColorRGBA(1.0, 0.0, 0.0, 1.0), ColorRGBA(0.0, 1.0, 0.0, 1.0), ColorRGBA(0.0, 0.0, 1.0, 1.0)
 EYE = "Face/Led/{}/Left/45Deg"
@@ -178,8 +172,3 @@ class DriverLedsBehaviors(unittest.TestCase):
                     changed = switch(enabled)
                     self.assertTrue(changed.success, changed.message)
                     self.assertEqual(ask().success, enabled)
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_leds_behaviors_test")
-    rostest.rosrun("nao_library_tests", "driver_leds_behaviors", DriverLedsBehaviors)

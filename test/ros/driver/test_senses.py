@@ -1,15 +1,13 @@
-#!/usr/bin/env python3
 """Touch, feet, sonars, temperatures and battery of the robot, as topics and on /diagnostics."""
 
 import json
 import math
-import sys
 import unittest
-from pathlib import Path
 
 import rospy
-import rostest
+from cases import case
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from news import LIMIT, News
 from sensor_msgs.msg import Range
 from std_msgs.msg import Bool
 
@@ -25,10 +23,6 @@ from nao_library_msgs.msg import (
 )
 from nao_library_msgs.srv import GetRobotInfo
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from cases import case  # noqa: E402
-from news import LIMIT, News  # noqa: E402
 
 HEAD = {"Head/Touch/Front": 1, "Head/Touch/Middle": 2, "Head/Touch/Rear": 3}
 HANDS = {
@@ -220,8 +214,3 @@ class DriverSenses(unittest.TestCase):
             "the state of the connection",
         )
         self.assertTrue(self.latest["connection"].address.endswith(f":{self.robot.port}"))
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_senses_test")
-    rostest.rosrun("nao_library_tests", "driver_senses", DriverSenses)

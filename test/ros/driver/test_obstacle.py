@@ -1,22 +1,15 @@
-#!/usr/bin/env python3
 """A wall in the way of a target: the robot sees it, stops before it, gives the goal up and says why."""
 
-import sys
-from pathlib import Path
-
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
+from services import action_client
+from walking_fixture import WalkingTest
 
 from nao_library_modules.driver.planar_frames import pose_stamped
 from nao_library_modules.places import Place
 from nao_sim_bridge.testing import send
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from services import action_client  # noqa: E402
-from walking_fixture import WalkingTest  # noqa: E402
 
 WALL_X = 0.96
 """m: the near face of the low wall of the world "obstacles", which is 1 m wide."""
@@ -42,8 +35,3 @@ class DriverObstacle(WalkingTest):
         print(f"gave up {WALL_X - place.x:.2f} m before the wall after {run.ended - run.sent:.1f} s")
         self.assertGreater(place.x, 0.3)
         self.assertLess(place.x, WALL_X - 0.25)
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_obstacle_test")
-    rostest.rosrun("nao_library_tests", "driver_obstacle", DriverObstacle)

@@ -1,26 +1,21 @@
-#!/usr/bin/env python3
 """The one node that speaks: every text once and in turn, and ends that are ends."""
 
 import subprocess
 import sys
 import unittest
-from pathlib import Path
 
 import rospkg
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
 from dynamic_reconfigure.client import Client
+from services import answer, configuration, service
+from sound_fixture import Loudspeakers, level
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 
 from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
 from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from services import answer, configuration, service  # noqa: E402
-from sound_fixture import Loudspeakers, level  # noqa: E402
 
 LIMIT = 60.0
 NODE = rospkg.RosPack().get_path("nao_library_modules") + "/nodes/nao_speech"
@@ -173,8 +168,3 @@ class DriverSpeech(unittest.TestCase):
         self.assertEqual(second.returncode, 1)
         self.assertIn("/nao_speech speaks for this robot already", second.stdout)
         self.assertEqual(self.topic.get_num_connections(), 1)
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_speech_test")
-    rostest.rosrun("nao_library_tests", "driver_speech", DriverSpeech)

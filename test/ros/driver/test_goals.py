@@ -1,15 +1,13 @@
-#!/usr/bin/env python3
 """Joints and poses under the names of nao_robot: topics, services and actions, to success, abort and preemption."""
 
-import sys
 import unittest
-from pathlib import Path
 
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
+from examples_fixture import start
 from rospy import Duration
 from sensor_msgs.msg import JointState
+from services import action_client, service
 from std_srvs.srv import Empty
 from trajectory_msgs.msg import JointTrajectoryPoint
 
@@ -25,10 +23,6 @@ from nao_library_actions.msg import (
 )
 from nao_library_msgs.msg import JointAnglesWithSpeed
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from examples_fixture import start  # noqa: E402
-from services import action_client, service  # noqa: E402
 
 CROUCH = (
     [0.0, 0.0, 1.0, 0.4, -1.57, -0.486, 0.0, 0.0, -0.3, 0.057, -0.744, 2.1, -1.122, -0.035]
@@ -284,8 +278,3 @@ class DriverGoals(unittest.TestCase):
         self.assertIn("did you mean 'Crouch'", self.end_of(mistyped, 1))
         self.assertEqual(self.end_of(moves, 0).count("succeeded"), 3)
         self.assertEqual(self.end_of(start("take_pose.py", "init"), 0).strip(), "init: succeeded")
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_goals_test")
-    rostest.rosrun("nao_library_tests", "driver_goals", DriverGoals)

@@ -1,26 +1,20 @@
-#!/usr/bin/env python3
 """What nao_vision finds in the pictures of the robot: landmarks, faces by name, and movement; switched on and off."""
 
 import math
-import sys
 import unittest
 from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 import rospy
-import rostest
 import yaml
+from camera_fixture import LIMIT, Geometry, matrix
+from cases import case
+from services import answer, service
 from std_srvs.srv import Empty
 
 from nao_library_msgs.msg import FaceDetected, LandmarkDetected, MovementDetected
 from nao_library_msgs.srv import LearnFace, VisionMotionSensitivity
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from camera_fixture import LIMIT, Geometry, matrix  # noqa: E402
-from cases import case  # noqa: E402
-from services import answer, service  # noqa: E402
 
 MODULES = {"face": "ALFaceDetection", "motion": "ALMovementDetection", "landmark": "ALLandMarkDetection"}
 TOP = "CameraTop_optical_frame"
@@ -191,8 +185,3 @@ def number(value):
     request = VisionMotionSensitivity._request_class()
     request.sensitivity.data = value
     return request
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_vision_test")
-    rostest.rosrun("nao_library_tests", "driver_vision", DriverVision)

@@ -1,14 +1,12 @@
-#!/usr/bin/env python3
 """Words that somebody says, published by the node that listens for them."""
 
-import sys
 import unittest
-from pathlib import Path
 
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
 from dynamic_reconfigure.client import Client
+from services import answer, configuration, service
+from sound_fixture import Room
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 
@@ -21,10 +19,6 @@ from nao_library_actions.msg import (
 from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import WordRecognized
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from services import answer, configuration, service  # noqa: E402
-from sound_fixture import Room  # noqa: E402
 
 LIMIT = 60.0
 SUBSCRIBER = "ros_nao_speech"
@@ -109,8 +103,3 @@ class DriverSpeechWords(unittest.TestCase):
         self.addCleanup(self.recognition.unsubscribe, "Somebody")
         self.assertIn("in use by Somebody", self.call("start_recognition"))
         self.assertEqual([info[0] for info in self.recognition.getSubscribersInfo()], ["Somebody"])
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_speech_words_test")
-    rostest.rosrun("nao_library_tests", "driver_speech_words", DriverSpeechWords)

@@ -1,25 +1,19 @@
-#!/usr/bin/env python3
 """Walking to a target and along a path when the path follower leads by velocities."""
 
 import math
-import sys
-from pathlib import Path
 
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Pose2D, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
+from services import action_client
+from walking_fixture import WalkingTest
 
 from nao_library_actions.msg import FollowPathAction, FollowPathGoal
 from nao_library_modules.driver.planar_frames import pose_stamped
 from nao_library_modules.places import Place
 from nao_sim_bridge.testing import send
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from services import action_client  # noqa: E402
-from walking_fixture import WalkingTest  # noqa: E402
 
 FRAME = "base_footprint"
 NEAR = 0.08
@@ -67,8 +61,3 @@ class DriverPathVelocities(WalkingTest):
         goal.path.header.frame_id = FRAME
         goal.path.poses = [pose_stamped(place, FRAME, rospy.Time()) for place in places]
         self.walk("walk_path", FollowPathAction, goal, places[-1])
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_path_velocities_test")
-    rostest.rosrun("nao_library_tests", "driver_path_velocities", DriverPathVelocities)

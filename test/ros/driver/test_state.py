@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What nao_joint_states publishes: an even rate under load, and facts about the robot; preemption in real time."""
 
 import math
@@ -7,7 +6,6 @@ import time
 import unittest
 
 import rospy
-import rostest
 import tf2_ros
 from actionlib_msgs.msg import GoalStatus
 from nav_msgs.msg import Odometry
@@ -199,8 +197,3 @@ class DriverState(unittest.TestCase):
         self.assertGreater(left.y, 0.04)
         self.assertAlmostEqual(min(left.z, right.z), 0.0, delta=0.005)
         self.frame("odom", "CameraTop_optical_frame")
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_state_test")
-    rostest.rosrun("nao_library_tests", "driver_state", DriverState)

@@ -1,9 +1,7 @@
-#!/usr/bin/env python3
 """Both cameras as topics: what they show and where, calibrations, rates, changes at run time, and nobody looking."""
 
 import math
 import subprocess
-import sys
 import tempfile
 import unittest
 from contextlib import contextmanager
@@ -12,19 +10,16 @@ from pathlib import Path
 import cv2
 import numpy as np
 import rospy
-import rostest
 import yaml
+from camera_fixture import LIMIT, MAGENTA, Geometry, Look, magenta_spot, pixels_of, project
+from cases import case
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure import DynamicReconfigureCallbackException
 from dynamic_reconfigure.client import Client
 from sensor_msgs.msg import CameraInfo, CompressedImage
+from services import configuration
 
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from camera_fixture import LIMIT, MAGENTA, Geometry, Look, magenta_spot, pixels_of, project  # noqa: E402
-from cases import case  # noqa: E402
-from services import configuration  # noqa: E402
 
 TOP, BOTTOM = 0, 1
 NAMES = ("top", "bottom")
@@ -324,8 +319,3 @@ class DriverCamera(unittest.TestCase):
             self.assertGreater(info.K[0], 0.0)
             settings.update_configuration({"source": BOTTOM})
             look.now(lambda image: image.header.frame_id == FRAMES[BOTTOM])
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_camera_test")
-    rostest.rosrun("nao_library_tests", "driver_camera", DriverCamera)

@@ -1,20 +1,18 @@
-#!/usr/bin/env python3
 """Walking to targets and along paths, by odometry and by what is true: to the end, replaced, cancelled, stuck."""
 
 import math
-import sys
-from pathlib import Path
 
 import rospy
-import rostest
 import tf2_ros
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
 from rospy import Duration
+from services import action_client
 from std_msgs.msg import Bool, Empty
 from std_srvs.srv import Empty as EmptyService
+from walking_fixture import WalkingTest, of_pose, seen_from_above
 
 from nao_library_actions.msg import FollowPathAction, FollowPathGoal
 from nao_library_modules.driver.path_follower_path import WalkPath
@@ -22,10 +20,6 @@ from nao_library_modules.driver.planar_frames import pose_stamped
 from nao_library_modules.places import Place
 from nao_library_msgs.srv import SetTransform
 from nao_sim_bridge.testing import send, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from services import action_client  # noqa: E402
-from walking_fixture import WalkingTest, of_pose, seen_from_above  # noqa: E402
 
 NEAR, TURNED = 0.05, math.radians(5.0)
 """The thresholds of the node."""
@@ -307,8 +301,3 @@ class DriverPaths(WalkingTest):
             message = rospy.wait_for_message(topic, kind, 10.0)
             if message.header.stamp > began:
                 return message
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_paths_test")
-    rostest.rosrun("nao_library_tests", "driver_paths", DriverPaths)

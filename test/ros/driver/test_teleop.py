@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """A gamepad and a keyboard control the robot: it walks while a stick or key is held, and stops when they go away."""
 
 import os
@@ -9,18 +8,14 @@ import sys
 import termios
 import threading
 import unittest
-from pathlib import Path
 
 import rospkg
 import rospy
-import rostest
 from sensor_msgs.msg import Joy
+from services import answer, service
 from std_srvs.srv import Empty
 
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from services import answer, service  # noqa: E402
 
 LIMIT = 60.0
 NODE = rospkg.RosPack().get_path("nao_library_modules") + "/nodes/teleop_nao_keyboard"
@@ -189,8 +184,3 @@ class DriverTeleop(unittest.TestCase):
         )
         self.assertEqual(ended.returncode, 1)
         self.assertIn("keys need a terminal", ended.stderr)
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_teleop_test")
-    rostest.rosrun("nao_library_tests", "driver_teleop", DriverTeleop)

@@ -1,11 +1,9 @@
-#!/usr/bin/env python3
 """Streams, recordings and pictures of any ROS camera, without a robot: what is in the files, and how threads end."""
 
 import os
 import resource
 import signal
 import subprocess
-import sys
 import threading
 import time
 import unittest
@@ -17,8 +15,8 @@ import cv2
 import numpy as np
 import rospkg
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
+from camera_topics import number_of, numbered
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header, String
 
@@ -26,10 +24,8 @@ from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
 from nao_library_msgs.msg import VisionFunction
 from nao_sim_bridge.testing import send, wait_until
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside this file's relay
-from fake_vision import number_of, numbered  # noqa: E402
-
-TOP, BOTTOM = "webcam/image_raw", "other_camera/image_raw/compressed"
+NS = "webcam_only"
+TOP, BOTTOM = f"{NS}/webcam/image_raw", f"{NS}/other_camera/image_raw/compressed"
 SIZE = (320, 240)
 RATE = 15.0
 LIMIT = 20.0
@@ -117,7 +113,7 @@ class Vision(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = Path(rospkg.get_ros_home()) / "vision_files"
         cls.top, cls.bottom = Camera(TOP), Camera(BOTTOM, CompressedImage)
-        cls.client = cls.connect("NaoVision")
+        cls.client = cls.connect(f"{NS}/NaoVision")
 
     @classmethod
     def tearDownClass(cls):
@@ -387,8 +383,3 @@ class Vision(unittest.TestCase):
         self.wait_for("walk", lambda thread: thread.frames >= 75, "frames", client)
         self.end(process, signal.SIGKILL)
         self.assertGreaterEqual(readable(folder / "a.mp4"), 60)
-
-
-if __name__ == "__main__":
-    rospy.init_node("vision_test")
-    rostest.rosrun("nao_library_tests", "vision", Vision)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Walking under the names of nao_robot: velocities and their watchdog, targets, steps, stop, inhibition, the end."""
 
 import math
@@ -9,14 +8,13 @@ import subprocess
 import sys
 import threading
 import unittest
-from pathlib import Path
 
 import rospkg
 import rospy
-import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Pose2D, Twist
 from rospy import Duration
+from services import answer, service
 from std_srvs.srv import Empty
 
 from nao_library_msgs.msg import StepTarget
@@ -27,9 +25,6 @@ from nao_library_msgs.srv import (
     StepTargetService,
 )
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from services import answer, service  # noqa: E402
 
 LIMIT = 60.0
 """Wall time to wait for something, s."""
@@ -329,8 +324,3 @@ class DriverWalker(unittest.TestCase):
         except rospy.ServiceException:
             return False
         return True
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_walker_test")
-    rostest.rosrun("nao_library_tests", "driver_walker", DriverWalker)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Microphones as a topic; files, volume, recordings and directions of sounds as services and a topic."""
 
 import math
@@ -7,24 +6,20 @@ import sys
 import threading
 import unittest
 from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 import rospkg
 import rospy
-import rostest
 import soundfile
+from cases import case
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure.client import Client
+from services import configuration
+from sound_fixture import Loudspeakers, Room, bursts, delay, noise, recording, strongest_frequency
 
 from nao_library_msgs.msg import AudioBuffer, AudioSourceLocalization
 from nao_library_msgs.srv import AudioPlayback, AudioRecorder, GetAudioMasterVolume, SetAudioMasterVolume
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
-from cases import case  # noqa: E402
-from services import configuration  # noqa: E402
-from sound_fixture import Loudspeakers, Room, bursts, delay, noise, recording, strongest_frequency  # noqa: E402
 
 LIMIT = 30.0
 EXAMPLE = rospkg.RosPack().get_path("nao_library_modules") + "/examples/microphone_to_file.py"
@@ -304,8 +299,3 @@ class DriverSound(unittest.TestCase):
                 self.robot.advance(2.0)
         subscriber.unregister()
         wait_until(lambda: localisation.getSubscribersInfo() == [], LIMIT, "the end of the localisation")
-
-
-if __name__ == "__main__":
-    rospy.init_node("driver_sound_test")
-    rostest.rosrun("nao_library_tests", "driver_sound", DriverSound)

@@ -1,0 +1,31 @@
+"""Fixtures of cases on the running stack: every case finds it as if it had just started."""
+
+from __future__ import annotations
+
+import pytest
+from ros_stack import RosStack
+
+
+@pytest.fixture(scope="session")
+def stack(tmp_path_factory):
+    """Simulator, driver and servers; this process is a node beside them."""
+    stack = RosStack(tmp_path_factory.mktemp("ros"))
+    yield stack
+    stack.close()
+
+
+@pytest.fixture(scope="class", autouse=True)
+def running(stack):
+    """The stack runs before the class of a suite looks for it."""
+    stack.ensure()
+
+
+@pytest.fixture(autouse=True)
+def intact(stack):
+    """Names the case that ends a node, and starts the stack again for the next."""
+    stack.ensure()
+    yield
+    dead = stack.deaths()
+    if dead:
+        stack.broken = True
+        pytest.fail(f"nodes ended in this case or the one before: {', '.join(dead)}", pytrace=False)
