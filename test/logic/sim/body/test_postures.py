@@ -1,0 +1,390 @@
+"""Postures: recognised from readings, ways between them, and moves of the file. Looking, pointing and stroking."""
+
+from __future__ import annotations
+
+import math
+import random
+from math import radians
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.sim.errors import BadValue, ConfigError
+from nao_sim_bridge.sim.frames import frame_of
+from nao_sim_bridge.sim.hand_path import AWAY, HandPath
+from nao_sim_bridge.sim.kinematics import link_transforms
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.posture_graph import leaves_feet, path_to
+from nao_sim_bridge.sim.posture_moves import FILE, Ground, KeyFrame, Move, direct, load_moves, moves_of
+from nao_sim_bridge.sim.posture_recognition import (
+    FAMILIES,
+    UNKNOWN,
+    Recognition,
+    lean_of,
+    recognise_readings,
+    up_in_torso,
+)
+from nao_sim_bridge.sim.postures import load_postures, posture
+from nao_sim_bridge.sim.start_lean import start_pitch
+from nao_sim_bridge.sim.touch_gestures import (
+    FREE,
+    GESTURES,
+    HOLD_TIME,
+    SEQUENCE_TIME,
+    SETTLE_TIME,
+    GestureBook,
+    GestureRecogniser,
+    Seen,
+    Times,
+)
+from nao_sim_bridge.sim.touch_names import CHEST_BUTTON, EVENTS, SENSORS, sensor_of
+from nao_sim_bridge.sim.tracking.approach import Relative, goal_beside
+from nao_sim_bridge.sim.tracking.geometry import HEAD, arm_angles, distance_of, head_angles, seen_place, turn_to
+from nao_sim_bridge.sim.walk.footsteps import FootPose
+
+MODEL = load_model()
+FAMILY = {name: entry.family for name, entry in load_postures().by_name.items()}
+STANDING_GROUP = ("Stand", "StandInit", "StandZero", "Crouch")
+# Roll and pitch of the torso (degrees) with flat feet, on the seat, or lying; share of the weight on the feet.
+READINGS = {
+    "Stand": (0, 0, 1.0),
+    "StandInit": (0, 6, 1.0),
+    "StandZero": (0, 0, 1.0),
+    "Crouch": (0, -3, 1.0),
+    "Sit": (0, -10, 0.4),
+    "SitRelax": (0, -15, 0.2),
+    "LyingBelly": (0, 85, 0.2),
+    "LyingBack": (0, -85, 0.2),
+}
+
+
+def seen(angles, roll=0, pitch=0, load=1.0):
+    """Recognition with angles of the torso in degrees."""
+    return recognise_readings(MODEL, angles, radians(roll), radians(pitch), load)
+
+
+def changed(name, **joints):
+    """The angles of a posture, some of them others (rad); a name without a side is of both legs."""
+    sided = {side + joint: angle for joint, angle in joints.items() for side in ("", "L", "R")}
+    return [sided.get(joint.name, angle) for joint, angle in zip(MODEL.joints, posture(MODEL, name))]
+
+
+@pytest.mark.parametrize("name", FAMILY)
+def test_a_predefined_posture_is_recognised_in_spite_of_noise_and_not_in_the_air(name):
+    chance, (roll, pitch, load) = random.Random(name), READINGS[name]
+    assert seen(posture(MODEL, name), *READINGS[name]) == Recognition(name, FAMILY[name])
+    assert FAMILY[name] in FAMILIES
+    for _ in range(20):
+        angles = [angle + chance.uniform(-0.1, 0.1) for angle in posture(MODEL, name)]
+        lean = roll + chance.uniform(-5, 5), pitch + chance.uniform(-5, 5)
+        assert seen(angles, *lean, load * chance.uniform(0.9, 1.1)) == Recognition(name, FAMILY[name])
+    if load == 1.0:
+        assert seen(posture(MODEL, name), roll, pitch, load=0.0) == Recognition(UNKNOWN, UNKNOWN)
+    assert (start_pitch(name) is None) == (name in STANDING_GROUP), "only off the feet it has a pitch to start with"
+
+
+@pytest.mark.parametrize(
+    "angles, readings, recognition",
+    [
+        (changed("Stand", HeadYaw=1.0), {}, ("Stand", "Standing")),
+        (changed("Stand", Hand=1.0), {}, ("Stand", "Standing")),
+        (changed("Stand", LWristYaw=1.5), {}, ("Stand", "Standing")),
+        (changed("Stand", ShoulderPitch=-1.5), {}, (UNKNOWN, "Standing")),
+        (changed("StandInit", HipPitch=-0.6, KneePitch=1.1, AnklePitch=-0.5), {}, (None, "Standing")),
+        (changed("StandInit", HipPitch=-0.9, KneePitch=1.8, AnklePitch=-0.9), {}, (None, "Crouching")),
+        (changed("Crouch", HipPitch=-0.8, KneePitch=2.0, AnklePitch=-1.1), {}, (None, "Crouching")),
+        (changed("StandInit", RHipPitch=-1.0, RKneePitch=1.6, RAnklePitch=-0.6), {"pitch": 6}, (None, "Standing")),
+        # A chair takes the weight off bent legs.
+        (changed("StandZero", HipPitch=-1.5, KneePitch=1.5, AnklePitch=0), {"load": 0.35}, (None, "SittingOnChair")),
+        (changed("StandInit", HipPitch=-1.0, KneePitch=2.0, AnklePitch=-1.0), {}, (None, "Crouching")),
+        (posture(MODEL, "StandZero"), {"roll": 25}, (None, UNKNOWN)),
+        # Feet stay flat as far as the ankles let them.
+        (changed("StandZero", AnklePitch=-radians(20)), {"pitch": 20, "load": 0.8}, (None, "Standing")),
+        (changed("StandZero", AnklePitch=-radians(40)), {"pitch": 40, "load": 0.8}, (None, UNKNOWN)),
+        (posture(MODEL, "StandZero"), {"pitch": 60, "load": 0.8}, (None, "LyingBelly")),
+        (posture(MODEL, "StandZero"), {"pitch": -60, "load": 0.8}, (None, "LyingBack")),
+        (posture(MODEL, "StandZero"), {"roll": 60, "load": 0.8}, (None, "LyingRight")),
+        (posture(MODEL, "StandZero"), {"roll": -60, "load": 0.8}, (None, "LyingLeft")),
+        (posture(MODEL, "StandZero"), {"roll": -100, "load": 0.8}, (None, "LyingLeft")),
+        (posture(MODEL, "StandZero"), {"roll": 180, "pitch": 80, "load": 0.8}, (None, "LyingBelly")),
+        (posture(MODEL, "StandZero"), {"roll": 20, "pitch": -70, "load": 0.8}, (None, "LyingBack")),
+    ],
+)
+def test_families_go_beyond_the_predefined_postures(angles, readings, recognition):
+    name, family = recognition
+    found = seen(angles, **readings)
+    assert found.family == family and name in (None, found.posture)
+
+
+@pytest.mark.parametrize(
+    "roll, pitch, up, lean",
+    [(0, 0, (0, 0, 1), 0), (0, 90, (-1, 0, 0), 90), (0, -90, (1, 0, 0), 90), (90, 0, (0, 1, 0), 90)],
+)
+def test_the_way_up_as_the_torso_sees_it(roll, pitch, up, lean):
+    assert up_in_torso(radians(roll), radians(pitch)) == pytest.approx(up, abs=1e-12)
+    assert lean_of(radians(roll), radians(pitch)) == pytest.approx(radians(lean), abs=1e-7)
+
+
+# --- ways
+
+
+def move(start, goal, duration=5.0, certainty=1.0):
+    return Move(start, goal, (KeyFrame(duration, dict(enumerate(posture(MODEL, goal)))),), certainty=certainty)
+
+
+def at(name):
+    return Recognition(name, FAMILY[name])
+
+
+def lost(family):
+    return Recognition(UNKNOWN, family)
+
+
+UP, SIT_UP, SLOW = move("LyingBelly", "Stand"), move("Sit", "Stand"), move("LyingBack", "Stand", 9.0)
+THERE, ON = move("LyingBack", "Sit", 3.0), move("Sit", "Stand", 4.0)
+QUICK, FAIR, RISKY = (move("LyingBack", "Stand", 5.0, certainty) for certainty in (1.0, 0.9, 0.5))
+
+
+@pytest.mark.parametrize(
+    "goal, seen, like, moves, way",
+    [
+        *[(b, at(a), a, [], [f"{a} -> {b}"]) for a in STANDING_GROUP for b in STANDING_GROUP],
+        ("StandInit", lost("Crouching"), "Stand", [], ["Crouching -> StandInit"]),
+        ("SitRelax", at("Sit"), "Sit", [], ["Sit -> SitRelax"]),
+        ("Sit", lost("Sitting"), "Sit", [], ["Sitting -> Sit"]),
+        # Moves of the file join what straight ones do not.
+        ("Crouch", at("Sit"), "Sit", [], None),
+        ("Crouch", at("Sit"), "Sit", [SIT_UP], ["Sit -> Stand", "Stand -> Crouch"]),
+        ("Crouch", at("SitRelax"), "SitRelax", [SIT_UP], ["SitRelax -> Sit", "Sit -> Stand", "Stand -> Crouch"]),
+        # A move from a family begins in each of its poses, one from a posture does not.
+        ("Stand", lost("LyingBelly"), "LyingBack", [UP], ["LyingBelly -> Stand"]),
+        ("Stand", at("LyingBelly"), "LyingBelly", [UP], ["LyingBelly -> Stand"]),
+        ("Stand", lost("Sitting"), "Sit", [SIT_UP], ["Sitting -> Sit", "Sit -> Stand"]),
+        # The quickest way wins, where one that often misses is not quick.
+        ("Stand", at("LyingBack"), "LyingBack", [SLOW, THERE, ON], ["LyingBack -> Sit", "Sit -> Stand"]),
+        ("Stand", at("LyingBack"), "LyingBack", [SLOW, THERE], ["LyingBack -> Stand"]),
+        ("Stand", at("LyingBack"), "LyingBack", [QUICK, THERE, ON], ["LyingBack -> Stand"]),
+        ("Stand", at("LyingBack"), "LyingBack", [FAIR, THERE, ON], ["LyingBack -> Stand"]),
+        ("Stand", at("LyingBack"), "LyingBack", [RISKY, THERE, ON], ["LyingBack -> Sit", "Sit -> Stand"]),
+        # Who lies on a side tips over first.
+        ("Stand", lost("LyingLeft"), "LyingBack", [SLOW], ["LyingLeft -> LyingBack", "LyingBack -> Stand"]),
+        ("Stand", lost("LyingRight"), "LyingBack", [SLOW], ["LyingRight -> LyingBack", "LyingBack -> Stand"]),
+        *[(g, at("LyingBelly"), "LyingBelly", [SLOW, move("Stand", "Sit")], None) for g in ("Stand", "Crouch", "Sit")],
+    ],
+)
+def test_ways_between_postures(goal, seen, like, moves, way):
+    found = path_to(goal, seen, posture(MODEL, like), 1.0, MODEL, moves)
+    assert (found and [str(one) for one in found]) == way
+
+
+@pytest.mark.parametrize("like", STANDING_GROUP)
+def test_what_is_no_posture_but_nearly_stands_goes_to_the_nearest_standing_one(like):
+    for family in (UNKNOWN, "SittingOnChair"):
+        first, *_ = path_to("StandZero", lost(family), posture(MODEL, like), 1.0, MODEL, ())
+        assert str(first) == f"{family} -> {like}"
+
+
+def test_moves_off_the_feet_are_told_from_those_on_them():
+    on = [(at("Stand"), "Crouch"), (lost("Standing"), "StandInit")]
+    off = [(at("Stand"), "Sit"), (at("LyingBelly"), "Stand"), (at("Sit"), "SitRelax"), (lost(UNKNOWN), "Stand")]
+    assert [leaves_feet(seen, move("Stand", goal)) for seen, goal in on + off] == [False] * 2 + [True] * 4
+
+
+# --- moves
+
+HEAD_YAW, KNEE = MODEL.joint_index["HeadYaw"], MODEL.joint_index["LKneePitch"]
+FRAME = {"time": 0.5, "angles": {"HeadYaw": 0.1}}
+
+
+def content(**changes):
+    """A file with one move."""
+    move = {"from": "LyingBelly", "to": "Stand", "frames": [FRAME], **changes}
+    return {"moves": [{key: value for key, value in move.items() if value is not None}]}
+
+
+def test_a_move_is_read_and_is_as_certain_as_it_was_found():
+    second = {"time": 1.0, "angles": {"HeadYaw": 0, "LKneePitch": 0.5}}
+    (move,) = moves_of(content(frames=[FRAME, second], note="why"))
+    frames = (KeyFrame(0.5, {HEAD_YAW: 0.1}), KeyFrame(1.0, {HEAD_YAW: 0.0, KNEE: 0.5}))
+    assert move == Move("LyingBelly", "Stand", frames, dynamic=True)
+    assert (move.duration, move.goal_family, str(move), move.certainty) == (1.5, "Standing", "LyingBelly -> Stand", 1.0)
+    (tried,) = moves_of(content(checked={"runs": 20, "reached": 5}))
+    assert tried.certainty == 0.25 and tried.expected_duration == 4 * tried.duration
+
+
+@pytest.mark.parametrize(
+    "wrong, text",
+    [
+        ({"moves": {}}, "moves: is a dict, not a list"),
+        ({"movs": []}, "unknown key 'movs', did you mean 'moves'"),
+        ({**content(), "more": 1}, "unknown key 'more'"),
+        (content(**{"from": "Lying"}), r"moves\[0\].from: is 'Lying', allowed is .*LyingBelly"),
+        (content(to="Standing"), r"moves\[0\].to: is 'Standing', allowed is .*StandInit"),
+        (content(to=None), "missing 'to'"),
+        (content(checked=3), "checked: is 3, not a mapping with runs and reached"),
+        (content(checked={"runs": 20}), "checked.reached: is None, not a number"),
+        (content(checked={"runs": 20, "reached": 0}), "checked: reached is 0 of 20 runs, allowed is above 0 to all"),
+        (content(frames=[]), "frames: is no list of key frames, at least one"),
+        (content(frames=[{"time": 0, "angles": {}}]), r"frames\[0\].time: is 0.0, not above 0"),
+        (content(frames=[{"time": "1", "angles": {}}]), r"frames\[0\].time: is '1', not a number"),
+        (
+            content(frames=[FRAME, {"time": 1, "angles": {"HedYaw": 0.1}}]),
+            r"frames\[1\].angles.*'HedYaw', did you mean",
+        ),
+        (content(frames=[{"time": 1, "angles": {"HeadYaw": True}}]), "angles.HeadYaw: is True, not a number"),
+    ],
+)
+def test_what_is_wrong_in_the_file_is_named(wrong, text):
+    with pytest.raises(ConfigError, match=f"{FILE}.*{text}"):
+        moves_of(wrong)
+
+
+def test_the_moves_of_the_file_end_in_their_postures():
+    legs = [MODEL.joint_index[name] for chain in ("LLeg", "RLeg") for name in MODEL.chains[chain]]
+    assert load_moves()
+    for move in load_moves():
+        final = posture(MODEL, move.goal)
+        reached = {index: angle for frame in move.frames for index, angle in frame.angles.items()}
+        assert {i: reached[i] for i in legs} == pytest.approx({i: final[i] for i in legs}, abs=0.01), str(move)
+
+
+def test_a_straight_move_takes_the_slowest_joint_its_time_and_what_is_safe():
+    start, goal = posture(MODEL, "StandZero"), posture(MODEL, "Crouch")
+    move = direct(MODEL, "StandZero", "Crouch", start, 1.0, Ground((), 0.0))
+    needed = max(abs(a - b) / joint.max_velocity for a, b, joint in zip(goal, start, MODEL.joints))
+    assert move.duration == pytest.approx(1.5 * needed) and not move.dynamic
+    assert (move.goal, move.frames[-1].angles) == ("Crouch", dict(enumerate(goal)))
+    for fraction, duration in ((1.0, 0.8), (0.25, 3.2)):
+        move = direct(MODEL, "Stand", "Stand", posture(MODEL, "Stand"), fraction, Ground((), 0.8))
+        assert move.duration == pytest.approx(duration)
+    slow, quick = (path_to("StandInit", at("Stand"), posture(MODEL, "Stand"), f, MODEL, ()) for f in (0.2, 1.0))
+    assert slow[0].duration == pytest.approx(5 * quick[0].duration)
+    (dynamic,) = path_to("Stand", at("Sit"), posture(MODEL, "Sit"), 0.2, MODEL, [ON])
+    assert dynamic.duration == 4.0, "moves of the file are played as they are"
+
+
+def test_arms_that_make_way_go_aside_first_and_come_down_from_above():
+    start, goal = posture(MODEL, "Sit"), posture(MODEL, "SitRelax")
+    move = direct(MODEL, "Sit", "SitRelax", start, 1.0, Ground((), 0.5, arms_aside=True))
+    aside, over, above, there = (frame.angles for frame in move.frames)
+    shoulders, elbows = ([MODEL.joint_index[side + name] for side in "LR"] for name in ("ShoulderRoll", "ElbowRoll"))
+    assert [aside[i] for i in shoulders] == [over[i] for i in shoulders] == [0.9, -0.9]
+    assert [above[i] for i in elbows] == [-1.5, 1.5] and aside[KNEE] == start[KNEE]
+    assert over[KNEE] == above[KNEE] == there[KNEE] == goal[KNEE] and there == dict(enumerate(goal))
+
+
+# --- looking and pointing
+
+
+def off(name, angles, place):
+    """Angle between the X axis of a frame for joint angles by name, others 0, and the way from it to a place, rad."""
+    frame = frame_of(MODEL, name)
+    body = [angles.get(joint.name, 0.0) for joint in MODEL.joints]
+    way = np.linalg.inv(link_transforms(MODEL, body)[frame.link] @ frame.offset) @ np.array((*place, 1.0))
+    return math.acos(way[0] / np.linalg.norm(way[:3]))
+
+
+def test_cameras_and_arms_turn_to_a_place():
+    for place in ((1.0, 0.0, 0.2), (1.0, 0.6, 0.5), (0.5, -0.4, 0.1), (2.0, 1.5, -0.3)):
+        assert off("CameraTop", dict(zip(HEAD, head_angles(MODEL, place))), place) < 1e-6
+    place = (1.0, 0.2, -0.2)
+    yaw, pitch = head_angles(MODEL, place, camera=1)
+    assert pitch < head_angles(MODEL, place)[1] - 0.5, "for the other camera the head is higher"
+    assert off("CameraBottom", dict(zip(HEAD, (yaw, pitch))), place) < 1e-6
+    for arm, side in (("LArm", 1.0), ("RArm", -1.0)):
+        for place in ((1.0, 0.4 * side, height) for height in (-0.3, 0.1, 0.6)):
+            assert off(arm, arm_angles(MODEL, arm, place), place) < math.radians(4.0)
+    for place in ((0.0, 0.0, 0.1265), (-1.0, 0.1, 0.2), (0.1, 0.0, -1.0), (0.0, 0.0, 5.0)):
+        for name, angle in zip(HEAD, head_angles(MODEL, place)):
+            assert MODEL.joint(name).lower <= angle <= MODEL.joint(name).upper, "out of reach"
+
+
+def test_what_a_camera_sees_is_where_its_ray_goes():
+    place = seen_place((0.1, 0.2, 0.5, 0.0, 0.3, 0.7), 0.0, 0.0, 2.0)
+    assert math.dist(place, (0.1, 0.2, 0.5)) == pytest.approx(2.0)
+    assert math.atan2(place[1] - 0.2, place[0] - 0.1) == pytest.approx(0.7)
+    assert seen_place((0.0,) * 6, 0.3, 0.0, 1.0)[1] > 0.0 > seen_place((0.0,) * 6, 0.0, 0.3, 1.0)[2]
+    assert (distance_of(0.1, 0.1), distance_of(0.1, 0.05)) == pytest.approx((1.0, 2.0), abs=0.01)
+    assert (turn_to(3.0, -3.0), turn_to(0.2, 0.5)) == pytest.approx((2.0 * math.pi - 6.0, 0.3))
+    goal = goal_beside(FootPose(0.0, 0.0, 1.0), (1.0, 1.0, 0.0), Relative(-0.5))
+    assert (goal.yaw, math.hypot(1.0 - goal.x, 1.0 - goal.y)) == pytest.approx((math.pi / 4.0, 0.5))
+    assert math.hypot(goal.x, goal.y) == pytest.approx(math.sqrt(2.0) - 0.5), "on the robot's side"
+
+
+# --- gestures on the head
+
+TICK = 1.0 / 120.0
+ONCE, AGAIN = ("100", 0.1), (FREE, 1.0)
+
+
+def told(*touches, book=None, times=None):
+    """[(time, seen)] of touches after 0.2 s without, each a pattern and how long it lasts, s."""
+    recogniser, news, now = GestureRecogniser(book or GestureBook(), times or Times()), [], 0.0
+    for pattern, duration in ((FREE, 0.2), *touches):
+        for _ in range(round(duration / TICK)):
+            now += TICK
+            news.append((now, recogniser.feed(pattern, now)))
+    return [(time, seen) for time, seen in news if seen != Seen()]
+
+
+def names(news):
+    return [seen.gesture for _, seen in news if seen.gesture]
+
+
+@pytest.mark.parametrize("name", GESTURES)
+def test_a_gesture_is_recognised_when_it_is_over_and_what_is_held_again_and_again(name):
+    *first, last = GESTURES[name]
+    if last == FREE:
+        ((when, seen),) = told(*((pattern, 0.12) for pattern in first), (FREE, 1.0))
+        assert seen == Seen(name, released=True)
+        assert when == pytest.approx(0.2 + 0.12 * len(first) + SETTLE_TIME + SEQUENCE_TIME, abs=3 * TICK)
+    else:
+        news, begin = told((last, 2.0), (FREE, 1.0)), 0.2 + SETTLE_TIME
+        assert [seen for _, seen in news] == [Seen(name), Seen(name), Seen(released=True)]
+        times = [begin + HOLD_TIME, begin + 2 * HOLD_TIME, begin + 2.0]
+        assert [when for when, _ in news] == pytest.approx(times, abs=3 * TICK)
+
+
+@pytest.mark.parametrize(
+    "touches, gestures",
+    [
+        # Fingers need not land at once, and a sensor that bounces is not touched twice.
+        ([("010", 0.015), ("110", 0.015), ("111", 0.2), AGAIN], ["SingleTap"]),
+        ([("100", 0.2), (FREE, 0.017), ("100", 0.2), AGAIN], ["SingleFront"]),
+        ([ONCE, (FREE, SETTLE_TIME + SEQUENCE_TIME + 0.05), ONCE, AGAIN], ["SingleFront", "SingleFront"]),
+        ([ONCE, ("001", 0.1), AGAIN], []),
+        ([("100", 1.0), ("010", 0.1), AGAIN], ["SingleFrontHold", "SingleMiddle"]),
+    ],
+)
+def test_touches_in_time(touches, gestures):
+    assert names(told(*touches)) == gestures
+
+
+def test_times_can_be_changed_and_gestures_added():
+    times, book, triple = Times(), GestureBook(), [FREE, *["111", FREE] * 3]
+    times.hold, times.sequence = 0.2, 0.6
+    assert names(told(("100", 0.3), AGAIN, times=times)) == ["SingleFrontHold"]
+    times.hold = 2.0
+    assert names(told(ONCE, (FREE, 0.5), ONCE, AGAIN, times=times)) == ["DoubleFront"]
+    name = book.add(triple)
+    assert book.add(triple) == name and book.sequence_of(name) == triple and book.name_of(triple) == name
+    assert names(told(*[("111", 0.1), (FREE, 0.1)] * 3, AGAIN, book=book)) == [name]
+    assert book.add(GESTURES["ZoomIn"]) == "ZoomIn"
+
+
+def test_what_no_head_can_feel_is_refused():
+    book, long = GestureBook(), [FREE] + ["100", FREE] * 20
+    for sequence in ([], [FREE], ["100", FREE], [FREE, "12", FREE], [FREE, "200"], [FREE, FREE], [FREE, 100], long):
+        with pytest.raises(BadValue, match="sensor sequence"):
+            book.add(sequence)
+    assert book.all() == {name: list(gesture) for name, gesture in GESTURES.items()}
+
+
+def test_events_stand_for_their_sensors_and_hands_come_from_outside():
+    events = {"RightBumperPressed": "RFoot/Bumper/Right", "ChestButtonPressed": CHEST_BUTTON}
+    events.update({"HandLeftBackTouched": "LHand/Touch/Back", "Head/Touch/Rear": "Head/Touch/Rear"})
+    assert {event: sensor_of(event) for event in events} == events
+    assert {sensor for sensors in EVENTS.values() for sensor in sensors} == {*SENSORS, CHEST_BUTTON}
+    for name in (*SENSORS, CHEST_BUTTON):
+        (near, _), (far, _) = (HandPath(MODEL, [name]).at(0.0, away) for away in (0.0, AWAY))
+        assert math.dist(far, near) == pytest.approx(AWAY) and math.hypot(*far) > math.hypot(*near), name
