@@ -7,49 +7,48 @@ import threading
 import numpy as np
 import pytest
 
+from nao_sim_bridge.sim.cameras.places import CameraPlaces
 from nao_sim_bridge.sim.cameras.stream import CameraClosed
-from nao_sim_bridge.sim.kinematics import quaternion_matrix
+from nao_sim_bridge.sim.frames import frame_of
+from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
 from nao_sim_bridge.sim.runner import FASTEST, SimulationRunner
 from nao_sim_bridge.sim.simulation import Scene, Simulation
 
 PATIENCE = 60.0
 
 
-def red_center(frame):
-    """Mean place of what is red, in pixels, and how many pixels that are."""
-    rgb = frame.array().astype(int)
-    rows, columns = np.nonzero((rgb[..., 0] > 60) & (rgb[..., 0] > 2.0 * rgb[..., 1:].max(axis=2)))
-    return np.array((columns.mean() + 0.5, rows.mean() + 0.5)) if len(rows) else None, len(rows)
-
-
-@pytest.fixture
-def world_with_ball(tmp_path):
-    def write(x, y, z):
-        path = tmp_path / "ball.yaml"
-        ball = f"{{name: ball, sphere: 0.05, position: [{x}, {y}, {z}], color: [0.9, 0.05, 0.05]}}"
-        path.write_text(f"floor: {{friction: 1.0}}\nobjects:\n- {ball}\n")
-        return str(path)
-
-    return write
-
-
 @pytest.mark.parametrize(
     "camera, place, yaw", [(0, (1.5, 0.2, 0.5), 0.0), (0, (1.0, 0.8, 0.4), 0.6), (1, (0.45, 0.05, 0.06), 0.0)]
 )
-def test_a_ball_is_where_projection_says(bench, world_with_ball, camera, place, yaw):
-    made = bench(world=world_with_ball(*place))
+def test_a_ball_is_where_projection_says(bench, world_file, camera, place, yaw):
+    ball = f"{{name: ball, sphere: 0.05, position: {list(place)}, color: [0.9, 0.05, 0.05]}}"
+    made = bench(world=world_file(ball))
     made.aim(HeadYaw=yaw)
     made.run(1.5)
-    cameras = made.simulation.cameras
-    stream = cameras.open("test", camera, 2, 11, 30)
+    stream = made.simulation.cameras.open("test", camera, 2, 11, 30)
     made.run(0.1)
-    frame = stream.take(PATIENCE)
-    center, count = red_center(frame)
-    assert count > 50
-    state = made.simulation.render_state(made.now)
-    position, orientation = cameras._places.in_world(state, camera)
-    x, y = cameras.optics(camera).project(quaternion_matrix(orientation).T @ (np.array(place) - position))
-    assert center == pytest.approx((x * 640, y * 480), abs=2.0)
+    rgb = stream.take(PATIENCE).array().astype(int)
+    rows, columns = np.nonzero((rgb[..., 0] > 60) & (rgb[..., 0] > 2.0 * rgb[..., 1:].max(axis=2)))
+    assert len(rows) > 50
+    places = CameraPlaces(made.model)
+    position, orientation = places.in_world(made.simulation.render_state(made.now), camera)
+    x, y = places.optics[camera].project(quaternion_matrix(orientation).T @ (np.array(place) - position))
+    assert (columns.mean() + 0.5, rows.mean() + 0.5) == pytest.approx((x * 640, y * 480), abs=2.0)
+
+
+def test_the_robot_believes_what_its_sensors_say(bench):
+    """As ALMotion.getPosition with sensors; the frame of the robot is on the floor between the feet."""
+    made = bench(sensor_noise=1.0)
+    made.aim(HeadYaw=0.4, HeadPitch=0.2)
+    made.run(1.0)
+    places, snapshot = CameraPlaces(made.model), made.now
+    in_torso, in_robot = places.measured(snapshot, 0)
+    expected = link_transforms(made.model, snapshot.positions)["HeadPitch"] @ frame_of(made.model, "CameraTop").offset
+    assert transform(rpy_matrix(in_torso[3:]), in_torso[:3]) == pytest.approx(expected)
+    assert snapshot.positions != made.robot.true_positions
+    truth = places.in_world(made.simulation.render_state(snapshot), 0)[0]
+    assert in_robot[2] == pytest.approx(truth[2], abs=0.02)
+    assert in_robot[5] == pytest.approx(0.4, abs=0.06) and np.hypot(*in_robot[:2]) < 0.15
 
 
 def frames_of_a_fast_run(seconds):
@@ -64,8 +63,7 @@ def frames_of_a_fast_run(seconds):
         simulation.robot.motion.set_targets({head: -0.3}, {head: 0.5})
         return simulation.cameras.open("every", 0, 0, 11, 30, every=True)
 
-    stream = runner.call(begin, PATIENCE)
-    frames = {}
+    stream, frames = runner.call(begin, PATIENCE), {}
 
     def take():
         while True:

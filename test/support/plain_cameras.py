@@ -1,4 +1,4 @@
-"""The cameras of a robot without physics: time passes when a test says so, and pictures are plain."""
+"""The real cameras of a robot without physics: time passes when a test says so, and pictures are plain."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import threading
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 
 from nao_sim_bridge.sim.cameras.cameras import Cameras
 from nao_sim_bridge.sim.cameras.photograph import photograph
@@ -14,24 +13,25 @@ from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.render.scene import RenderState
+from nao_sim_bridge.sim.tasks import Task
 
 TICK = 1.0 / 120.0
-GREY = (120, 120, 120)
-UPRIGHT = (0.0, 0.0, 0.0, 1.0)
+MANUAL = {11: 0, 12: 0}
+"""Parameters for pictures as bright as they are drawn."""
 
 
 class PlainPictures:
-    """Draws a picture of one colour.
+    """Draws pictures: the drawing part of a renderer.
 
     Attributes:
-        color: Of the picture.
+        paint: Makes a picture of (height, width, 3) from the time, s, and that shape.
         shots: What was asked for.
         free: Cleared to let drawing wait.
         error: Raised instead of a picture.
     """
 
     def __init__(self):
-        self.color = GREY
+        self.paint = lambda time, shape: np.full(shape, 120, np.uint8)
         self.shots = []
         self.free = threading.Event()
         self.free.set()
@@ -42,31 +42,26 @@ class PlainPictures:
         self.shots.append(shot)
         if self.error is not None:
             raise self.error
-        return photograph(np.full((shot.height, shot.width, 3), self.color, np.uint8), shot)
-
-    def close(self):
-        pass
+        return photograph(self.paint(state.led_values[0], (shot.height, shot.width, 3)), shot)
 
 
 class Head:
     """Cameras of a robot that stands at the origin, unless a test moves it."""
 
-    def __init__(self, version="V6", tick_s=TICK, patience=10.0):
+    def __init__(self, version="V6", patience=15.0):
         self.model = load_model(version)
         self.pictures = PlainPictures()
         self.positions = posture(self.model, "Stand")
         self.patience = patience
-        self.tick_s = tick_s
         self.released = threading.Event()
-        self.cameras = Cameras(self.model, tick_s, self.pictures, self._look, released=self.released.set)
+        self.cameras = Cameras(self.model, TICK, self.pictures, self.look, released=self.released.set)
         self.tick = 0
         self.cameras.begin(self.snapshot())
 
     def snapshot(self):
-        pose = Pose((0.0, 0.0, 0.33), UPRIGHT)
-        return SimpleNamespace(
-            tick=self.tick, time=self.tick * self.tick_s, torso=pose, odometry=pose, positions=self.positions
-        )
+        pose = Pose((0.0, 0.0, 0.33), (0.0, 0.0, 0.0, 1.0))
+        time = self.tick * TICK
+        return SimpleNamespace(tick=self.tick, time=time, torso=pose, odometry=pose, positions=self.positions)
 
     def run(self, ticks=1):
         for _ in range(ticks):
@@ -79,35 +74,23 @@ class Head:
     def take(self, stream):
         return stream.take(self.patience)
 
-    def times(self, stream, ticks):
-        """Ticks at which frames of a stream fall due in the next `ticks`."""
-        found = []
-        for _ in range(ticks):
-            self.run()
-            if stream._pending:
-                found.append(round(self.take(stream).time / self.tick_s))
-        return found
+    def manual(self):
+        """Have pictures as bright as they are drawn."""
+        for camera in (0, 1):
+            for number, value in MANUAL.items():
+                self.cameras.set_parameter(camera, number, value)
+
+    def execute(self, command, name=""):
+        """As the thread of a simulation does it: at once."""
+        task = Task(name, 0)
+        task.finish(command())
+        return task
+
+    def close(self):
+        self.pictures.free.set()
+        self.cameras.close()
 
     @staticmethod
-    def _look(snapshot):
-        return RenderState(snapshot.torso.position, snapshot.torso.orientation, snapshot.positions, (0.0,) * 89)
-
-
-@pytest.fixture
-def head_of():
-    """Makes cameras; they are closed after the test."""
-    made = []
-
-    def make(**options):
-        made.append(Head(**options))
-        return made[-1]
-
-    yield make
-    for head in made:
-        head.pictures.free.set()
-        head.cameras.close()
-
-
-@pytest.fixture
-def head(head_of):
-    return head_of()
+    def look(snapshot):
+        # The LEDs say which time it is.
+        return RenderState(snapshot.torso.position, snapshot.torso.orientation, snapshot.positions, (snapshot.time,))

@@ -1,0 +1,322 @@
+"""What a camera makes of a picture: parameters, colour spaces, angles, and the tables of what there is."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+import vision_definitions
+from nao_sim_bridge.paths import config_file
+from nao_sim_bridge.sim.cameras import parameters as names
+from nao_sim_bridge.sim.cameras.color_spaces import ENCODERS, encode, encoded
+from nao_sim_bridge.sim.cameras.optics import CameraOptics, Optics
+from nao_sim_bridge.sim.cameras.photograph import photograph, read_photograph
+from nao_sim_bridge.sim.cameras.sensor import develop
+from nao_sim_bridge.sim.cameras.settings import FILE, load_cameras, parse_cameras
+from nao_sim_bridge.sim.cameras.shot import Shot
+from nao_sim_bridge.sim.errors import BadValue, ConfigError
+
+BRIGHTNESS, CONTRAST, SATURATION, HUE, GAIN, H_FLIP, V_FLIP, AUTO_WHITE = 0, 1, 2, 3, 6, 7, 8, 12
+EXPOSURE, ALGORITHM, SHARPNESS, WHITE, BACKLIGHT, AUTO_FOCUS, FOCUS = 17, 22, 24, 33, 34, 40, 43
+MANUAL = {11: 0, AUTO_WHITE: 0}
+SHOT = Shot("V6", 0, (0, 0, 0), (0, 0, 0, 1), 0.98, 0.76, 320, 240, 11, {}, 7)
+
+# --- the sensor -------------------------------------------------------------------------------------------------------
+
+
+def flat(*color, size=(320, 240)):
+    return np.full((size[1], size[0], 3), color, np.uint8)
+
+
+def taken(picture, parameters=None, version="V6", seed=7):
+    """Mean colour, picture and what was chosen."""
+    size = dict(width=picture.shape[1], height=picture.shape[0])
+    rgb, chosen = develop(picture, replace(SHOT, version=version, seed=seed, parameters=parameters or {}, **size))
+    return rgb.reshape(-1, 3).mean(axis=0), rgb, chosen
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """Edges, colours, light and dark."""
+    picture = flat(150, 140, 130)
+    picture[60:180, 40:140] = (200, 40, 40)
+    picture[60:180, 180:280] = (40, 60, 190)
+    picture[200:, :] = (60, 60, 55)
+    return picture
+
+
+@pytest.mark.parametrize("version", ["V6", "V5"])
+def test_at_manual_defaults_the_picture_is_as_it_was_drawn(scene, version):
+    mean, rgb, chosen = taken(scene, MANUAL, version)
+    assert mean == pytest.approx(scene.reshape(-1, 3).mean(axis=0), abs=0.6)
+    assert (rgb.astype(int) - scene).std() < 1.5
+    assert chosen.luminance == pytest.approx(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY).mean(), abs=1.5)
+
+
+@pytest.mark.parametrize("version", ["V6", "V5"])
+@pytest.mark.parametrize("size", [(40, 30), (320, 240), (1280, 960)])
+def test_auto_exposure_brings_every_light_to_the_same_mean(version, size):
+    for level in (60, 130, 230):
+        _, rgb, chosen = taken(flat(level, level, level, size=size), version=version)
+        assert rgb.shape == (size[1], size[0], 3)
+        assert chosen.luminance == pytest.approx(135, abs=3)
+
+
+def test_auto_exposure_raises_the_gain_when_the_exposure_is_at_its_end():
+    light, dark, black = (taken(flat(level, level, level)) for level in (200, 40, 0))
+    assert light[2].exposure < 32 and light[2].gain == 16
+    assert dark[2].exposure == 128 and dark[2].gain > 16
+    assert (black[2].exposure, black[2].gain) == (128, 128) and black[1].mean() < 10
+
+
+def test_twice_the_light_is_not_twice_the_number(scene):
+    """Pictures have a gamma."""
+    once, twice = (taken(flat(60, 60, 60), {**MANUAL, EXPOSURE: value})[0] for value in (32, 64))
+    assert twice / once == pytest.approx([2 ** (1 / 2.2)] * 3, rel=0.02)
+    assert taken(scene, {**MANUAL, EXPOSURE: 0})[0] == pytest.approx([0.0] * 3, abs=1.0)
+
+
+def test_gain_is_brighter_and_noisier_and_noise_that_of_its_seed():
+    low, high = taken(flat(60, 60, 60), MANUAL), taken(flat(60, 60, 60), {**MANUAL, GAIN: 64})
+    assert (low[0][0], high[0][0]) == pytest.approx((60, 60 * 4 ** (1 / 2.2)), rel=0.03)
+    assert high[1].std() / low[1].std() == pytest.approx(4.0, rel=0.25)
+    first, again, other = (taken(flat(120, 120, 120), MANUAL, seed=seed)[1].astype(int) for seed in (1, 1, 2))
+    assert np.array_equal(first, again)
+    assert 0.8 < (first - other).std() / (np.sqrt(2) * first.std()) < 1.2
+
+
+def test_brightness_is_added_with_v6_and_what_auto_exposure_aims_at_with_v5():
+    for change in (40, -60):
+        brighter = taken(flat(120, 120, 120), {**MANUAL, BRIGHTNESS: change})[0]
+        assert brighter == pytest.approx([120 + change] * 3, abs=1)
+    means = [taken(flat(90, 90, 90), {BRIGHTNESS: value}, "V5")[2].luminance for value in (20, 55, 90)]
+    assert means == pytest.approx([65, 135, 205], abs=3)
+
+
+def test_contrast_spreads_and_narrows(scene):
+    narrow, normal, wide = (taken(scene, {**MANUAL, CONTRAST: value})[1].std() for value in (16, 32, 64))
+    assert narrow == pytest.approx(normal / 2, rel=0.05) and wide > 1.3 * normal
+
+
+def test_saturation_takes_colors_out_and_makes_them_stronger():
+    color = flat(140, 100, 100)
+    assert taken(color, {**MANUAL, SATURATION: 0})[0] == pytest.approx([112] * 3, abs=1)
+    strong = taken(color, {**MANUAL, SATURATION: 128})[0]
+    assert strong[0] - strong[1] == pytest.approx(80, abs=2)
+    assert strong @ (0.299, 0.587, 0.114) == pytest.approx(112, abs=1)
+
+
+def test_hue_turns_colors_and_leaves_grey_and_v5_has_none():
+    red = flat(150, 100, 100)
+    assert taken(flat(100, 100, 100), {**MANUAL, HUE: 90})[0] == pytest.approx([100] * 3, abs=1)
+    assert taken(red, {**MANUAL, HUE: 180})[0] == pytest.approx([80, 129, 131], abs=4)
+    assert taken(red, {**MANUAL, HUE: 90})[0][2] == pytest.approx(159, abs=2)
+    assert taken(red, {**MANUAL, HUE: 90}, "V5")[0] == pytest.approx([150, 100, 100], abs=1)
+
+
+def test_flips(scene):
+    plain = taken(scene, MANUAL)[1]
+    assert np.array_equal(taken(scene, {**MANUAL, H_FLIP: 1})[1], plain[:, ::-1])
+    assert np.array_equal(taken(scene, {**MANUAL, V_FLIP: 1})[1], plain[::-1])
+    assert np.array_equal(taken(scene, {**MANUAL, H_FLIP: 1, V_FLIP: 1})[1], plain[::-1, ::-1])
+
+
+def sharpness_of(picture):
+    return cv2.Laplacian(cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY), cv2.CV_64F).std()
+
+
+def test_sharpness_and_focus_change_the_edges(scene):
+    soft = cv2.GaussianBlur(scene, (0, 0), 1.0)
+    values = [sharpness_of(taken(soft, {**MANUAL, SHARPNESS: value})[1]) for value in (0, 4, 9)]
+    assert values[0] < 0.9 * values[1] < 0.81 * values[2]
+    sharp = sharpness_of(taken(scene, MANUAL)[1])
+    assert sharpness_of(taken(scene, {**MANUAL, FOCUS: 125})[1]) < 0.6 * sharp
+    assert sharpness_of(taken(scene, {**MANUAL, FOCUS: 125, AUTO_FOCUS: 1})[1]) == pytest.approx(sharp)
+    assert sharpness_of(taken(scene, {**MANUAL, FOCUS: 250})[1]) == pytest.approx(sharp)
+
+
+def test_white_balance_takes_the_color_of_the_light_or_is_set_by_hand_with_v5():
+    warm, raw = taken(flat(130, 122, 116))[0], taken(flat(130, 122, 116), {AUTO_WHITE: 0})[0]
+    assert warm.max() - warm.min() < 3 and raw[0] - raw[2] > 10
+    colored = taken(flat(180, 60, 50))[0]
+    assert colored[0] > 2 * colored[2], "what is not nearly grey says nothing about the light"
+    cold, warm = (taken(flat(110, 110, 110), {**MANUAL, WHITE: kelvin}, "V5")[0] for kelvin in (2700, 6500))
+    assert cold[2] > cold[0] + 30 and warm[0] > warm[2] + 20
+
+
+@pytest.mark.parametrize("version, value", [("V6", 1), ("V5", 4)])
+def test_backlight_compensation_looks_at_the_middle(version, value):
+    picture = flat(230, 230, 230)
+    picture[60:180, 80:240] = 40
+    with_it, without = (taken(picture, {BACKLIGHT: v}, version)[1][100:140, 120:200].mean() for v in (value, 0))
+    assert with_it > 1.2 * without
+
+
+def test_exposure_algorithms_of_v5():
+    picture = flat(30, 30, 30)
+    picture[:120] = 220
+    average, highlights, lowlights = (taken(picture, {ALGORITHM: a}, "V5")[2].exposure for a in (0, 2, 3))
+    assert highlights < average < lowlights
+
+
+def test_a_photograph_brings_what_was_chosen_with_it(scene):
+    request = replace(SHOT, parameters={**MANUAL, EXPOSURE: 50}, color_space=0)
+    photo = read_photograph(photograph(scene, request))
+    rgb, chosen = develop(scene, request)
+    assert (photo.chosen.exposure, photo.chosen.gain, photo.chosen.white_balance) == (50, 16, chosen.white_balance)
+    assert photo.chosen.luminance == pytest.approx(chosen.luminance)
+    assert np.array_equal(np.frombuffer(photo.data, np.uint8).reshape(240, 320), cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY))
+
+
+# --- colour spaces ----------------------------------------------------------------------------------------------------
+
+RED, GREEN, BLUE, WHITEST, GREY, DARK = (255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255), (90, 90, 90), (1, 2, 3)
+
+
+@pytest.mark.parametrize("space", ENCODERS)
+def test_there_are_as_many_bytes_as_the_table_says(space):
+    noise = np.random.default_rng(1).integers(0, 256, (12, 16, 3), dtype=np.uint8)
+    assert len(encode(noise, space)) == 12 * 16 * load_cameras("V6").color_spaces[space].layers
+    assert encoded(noise, space).dtype == np.uint8
+
+
+@pytest.mark.parametrize(
+    "space, color, expected",
+    [(0, RED, [76, 76]), (8, WHITEST, [255, 255]), (1, BLUE, [255, 255]), (2, RED, [255, 255]), (1, GREY, [128, 128])]
+    + [(3, DARK, [1, 1]), (4, DARK, [2, 2]), (5, DARK, [3, 3]), (6, RED, [0, 0]), (6, GREEN, [85, 85])]
+    + [(6, BLUE, [170, 170]), (7, GREY, [0, 0]), (7, GREEN, [255, 255]), (9, GREY, [90, 128, 90, 128])]
+    + [(10, GREY, [90, 128, 128] * 2), (10, RED, [76, 85, 255] * 2), (11, DARK, [1, 2, 3] * 2)]
+    + [(12, GREEN, [85, 255, 150] * 2), (13, DARK, [3, 2, 1] * 2), (14, GREY, [90, 90, 128, 128])]
+    + [(15, (10, 200, 10), [0, 255, 0] * 2), (16, GREEN, [85, 255, 170] * 2), (18, DARK, [255, 1, 2, 3] * 2)]
+    + [(22, WHITEST, [255, 128, 128] * 2), (25, WHITEST, [255, 0])],
+)
+def test_known_colors(space, color, expected):
+    values = list(encode(np.array([[color, color]], np.uint8), space))
+    assert values[: len(expected)] == pytest.approx(expected, abs=1)
+
+
+def test_yuv422_shares_the_color_of_two_pixels():
+    picture = np.array([[RED, BLUE]], np.uint8)
+    u, v = (85 + 255) / 2, (255 + 107) / 2
+    assert list(encode(picture, 9)) == pytest.approx([76, u, 29, v], abs=1)
+    assert list(encode(picture, 14)) == pytest.approx([76, 29, u, v], abs=1)
+
+
+def test_lch_without_color_has_no_chroma_and_its_hue_goes_round_the_circle():
+    values = list(encode(np.array([[GREY, GREY]], np.uint8), 26))
+    assert values[1] == values[4] == 0
+    red = np.array([[RED, RED]], np.uint8)
+    lab = cv2.cvtColor(red.astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)[0, 0]
+    _, chroma, hue = encoded(red, 25)[0, 0]
+    assert chroma == pytest.approx(np.hypot(lab[1], lab[2]), abs=1)
+    assert hue == pytest.approx(np.arctan2(lab[2], lab[1]) * 128 / np.pi, abs=1)
+
+
+@pytest.mark.parametrize("space", [17, 20, 21, 23, 27])
+def test_what_needs_a_depth_camera_is_refused(space):
+    with pytest.raises(BadValue, match=f"colorSpace is {space}, allowed is one of 0, 1"):
+        encode(np.zeros((2, 2, 3), np.uint8), space)
+
+
+# --- angles -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("version, h_deg, v_deg", [("V6", 56.3, 43.7), ("V5", 60.9, 47.6)])
+def test_each_version_has_its_field_of_view(version, h_deg, v_deg):
+    for index in (0, 1):
+        assert CameraOptics(version, index).fov == pytest.approx((math.radians(h_deg), math.radians(v_deg)))
+
+
+def test_intrinsics_are_those_of_a_pinhole():
+    pinhole, half = CameraOptics("V6", 0).intrinsics(640, 480), CameraOptics("V6", 0).intrinsics(320, 240)
+    assert (pinhole.fx, pinhole.fy, pinhole.cx, pinhole.cy) == pytest.approx((598.05, 598.53, 320, 240), abs=0.05)
+    assert (half.fx, half.fy) == pytest.approx((pinhole.fx / 2, pinhole.fy / 2))
+
+
+def test_signs_are_those_of_naoqi_and_angles_lead_back_to_the_place():
+    optics = Optics(1.0, 0.8)
+    assert optics.angles(0.5, 0.5) == (0.0, 0.0)
+    assert optics.angles(0.0, 0.0) == pytest.approx((0.5, -0.4))  # upper left corner
+    assert optics.angles(1.0, 1.0) == pytest.approx((-0.5, 0.4))
+    assert optics.angular_size(1.0, 1.0) == pytest.approx(optics.fov)
+    for x, y in [(0.1, 0.9), (0.5, 0.25), (0.98, 0.02)]:
+        assert optics.place(*optics.angles(x, y)) == pytest.approx((x, y))
+        assert optics.image_size(*optics.angular_size(x, y)) == pytest.approx((x, y))
+
+
+def test_a_ray_goes_where_the_angles_say_and_what_is_behind_is_in_no_picture():
+    optics = CameraOptics("V6", 0)
+    ray = optics.ray(0.2, 0.7)
+    assert np.linalg.norm(ray) == pytest.approx(1.0)
+    assert (math.atan2(ray[1], ray[0]), math.atan2(-ray[2], ray[0])) == pytest.approx(optics.angles(0.2, 0.7))
+    assert optics.project(3.0 * ray) == pytest.approx((0.2, 0.7))
+    assert optics.project(np.array((-1.0, 0.0, 0.0))) is None
+
+
+# --- tables -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("version", ["V6", "V5"])
+def test_names_and_numbers_are_those_of_the_sdk(version):
+    tables = load_cameras(version)
+    for table in (tables.resolutions, tables.color_spaces, tables.parameters):
+        assert table
+        for number, entry in table.items():
+            assert getattr(vision_definitions, entry.name) == number == entry.id
+    assert tables.model_id == {"V6": vision_definitions.kOV5640, "V5": vision_definitions.kMT9M114}[version]
+    known = {value for name, value in vars(names).items() if name.isupper() and name != "FOCUS_ONCE"}
+    assert set(tables.parameters) <= known
+
+
+def test_sizes_are_four_to_three_and_color_spaces_have_an_encoder_or_need_a_depth_camera():
+    v6, v5 = load_cameras("V6"), load_cameras("V5")
+    sizes = {size.id: (size.width, size.height) for size in v6.resolutions.values()}
+    assert [sizes[number] for number in (8, 7, 0, 1, 2, 3, 4)] == [(40 * 2**p, 30 * 2**p) for p in range(7)]
+    assert {space.id for space in v6.color_spaces.values() if space.layers} == set(ENCODERS)
+    assert {space.id for space in v6.color_spaces.values() if not space.layers} == {17, 20, 21, 23}
+    assert 4 not in v5.resolutions and 33 in v5.parameters and 33 not in v6.parameters
+    assert (v5.parameter(0).least, v6.parameter(0).least) == (0, -255)
+
+
+@pytest.mark.parametrize(
+    "check, value, text",
+    [
+        ("camera", 2, r"camera is 2, allowed is one of 0 \(top\), 1 \(bottom\)"),
+        ("camera", True, "camera is True"),
+        ("camera", "top", "camera is 'top'"),
+        ("resolution", 9, r"resolution is 9, allowed is one of 8 \(40x30\), "),
+        ("color_space", 17, "colorSpace is 17, allowed is one of .*: kDepthColorSpace needs a depth camera"),
+        ("color_space", 27, "colorSpace is 27, allowed is one of 0, 1, "),
+        ("parameter", 33, r"parameter is 33, allowed is one of 0 \(kCameraBrightnessID\), "),
+    ],
+)
+def test_what_is_not_there_is_told_with_what_is(check, value, text):
+    with pytest.raises(BadValue, match=text):
+        getattr(load_cameras("V6"), check)(value)
+
+
+@pytest.mark.parametrize("fps", [0, -1, 31, True, "5", math.nan])
+def test_rates_have_limits(fps):
+    tables = load_cameras("V6")
+    with pytest.raises(BadValue, match="fps is .*, allowed is up to 30 frames a second, above 0"):
+        tables.check_rate(0, tables.resolution(1), fps)
+
+
+def test_mistakes_in_the_file_are_told():
+    content = json.loads(config_file(FILE).read_text())
+    content["versions"]["V6"]["parameters"]["kCameraHueID"]["default"] = 400
+    with pytest.raises(ConfigError, match=r"kCameraHueID: default 400 is not within -180..180"):
+        parse_cameras(content, "V6")
+    with pytest.raises(ConfigError, match="no cameras of version 'V7'"):
+        parse_cameras(content, "V7")
+    content["versions"]["V5"]["sensor"]["zoom"] = 1
+    with pytest.raises(ConfigError, match="zoom"):
+        parse_cameras(content, "V5")
+    del content["resolutions"]["kVGA"]
+    with pytest.raises(ConfigError, match="resolutions.kVGA: is None, not 3 whole numbers"):
+        parse_cameras(content, "V5")

@@ -1,0 +1,452 @@
+"""Which frames fall due, who gets them, and how the cameras are set. Pictures are plain."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.sim.cameras import stream as streams
+from nao_sim_bridge.sim.cameras.places import CameraPlaces
+from nao_sim_bridge.sim.cameras.rate import Share, Shutter, exact_rate
+from nao_sim_bridge.sim.cameras.stream import CameraClosed
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.frames import frame_of
+from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.sim.render import RenderError
+
+TOP, BOTTOM = 0, 1
+AUTO_EXPOSURE, AUTO_WHITE, EXPOSURE, GAIN, WHITE, KEEP_ALIVE, LUMINANCE = 11, 12, 17, 6, 33, 35, 39
+TICKS = Fraction(120)
+
+
+def ticks_of(head, ticks, stream=None, **options):
+    """Ticks of the frames of a stream that takes every one, in the next `ticks`."""
+    stream = stream or head.open(every=True, keep=1000, **options)
+    head.run(ticks)
+    stream.finish()
+    found = []
+    while True:
+        try:
+            found.append(round(120 * head.take(stream).time))
+        except CameraClosed:
+            return found
+
+
+# --- rates ------------------------------------------------------------------------------------------------------------
+
+
+def next_ticks(shutter, count):
+    found = []
+    for _ in range(count):
+        found.append(shutter.next_tick)
+        shutter.advance(shutter.next_tick)
+    return found
+
+
+@pytest.mark.parametrize("rate, meant", [(30, Fraction(30)), (0.1, Fraction(1, 10)), (1000 / 300, Fraction(10, 3))])
+def test_what_was_meant_by_a_rate(rate, meant):
+    assert exact_rate(rate) == meant
+
+
+@pytest.mark.parametrize("rate", [1, 7, 24, 25, 29, 30])
+def test_rates_do_not_drift(rate):
+    shutter = Shutter(TICKS)
+    shutter.set_rate(Fraction(rate), 0)
+    ticks = next_ticks(shutter, 100 * rate + 1)
+    assert all(abs(tick - 1 - Fraction(i * 120, rate)) <= Fraction(1, 2) for i, tick in enumerate(ticks))
+    assert ticks[-1] == 1 + 100 * 120
+
+
+def test_a_camera_begins_at_the_next_tick_and_another_rate_goes_on_from_the_last_frame():
+    shutter = Shutter(TICKS)
+    assert shutter.next_tick == Shutter.NEVER
+    shutter.set_rate(Fraction(1, 10), 500)
+    assert next_ticks(shutter, 2) == [501, 501 + 1200]
+    shutter.set_rate(Fraction(0), 600)
+    assert shutter.next_tick == Shutter.NEVER
+    shutter.set_rate(Fraction(5), 0)
+    assert next_ticks(shutter, 2) == [1, 25]
+    shutter.set_rate(Fraction(30), 31)
+    assert next_ticks(shutter, 3) == [33, 37, 41]
+    shutter.set_rate(Fraction(5), 42)
+    assert next_ticks(shutter, 2) == [65, 89]
+    shutter.advance(150)
+    assert shutter.next_tick == 161, "ticks that nobody looked at are left out"
+
+
+def test_a_stream_gets_its_share_of_the_frames():
+    fast, slow, odd = (Share(Fraction(rate), TICKS) for rate in (30, 5, 20))
+    times = [Fraction(7 + 4 * index) for index in range(30)]
+    assert all(fast.takes(time) for time in times)
+    assert [time for time in times if slow.takes(time)] == [7, 31, 55, 79, 103]
+    assert [time for time in times if odd.takes(time)][:5] == [7, 15, 19, 27, 31]
+
+
+def test_frames_fall_due_in_simulated_time_and_slower_streams_get_those_of_the_faster_ones(head):
+    assert ticks_of(head, 20) == [1, 5, 9, 13, 17]
+    slow = head.open(fps=5, every=True, keep=9)
+    head.run(10)
+    fast = head.open(fps=30, every=True, keep=99)
+    head.run(110)
+    assert head.cameras.rate(TOP) == 30.0
+    fast_ticks = ticks_of(head, 0, fast)
+    assert head.cameras.rate(TOP) == 5.0
+    slow_ticks = ticks_of(head, 0, slow)
+    assert head.cameras.rate(TOP) == 0.0
+    assert slow_ticks == [21, 45, 69, 93, 117] and set(slow_ticks[1:]) < set(fast_ticks)
+
+
+# --- frames -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_frame_says_what_it_is(head):
+    stream = head.open(camera=BOTTOM, resolution=0, color_space=13)
+    head.run(3)
+    assert head.pictures.shots == [], "nothing is drawn before somebody asks"
+    frame = head.take(stream)
+    assert len(head.pictures.shots) == 1
+    assert (frame.time, frame.camera, frame.number) == (pytest.approx(1 / 120), BOTTOM, 0)
+    assert (frame.width, frame.height, frame.layers, frame.color_space) == (160, 120, 3, 13)
+    assert (frame.hfov, frame.vfov) == head.cameras.optics(BOTTOM).fov
+    assert frame.array().shape == (120, 160, 3) and not frame.array().flags.writeable
+    assert frame.stamp == (0, 8333)
+    grey = head.open(color_space=0)
+    head.run()
+    assert head.take(grey).array().shape == (240, 320)
+
+
+def test_the_newest_frame_is_had_once_and_who_waits_gets_the_next(head):
+    stream = head.open()
+    head.run(40)
+    assert head.take(stream).time == pytest.approx(37 / 120)
+    with pytest.raises(TimeoutError, match="camera stream 'test': no frame within 0.01 s"):
+        stream.take(0.01)
+    answers = queue.Queue()
+    for _ in range(3):
+        stream.ask(answers.put)
+    head.run(9)
+    assert [answers.get(timeout=head.patience).number for _ in range(3)] == [10, 11, 12]
+    for _ in range(streams.MOST_ASKS):
+        stream.ask(answers.put)
+    with pytest.raises(BadValue, match="calls that wait for a frame is 33, allowed is at most 32"):
+        stream.ask(answers.put)
+
+
+def test_a_frame_that_comes_after_the_time_is_up_is_kept(head):
+    stream = head.open()
+    head.pictures.free.clear()
+    head.run()
+    with pytest.raises(TimeoutError):
+        stream.take(0.01)
+    head.pictures.free.set()
+    assert head.take(stream).number == 0
+
+
+def test_who_gives_up_gets_nothing_and_the_next_one_does(head):
+    stream, answers = head.open(), queue.Queue()
+    first, second = stream.ask(answers.put), stream.ask(answers.put)
+    assert stream.give_up(first)
+    head.run()
+    assert answers.get(timeout=head.patience).number == 0 and answers.empty()
+    assert not stream.give_up(second)
+
+
+def test_every_frame_counts_for_those_who_say_so_and_a_finished_stream_gives_what_it_has(head):
+    stream = head.open(every=True, keep=3)
+    head.run(12)
+    assert [head.take(stream).number for _ in range(3)] == [0, 1, 2]
+    head.run(20)
+    assert stream.dropped == 2
+    stream.finish()
+    head.run(20)
+    assert [head.take(stream).number for _ in range(3)] == [5, 6, 7]
+    with pytest.raises(CameraClosed, match="camera stream 'test' is finished"):
+        head.take(stream)
+    assert head.cameras.rate(TOP) == 0.0
+    with pytest.raises(BadValue, match="keep is 0"):
+        head.open(every=True, keep=0)
+
+
+def test_the_same_picture_is_drawn_once(head):
+    of_one_size = [head.open() for _ in range(3)]
+    head.run()
+    pictures = [head.take(stream).data for stream in of_one_size]
+    assert len(head.pictures.shots) == 1 and pictures[0] == pictures[1] == pictures[2]
+    other = head.open(color_space=0)
+    head.run(4)
+    head.take(of_one_size[0]), head.take(other)
+    assert len(head.pictures.shots) == 3
+
+
+def test_what_cannot_be_drawn_is_an_error_for_who_asked(head):
+    stream = head.open()
+    head.run()
+    head.pictures.error = RenderError("the picture process ended")
+    with pytest.raises(RenderError, match="the picture process ended"):
+        head.take(stream)
+    head.pictures.error = None
+    head.run(4)
+    assert head.take(stream).number == 1
+
+
+def test_the_noise_of_a_frame_is_always_the_same(head_of):
+    """However often somebody looks."""
+    often, seldom = head_of(), head_of()
+    data = []
+    for head, step in ((often, 4), (seldom, 8)):
+        stream, frames = head.open(), {}
+        head.run()
+        for _ in range(0, 25, step):
+            frame = head.take(stream)
+            frames[frame.number] = frame.data
+            head.run(step)
+        data.append(frames)
+    assert sorted(data[0]) == list(range(7)) and sorted(data[1]) == [0, 2, 4, 6]
+    assert all(data[0][number] == picture for number, picture in data[1].items())
+    assert len(set(data[0].values())) == 7
+
+
+# --- changes while it runs --------------------------------------------------------------------------------------------
+
+
+def test_everything_about_a_stream_can_be_changed(head):
+    stream = head.open(fps=30, every=True, keep=9)
+    stream.resolution, stream.color_space, stream.fps = 0, 0, 10
+    head.run()
+    frame = head.take(stream)
+    assert (frame.width, frame.layers) == (160, 1)
+    assert (stream.resolution, stream.color_space, stream.fps) == (0, 0, 10)
+    head.run(24)
+    assert [round(120 * head.take(stream).time) for _ in range(2)] == [13, 25]
+    stream.camera = BOTTOM
+    head.run()
+    assert head.take(stream).camera == BOTTOM
+    assert head.cameras.rate(TOP) == 0.0
+
+
+@pytest.mark.parametrize(
+    "field, value, text",
+    [
+        ("camera", 2, "camera is 2"),
+        ("resolution", 5, "resolution is 5"),
+        ("resolution", 4, "resolution is 4, allowed is one of .* with camera 1"),
+        ("color_space", 17, "needs a depth camera"),
+        ("fps", 60, "fps is 60"),
+    ],
+)
+def test_what_the_cameras_cannot_do_changes_nothing(head, field, value, text):
+    stream = head.open(camera=BOTTOM)
+    before = getattr(stream, field)
+    with pytest.raises(BadValue, match=text):
+        setattr(stream, field, value)
+    assert getattr(stream, field) == before
+    with pytest.raises(BadValue, match=text):
+        head.open(**{"camera": BOTTOM, field: value})
+    assert head.cameras.streams == (stream,)
+
+
+def test_the_largest_pictures_come_at_their_own_rate(head):
+    stream = head.open(resolution=4, fps=30)
+    assert head.cameras.rate(TOP) == 1.0
+    stream.resolution = 3
+    assert head.cameras.rate(TOP) == 30.0
+
+
+def test_a_camera_that_is_stopped_takes_no_pictures(head):
+    stream = head.open()
+    head.run(5)
+    head.take(stream)
+    head.cameras.set_stopped(TOP, True)
+    head.run(40)
+    with pytest.raises(TimeoutError):
+        stream.take(0.01)
+    head.cameras.set_stopped(TOP, False)
+    head.run()
+    assert head.take(stream).time == pytest.approx(46 / 120)
+
+
+def test_who_waits_at_the_end_is_told(head):
+    stream, other, answers = head.open(), head.open(), queue.Queue()
+    stream.ask(answers.put)
+    stream.close()
+    assert isinstance(answers.get(timeout=head.patience), CameraClosed)
+    assert stream.closed and head.cameras.streams == (other,)
+    other.ask(answers.put)
+    head.cameras.close()
+    assert isinstance(answers.get(timeout=head.patience), CameraClosed)
+    with pytest.raises(CameraClosed):
+        head.take(other)
+    with pytest.raises(CameraClosed, match="the simulation has ended"):
+        head.open()
+
+
+# --- time that runs fast ----------------------------------------------------------------------------------------------
+
+
+def test_fast_time_waits_for_those_who_want_every_frame_until_they_ask_for_the_next(head, monkeypatch):
+    stream, newest = head.open(every=True), head.open()
+    assert not head.cameras.holds()
+    head.run()
+    assert head.cameras.holds()
+    head.take(stream)
+    assert head.cameras.holds(), "what is done with the frame takes no simulated time either"
+    head.released.clear()
+    answers = queue.Queue()
+    stream.ask(answers.put)
+    assert not head.cameras.holds() and head.released.is_set()
+    head.pictures.free.clear()
+    head.run(4)
+    assert head.cameras.holds(), "it is being drawn"
+    head.pictures.free.set()
+    answers.get(timeout=head.patience)
+    monkeypatch.setattr(streams, "PATIENCE", 0.0)
+    assert not head.cameras.holds(), "not for ever"
+    monkeypatch.undo()
+    assert head.cameras.holds()
+    stream.close()
+    head.take(newest)
+    head.run(10)
+    assert not head.cameras.holds()
+
+
+def test_many_threads_at_once(head):
+    """Opening, changing and closing while frames fall due and are taken."""
+    failures = queue.Queue()
+
+    def use(seed):
+        try:
+            for round_ in range(15):
+                stream = head.open(camera=(seed + round_) % 2, fps=1 + (7 * seed + round_) % 30)
+                stream.resolution = (0, 1, 7)[round_ % 3]
+                try:
+                    assert stream.take(0.02).camera == stream.camera
+                except TimeoutError:
+                    pass
+                stream.camera = BOTTOM
+                stream.close()
+        except Exception as error:
+            failures.put(error)
+
+    users = [threading.Thread(target=use, args=(seed,)) for seed in range(4)]
+    for user in users:
+        user.start()
+    while any(user.is_alive() for user in users):
+        head.run()
+    assert failures.empty(), failures.get()
+    assert head.cameras.streams == () and head.cameras.rate(TOP) == head.cameras.rate(BOTTOM) == 0.0
+
+
+# --- settings ---------------------------------------------------------------------------------------------------------
+
+
+def test_parameters_are_those_of_the_frame_at_its_time(head):
+    stream = head.open(every=True, keep=5)
+    head.run()
+    head.cameras.set_parameter(TOP, AUTO_EXPOSURE, 0)
+    head.cameras.set_parameter(TOP, EXPOSURE, 8)
+    head.run(4)
+    first, second = head.take(stream), head.take(stream)
+    assert first.array().mean() > 1.5 * second.array().mean()
+    assert [shot.parameters[AUTO_EXPOSURE] for shot in head.pictures.shots] == [1, 0]
+
+
+def test_automatics_tell_what_they_chose_and_leave_it_behind(head):
+    head.pictures.paint = lambda _, shape: np.full(shape, 60, np.uint8)
+    stream = head.open()
+    head.run()
+    head.take(stream)
+    exposure, gain = head.cameras.parameter(TOP, EXPOSURE), head.cameras.parameter(TOP, GAIN)
+    assert exposure == 128 and gain > 16
+    assert head.cameras.parameter(TOP, LUMINANCE) == pytest.approx(135, abs=3)
+    assert head.cameras.parameter(BOTTOM, EXPOSURE) == 32
+    head.cameras.set_parameter(TOP, AUTO_EXPOSURE, 0)
+    assert (head.cameras.parameter(TOP, EXPOSURE), head.cameras.parameter(TOP, GAIN)) == (exposure, gain)
+    head.run(4)
+    assert head.take(stream).array().mean() == pytest.approx(135, abs=3)
+    head.cameras.reset_parameters(TOP)
+    assert head.cameras.parameter(TOP, AUTO_EXPOSURE) == 1 and head.cameras.parameter(TOP, LUMINANCE) == 0
+
+
+@pytest.mark.parametrize(
+    "number, value, text",
+    [
+        (0, 256, "kCameraBrightnessID is 256, allowed is -255 to 255"),
+        (0, True, "kCameraBrightnessID is True"),
+        (0, 1.5, "kCameraBrightnessID is 1.5"),
+        (EXPOSURE, 10, "kCameraExposureID is 10, allowed is no value while kCameraAutoExpositionID is 1"),
+        (LUMINANCE, 10, "kCameraAverageLuminanceID is 10, allowed is no value: it can only be read"),
+        (WHITE, 3000, "parameter is 33"),
+    ],
+)
+def test_what_a_parameter_cannot_be_is_told(head, number, value, text):
+    with pytest.raises(BadValue, match=text):
+        head.cameras.set_parameter(TOP, number, value)
+
+
+def test_pictures_from_outside_take_the_place_of_the_world_and_a_camera_can_be_kept_alive(head):
+    picture = np.zeros((480, 640, 3), np.uint8)
+    picture[:, 320:] = 255
+    head.cameras.show(TOP, picture)
+    head.manual()
+    stream, other = head.open(resolution=1), head.open(camera=BOTTOM)
+    head.run()
+    seen = head.take(stream).array()
+    assert seen.shape == (240, 320, 3)
+    assert seen[:, :150].mean() < 3 and seen[:, 170:].mean() > 250
+    head.take(other)
+    assert [shot.camera for shot in head.pictures.shots] == [BOTTOM]
+    head.cameras.show(TOP, None)
+    head.run(4)
+    head.take(stream)
+    assert len(head.pictures.shots) == 2
+    assert not head.cameras.kept_alive(TOP)
+    head.cameras.set_parameter(TOP, KEEP_ALIVE, 1)
+    assert head.cameras.kept_alive(TOP) and not head.cameras.kept_alive(BOTTOM)
+
+
+def test_the_cameras_of_an_older_robot(head_of):
+    head = head_of(version="V5")
+    head.pictures.paint = lambda _, shape: np.full(shape, (130, 122, 116), np.uint8)
+    stream = head.open()
+    head.run()
+    frame = head.take(stream)
+    assert np.degrees((frame.hfov, frame.vfov)) == pytest.approx((60.9, 47.6))
+    seen = head.cameras.parameter(TOP, WHITE)
+    assert seen < 4600, "the light is warm"
+    head.cameras.set_parameter(TOP, AUTO_WHITE, 0)
+    assert head.cameras.parameter(TOP, WHITE) == seen
+    head.cameras.set_parameter(TOP, WHITE, 6500)
+    assert head.cameras.parameter(TOP, WHITE) == 6500
+    with pytest.raises(BadValue, match="resolution is 4"):
+        head.open(resolution=4)
+    with pytest.raises(BadValue, match="parameter is 40"):
+        head.cameras.parameter(TOP, 40)
+
+
+# --- where they are ---------------------------------------------------------------------------------------------------
+
+
+def test_the_cameras_are_where_the_tables_say(head):
+    """Upright, with the head straight: only the cameras' own pitch is left."""
+    places = CameraPlaces(head.model)
+    head.positions = (0.0,) * 26
+    state = head.look(head.snapshot())
+    for camera, place, pitch in ((TOP, (0.05871, 0.0, 0.33 + 0.1265 + 0.06364), 0.0209), (BOTTOM, None, 0.6929)):
+        position, orientation = places.in_world(state, camera)
+        assert place is None or position == pytest.approx(place)
+        assert quaternion_matrix(orientation)[:, 0] == pytest.approx((np.cos(pitch), 0.0, -np.sin(pitch)))
+
+
+def test_the_true_place_follows_head_and_torso(head):
+    turned = (0.5, -0.3, *head.positions[2:])
+    state = head.look(head.snapshot())
+    state = type(state)((1.0, 2.0, 0.3), (0.0, 0.0, np.sin(0.4), np.cos(0.4)), turned, state.led_values)
+    position, orientation = CameraPlaces(head.model).in_world(state, TOP)
+    frame = frame_of(head.model, "CameraTop")
+    torso = transform(quaternion_matrix(state.base_orientation), state.base_position)
+    expected = torso @ link_transforms(head.model, turned)["HeadPitch"] @ frame.offset
+    assert transform(quaternion_matrix(orientation), position) == pytest.approx(expected)

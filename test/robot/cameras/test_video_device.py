@@ -1,0 +1,355 @@
+"""ALVideoDevice over the network: pictures, subscribers, parameters, cameras, angles, files."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import qi
+
+import vision_definitions as vd
+
+TOP, BOTTOM = 0, 1
+HFOV, VFOV = math.radians(56.3), math.radians(43.7)
+RGB, BGR, YUV422, GREY = vd.kRGBColorSpace, vd.kBGRColorSpace, vd.kYUV422ColorSpace, vd.kYuvColorSpace
+AUTO = (vd.kCameraAutoExpositionID, vd.kCameraAutoWhiteBalanceID)
+
+# --- pictures ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "camera, resolution, space, size, layers",
+    [(TOP, vd.kQVGA, RGB, (320, 240), 3), (BOTTOM, vd.kQQVGA, BGR, (160, 120), 3)]
+    + [(TOP, vd.kVGA, YUV422, (640, 480), 2), (TOP, vd.kQQQVGA, GREY, (80, 60), 1)],
+)
+def test_a_picture_is_naoqis_container_with_raw_bytes(robot, video, image, camera, resolution, space, size, layers):
+    taken = image(video.subscribeCamera("looker", camera, resolution, space, 30))
+    assert len(taken) == 12 and taken[:4] == (*size, layers, space) and taken[7] == camera
+    assert taken[4] + taken[5] * 1e-6 == pytest.approx(robot.now.time, abs=1 / 30)
+    assert isinstance(taken[6], (bytes, bytearray)) and len(taken[6]) == size[0] * size[1] * layers
+    assert taken[8:] == pytest.approx((HFOV / 2, VFOV / 2, -HFOV / 2, -VFOV / 2))
+    assert np.frombuffer(bytes(taken[6]), np.uint8).std() > 5, "there is something to see"
+
+
+def test_blue_and_red_change_places_from_rgb_to_bgr_of_the_same_moment(robot, video, pixels):
+    for number in AUTO:
+        video.setParameter(TOP, number, 0)
+    handles = [video.subscribeCamera(name, TOP, vd.kQVGA, space, 30) for name, space in (("rgb", RGB), ("bgr", BGR))]
+    robot.advance(1 / 30)
+    rgb, bgr = (pixels(handle, after=0) for handle in handles)
+    assert np.array_equal(rgb, bgr[..., ::-1])
+    proxy = robot.proxy("ALVideoDevice")
+    robot.advance(0.1)
+    assert isinstance(proxy.getImageRemote(handles[0])[6], bytes)
+    assert proxy.releaseImage(handles[0]) is True and proxy.unsubscribe(handles[0]) is True
+
+
+def test_two_subscribers_have_their_own_sizes_and_rates_and_wait_for_their_next_picture(robot, video, image):
+    fast = video.subscribeCamera("fast", TOP, vd.kQQVGA, GREY, 30)
+    slow = video.subscribeCamera("slow", TOP, vd.kQVGA, GREY, 10)
+    stamps, future = {fast: [], slow: []}, robot.post("ALVideoDevice", "getImageRemote", slow)
+    robot.handed_over("ALVideoDevice")
+    for _ in range(12):
+        taken = image(fast)
+        stamps[fast].append(taken[4] * 1000000 + taken[5])
+        if future.wait(0) == qi.FutureState.FinishedWithValue or future.isFinished():
+            stamps[slow].append(future.value()[4] * 1000000 + future.value()[5])
+            future = robot.post("ALVideoDevice", "getImageRemote", slow)
+            robot.handed_over("ALVideoDevice")
+    assert np.diff(stamps[fast]) == pytest.approx([33333] * 11, abs=1)
+    assert np.diff(stamps[slow]) == pytest.approx([100000] * (len(stamps[slow]) - 1), abs=1)
+    assert len(stamps[slow]) >= 3 and video.getFrameRate(TOP) == 30
+
+
+def test_a_call_that_waits_can_be_cancelled_and_takes_nothing(robot, video, image):
+    handle = video.subscribeCamera("looker", TOP, vd.kQQVGA, GREY, 5)
+    image(handle)
+    future = robot.post("ALVideoDevice", "getImageRemote", handle)
+    robot.handed_over("ALVideoDevice")
+    robot.advance(0.1)
+    assert not future.isFinished()
+    future.cancel()
+    assert future.wait(5000) and future.isCanceled()
+    assert image(handle, after=0.1)[0] == 160
+
+
+def test_both_cameras_at_once(video, image):
+    handle = video.subscribeCameras("both", [BOTTOM, TOP], [vd.kQVGA, vd.kQQVGA], [RGB, GREY], 15)
+    bottom, top = image(handle, "getImagesRemote")
+    assert [(one[7], one[0], one[2]) for one in (bottom, top)] == [(BOTTOM, 320, 3), (TOP, 160, 1)]
+    assert bottom[4:6] == top[4:6]
+    assert video.getActiveCameras(handle) == [BOTTOM, TOP]
+    assert video.getResolutions(handle) == [vd.kQVGA, vd.kQQVGA] and video.getColorSpaces(handle) == [RGB, GREY]
+    assert video.setResolutions(handle, [vd.kQQVGA] * 2) == video.setColorSpaces(handle, [GREY] * 2) == [True, True]
+    assert video.setActiveCameras(handle, [TOP, BOTTOM]) == [True, True]
+    seen = image(handle, "getImagesRemote", after=0.1)
+    assert [(one[7], one[0], one[2]) for one in seen] == [(TOP, 160, 1), (BOTTOM, 160, 1)]
+    assert video.setCamerasParameter(handle, vd.kCameraHueID, [10, 20]) == [True, True]
+    assert video.getCamerasParameter(handle, vd.kCameraHueID) == [10, 20]
+    assert video.setCamerasParameterToDefault(handle, vd.kCameraHueID) == [True, True]
+    assert video.getCamerasParameter(handle, vd.kCameraHueID) == [0, 0]
+    assert video.releaseImages(handle) == [True, True]
+    with pytest.raises(RuntimeError, match="looks through several cameras; use getImagesRemote"):
+        video.getImageRemote(handle)
+
+
+def test_raw_pictures_are_what_the_cameras_give(video, image):
+    native = video.subscribeCamera("native", TOP, vd.kQVGA, YUV422, 30)
+    assert image(native, "getDirectRawImageRemote")[2:4] == (2, YUV422)
+    assert video.releaseDirectRawImage(native) is True
+    several = video.subscribeCameras("several", [TOP], [vd.kQVGA], [YUV422], 30)
+    assert len(image(several, "getDirectRawImagesRemote")) == 1 and video.releaseDirectRawImages(several) == [True]
+    rgb = video.subscribeCamera("rgb", TOP, vd.kQVGA, RGB, 30)
+    for call in (video.getDirectRawImageRemote, video.getDirectRawImagesRemote):
+        with pytest.raises(RuntimeError, match=r"'rgb_0' asked for colour space 11, raw images are those of 9"):
+            call(rgb)
+
+
+# --- subscribers ------------------------------------------------------------------------------------------------------
+
+
+def test_handles_of_one_name(video):
+    handles = [video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15) for _ in range(6)]
+    assert handles == [f"looker_{number}" for number in range(6)]
+    with pytest.raises(RuntimeError, match="ALVideoDevice::subscribeCamera name is 'looker', allowed is another one"):
+        video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15)
+    assert video.subscribe("old", vd.kQVGA, RGB, 15) == "old_0"
+    assert sorted(video.getSubscribers()) == [*handles, "old_0"]
+    assert video.unsubscribe("looker_0") is True
+    video.unsubscribeAllInstances("looker")
+    assert video.getSubscribers() == ["old_0"]
+    video.onClientDisconnected("ClientDisconnected", "old", "")
+    assert video.getSubscribers() == []
+
+
+def test_a_client_that_dies_while_it_waits_harms_nobody(robot, video, image):
+    program = (
+        "import sys; from naoqi import ALProxy; video = ALProxy('ALVideoDevice', '127.0.0.1', int(sys.argv[1]));"
+        "handle = video.subscribeCamera('dead', 0, 1, 11, 5); print(handle, flush=True); video.getImageRemote(handle)"
+    )
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-c", program, str(robot.port)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env) as client:
+        handle = next(line.strip() for line in client.stdout if line.startswith("dead"))
+        client.kill()
+    alive = video.subscribeCamera("alive", TOP, vd.kQVGA, RGB, 5)
+    robot.advance(0.5)  # the call of the dead client, if it came through, has had its picture
+    assert image(alive, after=0.3)[0] == 320
+    assert set(video.getSubscribers()) == {handle, alive}
+
+
+def test_a_module_that_leaves_is_cleaned_up_at_once(robot, video):
+    client = qi.Session()
+    client.connect(f"tcp://127.0.0.1:{robot.port}")
+    client.listen("tcp://127.0.0.1:0")
+    client.registerService("LookingModule", type("LookingModule", (), {})())
+    for name in ("LookingModule", "other"):
+        client.service("ALVideoDevice").subscribeCamera(name, TOP, vd.kQVGA, RGB, 15)
+    client.close()
+    end = time.monotonic() + robot.patience
+    while video.getSubscribers() != ["other_0"]:
+        assert time.monotonic() < end, video.getSubscribers()
+
+
+def test_what_a_subscriber_sees_can_be_changed_and_the_active_camera_is_that_of_old_programs(video, image):
+    handle = video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15)
+    assert video.setResolution(handle, vd.kQQVGA) and video.setColorSpace(handle, 0) and video.setFrameRate(handle, 30)
+    assert video.setActiveCamera(handle, BOTTOM)
+    assert (video.getResolution(handle), video.getColorSpace(handle), video.getFrameRate(handle)) == (0, 0, 30)
+    assert video.getActiveCamera(handle) == BOTTOM and video.getActiveCamera() == TOP
+    assert (video.getGVMResolution(handle), video.getGVMColorSpace(handle), video.getGVMFrameRate(handle)) == (0, 0, 30)
+    assert image(handle)[:4] == (160, 120, 1, 0)
+    assert video.getResolution(BOTTOM) == 0 and video.getFrameRate(BOTTOM) == 30 and video.getColorSpace(BOTTOM) == 9
+    assert video.setActiveCamera(BOTTOM) is True and video.getActiveCamera() == BOTTOM
+    assert image(video.subscribe("old", vd.kQQVGA, GREY, 10))[7] == BOTTOM
+    assert (video.getVIMResolution(), video.getVIMColorSpace(), video.getVIMFrameRate()) == (0, 9, 30)
+    video.setParam(vd.kCameraSelectID, TOP)
+    assert video.getParam(vd.kCameraSelectID) == TOP == video.getActiveCamera()
+
+
+# --- parameters and cameras -------------------------------------------------------------------------------------------
+
+
+def test_parameters_change_the_picture_and_go_back(robot, video, pixels):
+    handle = video.subscribeCamera("looker", TOP, vd.kQQVGA, RGB, 30)
+    for number in AUTO:
+        assert video.setCameraParameter(handle, number, 0) is True
+    plain = pixels(handle)
+    video.setParameter(TOP, vd.kCameraBrightnessID, 40)
+    brighter = pixels(handle)
+    assert (brighter - plain)[(plain > 5) & (plain < 210)].mean() == pytest.approx(40, abs=1)
+    video.setParameter(TOP, vd.kCameraBrightnessID, 0)
+    video.setParameter(TOP, vd.kCameraHFlipID, 1)
+    assert np.abs(pixels(handle)[:, ::-1] - plain).mean() < 3
+    assert video.setAllCameraParametersToDefault(handle) is True
+    assert video.getCameraParameter(handle, vd.kCameraAutoExpositionID) == 1
+    pixels(handle)
+    assert video.getParameter(TOP, vd.kCameraAverageLuminanceID) == pytest.approx(135, abs=6)
+
+
+def test_facts_about_parameters(video):
+    handle, contrast = video.subscribeCamera("looker", BOTTOM, vd.kQVGA, RGB, 15), vd.kCameraContrastID
+    assert video.getParameterRange(TOP, contrast) == [0, 255]
+    assert video.getCameraParameterRange(handle, vd.kCameraHueID) == [-180, 180]
+    video.setCameraParameter(handle, contrast, 50)
+    info = {"name": "kCameraContrastID", "value": 50, "min": 0, "max": 255, "default": 32}
+    assert dict(video.getCameraParameterInfo(handle, contrast)) == info
+    assert video.getParameter(TOP, contrast) == 32
+    assert video.setCameraParameterToDefault(handle, contrast) is True and video.getParameter(BOTTOM, contrast) == 32
+    video.setParam(contrast, 40)
+    video.setParam(contrast, 41, BOTTOM)
+    assert video.getParam(contrast) == 40 and video.getParam(contrast, BOTTOM) == 41
+    video.setParamDefault(contrast)
+    video.setParam(vd.kCameraSetDefaultParamsID, 1, BOTTOM)
+    assert (video.getParam(contrast), video.getParam(contrast, BOTTOM)) == (32, 32)
+
+
+def test_what_cameras_there_are(video):
+    assert video.getCameraIndexes() == [0, 1]
+    assert [video.getCameraName(camera) for camera in (TOP, BOTTOM)] == ["CameraTop", "CameraBottom"]
+    assert video.getCameraModel(TOP) == video.getCameraModelID() == vd.kOV5640
+    assert video.hasDepthCamera() is False
+    assert video.getHorizontalFOV(TOP) == video.getHorizontalAperture(TOP) == pytest.approx(HFOV)
+    assert video.getVerticalFOV(BOTTOM) == video.getVerticalAperture(BOTTOM) == pytest.approx(VFOV)
+
+
+def test_a_camera_runs_while_somebody_looks_or_it_is_kept_alive_or_started(video):
+    def states(*camera):
+        return video.isCameraOpen(*camera), video.isCameraStarted(*camera)
+
+    assert states(TOP) == (False, False)
+    handle = video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15)
+    assert states(TOP) == (True, True) and states(BOTTOM) == (False, False)
+    video.setParameter(TOP, vd.kCameraKeepAliveID, 1)
+    video.unsubscribe(handle)
+    assert states(TOP) == (True, True)
+    video.setParameter(TOP, vd.kCameraKeepAliveID, 0)
+    assert states(TOP) == (False, False)
+    assert video.isFrameGrabberOff() is True and video.startFrameGrabber(BOTTOM) is True
+    assert video.isFrameGrabberOff(BOTTOM) is False and video.isFrameGrabberOff() is True
+    assert states(BOTTOM)[1] and video.startFrameGrabber() is True and states(TOP)[1]
+    assert video.stopFrameGrabber(BOTTOM) is True and video.isFrameGrabberOff(BOTTOM) is True
+    assert video.stopFrameGrabber() is True
+
+
+def test_a_camera_that_is_stopped_or_closed_gives_no_pictures(robot, video, image):
+    handle = video.subscribeCamera("looker", TOP, vd.kQQVGA, 0, 30)
+    image(handle)
+    waiting = robot.post("ALVideoDevice", "getImageRemote", handle)
+    robot.handed_over("ALVideoDevice")
+    assert video.stopCamera(TOP) is True
+    assert "camera 0 gives no pictures, it is stopped: startCamera lets it go on" in waiting.error()
+    assert video.isCameraOpen(TOP) and not video.isCameraStarted(TOP)
+    with pytest.raises(RuntimeError, match="camera 0 gives no pictures, it is stopped"):
+        video.getImageRemote(handle)
+    assert video.startCamera(TOP) is True and image(handle)[0] == 160
+    assert video.closeCamera(TOP) is True and not video.isCameraOpen(TOP)
+    with pytest.raises(RuntimeError, match="it is closed: openCamera and startCamera"):
+        video.getImageRemote(handle)
+    with pytest.raises(RuntimeError, match="camera 0 is closed; open it with openCamera first"):
+        video.startCamera(TOP)
+    assert video.openCamera(TOP) is True
+    with pytest.raises(RuntimeError, match="it is stopped"):
+        video.getImageRemote(handle)
+    video.closeCamera(TOP)
+    assert image(video.subscribeCamera("other", TOP, vd.kQQVGA, 0, 30))[0] == 160, "a new subscriber lets it run"
+
+
+def test_pictures_from_outside_are_what_the_camera_sees(robot, video, pixels):
+    proxy, handle = robot.proxy("ALVideoDevice"), video.subscribeCamera("looker", TOP, vd.kQQVGA, RGB, 30)
+    for number in AUTO:
+        video.setParameter(TOP, number, 0)
+    assert video.getExpectedImageParameters(TOP) == video.getExpectedImageParameters() == [vd.kQQVGA, 30]
+    assert video.getExpectedImageParameters(BOTTOM) == [vd.kQVGA, 5]
+    picture = np.zeros((240, 320, 3), np.uint8)
+    picture[:, :160] = (200, 20, 60)
+    assert proxy.putImage(TOP, 320, 240, picture.tobytes()) is True
+    seen = pixels(handle)
+    assert seen[:, :78].reshape(-1, 3).mean(axis=0) == pytest.approx((200, 20, 60), abs=1)
+    assert seen[:, 82:].mean() < 2
+    assert video.setSimCamInputSize(40, 30) is True
+    assert proxy.putImage(np.full((30, 40, 3), 99, np.uint8).tobytes()) is True
+    assert pixels(handle).mean() == pytest.approx(99, abs=0.5)
+    assert video.resetCamera(TOP) is True and pixels(handle).std() > 5
+
+
+def test_angles_and_places(video):
+    assert video.getAngularPositionFromImagePosition(TOP, [0.0, 1.0]) == pytest.approx([HFOV / 2, VFOV / 2])
+    alpha, beta = video.getAngPosFromImgPos([0.3, 0.8])
+    assert video.getImagePositionFromAngularPosition(TOP, [alpha, beta]) == pytest.approx([0.3, 0.8])
+    assert video.getImgPosFromAngPos([alpha, beta]) == pytest.approx([0.3, 0.8])
+    assert video.getAngularSizeFromImageSize(BOTTOM, [1.0, 1.0]) == pytest.approx([HFOV, VFOV])
+    assert video.getAngSizeFromImgSize([1.0, 1.0]) == pytest.approx([HFOV, VFOV])
+    width, height = video.getImageSizeFromAngularSize(TOP, [0.2, 0.1])
+    assert video.getImgSizeFromAngSize([0.2, 0.1]) == pytest.approx([width, height])
+    info, expected = [alpha, beta, 0.2, 0.1], [0.3, 0.8, width, height]
+    assert video.getImageInfoFromAngularInfo(TOP, info) == pytest.approx(expected)
+    assert video.getImgInfoFromAngInfo(info) == pytest.approx(expected)
+    in_pixels = [0.3 * 640, 0.8 * 480, width * 640, height * 480]
+    assert video.getImageInfoFromAngularInfoWithResolution(TOP, info, vd.kVGA) == pytest.approx(in_pixels, rel=1e-5)
+    assert video.getImgInfoFromAngInfoWithRes(info, vd.kVGA) == pytest.approx(in_pixels, rel=1e-5)
+    assert video.resolutionToSizes(vd.kVGA) == [640, 480]
+    assert video.sizesToResolution(320, 240) == vd.kQVGA and video.sizesToResolution(3, 4) == -1
+
+
+# --- files and refusals -----------------------------------------------------------------------------------------------
+
+
+def test_raw_pictures_go_to_a_file(robot, video):
+    handle = video.subscribeCamera("looker", TOP, vd.kQQVGA, GREY, 30)
+    assert video.recordVideo(handle, "films/raw.bin", 4, 2) is True
+    with pytest.raises(RuntimeError, match="'looker_0' records already"):
+        video.recordVideo(handle, "films/other.bin", 4, 2)
+    robot.advance(0.11)  # frames at 0, 1/30, 2/30, 3/30: two of them are recorded
+    assert video.stopVideo(handle) is True
+    path = robot.server.files.folder / "films" / "raw.bin"
+    assert path.stat().st_size == 2 * 160 * 120 and np.frombuffer(path.read_bytes(), np.uint8).std() > 5
+    with pytest.raises(RuntimeError, match="'looker_0' does not record; recording is nobody"):
+        video.stopVideo(handle)
+
+
+NOBODY = "'nobody_0' is not subscribed; subscribed is 'looker_0'"
+REFUSED = [
+    *(("getImageRemote", ("nobody_0",), NOBODY), ("releaseImage", ("nobody_0",), NOBODY)),
+    *(("unsubscribe", ("nobody_0",), NOBODY), ("setResolution", ("nobody_0", 1), NOBODY)),
+    *(("getColorSpace", ("nobody_0",), NOBODY), ("setCameraParameter", ("nobody_0", 0, 1), NOBODY)),
+    ("subscribeCamera", ("looker", 2, 1, 11, 15), "camera is 2, allowed is one of 0"),
+    ("subscribeCamera", ("looker", 0, 5, 11, 15), "resolution is 5, allowed is one of"),
+    ("subscribeCamera", ("looker", 0, 1, 17, 15), "needs a depth camera"),
+    ("subscribeCamera", ("looker", 0, 1, 11, 0), "fps is 0, allowed is 1 to 30"),
+    ("subscribeCamera", ("looker", 1, 4, 11, 1), "resolution is 4, allowed is one of .* with camera 1"),
+    ("subscribeCamera", ("", 0, 1, 11, 15), "name is '', allowed is a name"),
+    ("subscribeCameras", ("looker", [0], [1, 1], [11], 15), "resolutions .* allowed is a list of 1 whole numbers"),
+    ("subscribeCameras", ("looker", 0, [1], [11], 15), "cameraIndexes is 0, allowed is a list of whole numbers"),
+    ("subscribeCameras", ("looker", ["top"], [1], [11], 15), "cameraIndexes .* allowed is a list of"),
+    *((f"get{k}Local", ("looker_0",), f"own process; use get{k}Remote") for k in ("Image", "Images")),
+    *((f"get{k}Local", ("looker_0",), f"own process; use get{k}Remote") for k in ("DirectRawImage", "DirectRawImages")),
+    ("recordVideo", ("looker_0", "../outside", 4, 1), "is not inside"),
+    ("recordVideo", ("looker_0", "raw.bin", 0, 1), "totalNumber is 0"),
+    ("recordVideo", ("looker_0", "raw.bin", 4, 0), "period is 0"),
+    ("setParameter", (0, 1, 256), "kCameraContrastID is 256, allowed is 0 to 255"),
+    ("setParameter", (0, 99, 1), r"parameter is 99, allowed is one of 0 \(kCameraBrightnessID\)"),
+    ("setParameter", (0, 17, 5), "while kCameraAutoExpositionID is 1; set it to 0 first"),
+    *(("getParameter", (3, 1), "camera is 3"), ("getParameterRange", (0, 33), "parameter is 33")),
+    ("setAllParametersToDefault", (5,), "camera is 5"),
+    ("putImage", (0, 4, 4, bytes(47)), r"length of imageBuffer is 47, allowed is 48: 3 bytes \(RGB\) a pixel, 4x4"),
+    *(("putImage", (0, 1, 4, bytes(12)), "width is 1"), ("putImage", (2, 4, 4, bytes(48)), "camera is 2")),
+    ("putImage", (5,), r"imageBuffer is 5, allowed is \d+ raw bytes"),
+    ("putImage", (0, 4000, 4000, bytes(48)), "at most 4915200 pixels"),
+    *(("getImagePositionFromAngularPosition", (TOP, wrong), "AngularPosition") for wrong in ([0.1], [0.1, 2.0])),
+    ("getImagePositionFromAngularPosition", (TOP, [math.nan, 0.0]), "AngularPosition"),
+]
+
+
+def test_what_is_refused_names_what_is_allowed_and_changes_nothing(robot, video):
+    video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15)
+    proxy = robot.proxy("ALVideoDevice")
+    for method, arguments, text in REFUSED:
+        with pytest.raises(RuntimeError, match=f"ALVideoDevice::{method} .*{text}"):
+            getattr(proxy, method)(*arguments)
+    assert video.getSubscribers() == ["looker_0"] and video.getParameter(TOP, 1) == 32
