@@ -194,9 +194,9 @@ def test_breath_whole_body_and_collisions(stiff_robot, motion, angle):
     motion.succeed(f("wbEnable", enable=True), f("wbFootState", texts=["Fixed"], str_param="Legs"))
     told = answers(
         motion.succeed(
-            f("wbEnableBalanceConstraint", enable=True, str_param="Legs"),
             f("wbGoToBalance", str_param="LLeg", duration=3.0),
             f("getCOM", frame=2),
+            f("wbEnableBalanceConstraint", enable=True, str_param="Legs"),
             f("wbEnableEffectorControl", names=["Head"], enable=True),
             f("wbSetEffectorControl", 1.0, names=["Head"], values=[0.0, 0.0, 0.4]),
             f("wbEnableEffectorOptimization", names=["Head"], enable=False),

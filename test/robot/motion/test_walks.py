@@ -203,7 +203,7 @@ def test_cancelled_at_any_moment_it_stands_on_both_feet(robot, motion, stands, f
 @pytest.mark.parametrize("end", ["cancelled", "failed", "cancelled while it waits for the end"])
 def test_a_walk_that_goes_on_ends_with_a_goal_that_does_not_succeed(robot, motion, angle, stands, end):
     later = {
-        "cancelled": f("angleInterpolation", names=["LArm"], angles=[0.5], times=[8.0]),
+        "cancelled": f("angleInterpolation", names=["LElbowYaw"], angles=[0.5], times=[8.0]),
         "failed": f("getData", str_param="nowhere"),
         "cancelled while it waits for the end": f("waitUntilMoveIsFinished"),
     }[end]
@@ -259,6 +259,7 @@ def test_a_fall_on_the_way_ends_the_goal(robot, motion, angle, on_its_way):
     assert goal.state == "aborted" and "function 1 (moveTo): the robot fell" in goal.text
     assert abs(angle("HeadYaw")) < 0.3
     robot.advance_until(lambda: not robot.value("robotIsWakeUp"), 5.0)
+    robot.advance(1.5)
     assert "the legs are limp: wakeUp first" in motion.refused(walk(0.1))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 import pytest
-from fake_vision import compressed, image
+from camera_topics import compressed, image
 from sensor_msgs.msg import Image
 
 from nao_library_modules.vision_pictures import (

@@ -1,4 +1,4 @@
-"""Cameras on topics without ROS: the test sends the frames; and the robot's ALVideoDevice."""
+"""Cameras on topics without ROS: the test sends the frames. Pictures tell their numbers."""
 
 from __future__ import annotations
 
@@ -6,14 +6,17 @@ import threading
 import time
 from types import SimpleNamespace
 
+import cv2
 import numpy as np
 from genpy import Time
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
+from nao_library_modules.vision_pictures import picture_of
 from nao_library_msgs.msg import VisionFunction
-from naoqi.errors import NaoError, RobotError
+from naoqi.errors import NaoError
 
+CAMERA, OUT = "/camera/image_raw", "/out/image_raw"
 TOP, BOTTOM = "/nao_robot/camera/top/image_raw", "/nao_robot/camera/bottom/image_raw"
 LIMIT = 10.0
 
@@ -65,17 +68,23 @@ def wait_for(condition, what="it"):
         threading.Event().wait(0.002)
 
 
-class FakePublisher:
-    """Keeps what is published."""
+class Publisher:
+    """Keeps what is published.
+
+    Attributes:
+        before: Called before each message, in the thread that publishes.
+    """
 
     def __init__(self, kind):
         self.kind = kind
         self.messages = []
         self.heard = True
         self.closed = False
+        self.before = lambda: None
 
     def publish(self, message):
         assert not self.closed
+        self.before()
         self.messages.append(message)
 
     def is_heard(self):
@@ -85,7 +94,7 @@ class FakePublisher:
         self.closed = True
 
 
-class FakeTopics:
+class Topics:
     """Topics of cameras.
 
     Attributes:
@@ -130,7 +139,7 @@ class FakeTopics:
             return len(self.subscribers.get(topic, []))
 
     def publisher(self, topic, kind):
-        self.publishers[topic] = FakePublisher(kind)
+        self.publishers[topic] = Publisher(kind)
         return self.publishers[topic]
 
     def settings(self, server):
@@ -145,38 +154,31 @@ class FakeTopics:
         return dict(self.servers[server])
 
 
-class FakeVideoDevice:
-    """ALVideoDevice with a few parameters."""
+class HandClock:
+    """ROS time that the test sets.
 
-    RANGES = {0: [-255, 255, 0], 1: [0, 255, 32], 11: [0, 1, 1], 12: [0, 1, 1]}
+    Attributes:
+        on_now: Called whenever somebody asks for the time.
+    """
 
     def __init__(self):
-        self.active = 0
-        self.values = {camera: {number: row[2] for number, row in self.RANGES.items()} for camera in (0, 1)}
+        self.time = 50.0
+        self.on_now = lambda: None
 
-    def setActiveCamera(self, camera):
-        self.active = camera
-        return True
+    def now(self):
+        self.on_now()
+        return self.time
 
-    def _row(self, method, number):
-        if number not in self.RANGES:
-            raise RobotError("ALVideoDevice", method, f"no parameter {number}")
-        return self.RANGES[number]
 
-    def getParameter(self, camera, number):
-        self._row("getParameter", number)
-        return self.values[camera][number]
+def numbers_of(messages):
+    return [number_of(picture_of(message)) for message in messages]
 
-    def getParameterRange(self, camera, number):
-        return self._row("getParameterRange", number)
 
-    def setParameter(self, camera, number, value):
-        lowest, highest, _ = self._row("setParameter", number)
-        if not lowest <= value <= highest:
-            return False
-        self.values[camera][number] = value
-        return True
-
-    def setAllParametersToDefault(self, camera):
-        self.values[camera] = {number: row[2] for number, row in self.RANGES.items()}
-        return True
+def read_video(path):
+    """Numbers of the frames of a video."""
+    capture, found = cv2.VideoCapture(str(path)), []
+    while True:
+        there, picture = capture.read()
+        if not there:
+            return found
+        found.append(number_of(picture))

@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 import pytest
-from fake_vision import compressed, image, number_of, numbered, numbered_image, wait_for
+from camera_topics import (
+    CAMERA,
+    OUT,
+    compressed,
+    image,
+    number_of,
+    numbered,
+    numbered_image,
+    numbers_of,
+    wait_for,
+)  # fmt: skip
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
-from vision_thread_tools import CAMERA, OUT, numbers
 
 from nao_library_modules.vision_camera_info import info_topic
 from nao_library_modules.vision_pictures import encoded, picture_of
@@ -17,7 +26,7 @@ def test_frames_pass_a_stream_as_they_are(stream, topics, send):
     one.stop()
     sent = topics.publishers[OUT].messages
     assert topics.publishers[OUT].kind is Image and topics.publishers[OUT].closed
-    assert numbers(sent) == [0, 1, 2]
+    assert numbers_of(sent) == [0, 1, 2]
     assert [message.header.stamp.to_sec() for message in sent] == pytest.approx([50.1, 50.2, 50.3])
     assert sent[0].header.frame_id == "CameraTop_optical_frame"
 
@@ -27,7 +36,7 @@ def test_a_stream_has_another_size_and_rate(stream, topics, send):
     send(10)
     one.stop()
     sent = topics.publishers[OUT].messages
-    assert numbers(sent) == [0, 2, 4, 6, 8]
+    assert numbers_of(sent) == [0, 2, 4, 6, 8]
     assert {(m.width, m.height, m.step, len(m.data), m.encoding) for m in sent} == {(32, 24, 96, 96 * 24, "bgr8")}
     report = one.report()
     assert (report.frames, report.dropped, report.width, report.height) == (5, 0, 32, 24)
@@ -48,8 +57,8 @@ def test_a_stream_compresses_and_decompresses(stream, topics, clock):
     topics.send(CAMERA, compressed(clock.time, encoded(numbered(78), "png"), "png"))
     one.stop()
     publisher = topics.publishers["/out/image_raw/compressed"]
-    assert publisher.kind is CompressedImage
     first, second = publisher.messages
+    assert publisher.kind is CompressedImage
     assert first.format == "bgr8; jpeg compressed bgr8" and number_of(picture_of(first)) == 77
     assert second.format == "png" and number_of(picture_of(second)) == 78
     two = stream()
@@ -79,15 +88,12 @@ def test_a_streams_camera_info_is_in_its_size(stream, topics, clock):
     assert topics.count("/camera/camera_info") == 0 and topics.publishers["/out/camera_info"].closed
 
 
-@pytest.mark.parametrize(
-    "topic, beside",
-    [
+def test_camera_info_is_beside_the_pictures():
+    for topic, beside in (
         ("/a/image_raw", "/a/camera_info"), ("/a/image_raw/compressed", "/a/camera_info"),
         ("/image", "/camera_info"), ("/relay", ""), ("/a/compressed", ""),
-    ],
-)  # fmt: skip
-def test_camera_info_is_beside_the_pictures(topic, beside):
-    assert info_topic(topic) == beside
+    ):  # fmt: skip
+        assert info_topic(topic) == beside
 
 
 def test_nobody_works_for_nobody(stream, topics, send, monkeypatch):

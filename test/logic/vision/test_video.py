@@ -10,7 +10,7 @@ import av
 import cv2
 import numpy as np
 import pytest
-from fake_vision import number_of, numbered
+from camera_topics import number_of, numbered
 
 from nao_library_modules import vision_video
 from nao_library_modules.vision_video import VideoFile, codec_name, known_codecs
