@@ -68,6 +68,20 @@ class Head:
             self.tick += 1
             self.cameras.tick(self.snapshot())
 
+    def advance(self, seconds):
+        """Let time pass no faster than those look who want every frame."""
+        for _ in range(round(seconds / TICK)):
+            self.run()
+            self.settle()
+
+    def settle(self):
+        """Return when nobody who wants every frame is at work."""
+        while True:
+            self.released.clear()
+            if not self.cameras.holds():
+                return
+            assert self.released.wait(self.patience), "somebody does not ask for the next frame"
+
     def open(self, camera=0, resolution=1, color_space=11, fps=30, **options):
         return self.cameras.open("test", camera, resolution, color_space, fps, **options)
 
