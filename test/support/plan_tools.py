@@ -112,7 +112,8 @@ class Stays:
 class Beside:
     """A plan that runs in a thread of its own; the test looks at its tree and waits for its end."""
 
-    def __init__(self, body, **options):
+    def __init__(self, body, limit=LIMIT, **options):
+        self._limit = limit
         self.root = self.answer = self.error = None
         self._there = threading.Event()
         self._thread = threading.Thread(target=self._run, args=(body, options), daemon=True)
@@ -121,7 +122,7 @@ class Beside:
 
     def ended(self):
         """Wait for the end; the answer."""
-        self._thread.join(LIMIT)
+        self._thread.join(self._limit)
         assert not self._thread.is_alive(), "the plan does not end"
         if self.error is not None:
             raise self.error

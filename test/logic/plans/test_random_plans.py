@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from itertools import product
 
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from plan_tools import LIMIT, Beside, forever
 
@@ -154,7 +154,7 @@ def strike(root, what, which, modules):
         task.evaporate("struck")
 
 
-@settings(max_examples=120)
+@settings(max_examples=120, phases=[Phase.generate])
 @given(trees, strikes)
 def test_random_plans_end_as_the_model_says_and_leave_nothing(tree, struck):
     work = Work()
