@@ -45,10 +45,10 @@ def found(ear):
     return find
 
 
-@pytest.mark.parametrize("voice, noise_db", [("slt", -35.0), ("awb", -20.0)])
 @pytest.mark.parametrize("part", range(6))
-def test_most_of_thirty_phrases_are_understood(found, voice, noise_db, part):
+def test_most_of_thirty_phrases_are_understood(found, part):
     said = VOCABULARY[part::6]
+    voice, noise_db = ("slt", -35.0) if part % 2 else ("awb", -20.0)
     stream = in_a_room(*(spoken(phrase, voice) for phrase in said), noise=LEVEL * 10.0 ** (noise_db / 20.0))
     heard_phrases = [phrases[:1] for phrases in found(stream)]
     assert sum([phrase] == phrases for phrase, phrases in zip(said, heard_phrases)) >= 4, heard_phrases
@@ -93,14 +93,14 @@ def test_azimuths_are_right_within_3_degrees_mostly_and_10_always(kind, noise_db
     assert np.median(off) < 1.0 and np.mean(off < 3.0) >= 0.8 and np.mean(off < 10.0) >= 0.95
 
 
-@pytest.mark.parametrize("kind", ["white", "pink", "brown"])
-@pytest.mark.parametrize("level_db, together", [(30.0, False), (60.0, False), (55.0, True)])
+@pytest.mark.parametrize(
+    "kind, level_db, together",
+    [("white", 60.0, False), ("pink", 30.0, False), ("brown", 60.0, False), ("pink", 55.0, True), ("brown", 55.0, True)],
+)
 def test_a_minute_of_steady_noise_is_no_sound(kind, level_db, together):
     """Of the microphones alone, or from one place."""
     chance, detector = np.random.default_rng(5), SoundDetector(RATE)
     frames = 60 * RATE // BLOCK * BLOCK
-    if together and kind == "white":
-        frames //= 4
     samples = background(chance, 30.0 if together else level_db, frames, kind)
     if together:
         samples += (noise(chance, kind, frames) * rms(level_db))[:, None]

@@ -1,0 +1,177 @@
+"""Work in the background, and sound for modules of clients, where threads meet; time waits for both."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.services.audio.background import Background
+from nao_sim_bridge.services.audio.microphone_clients import HELD_UP, MicrophoneClients
+from nao_sim_bridge.services.audio.microphone_formats import MicrophoneFormat, flags_to_channel, microphone_format
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.tasks import Task
+
+PATIENCE = 15.0
+
+
+def test_jobs_are_done_in_turn_and_hold_until_the_last_is_done():
+    released, may_end, done = threading.Event(), threading.Event(), []
+    background = Background(lambda: None if background.holds() else released.set())
+
+    def work(number):
+        assert may_end.wait(PATIENCE)
+        done.append(number)
+        return number
+
+    tasks = [background.in_turn(lambda _, number=number: work(number), "work") for number in range(5)]
+    assert background.holds()
+    may_end.set()
+    assert [task.result(PATIENCE) for task in tasks] == list(range(5)) == done
+    assert released.wait(PATIENCE) and not background.holds()
+    with pytest.raises(ZeroDivisionError):
+        background.in_turn(lambda _: 1 / 0, "work").result(PATIENCE)
+    leads_to = Task("command", 0)
+    assert background.in_turn(lambda _: leads_to, "work").result(PATIENCE) is leads_to
+    assert background.holds()  # for what the job leads to
+    leads_to.finish()
+    assert not background.holds()
+
+
+def test_work_beside_the_rest_holds_nothing_and_keeps_nobody_waiting():
+    background, may_end = Background(), threading.Event()
+    slow = background.beside(lambda _: may_end.wait(PATIENCE), "work")
+    assert not background.holds()
+    assert background.in_turn(lambda _: 1, "work").result(PATIENCE) == 1
+    assert not slow.finished
+    may_end.set()
+    assert slow.result(PATIENCE) is True
+
+
+@pytest.mark.parametrize("way", ["stop", "request_kill"])
+def test_work_learns_that_nobody_wants_it_any_more(way):
+    background, begun, may_end, seen = Background(), threading.Event(), threading.Event(), []
+
+    def work(wanted):
+        seen.append(wanted())
+        begun.set()
+        assert may_end.wait(PATIENCE)
+        seen.append(wanted())
+
+    task = background.in_turn(work, "work")
+    assert begun.wait(PATIENCE)
+    (background.stop if way == "stop" else task.request_kill)()
+    may_end.set()
+    task.result(PATIENCE)
+    background.in_turn(lambda _: None, "after it").result(PATIENCE)
+    assert seen == [True, False]
+
+
+@pytest.mark.parametrize("in_turn", [True, False])
+def test_work_that_is_cancelled_counts_as_killed_and_only_then(in_turn):
+    background, may_end = Background(), threading.Event()
+    way = background.in_turn if in_turn else background.beside
+    task = way(lambda _: may_end.wait(PATIENCE), "work")
+    task.request_kill()
+    task.result(PATIENCE)
+    may_end.set()
+    done = way(lambda _: 1, "work")
+    assert done.result(PATIENCE) == 1
+    done.request_kill()
+    assert task.killed and not done.killed
+
+
+# --- modules that hear ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "asked", [(16000, 0, 0), (48000, 3, 0), (44100, 0, 0), (16000, 5, 0), (16000, -1, 0), (16000, "front", 0)]
+)
+def test_formats_that_there_are_not_are_refused(asked):
+    with pytest.raises(BadValue, match="48000 Hz with channels 0 .all four., or 16000 Hz with 1 .left."):
+        microphone_format(*asked)
+
+
+@pytest.mark.parametrize("flags", [[], [0, 0, 0, 0], [1, 1, 0, 0], [2, 0, 0, 0], [1, 0, 0], [1, 0, 0, 0, 0], "1000", 3])
+def test_flags_mean_one_or_all(flags):
+    with pytest.raises(BadValue, match="flags .left, right, front, rear. of 0 or 1: one of them set, or all four"):
+        flags_to_channel(flags)
+
+
+@dataclass
+class Block:
+    samples: np.ndarray
+    time: float = 1.5
+
+
+class Ears:
+    """Gives the callback of the listener that was begun last."""
+
+    def listen(self, _name, callback, **_wants):
+        self.deliver = callback
+        return self
+
+    def close(self):
+        pass
+
+
+class Module:
+    def __init__(self):
+        self.heard, self.may_return = queue.Queue(), threading.Event()
+
+    def metaObject(self):
+        return {"methods": {}}
+
+    def call(self, _method, channels, frames, _time, data):
+        self.heard.put((channels, frames, np.frombuffer(data, "<i2").tolist()))
+        self.may_return.wait(PATIENCE)
+
+
+@pytest.fixture
+def listening():
+    ears, module = Ears(), Module()
+    clients = MicrophoneClients(ears, lambda name: module)
+    clients.subscribe("Module")
+    yield clients, ears, module
+    module.may_return.set()
+    clients.close()
+
+
+def numbered(number, channels=4):
+    return Block(np.full((100, channels), number, dtype=np.int16))
+
+
+def test_blocks_of_a_format_that_counts_no_more_or_that_do_not_fit_make_nobody_deaf(listening):
+    clients, ears, module = listening
+    module.may_return.set()
+    clients.set_at_once(2)
+    ears.deliver(numbered(1))
+    late = ears.deliver  # under way while the format changes
+    clients.prefer("Module", MicrophoneFormat(16000, 3))
+    late(numbered(2))
+    ears.deliver(numbered(3, channels=1))
+    with pytest.raises(ValueError):
+        ears.deliver(numbered(4))
+    for number in (5, 6):
+        ears.deliver(numbered(number, channels=1))
+    assert module.heard.get(timeout=PATIENCE) == (1, 200, [5] * 100 + [6] * 100)
+
+
+def test_blocks_that_were_under_way_when_the_microphones_closed_are_dropped(listening):
+    clients, ears, module = listening
+    ears.deliver(numbered(0))
+    module.heard.get(timeout=PATIENCE)  # it is busy with this one from now on
+    late = ears.deliver
+    clients.set_closed(True)
+    for _ in range(HELD_UP + 1):
+        late(numbered(1))
+    assert not clients.behind()
+    clients.set_closed(False)
+    for number in range(2, 4 + HELD_UP):
+        ears.deliver(numbered(number))
+    assert clients.behind()
+    module.may_return.set()
+    assert module.heard.get(timeout=PATIENCE)[2][0] == 2
