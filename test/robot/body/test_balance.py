@@ -1,0 +1,387 @@
+"""Balance, falls and pushes: what the law answers, what keeps a robot on its feet, and how it falls when it must."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from nao_sim_bridge.sim.balance import Balance, load_balance
+from nao_sim_bridge.sim.capture_point import BodyMotion, BodyTracker
+from nao_sim_bridge.sim.fall_manager import FallState
+from nao_sim_bridge.sim.kinematics import center_of_mass, quaternion_matrix
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.motion import sequences
+from nao_sim_bridge.sim.motion.sequences import posture_task
+from nao_sim_bridge.sim.posture_recognition import recognise
+from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.sim.push_detection import PushDetector
+from nao_sim_bridge.sim.stance import StanceReader
+from nao_sim_bridge.sim.touch_parts import LimbTouch
+
+MODEL = load_model()
+READER, STAND = StanceReader(MODEL), posture(MODEL, "Stand")
+SIDES = {"front": (1, 0), "back": (-1, 0), "left": (0, 1), "right": (0, -1)}
+STANDING = ("Stand", "StandInit", "StandZero", "Crouch")
+BODY = ("torso", "Head", "LBicep", "RBicep")
+DT, DEGREE = 1 / 120, math.radians(1.0)
+WATCHING, FALLING, FALLEN, RESTING = FallState.WATCHING, FallState.FALLING, FallState.FALLEN, FallState.RESTING
+
+
+def ticks(one, seconds):
+    """Each snapshot of the next `seconds` as it comes, so that the robot can be looked at in between."""
+    for _ in range(round(seconds / one.simulation.settings.tick_s)):
+        yield one.simulation.tick()
+
+
+def shove(one, side, force=60.0):
+    x, y = SIDES[side]
+    one.push((force * x, force * y, 0.0), 0.1)
+
+
+def falls(one):
+    return one.robot.stability.falls
+
+
+def states(one, seconds):
+    """States that the fall manager goes through, in order."""
+    seen = [falls(one).state]
+    for _ in ticks(one, seconds):
+        if falls(one).state is not seen[-1]:
+            seen.append(falls(one).state)
+    return seen
+
+
+@pytest.fixture
+def watched(bench):
+    """Makes simulations whose robot has stood for a while."""
+
+    def make(posture="Stand", **scene):
+        one = bench(posture, **scene)
+        one.run(0.8)
+        assert falls(one).state is WATCHING and one.robot.stability.on_feet
+        return one
+
+    return make
+
+
+# --- the law of balance
+
+
+def index(name):
+    return MODEL.joint_index[name]
+
+
+def body(lean=0.0, velocity=(0.0, 0.0)):
+    """A body in Stand that leans by so much, rad, and moves at m/s."""
+    roll, pitch = READER.lean(STAND)
+    return BodyMotion(READER.read(STAND, roll, pitch + lean), velocity, 6.0)
+
+
+@pytest.fixture
+def law():
+    """Balance of a robot that stands on a level floor."""
+    made = Balance(load_balance(MODEL), READER)
+    made.corrections(body(), STAND, DT)
+    return made
+
+
+def test_a_body_at_home_or_in_another_posture_gets_no_correction(law):
+    for motion in (body(), body(lean=0.015), body(velocity=(0.03, -0.03))):
+        assert law.corrections(motion, STAND, DT) == {} and not law.acting
+    leaning = posture(MODEL, "StandInit")
+    stance = READER.read(leaning, *READER.lean(leaning))
+    assert law.corrections(BodyMotion(stance, (0.0, 0.0), 6.0), leaning, DT) == {}
+
+
+@pytest.mark.parametrize("lean, velocity, sign", [(0.1, 0.0, 1), (-0.1, 0.0, -1), (0.0, 0.3, 1), (0.0, -0.3, -1)])
+def test_a_swing_ahead_presses_the_toes_down_and_one_back_the_heels_until_it_is_over(law, lean, velocity, sign):
+    found = law.corrections(body(lean, velocity=(velocity, 0.0)), STAND, DT)
+    assert found[index("LAnklePitch")] == found[index("RAnklePitch")] and sign * found[index("LAnklePitch")] > 0.04
+    assert law.acting
+    for _ in range(30):
+        found = law.corrections(body(), STAND, DT)
+    assert found == {} and not law.acting
+    law.corrections(body(0.1), STAND, DT)
+    law.release()
+    assert not law.acting and law.corrections(body(), STAND, DT) == {}
+
+
+def test_swings_to_left_and_right_are_answered_alike_and_within_the_limit(law):
+    left = law.corrections(body(velocity=(0.0, 0.4)), STAND, DT)
+    law.release()
+    right = law.corrections(body(velocity=(0.0, -0.4)), STAND, DT)
+    assert set(left) == set(right) == {index("LAnkleRoll"), index("RAnkleRoll")}
+    assert left == pytest.approx({joint: -value for joint, value in right.items()}, rel=0.05)
+    for _ in range(20):
+        found = law.corrections(body(0.8, velocity=(2.0, 0.0)), STAND, DT)
+    assert max(map(abs, found.values())) == pytest.approx(load_balance(MODEL).limit, abs=1e-3)
+
+
+def test_where_the_body_has_come_to_rest_it_belongs(law):
+    law.corrections(body(0.05), STAND, DT)
+    assert law.acting
+    for _ in range(600):
+        found = law.corrections(body(0.05), STAND, DT)
+    assert found == {}, "a place where it stays is learned"
+    law.settle()
+    assert law.corrections(body(0.1), STAND, DT) == law.corrections(body(0.1), STAND, DT) == {}
+    assert law.corrections(body(0.2), STAND, DT)[index("LAnklePitch")] > 0.0
+
+
+@pytest.mark.parametrize("force", [(12.0, 0.0, 0.0), (-8.0, 0.0, 0.0), (0.0, 15.0, 0.0)])
+def test_the_motion_of_the_body_is_reckoned_as_it_really_is(bench, force):
+    one = bench("StandInit")
+    one.robot.stability.balance.enabled = False
+    tracker, dt = BodyTracker(one.model, 9.81, smoothing=0.3), one.simulation.settings.tick_s
+
+    def center():
+        torso = one.now.torso
+        return quaternion_matrix(torso.orientation) @ center_of_mass(one.model, one.now.positions) + torso.position
+
+    one.run(1.0)
+    rest = tracker.follow(one.now, 0.5, dt)
+    assert rest.capture_point == pytest.approx(rest.stance.com[:2], abs=1e-5)
+    assert rest.frequency == pytest.approx(math.sqrt(9.81 / center()[2]), rel=0.01)
+    one.push(force, 0.1)
+    axis, true, seen = (0 if force[0] else 1), [], []
+    for _ in range(round(0.12 / dt)):
+        before = center()
+        one.simulation.tick()
+        true.append((center() - before)[axis] / dt)
+        seen.append(tracker.follow(one.now, 0.5, dt).velocity[axis])
+    fastest = max(true, key=abs)
+    assert math.copysign(1.0, fastest) == math.copysign(1.0, force[axis])
+    assert max(seen, key=abs) == pytest.approx(fastest, rel=0.25)
+    tracker.forget()
+    assert tracker.follow(one.now, 0.5, dt).velocity == (0.0, 0.0)
+
+
+# --- what is survived
+
+
+@pytest.mark.parametrize(
+    "name, side", [("Stand", "front"), ("StandInit", "back"), ("Stand", "left"), ("StandInit", "right")]
+)
+def test_a_push_of_two_newton_seconds_is_survived_unseen_in_commands_and_the_posture_comes_back(watched, name, side):
+    one = watched(name)
+    before, moved, corrected = one.now, 0.0, 0
+    shove(one, side, 20.0)
+    for snapshot in ticks(one, 2.5):
+        assert snapshot.commands == pytest.approx(posture(MODEL, name)) and falls(one).state is WATCHING
+        corrected += bool(one.robot.joints.corrections)
+        moved = max(moved, *(abs(a - b) for a, b in zip(snapshot.imu.angles[:2], before.imu.angles)))
+    assert moved > 0.01 and corrected and one.robot.joints.corrections == {}
+    assert snapshot.imu.angles[:2] == pytest.approx(before.imu.angles[:2], abs=DEGREE / 2)
+    assert snapshot.torso.position[2] == pytest.approx(before.torso.position[2], abs=0.003)
+    assert snapshot.positions == pytest.approx(before.positions, abs=DEGREE / 2)
+
+
+def test_without_push_recovery_the_same_push_throws_it_over(watched):
+    one = watched()
+    one.robot.stability.balance.enabled = False
+    shove(one, "back", 20.0)
+    assert one.run(2.5).torso.position[2] < 0.15
+
+
+@pytest.mark.parametrize("name", STANDING)
+def test_a_robot_that_nobody_disturbs_stands_still_without_corrections(bench, name):
+    one = bench(name)
+    before = one.run(1.0)
+    assert all(one.robot.joints.corrections == {} for _ in ticks(one, 5.0))
+    assert math.dist(one.now.torso.position, before.torso.position) < 2e-4
+    assert one.now.imu.angles == pytest.approx(before.imu.angles, abs=DEGREE / 20)
+
+
+def test_arms_call_for_next_to_nothing_when_slow_and_do_not_throw_the_robot_when_fast(watched):
+    one = watched()
+    one.aim(1.5, LShoulderPitch=-1.0, RShoulderPitch=-1.0)
+    for snapshot in ticks(one, 3.0):
+        assert max(map(abs, one.robot.joints.corrections.values()), default=0.0) < DEGREE
+        assert max(map(abs, snapshot.imu.angles[:2])) < 1.5 * DEGREE
+    for turn in range(6):
+        angle = (-1.2, 1.4)[turn % 2]
+        one.aim(8.0, LShoulderPitch=angle, RShoulderPitch=angle * (-1) ** (turn // 3))
+        assert states(one, 0.4) == [WATCHING]
+    assert one.now.torso.position[2] == pytest.approx(0.331, abs=0.01)
+
+
+def test_balance_keeps_out_of_motions_of_the_legs_of_soft_legs_and_of_a_walk(watched, bench):
+    one = watched("StandInit")
+    task = posture_task(one.robot, "test", "Stand")
+    while not task.finished:
+        one.simulation.tick()
+        assert task.finished or one.robot.joints.corrections == {}
+    soft, sitting, walking = watched("Crouch"), bench("Sit"), watched("StandInit")
+    soft.stiffen(0.2)
+    shove(soft, "front", 20.0)
+    sitting.run(1.0)
+    shove(sitting, "front", 5.0)
+    for one, seconds in ((soft, 0.5), (sitting, 1.0)):
+        assert all(one.robot.joints.corrections == {} for _ in ticks(one, seconds))
+    shove(walking, "front", 25.0)
+    walking.run(0.1)
+    assert walking.robot.stability.balance.acting
+    walking.robot.stability.walk = lambda: (0.0, 0.0)
+    walking.run(0.3)
+    assert not walking.robot.stability.balance.acting and walking.robot.joints.corrections == {}
+    assert not falls(walking).falling
+
+
+# --- falls
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_a_fall_is_noticed_well_before_the_impact_and_made_gentle(watched, side):
+    one = watched()
+    x, y = SIDES[side]
+    head = [index("HeadYaw")]
+    task = one.robot.motion.follow("test", head, lambda now: {head[0]: sequences.Ramp(now[head[0]], 1.0, 0.01)})
+    shove(one, side)
+    start, seen, noticed, impact, limp, families = one.now.torso.position, [], None, None, None, []
+    for snapshot in ticks(one, 4.0):
+        seen.append(falls(one).state)
+        families += [recognise(MODEL, snapshot).family] if snapshot.tick % 12 == 0 else []
+        if noticed is None and falls(one).falling:
+            noticed = snapshot.time
+            assert task.killed and one.robot.motion.tasks() == [], "a fall ends every motion"
+        if limp is None and max(snapshot.stiffnesses) == 0.0:
+            limp = snapshot
+        if impact is None and any(one.robot.link_name(contact.link) in BODY for contact in snapshot.contacts):
+            impact = snapshot.time
+            assert max(snapshot.stiffnesses) == 0.0, "motors let go before the body hits the floor"
+    assert list(dict.fromkeys([WATCHING, *seen])) == [WATCHING, FALLING, FALLEN]
+    assert impact is None or impact - noticed > 0.2
+    assert falls(one).direction[0] * x + falls(one).direction[1] * y > 0.8
+    assert (one.now.torso.position[0] - start[0]) * x + (one.now.torso.position[1] - start[1]) * y > 0.1
+    assert set(one.now.stiffnesses) == {0.0} and one.now.torso.position[2] < 0.15
+    assert math.hypot(*one.now.imu.gyroscope) < 0.5 and not one.robot.stability.on_feet
+    angle = dict(zip((joint.name for joint in MODEL.joints), limp.positions))
+    if side == "front":
+        assert max(angle["LShoulderPitch"], angle["RShoulderPitch"]) < 0.6 and angle["HeadPitch"] < -0.3
+        x, _, z = one.now.imu.accelerometer
+        assert x == pytest.approx(-9.81, abs=0.5) and abs(z) < 3.0, "what holds it up pushes towards its back"
+        assert families[-1] == "LyingBelly"
+    elif side == "back":
+        assert families[-1] == "LyingBack"
+    else:
+        lower, other = ("L", "R") if side == "left" else ("R", "L")
+        assert abs(angle[f"{lower}ElbowRoll"]) > 1.2 and abs(angle[f"{other}ElbowRoll"]) < 0.6, (
+            "the lower arm is drawn in"
+        )
+        assert {"left": "LyingLeft", "right": "LyingRight"}[side] in families
+        assert {"left": "LyingRight", "right": "LyingLeft"}[side] not in families
+
+
+@pytest.mark.parametrize("side, part, share", [("front", "torso", 0.5), ("back", "Head", 0.2)])
+def test_the_body_hits_the_floor_less_hard_than_without(watched, side, part, share):
+    hardest = []
+    for enabled in (True, False):
+        one, forces = watched(), []
+        falls(one).enabled = enabled
+        shove(one, side)
+        for snapshot in ticks(one, 2.5):
+            forces.append(sum(c.force for c in snapshot.contacts if one.robot.link_name(c.link) == part))
+            assert enabled or falls(one).state is RESTING
+        hardest.append(max(forces))
+    assert hardest[0] < share * hardest[1]
+    assert one.now.torso.position[2] < 0.15 and min(one.now.stiffnesses) == 1.0, "switched off it stays stiff"
+
+
+def test_legs_that_walk_out_from_under_the_body_and_a_lost_walk_make_a_fall(watched):
+    one = watched("StandInit")
+    one.aim(2.0, LAnklePitch=-0.9, RAnklePitch=-0.9)
+    assert FALLING in states(one, 2.0)
+    one = watched("StandInit")
+    one.robot.stability.walk = lambda: (-0.05, 0.0)
+    one.run(0.1)
+    assert not falls(one).falling
+    one.robot.stability.walk = lambda: (-0.3, 0.0)
+    one.simulation.tick()
+    assert falls(one).falling and falls(one).direction == (-1.0, 0.0)
+
+
+def test_waking_up_and_going_to_rest_is_no_fall(bench):
+    one = bench("Crouch", 0.0)
+    assert not one.robot.stability.on_feet
+    one.run(0.5)
+    for change in (sequences.wake_up, sequences.rest) * 2:
+        change(one.robot, lambda: one.now, lambda: None)
+        for _ in ticks(one, 2.5):
+            assert one.robot.stability.on_feet and falls(one).state is not FALLING
+    assert falls(one).state is RESTING
+
+
+def test_changing_posture_is_no_fall(watched):
+    one = watched("Stand")
+    for target in ("Crouch", "StandInit", "Crouch", "StandZero", "Stand", "StandInit", "StandZero", "Crouch", "Stand"):
+        posture_task(one.robot, "test", target, duration=1.0)
+        assert states(one, 1.3) == [WATCHING]
+
+
+def test_one_that_gets_up_does_not_fall(watched):
+    one = watched()
+    one.robot.getting_up = True
+    shove(one, "front")
+    assert FALLING not in states(one, 2.0)
+    assert one.now.torso.position[2] < 0.15 and min(one.now.stiffnesses) == 1.0
+
+
+# --- pushes that are noticed
+
+
+@pytest.fixture
+def pushes(bench):
+    """A robot that has stood for a while, and the pushes that it has noticed."""
+    one, found = bench(), []
+    detector = PushDetector(one.model.total_mass)
+
+    def look(snapshot):
+        found.extend(filter(None, [detector.look(snapshot, lambda: not any(one.robot.joints.velocities))]))
+
+    one.simulation.after_tick.append(look)
+    one.run(1.5)
+    return one, found
+
+
+@pytest.mark.parametrize("angle", [0.0, 90.0, -90.0, 180.0])
+def test_a_push_is_noticed_once_with_where_it_went_and_how_hard_it_was(pushes, angle):
+    (one, found), turn = pushes, math.radians(angle)
+    for force in (15.0, 19.0):
+        one.push((force * math.cos(turn), force * math.sin(turn), 0.0), 0.1)
+        one.run(2.0)
+    assert len(found) == 2 and found[1].energy > 1.3 * found[0].energy
+    for push in found:
+        assert abs(math.remainder(push.angle - turn, 2.0 * math.pi)) < 0.4 and 0.003 < push.energy < 1.0
+
+
+def test_a_slight_touch_and_its_own_motion_are_no_push(pushes):
+    one, found = pushes
+    one.push((2.0, 0.0, 0.0), 0.1)
+    one.run(1.0)
+    one.aim(3.0, LShoulderPitch=0.0, HeadYaw=1.0)
+    one.run(2.0)
+    assert found == []
+
+
+def held(one, seconds):
+    """What limbs are told as touched in the next seconds."""
+    limbs, told = LimbTouch(one.model), [None]
+    for snapshot in one.watch(seconds):
+        now = limbs.look(snapshot)
+        told += [now] * (now != told[-1])
+    return told[1:]
+
+
+def test_an_arm_that_is_pulled_is_touched_until_it_is_let_go_and_nothing_else_looks_like_that(bench):
+    one, moving, limp = bench(), bench(), bench()
+    one.run(0.2)
+    one.push((12.0, 0.0, 0.0), 1.5, "l_wrist")
+    assert held(one, 3.0) == [frozenset(), {"LArm"}, frozenset()]
+    moving.run(1.0)
+    moving.aim(1.0, RShoulderPitch=0.0, RElbowRoll=1.2)
+    limp.stiffen(0.0, *limp.model.chains["LArm"])
+    limp.run(0.2)
+    limp.push((4.0, 0.0, 0.0), 1.0, "l_wrist")
+    for untouched in (moving, limp, bench("Stand"), bench("Crouch"), bench("StandInit")):
+        assert held(untouched, 1.2) == [frozenset()]

@@ -1,0 +1,252 @@
+"""What is true of a real NAO on its feet: it stands, weighs what it weighs, and moves as its motors can."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from nao_sim_bridge.sim import led_animations
+from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.fall_manager import FallState
+from nao_sim_bridge.sim.kinematics import matrix_rpy, quaternion_matrix, rpy_matrix, transform
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.motion import sequences
+from nao_sim_bridge.sim.posture_recognition import UNKNOWN, recognise
+from nao_sim_bridge.sim.postures import load_postures
+
+MODEL = load_model()
+FAMILY = {name: entry.family for name, entry in load_postures().by_name.items()}
+OFF_THE_FEET = ("Sit", "SitRelax", "LyingBelly", "LyingBack")
+G, LONG = 9.81, 30.0
+# A motor's sum of torques is exact, its solver is iterative.
+SLACK = 1e-6
+
+
+def loads(snapshot):
+    return snapshot.left_foot.total, snapshot.right_foot.total
+
+
+def tilt(snapshot):
+    """Largest of roll and pitch of the torso, rad."""
+    return max(abs(angle) for angle in snapshot.imu.angles[:2])
+
+
+def test_it_stands_for_half_a_minute_within_a_millimetre(bench):
+    one = bench()
+    start, settled, end = one.now, one.run(1.0), one.run(LONG)
+    assert end.time == pytest.approx(LONG + 1.0)
+    assert math.dist(start.torso.position, settled.torso.position) < 2e-3, "putting it down is no fall"
+    assert math.dist(settled.torso.position, end.torso.position) < 1e-3
+    assert abs(settled.imu.angles[2] - end.imu.angles[2]) < math.radians(0.1) and tilt(end) < math.radians(1.0)
+    for snapshot in (settled, end):
+        assert math.hypot(*snapshot.imu.accelerometer) == pytest.approx(9.81, rel=1e-3)
+        assert snapshot.imu.accelerometer[2] == pytest.approx(9.81, rel=1e-3)
+        assert snapshot.imu.gyroscope == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
+    left, right = loads(end)
+    assert left + right == pytest.approx(5.36 * G, rel=0.01) and left == pytest.approx(right, rel=0.1)
+    assert end.foot_loads == pytest.approx((left, right), rel=0.01)
+    for foot in (end.left_foot, end.right_foot):
+        assert sum(foot.forces) == pytest.approx(foot.total)
+        # The centre of pressure of somebody who stands is under the ankle, well within the sole.
+        assert -0.03 < foot.center_of_pressure[0] < 0.07 and abs(foot.center_of_pressure[1]) < 0.03
+    assert max(abs(a - b) for a, b in zip(end.positions, end.commands)) < math.radians(0.5)
+    assert 40.0 > max(end.temperatures) > max(settled.temperatures) >= 27.0
+    assert 0.95 < end.battery.charge < settled.battery.charge <= 1.0
+    assert len(end.link_poses) == 2 and end.touched == frozenset(), "nothing but the soles touches anything"
+
+
+@pytest.mark.parametrize("version, mass", [("V6", 5.35975), ("V5", 5.30535)])
+def test_it_weighs_the_published_mass_and_its_payload_also_after_a_reset(bench, version, mass):
+    one = bench(version=version)
+    assert (one.model.total_mass, one.simulation.led_layout.version) == (pytest.approx(mass), version)
+    assert sum(loads(one.run(1.0))) == pytest.approx(mass * G, rel=0.01)
+    one = bench(version=version, payload=1.0)
+    for _ in range(2):
+        one.stiffen(1.0)
+        assert sum(loads(one.run(1.0))) == pytest.approx((mass + 1.0) * G, rel=0.01)
+        one.simulation.reset()
+
+
+def test_feet_hold_below_the_friction_and_slide_above(bench):
+    def slide(force, **scene):
+        """How far the first foot slides when both are pushed forward with this share of the weight, m."""
+        one = bench(**scene)
+        foot = min(contact.link for contact in one.run(1.0).contacts)
+        before = one.now.link_poses[foot].position[0]
+        for ankle in ("l_ankle", "r_ankle"):
+            one.push((force * one.model.total_mass * G / 2, 0.0, 0.0), 0.25, ankle)
+        return one.run(0.25).link_poses[foot].position[0] - before
+
+    assert abs(slide(0.25, friction=0.4)) < 2e-3 and slide(0.55, friction=0.4) > 5e-3 and abs(slide(0.55)) < 2e-3
+    one = bench(friction=0.4)
+    sole = one.simulation.settings.contact.sole_friction
+    # The engine multiplies the coefficients of the two that touch.
+    assert one.simulation.scene.load_world(sole).floor.friction * sole == pytest.approx(0.4)
+
+
+def lean(one, roll):
+    """Shift the body sideways over the feet; a positive roll goes to the left."""
+    joints = ("LHipRoll", "RHipRoll", "LAnkleRoll", "RAnkleRoll")
+    shift = {name: one.joint(name, of="commands") + (roll if "Ankle" in name else -roll) for name in joints}
+    one.aim(0.5, **shift)
+    return one.run(1.5)
+
+
+def test_leaning_to_a_side_loads_that_foot_until_it_carries_everything(bench):
+    for roll in (0.05, -0.05):
+        one = bench()
+        one.run(0.5)
+        left, right = loads(lean(one, roll))
+        heavy, light = (left, right) if roll > 0.0 else (right, left)
+        assert heavy > 1.5 * light and heavy + light == pytest.approx(5.36 * G, rel=0.02)
+    one = bench()
+    one.run(0.5)
+    lean(one, 0.38)
+    one.aim(1.0, RKneePitch=0.6, RHipPitch=-0.3, RAnklePitch=-0.3)
+    end = one.run(2.5)
+    assert (end.right_foot.forces, end.right_foot.center_of_pressure) == ((0.0,) * 4, (0.0, 0.0))
+    assert end.left_foot.total == pytest.approx(5.36 * G, rel=0.02) and tilt(end) < math.radians(5.0)
+    assert one.robot.stability.falls.state is FallState.WATCHING, "standing on one foot is no fall"
+
+
+def test_odometry_knows_where_a_standing_robot_is_while_it_moves(bench):
+    one, offset = bench("StandInit"), None
+    for pitch, roll in ((0.1, 0.0), (-0.1, 0.05), (0.0, -0.05)):
+        hips = {"LHipPitch": pitch - 0.45, "RHipPitch": pitch - 0.45, "LHipRoll": roll, "RHipRoll": roll}
+        one.aim(0.5, **hips, LAnkleRoll=-roll, RAnkleRoll=-roll)
+        now = one.run(1.0)
+        truth, reckoned = (transform(quaternion_matrix(p.orientation), p.position) for p in (now.torso, now.odometry))
+        # The start in world: it must come out the same all the time.
+        start = truth @ transform(reckoned[:3, :3].T, -reckoned[:3, :3].T @ reckoned[:3, 3])
+        offset = start if offset is None else offset
+        assert start == pytest.approx(offset, abs=2e-3)
+    assert math.hypot(offset[2, 3], *offset[2, :2]) < 0.005
+    assert rpy_matrix((0.0, 0.0, matrix_rpy(offset[:3, :3])[2])) == pytest.approx(offset[:3, :3], abs=5e-3)
+
+
+# --- where it starts
+
+
+@pytest.mark.parametrize("name", FAMILY)
+def test_a_stiff_robot_stays_in_the_posture_it_starts_in_and_a_limp_one_in_its_family(bench, name):
+    one = bench(name)
+    start = one.watch(0.03)
+    assert start[-1].contacts and max(tick.linear_velocity[2] for tick in start) < 0.1
+    assert all(tick.torso.position[2] == pytest.approx(start[0].torso.position[2], abs=0.01) for tick in start)
+    one.run(3.0)
+    seen = recognise(one.model, one.now)
+    assert (seen.posture, seen.family) == (name, FAMILY[name])
+    assert one.robot.stability.on_feet == (name not in OFF_THE_FEET)
+    limp = bench(name, stiffness=0.0)
+    height, settled, end = limp.now.torso.position[2], limp.run(1.5), limp.run(2.0)
+    if name in ("SitRelax", "LyingBelly", "LyingBack", "Crouch"):  # what leans or stands upright slumps
+        assert recognise(limp.model, end).family == FAMILY[name]
+    if name == "Crouch":
+        assert math.dist(settled.torso.position, end.torso.position) < 1e-3 and limp.robot.stability.on_feet
+        assert tilt(end) < math.radians(10.0) and sum(loads(end)) == pytest.approx(5.36 * G, rel=0.02)
+    if name == "StandInit":
+        assert settled.torso.position[2] < height - 0.07, "with bent knees it collapses"
+        assert limp.robot.stability.falls.state is FallState.RESTING, "which is no fall"
+    if name == "StandZero":
+        assert recognise(limp.model, end).family not in ("Standing", UNKNOWN)
+
+
+def test_an_unknown_posture_link_or_sensor_is_refused_with_the_closest(bench):
+    one = bench()
+    refused = [
+        (lambda: bench("Standing"), "unknown posture 'Standing'.*'Stand'"),
+        (lambda: one.push((1.0, 0.0, 0.0), 0.1, "l_ancle"), "unknown link 'l_ancle'.*'l_ankle'"),
+        (
+            lambda: one.robot.press(["Head/Touch/Middle", "Head/Touch/Frnt"]),
+            "unknown touch sensor 'Head/Touch/Frnt'.*'Head/Touch/Front'",
+        ),
+    ]
+    for call, message in refused:
+        with pytest.raises(UnknownName, match=message):
+            call()
+    assert one.simulation.tick().touched == frozenset()
+
+
+# --- motors
+
+
+@pytest.mark.parametrize("stiffness", [1.0, 0.5])
+def test_no_motor_gives_more_than_its_torque_however_hard_the_task(bench, stiffness):
+    def ratios(seen):
+        return [max(abs(s.torques[i]) for s in seen) / joint.max_torque for i, joint in enumerate(MODEL.joints)]
+
+    one, limp = bench("Stand", stiffness), bench("StandInit", 0.0)
+    one.run(0.3)
+    sequences.posture_task(one.robot, "hurry", "Crouch", duration=0.5)
+    one.push((40.0, 0.0, 0.0), 0.5)
+    # The limit was in the way, so it was tested.
+    assert max(ratios(one.watch(1.5))) == pytest.approx(stiffness, abs=SLACK)
+    friction = limp.simulation.settings.motor.limp_friction
+    assert max(ratios(limp.watch(1.0))) <= friction + SLACK, "a limp joint has only the friction of its gears"
+
+
+def test_stiffness_decides_on_what_a_motor_can_hold(bench):
+    one = bench()
+    one.aim(2.0, LShoulderPitch=0.0)
+    one.run(1.5)
+    held = one.joint("LShoulderPitch")
+    assert held == pytest.approx(0.0, abs=0.02)
+    needed = abs(one.joint("LShoulderPitch", of="torques"))
+    one.stiffen(0.5 * needed / MODEL.joint("LShoulderPitch").max_torque, "LShoulderPitch")
+    one.run(1.0)
+    assert one.joint("LShoulderPitch") > held + 0.2
+    one.stiffen(0.0, "LShoulderPitch")
+    one.run(1.0)
+    assert one.joint("LShoulderPitch") > 1.2
+    assert one.joint("LShoulderPitch", of="velocities") == pytest.approx(0.0, abs=0.05)
+    assert one.joint("RShoulderPitch") == pytest.approx(1.4426, abs=0.02)
+
+
+def test_no_motor_turns_faster_than_it_can_and_each_follows_its_command(bench):
+    one, slow = bench(), bench()
+    for each in (one, slow):
+        each.run(0.3)
+    targets = {"HeadYaw": -2.0, "LShoulderPitch": -1.0, "LElbowYaw": -2.0, "RWristYaw": 1.5, "LHand": 1.0}
+    for name, target in targets.items():
+        one.aim(MODEL.joint(name).max_velocity, **{name: target})
+    seen = one.watch(0.8)
+    for name, target in targets.items():
+        index, top_speed = MODEL.joint_index[name], MODEL.joint(name).max_velocity
+        # As fast as it can: the move was at the limit.
+        assert 0.9 * top_speed <= max(abs(s.velocities[index]) for s in seen) <= 1.02 * top_speed, name
+        assert seen[-1].positions[index] == pytest.approx(target, abs=0.02)
+    one.aim(5.0, LHand=0.0, RHand=1.0)
+    one.run(0.6)
+    assert (one.joint("LHand"), one.joint("RHand")) == pytest.approx((0.0, 1.0), abs=0.02)
+    slow.aim(1.0, HeadYaw=1.0, LElbowRoll=-1.2, RShoulderRoll=-0.6)
+    for snapshot in slow.watch(0.6):
+        for name in ("HeadYaw", "LElbowRoll", "RShoulderRoll"):
+            index = MODEL.joint_index[name]
+            assert abs(snapshot.positions[index] - snapshot.commands[index]) < 0.01
+
+
+def hips(snapshot):
+    return [snapshot.positions[MODEL.joint_index[name]] for name in ("LHipYawPitch", "RHipYawPitch")]
+
+
+def test_both_hips_are_one_motor_for_commands_and_for_pulls(bench):
+    for name in ("LHipYawPitch", "RHipYawPitch"):
+        one = bench("Crouch")
+        one.run(0.3)
+        one.aim(1.0, **{name: -0.6})
+        assert hips(one.run(0.8)) == pytest.approx([-0.6, -0.6], abs=0.01)
+    one = bench("LyingBack", 0.0)
+    one.run(0.5)
+    one.push((0.0, 15.0, 25.0), 1.2, "l_ankle")  # lift one foot, and pull it outwards
+    seen = [hips(snapshot) for snapshot in one.watch(1.2)]
+    lefts = [left for left, _ in seen]
+    assert max(lefts) - min(lefts) > 0.2 and max(abs(left - right) for left, right in seen) < 0.01
+
+
+def test_lights_do_not_disturb_the_body(bench):
+    dark, bright = bench(), bench()
+    animation = led_animations.rasta(bright.simulation.led_layout, 1.0)
+    bright.robot.leds.animate("eyes", animation, bright.robot.time, step=True)
+    bright.robot.leds.set({0: 0.3})
+    assert bright.watch(0.5) == dark.watch(0.5)
