@@ -1,0 +1,85 @@
+"""What a part of the driver gets: the robot over a libqi connection that can be cut, and its time as a clock."""
+
+from __future__ import annotations
+
+import threading
+from types import SimpleNamespace
+
+import pytest
+
+from nao_library_modules.robot import Robot
+
+PATIENCE = 15.0
+
+
+@pytest.fixture
+def soon():
+    """Waits for what other threads bring about while simulated time stands still."""
+
+    def wait(condition, what="it"):
+        pause = threading.Event()
+        for _ in range(int(PATIENCE / 0.002)):
+            if condition():
+                return
+            pause.wait(0.002)
+        raise AssertionError(f"{what} did not come about")
+
+    return wait
+
+
+@pytest.fixture
+def until(robot):
+    """Lets simulated time pass, little by little, until other threads have brought something about."""
+
+    def wait(condition, limit=10.0, step=0.05):
+        pause, end = threading.Event(), robot.now.time + limit
+        while not condition():
+            assert robot.now.time < end, f"it did not come about within {limit} s"
+            robot.advance(step)
+            pause.wait(0.004)
+
+    return wait
+
+
+@pytest.fixture
+def clock(robot):
+    """Simulated time, as the parts of the driver wait for it."""
+    return SimpleNamespace(now=robot.lockstep.time, wait=robot.lockstep.wait)
+
+
+@pytest.fixture
+def driver_robot(robot):
+    """The robot as the driver has it; `lose` cuts its connection, which it then makes anew."""
+    driver = Robot(*robot.address)
+    connection = driver.connection
+    connection.connect(PATIENCE)
+
+    def lose():
+        lost, generation = threading.Event(), connection.generation
+        listener = lambda state: lost.set() if state == "lost" else None  # noqa: E731
+        connection.add_listener(listener)
+        connection.live.session.close()
+        assert lost.wait(PATIENCE) and connection.wait_connected(PATIENCE)
+        connection.remove_listener(listener)
+        assert connection.generation == generation + 1
+
+    driver.lose = lose
+    return driver
+
+
+@pytest.fixture
+def closing(robot):
+    """Closes parts of the driver when the test is over, while time passes: `closing(Walker(...), 1.0)`."""
+    made = []
+
+    def keep(part, *limit):
+        made.append((part, limit))
+        return part
+
+    yield keep
+    for part, limit in reversed(made):
+        thread = threading.Thread(target=part.close, args=limit)
+        thread.start()
+        while thread.is_alive():
+            robot.advance(0.05)
+            thread.join(0.005)

@@ -1,0 +1,440 @@
+"""Joints, sensors of the body, memory, touch, lights, behaviours and autonomous life, as the driver asks the robot."""
+
+from __future__ import annotations
+
+import math
+import random
+from concurrent.futures import ThreadPoolExecutor
+from types import SimpleNamespace
+
+import pytest
+
+from nao_library_modules.body_devices import SONARS as SONAR_KEYS
+from nao_library_modules.driver.autonomous_life import ABILITIES, AutonomousLife
+from nao_library_modules.driver.behaviors import Behaviors
+from nao_library_modules.driver.blinking import Blinks, blink, fade
+from nao_library_modules.driver.foot_pressure import read_feet
+from nao_library_modules.driver.goal_crowd import Replaced
+from nao_library_modules.driver.joint_controller import JointController
+from nao_library_modules.driver.joint_sensors import JointSensors
+from nao_library_modules.driver.memory_access import MemoryAccess
+from nao_library_modules.driver.memory_rules import Rule
+from nao_library_modules.driver.memory_watch import MemoryWatch
+from nao_library_modules.driver.sonars import Sonars
+from nao_library_modules.driver.touch_sensors import BUMPER, FEET, HAND, HEAD, TouchSensors
+from nao_library_modules.errors import BadGoal, Preempted
+from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.joint_trajectory import H25_BODY
+
+CHARGE = "Device/SubDeviceList/Battery/Charge/Sensor/Value"
+FRONT = "FrontTactilTouched"
+
+
+def begin(function, *arguments):
+    """Run in a thread; the future of what it returns."""
+    pool = ThreadPoolExecutor(1)
+    future = pool.submit(function, *arguments)
+    pool.shutdown(wait=False)
+    return future
+
+
+def angles(robot, *names):
+    return robot.ALMotion.getAngles(list(names), True)
+
+
+# Joints
+
+
+@pytest.fixture
+def joints(stiff_robot, driver_robot):
+    stiff_robot.ALMotion.setAngles(["HeadYaw", "HeadPitch"], [0.0, 0.0], 0.5)
+    stiff_robot.advance(0.5)
+    return JointController(driver_robot)
+
+
+def trajectory(names, *points):
+    rows = [SimpleNamespace(time_from_start=t, positions=p, velocities=v) for t, p, v in points]
+    return SimpleNamespace(joint_names=names, points=rows)
+
+
+def test_angles_are_set_changed_and_moved_to(joints, robot, until):
+    joints.set_angles(["Head"], [0.3, -0.2], 0.5, relative=False)
+    robot.advance(1.0)
+    joints.set_angles(["HeadYaw"], [0.1], 0.5, relative=True)
+    robot.advance(1.0)
+    assert angles(robot, "HeadYaw", "HeadPitch") == pytest.approx([0.4, -0.2], abs=0.03)
+    move = begin(joints.move, ["Head"], [-0.2, 0.1], 0.5, True, Interrupt())
+    until(move.done)
+    assert move.result().values == pytest.approx([0.2, -0.1], abs=0.03) and not move.result().preempted
+    assert move.result().values == pytest.approx(angles(robot, "HeadYaw", "HeadPitch"), abs=0.03)
+
+
+@pytest.mark.parametrize(
+    "names, values, speed, field",
+    [
+        (["Tail"], [0.0], 0.2, "joint_names"),
+        (["Head"], [0.0, 0.0, 0.0], 0.2, "joint_angles"),
+        (["Head"], [0.0], 0.0, "speed"),
+        (["Head"], [0.0], 1.1, "speed"),
+    ],
+)
+def test_wrong_angles_move_nothing(joints, robot, names, values, speed, field):
+    for move in (
+        lambda: joints.set_angles(names, values, speed, False),
+        lambda: joints.move(names, values, speed, False, Interrupt()),
+    ):
+        with pytest.raises(BadGoal) as caught:
+            move()
+        assert caught.value.field == field
+
+
+def test_stiffnesses_have_a_range_and_trajectories(joints, robot, until):
+    joints.set_stiffnesses(["Body"], [0.75])
+    assert set(robot.ALMotion.getStiffnesses("Body")) == {0.75}
+    with pytest.raises(BadGoal, match="HeadPitch is to be 1.5: 0 to 1"):
+        joints.set_stiffnesses(["Head"], [1.0, 1.5])
+    with pytest.raises(BadGoal, match="HeadYaw is to be -0.1"):
+        joints.stiffness_trajectory(trajectory(["HeadYaw"], (1, [-0.1], ())))
+    frames = joints.stiffness_trajectory(trajectory(["Head"], (0.5, [0.25], ())))
+    stiffen = begin(joints.stiffen, frames, Interrupt())
+    until(stiffen.done, limit=1.0)
+    assert stiffen.result().values == pytest.approx([0.25, 0.25]) and not stiffen.result().preempted
+    interrupt = Interrupt()
+    stiffen = begin(joints.stiffen, joints.stiffness_trajectory(trajectory(["HeadYaw"], (9, [1.0], ()))), interrupt)
+    robot.advance(3.0)
+    interrupt.trigger()
+    until(stiffen.done, limit=1.0)
+    robot.advance(1.0)
+    assert stiffen.result().preempted and 0.3 < stiffen.result().values[0] < 0.8
+    assert robot.ALMotion.getStiffnesses("HeadYaw") == pytest.approx(stiffen.result().values, abs=0.01)
+
+
+@pytest.mark.parametrize("velocities", [(), (0.0, 0.0)], ids=["interpolation", "bezier"])
+def test_a_trajectory_ends_at_its_last_point_counted_from_the_command_and_tells_where(joints, robot, until, velocities):
+    joints.set_angles(["Head"], [0.1, 0.1], 0.5, relative=False)
+    robot.advance(0.5)
+    frames = joints.trajectory(
+        trajectory(["Head"], (0.5, [0.4, 0.0], velocities), (1, [0.2, -0.2], velocities)), relative=True
+    )
+    follow = begin(joints.follow, frames, Interrupt())
+    robot.advance(0.55)
+    assert angles(robot, "HeadYaw")[0] == pytest.approx(0.5, abs=0.06)
+    until(follow.done, limit=1.0)
+    assert follow.result().values == pytest.approx([0.3, -0.1], abs=0.03)
+
+
+def test_an_interrupt_ends_a_motion_and_tells_where_the_joints_are(joints, robot, until):
+    interrupt = Interrupt()
+    move = begin(joints.move, ["HeadYaw"], [1.5], 0.1, False, interrupt)
+    robot.advance(1.0)
+    interrupt.trigger()
+    until(move.done, limit=0.5)
+    assert move.result().preempted and 0.1 < move.result().values[0] < 1.2
+    robot.advance(1.0)
+    assert angles(robot, "HeadYaw") == pytest.approx(move.result().values, abs=0.15)
+
+
+def test_the_whole_body_gets_stiff_wakes_up_rests_and_lives(joints, robot, until):
+    for service, arguments in (("set_body_stiffness", (0.5,)), ("wake_up", ()), ("rest", ())):
+        call = begin(getattr(joints, service), *arguments)
+        until(call.done, limit=15.0, step=0.25)
+        call.result()
+        stiffness = {"set_body_stiffness": 0.5, "wake_up": 1.0, "rest": 0.0}[service]
+        assert set(robot.ALMotion.getStiffnesses("Head")) == {stiffness}
+    assert joints.life_state() == "disabled"
+    call = begin(joints.set_life, True)
+    until(call.done, limit=20.0, step=0.25)
+    assert joints.life_state() == "solitary"
+
+
+def test_names_are_those_of_the_robot_also_after_a_loss(joints, driver_robot):
+    assert tuple(joints.names.body) == tuple(H25_BODY) and {"Body", "Head"} <= set(joints.names.chains)
+    driver_robot.lose()
+    assert joints.joints_of(["Head"]) == ("HeadYaw", "HeadPitch")
+
+
+# Sensors
+
+
+def test_a_reading_is_what_the_robot_says_of_joints_inertial_unit_and_odometry(joints, robot, driver_robot):
+    joints.set_angles(["HeadYaw"], [0.5], 1.0, relative=False)
+    robot.advance(1.0)
+    names = ("HeadYaw", "LHipYawPitch", "RHipYawPitch", "LHand")
+    sensors = JointSensors(driver_robot, names)
+    reading = sensors.read()
+    assert reading.positions == pytest.approx(angles(robot, *names), abs=1e-3)
+    assert reading.torso == pytest.approx(robot.ALMotion.getPosition("Torso", 1, True), abs=1e-4)
+    assert reading.acceleration[2] == pytest.approx(9.81, abs=0.5) and abs(reading.roll) < 0.05
+    assert sensors.read_stiffnesses() == pytest.approx((1.0,) * 4)
+    assert all(math.isfinite(effort) for effort in reading.efforts)
+    robot.ALMotion.setAngles("HeadYaw", -1.0, 1.0)
+    robot.advance(0.1)
+    moving = JointSensors(driver_robot, ["HeadYaw"], use_sensors=False, use_odometry=False).read()
+    assert moving.torso is None and moving.efforts[0] < 0.0  # towards the command
+    assert moving.positions == pytest.approx(robot.ALMotion.getAngles("HeadYaw", False), abs=0.02)
+
+
+def test_the_feet_carry_the_robot(stiff_robot, driver_robot):
+    stiff_robot.advance(1.0)
+    feet = read_feet(driver_robot)
+    assert feet["left"].total + feet["right"].total == pytest.approx(5.3 * 9.81, rel=0.1)
+    assert all(sum(foot.forces) == pytest.approx(foot.total, abs=0.5) and foot.contact for foot in feet.values())
+    assert all(math.isfinite(number) for foot in feet.values() for number in foot.center)
+
+
+def test_sonars_measure_only_while_somebody_listens_and_after_a_loss(robot, driver_robot, clock, until, closing):
+    told = []
+    sonars = closing(Sonars(driver_robot, "ros_nao_sonar", 20.0, clock, told.append))
+    assert sonars.report().message == "nobody listens"
+    sonars.want(True)
+    until(lambda: len(told) > 2)
+    assert [name for name, *_ in robot.ALSonar.getSubscribersInfo()] == ["ros_nao_sonar"]
+    assert set(told[-1]) == set(SONAR_KEYS) and sonars.report().message == "read"
+    driver_robot.lose()
+    told.clear()
+    until(lambda: len(told) > 2)
+    sonars.want(False)
+    until(lambda: not robot.ALSonar.getSubscribersInfo())
+
+
+# Memory
+
+
+class Topics(dict):
+    """Opens topics, which keep what is published, by name."""
+
+    def make(self, name, kind, tell):
+        topic = self[name] = SimpleNamespace(kind=kind, tell=tell, messages=[])
+        topic.publish = topic.messages.append
+        topic.close = lambda: self.pop(name) if self.get(name) is topic else None
+        return topic
+
+
+@pytest.fixture
+def topics():
+    return Topics()
+
+
+@pytest.fixture
+def watch(robot, driver_robot, clock, topics, closing):
+    return closing(MemoryWatch(driver_robot, clock, topics.make, 5000))
+
+
+def test_keys_are_found_by_name_and_pattern_and_written_as_they_are(robot, driver_robot):
+    access = MemoryAccess(driver_robot)
+    robot.ALMemory.insertListData([[f"Mine/{number}", number] for number in range(1200)])
+    known = access.known()
+    assert len(known) > 1200 and known[FRONT] is True and known["Mine/7"] is False
+    keys = [f"Mine/{number}" for number in range(1200)]
+    assert access.values(keys) == list(range(1200)) and access.values([]) == []
+    assert access.find("Mine/119?") == {f"Mine/119{i}": 1190 + i for i in range(10)}
+    assert access.find("Mine/5") == {"Mine/5": 5} and access.values(["Never"]) == [None]
+    for pattern, words in (("Mine/x", "there is no key 'Mine/x'"), ("x*", "no key is like"), ("", "empty")):
+        with pytest.raises(BadGoal, match=words):
+            access.find(pattern)
+    with pytest.raises(BadGoal, match=f"did you mean '{FRONT}'"):
+        access.find("FrontTactilTouchd")
+    access.write("Flag", True, as_event=False)
+    assert robot.value("Flag") is True
+    heard = robot.heard("MyEvent")
+    access.write("MyEvent", 1.5, as_event=True)
+    assert heard.get(timeout=robot.patience) == 1.5
+
+
+def test_data_is_published_at_its_rate_while_somebody_listens(watch, robot, topics, until, soon):
+    watch.watch([Rule(CHARGE, 20.0), Rule("Device/SubDeviceList/*/Position/Sensor/Value", 10.0)])
+    assert watch.watched(CHARGE) == {CHARGE: CHARGE} and topics[CHARGE].kind == "float"
+    assert len(watch.watched("*/Position/Sensor/Value")) >= 25
+    head = topics["Device/SubDeviceList/HeadYaw/Position/Sensor/Value"]
+    for topic in (topics[CHARGE], head):
+        topic.tell(True)
+    start = robot.now.time
+    until(lambda: len(topics[CHARGE].messages) >= 8, step=0.025)
+    rate = len(topics[CHARGE].messages) / (robot.now.time - start)
+    assert rate < 25.0 and topics[CHARGE].messages[-1] == pytest.approx(robot.value(CHARGE), abs=1e-3)
+    assert head.messages and head.messages[-1] == pytest.approx(angles(robot, "HeadYaw")[0], abs=0.01)
+    assert not topics["Device/SubDeviceList/HeadPitch/Position/Sensor/Value"].messages
+    topics[CHARGE].tell(False)
+    watch.unwatch("Nothing")  # it waits for a reading that is under way
+    count = len(topics[CHARGE].messages)
+    robot.advance(0.5)
+    assert len(topics[CHARGE].messages) == count
+
+
+def test_an_event_is_published_only_while_somebody_listens_and_first_as_it_stands(watch, robot, topics, soon):
+    robot.ALMemory.raiseEvent(FRONT, 0.0)
+    watch.watch([Rule(FRONT)])
+    topic = topics[FRONT]
+    topic.tell(True)
+    soon(lambda: topic.messages == [0.0])
+    robot.ALMemory.raiseEvent(FRONT, 1.0)
+    soon(lambda: topic.messages == [0.0, 1.0])
+    topic.tell(False)
+    robot.ALMemory.raiseEvent(FRONT, 0.0)
+    watch.unwatch("Nothing")
+    topic.tell(True)
+    soon(lambda: topic.messages == [0.0, 1.0, 0.0])
+
+
+def test_keys_and_events_that_come_later_have_a_topic_from_then_on(watch, robot, topics, soon):
+    watch.watch([Rule("Late/*"), Rule("Later"), Rule("LateClick", kind="string")])
+    assert watch.watched() == {"LateClick": "LateClick", "Later": ""}
+    robot.ALMemory.insertData("Late/Text", "a")
+    robot.ALMemory.insertData("Yours/Text", "b")
+    robot.ALMemory.raiseEvent("Later", [1, 2])
+    soon(lambda: "Late/Text" in topics and "Later" in topics)
+    assert set(watch.watched()) == {"Late/Text", "Later", "LateClick"} and topics["Later"].kind == "int[]"
+    topics["Later"].tell(True)
+    soon(lambda: topics["Later"].messages[-1:] == [[1, 2]])
+
+
+def test_an_event_that_comes_too_often_is_thinned_out(watch, robot, topics, soon, until):
+    robot.ALMemory.raiseEvent(FRONT, 0.0)
+    watch.watch([Rule(FRONT, 4.0)])
+    topics[FRONT].tell(True)
+    soon(lambda: topics[FRONT].messages)
+    for value in range(1, 40):
+        robot.ALMemory.raiseEvent(FRONT, float(value))
+    until(lambda: topics[FRONT].messages[-1] == 39.0, limit=1.0)
+    assert len(topics[FRONT].messages) <= 4
+
+
+def test_what_is_watched_goes_on_after_a_loss(watch, robot, driver_robot, topics, soon, until):
+    robot.ALMemory.raiseEvent(FRONT, 0.0)
+    watch.watch([Rule(FRONT), Rule(CHARGE, 20.0)])
+    for name in (FRONT, CHARGE):
+        topics[name].tell(True)
+    until(lambda: topics[CHARGE].messages and topics[FRONT].messages)
+    driver_robot.lose()
+    count = len(topics[CHARGE].messages)
+    until(lambda: len(topics[CHARGE].messages) > count)
+    told = len(topics[FRONT].messages)
+    robot.ALMemory.raiseEvent(FRONT, 1.0)
+    soon(lambda: topics[FRONT].messages[told:] == [1.0])  # once
+
+
+def test_unwatching_closes_topics_and_too_many_keys_are_refused(robot, driver_robot, clock, topics, closing, soon):
+    watch = closing(MemoryWatch(driver_robot, clock, topics.make, 3))
+    robot.ALMemory.insertListData([["Few/1", 1], ["Few/2", "two"]])
+    watch.watch([Rule(CHARGE), Rule("Few/*")])
+    with pytest.raises(BadGoal, match="keys.*3 at most"):
+        watch.watch([Rule("*")])
+    assert set(watch.watched()) == {CHARGE, "Few/1", "Few/2"}
+    robot.ALMemory.insertData("Few/3", 3)
+    soon(lambda: "4 keys are to be watched" in watch.report().message)
+    assert set(watch.watched()) == {CHARGE, "Few/1", "Few/2"}  # what is watched goes on
+    assert sorted(watch.unwatch("Few/*")) == ["Few/1", "Few/2"]
+    assert set(topics) == {CHARGE}
+    watch.unwatch("*")
+    assert watch.watched() == {} and watch.report().message == "nothing is watched"
+
+
+# Touch
+
+
+def test_every_change_of_every_touch_sensor_is_told_once(robot, driver_robot, closing, soon):
+    told = []
+    robot.server.press(["Head/Touch/Front"])
+    robot.advance(0.1)
+    sensors = closing(TouchSensors(driver_robot, lambda s, now: told.append((s.place, s.number, now)), told.append))
+    soon(lambda: sensors.report().message == "touches are told")
+    assert set(told) == {(HEAD, 1, True), (FEET, 0, True)}  # how it is at the beginning
+    told.clear()
+    for pressed in (["LHand/Touch/Left", "RFoot/Bumper/Right"], []):
+        robot.server.press(pressed)
+        robot.advance(0.1)
+    expected = [(HEAD, 1, False), (HAND, 4, True), (BUMPER, 0, True), (HAND, 4, False), (BUMPER, 0, False)]
+    soon(lambda: len(told) >= 5)
+    assert sorted(told) == sorted(expected)
+    told.clear()
+    robot.ALMemory.raiseEvent("ALChestButton/DoubleClickOccurred", None)
+    soon(lambda: told == [2])
+    robot.server.press(["LFoot/Bumper/Left"])
+    driver_robot.lose()
+    robot.advance(0.1)
+    soon(lambda: (BUMPER, 1, True) in told)
+    assert sensors.report().values["LeftBumperPressed"] == "touched" and told == [2, (BUMPER, 1, True)]
+
+
+# Lights, behaviours, life
+
+RED, GREEN, BLACK = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
+
+
+def eye(robot):
+    return [robot.led(f"Face/Led/{name}/Left/0Deg") for name in ("Red", "Green", "Blue")]
+
+
+def test_eyes_blink_in_thirds_until_they_end_in_the_colour_of_the_background(robot, driver_robot, clock, until):
+    interrupt, told = Interrupt(), []
+    blinks = Blinks([RED, GREEN], (0.0, 0.0, 1.0), 0.6, 0.5, 0.0)
+    blinking = begin(blink, driver_robot, blinks, clock, interrupt, told.append, random.Random(1))
+    until(lambda: len(told) == 1)
+    robot.advance(0.3)  # a third to fade in, a third to hold
+    assert eye(robot) == pytest.approx(told[0], abs=0.1)
+    until(lambda: len(told) == 4, limit=6.0)
+    assert set(told) == {RED, GREEN}
+    interrupt.trigger()
+    until(blinking.done, limit=1.0)
+    robot.advance(0.1)
+    assert blinking.result() is False
+    assert eye(robot) == [0.0, 0.0, 1.0]
+
+
+def test_a_newer_goal_takes_the_eyes_as_they_are_and_a_fade_ends_with_the_interrupt(robot, driver_robot, clock, until):
+    interrupt = Interrupt()
+    blinks = Blinks([RED], BLACK, 3.0, 0.5, 0.0)
+    blinking = begin(blink, driver_robot, blinks, clock, interrupt, lambda colour: None, random.Random(1))
+    robot.advance(0.5)
+    interrupt.trigger(Replaced())
+    until(blinking.done, limit=1.0)
+    assert blinking.result() is True
+    before = eye(robot)
+    assert 0.2 < before[1] < 0.8  # on the way from white to red
+    interrupt = Interrupt()
+    interrupt.trigger()
+    with pytest.raises(Preempted):
+        fade(driver_robot, "FaceLeds", GREEN, 10.0, interrupt)
+    robot.advance(1.0)
+    assert eye(robot) == before
+
+
+def test_a_behaviour_runs_to_its_end_or_until_it_is_stopped(stiff_robot, driver_robot, until):
+    behaviors = Behaviors(driver_robot)
+    installed = behaviors.installed()
+    hey = "animations/Stand/Gestures/Hey_1"
+    assert hey in installed
+    with pytest.raises(BadGoal, match=r"'animations/Stand/Gestures/Hey_0' is not installed: did you mean '.*Hey_1'"):
+        behaviors.run("animations/Stand/Gestures/Hey_0", Interrupt())
+    run = begin(behaviors.run, hey, Interrupt())
+    until(lambda: stiff_robot.ALBehaviorManager.isBehaviorRunning(hey))
+    assert not run.done()
+    until(run.done, limit=30.0, step=0.25)
+    run.result()
+    interrupt = Interrupt()
+    run = begin(behaviors.run, hey, interrupt)
+    until(lambda: stiff_robot.ALBehaviorManager.isBehaviorRunning(hey))
+    interrupt.trigger()
+    until(run.done)
+    with pytest.raises(Preempted):
+        run.result()
+    assert not stiff_robot.ALBehaviorManager.isBehaviorRunning(hey)
+
+
+def test_states_and_abilities_of_life_are_told_and_set(robot, driver_robot, closing, soon, until):
+    told = []
+    life = closing(AutonomousLife(driver_robot, told.append))
+    soon(lambda: told == ["disabled"])
+    change = begin(life.set_state, "solitary")
+    until(change.done, limit=20.0, step=0.25)
+    change.result()
+    soon(lambda: told[-1] == "solitary")
+    assert life.report().message == "solitary" and told.count("solitary") == 1
+    background, awareness = ABILITIES[0], ABILITIES[3]
+    for enabled in (False, True):
+        life.set_enabled(background, enabled)
+        assert life.is_enabled(background) is enabled
+    life.set_enabled(awareness, False)
+    assert not life.is_enabled(awareness) and life.is_enabled(background)
+    driver_robot.lose()
+    soon(lambda: told.count("solitary") == 2)

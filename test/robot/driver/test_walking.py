@@ -1,0 +1,393 @@
+"""Orders to walk on the robot: the newest wins, a stop always gets through, commands that cease stop it."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from nao_library_modules.driver.footsteps_walk import FootstepWalk
+from nao_library_modules.driver.footsteps_walk import Step as Footstep
+from nao_library_modules.driver.moveto_walk import Goal, MoveToWalk
+from nao_library_modules.driver.walk_commands import Step, Target, Velocity
+from nao_library_modules.driver.walk_orders import Overtaken, Stop, WalkEnded
+from nao_library_modules.driver.walker import Walker
+from nao_library_modules.errors import BadGoal, RobotLost
+from nao_library_modules.health import Level
+from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.places import Place
+from naoqi.errors import NaoError
+
+LIMIT = 15.0
+FORWARD, FASTER, STAND = Velocity(0.5, 0.0, 0.0), Velocity(1.0, 0.0, 0.0), Velocity(0.0, 0.0, 0.0)
+
+
+@pytest.fixture
+def standing(stiff_robot):
+    """The robot, stiff, after a moment in which its feet felt the ground."""
+    stiff_robot.advance(0.3)
+    return stiff_robot
+
+
+@pytest.fixture
+def walker(standing, driver_robot, clock, closing):
+    return closing(Walker(driver_robot, clock, cmd_vel_timeout=0.5), 0.5)
+
+
+def done(order):
+    """Wait until the order was carried out."""
+    return order.answer.result(LIMIT)
+
+
+def steer(walker, velocity):
+    return walker.order(velocity, "cmd_vel from /stick", watched=True)
+
+
+def walking(robot):
+    return robot.ALMotion.moveIsActive()
+
+
+def place(robot):
+    return Place(*robot.ALMotion.getRobotPosition(True))
+
+
+# Walker
+
+
+def test_velocities_go_to_the_robot_with_frequency_and_gait(walker, robot):
+    ways = []
+    for frequency, gait in ((1.0, []), (0.0, [["MaxStepX", 0.02]])):
+        walker.frequency, walker.gait = frequency, gait
+        begin = place(robot)
+        done(walker.order(Velocity(1.0, -0.5, 0.25), "cmd_vel_srv from /me"))
+        assert walker.doing == "walking at (1.00, -0.50, 0.25) of the top speed"
+        robot.advance(4.0)
+        ways.append(place(robot).seen_from(begin))
+        stop = walker.order(STAND, "cmd_vel_srv from /me")
+        done(stop)
+        robot.advance(2.0)
+    assert ways[0].x > 0.1 and ways[0].y < -0.02 and ways[0].yaw > 0.05
+    assert ways[1].x < 0.4 * ways[0].x
+    assert walker.watchdog_stops == 0  # velocities of services last
+
+
+def test_a_walk_whose_commands_cease_is_stopped(walker, robot, until, caplog):
+    for _ in range(3):
+        done(steer(walker, FORWARD))  # the same again keeps the walk alive
+        robot.advance(0.4)
+    assert walking(robot) and walker.doing == "walking at (0.50, 0.00, 0.00) of the top speed"
+    until(lambda: walker.watchdog_stops == 1, limit=0.3)
+    assert "no command on cmd_vel for 0.5 s" in caplog.text
+    until(lambda: not walking(robot), limit=4.0)
+    done(steer(walker, FORWARD))  # and walks again when told to
+    assert walking(robot)
+
+
+def test_of_many_velocities_at_once_the_last_one_counts(walker):
+    orders = [steer(walker, Velocity(n / 100.0, 0.0, 0.0)) for n in range(1, 101)]
+    done(orders[-1])
+    assert walker.doing == "walking at (1.00, 0.00, 0.00) of the top speed"
+    errors = [order.answer.exception(LIMIT) for order in orders]
+    assert all(error is None or isinstance(error, Overtaken) for error in errors)
+    assert sum(error is None for error in errors) <= 5
+
+
+def test_without_a_limit_a_velocity_lasts(standing, driver_robot, clock, closing):
+    walker = closing(Walker(driver_robot, clock, cmd_vel_timeout=0.0), 0.5)
+    done(steer(walker, FORWARD))
+    standing.advance(2.0)
+    assert walking(standing)
+
+
+def test_a_target_ends_when_the_robot_is_there(walker, robot, until):
+    begin = place(robot)
+    order = walker.order(Target(0.1, 0.05, 0.1), "cmd_pose_srv from /me")
+    until(lambda: walking(robot), limit=2.0)
+    assert walker.doing == "walking to (0.10 m, 0.05 m, 0.10 rad)" and not order.answer.done()
+    until(order.answer.done)
+    done(order)
+    assert walker.doing == "nothing"
+    way = place(robot).seen_from(begin)
+    assert (way.x, way.y, way.yaw) == pytest.approx((0.1, 0.05, 0.1), abs=0.04)
+
+
+def test_a_stop_overtakes_a_target_and_both_end_with_the_robot_standing(walker, robot, until):
+    target = walker.order(Target(3.0, 0.0, 0.0), "cmd_pose_srv from /me")
+    until(lambda: walking(robot), limit=2.0)
+    robot.advance(1.5)
+    stop = walker.order(Stop(), "stop_walk_srv from /you")
+    robot.settled()
+    assert not target.answer.done() and not stop.answer.done()
+    until(stop.answer.done)
+    done(stop)
+    assert not walking(robot)
+    with pytest.raises(WalkEnded, match=r"walking to \(3.00 m.*stop_walk_srv from /you stopped it"):
+        done(target)
+
+
+@pytest.mark.parametrize("newer", [FORWARD, Target(0.2, 0.0, 0.0)])
+def test_a_newer_command_replaces_a_target(walker, robot, until, newer):
+    target = walker.order(Target(3.0, 0.0, 0.0), "cmd_pose from /me")
+    until(lambda: walking(robot), limit=2.0)
+    walker.order(newer, "cmd_vel from /you")
+    with pytest.raises(Overtaken, match="cmd_vel from /you came after it"):
+        done(target)
+    robot.advance(0.3)
+    assert walking(robot)
+
+
+def test_a_robot_that_others_stop_on_the_way_is_told_and_left_alone(walker, robot, until):
+    done(steer(walker, FORWARD))
+    target = walker.order(Target(3.0, 0.0, 0.0), "cmd_pose from /me")
+    until(lambda: walker.doing.startswith("walking to"))
+    robot.advance(1.0)
+    robot.post("ALMotion", "moveTo", 1.0, 0.0, 0.0)  # by another client
+    robot.handed_over("ALMotion")
+    with pytest.raises(WalkEnded, match="another client or a protection") as caught:
+        done(target)
+    assert not isinstance(caught.value, Overtaken)
+    robot.advance(1.0)
+    assert walking(robot) and walker.watchdog_stops == 0
+
+
+def test_steps_queue_up_and_can_be_waited_for_or_stopped(walker, robot, until):
+    begin = place(robot)
+    done(walker.order(Step("LLeg", 0.04, 0.1, 0.0), "cmd_step from /me"))
+    last = walker.order(Step("RLeg", 0.04, -0.1, 0.0), "cmd_step_srv from /me", to_the_end=True)
+    robot.settled()
+    assert not last.answer.done()
+    until(last.answer.done)
+    done(last)
+    assert not walking(robot) and place(robot).seen_from(begin).x > 0.02
+    stopped = walker.order(Step("LLeg", 0.02, 0.1, 0.0), "cmd_step_srv from /me", to_the_end=True)
+    until(lambda: walking(robot), limit=2.0)
+    stop = walker.order(Stop(), "stop_walk_srv from /you")
+    until(stop.answer.done)
+    with pytest.raises(WalkEnded, match="stop_walk_srv from /you stopped it"):
+        done(stopped)
+
+
+def test_what_the_robot_refuses_is_told_and_not_repeated_with_every_message(walker, robot):
+    robot.ALMotion.setStiffnesses("Body", 0.0)
+    for order in (Target(1.0, 0.0, 0.0), FORWARD, FORWARD):
+        with pytest.raises(NaoError, match="stiff"):
+            done(walker.order(order, "a service of /me"))  # a velocity of a service is always sent
+    for _ in range(3):
+        done(steer(walker, FORWARD))  # of a stream it was
+    assert not walking(robot)
+    robot.ALMotion.setStiffnesses("Body", 1.0)
+    done(walker.order(FORWARD, "cmd_vel_srv from /me"))
+    assert walking(robot)
+
+
+@pytest.mark.parametrize("refused", [Target(1.0, 0.0, 0.0), Step("Tail", 0.02, 0.1, 0.0), FASTER])
+def test_a_command_that_is_refused_leaves_no_older_walk_unwatched(walker, robot, until, refused):
+    done(steer(walker, FORWARD))
+    robot.advance(0.4)
+    walker.gait = [["NoSuchParameter", 1.0]]
+    order = walker.order(refused, "another")
+    until(order.answer.done, limit=1.0)
+    with pytest.raises(NaoError):
+        done(order)
+    until(lambda: not walking(robot), limit=4.0)
+
+
+def test_the_pose_for_walking_comes_first_and_once(walker, robot, until):
+    walker.needs_walk_pose = True
+    order = steer(walker, FORWARD)
+    until(order.answer.done, limit=4.0)
+    done(order)
+    assert walking(robot) and not walker.needs_walk_pose
+
+
+def test_a_stop_interrupts_the_pose_for_walking(walker, robot, until):
+    walker.needs_walk_pose = True
+    order = steer(walker, FORWARD)
+    robot.advance(0.1)
+    stop = walker.order(Stop(), "stop")
+    until(stop.answer.done, limit=2.0)
+    with pytest.raises(WalkEnded, match="order to stand"):
+        done(order)
+    assert walker.needs_walk_pose and not walking(robot)
+
+
+def test_a_walk_ends_with_an_error_when_the_connection_breaks(walker, robot, driver_robot, until, soon):
+    target = walker.order(Target(3.0, 0.0, 0.0), "cmd_pose_srv from /me")
+    until(lambda: walking(robot), limit=2.0)
+    driver_robot.lose()
+    with pytest.raises(NaoError):
+        done(target)
+    soon(lambda: walker.doing == "nothing")
+    order = steer(walker, FORWARD)
+    done(order)
+    assert walking(robot)
+
+
+def test_the_end_stops_the_walk_and_takes_no_orders(standing, driver_robot, clock, until):
+    walker = Walker(driver_robot, clock, cmd_vel_timeout=0.5)
+    done(steer(walker, FORWARD))
+    standing.advance(1.0)
+    walker.close(0.1)
+    until(lambda: not walking(standing), limit=4.0)
+    with pytest.raises(WalkEnded, match="the node ends"):
+        done(steer(walker, FORWARD))
+
+
+def test_orders_of_many_threads_all_end(walker, robot, until):
+    orders = [FORWARD, FASTER, STAND, Stop(), Step("LLeg", 0.02, 0.1, 0.0), Target(0.1, 0.0, 0.0)]
+    with ThreadPoolExecutor(8) as pool:
+        given = list(pool.map(lambda n: walker.order(orders[n % 6], f"thread {n}", watched=True), range(60)))
+    last = walker.order(Stop(), "the last one")
+    until(last.answer.done)
+    done(last)
+    assert not walking(robot)
+    for one in given:
+        error = one.answer.exception(LIMIT)
+        assert error is None or isinstance(error, NaoError)
+
+
+# Sequences of footsteps
+
+STEPS = [
+    Footstep(leg, Place(0.04, side * 0.1, 0.0)) for leg, side in (("LLeg", 1), ("RLeg", -1), ("LLeg", 1), ("RLeg", -1))
+]
+
+
+@pytest.fixture
+def footsteps(standing, driver_robot, clock):
+    return FootstepWalk(driver_robot, clock)
+
+
+def begin(function, *arguments):
+    """Run in a thread; the future of what it returns."""
+    pool = ThreadPoolExecutor(1)
+    future = pool.submit(function, *arguments)
+    pool.shutdown(wait=False)
+    return future
+
+
+def test_all_footsteps_are_made_and_told_of_on_the_way(footsteps, robot, until):
+    told, start = [], place(robot)
+    steps = footsteps.prepared([*STEPS[:3], Footstep("RLeg", Place(0.3, -0.088, 0.0))])
+    assert steps[:3] == tuple(STEPS[:3]) and steps[3].place == pytest.approx((0.08, -0.088, 0.0))  # as it is made
+    walk = begin(footsteps.walk, steps, 0.25, Interrupt(), lambda made: told.append(len(made)))
+    until(walk.done)
+    assert walk.result().steps == steps and not walk.result().preempted
+    assert told == sorted(told) and told[0] == 0 and told[-1] == 4 and len(set(told)) >= 4
+    assert place(robot).seen_from(start).x > 0.1
+
+
+def test_an_interrupt_stops_footsteps_and_those_that_cannot_be_taken_back_are_made(footsteps, robot, until):
+    interrupt, told = Interrupt(), []
+    steps = footsteps.prepared(STEPS * 2)
+    walk = begin(footsteps.walk, steps, 0.25, interrupt, lambda made: told.append(len(made)))
+    until(lambda: told and told[-1] == 2)
+    interrupt.trigger()
+    until(walk.done)
+    walked = walk.result()
+    assert walked.preempted and 2 < len(walked.steps) < 7 and walked.steps == steps[: len(walked.steps)]
+    assert not walking(robot)
+
+
+def test_footsteps_that_end_too_early_are_told(footsteps, robot, driver_robot, until):
+    walk = begin(footsteps.walk, STEPS * 2, 0.25, Interrupt(), lambda made: None)
+    until(lambda: walking(robot), limit=2.0)
+    stop = robot.post("ALMotion", "stopMove")
+    until(walk.done)
+    robot.answer(stop)
+    with pytest.raises(NaoError, match="ended after . of 8 steps"):
+        walk.result()
+    interrupt = Interrupt()
+    walk = begin(footsteps.walk, STEPS, 0.25, interrupt, lambda made: None)
+    until(lambda: walking(robot), limit=2.0)
+    interrupt.trigger(RobotLost("nao:9559", "silence"))  # the reason, and no preemption
+    until(walk.done)
+    with pytest.raises(RobotLost):
+        walk.result()
+
+
+def test_sequences_are_of_left_and_right_in_turn_and_refusals_are_told(footsteps, robot):
+    with pytest.raises(BadGoal, match="one step at least"):
+        footsteps.prepared([])
+    with pytest.raises(BadGoal, match=r"footsteps\[1\]\.leg"):
+        footsteps.prepared([STEPS[0], STEPS[0]])
+    robot.ALMotion.setStiffnesses("Body", 0.0)
+    with pytest.raises(NaoError, match="stiff"):
+        footsteps.walk(STEPS, 0.25, Interrupt(), lambda made: None)
+
+
+def test_single_steps_are_added_to_those_before_and_may_be_waited_for(footsteps, robot, until):
+    footsteps.add(STEPS[0])
+    made = begin(footsteps.make, Footstep("RLeg", Place(0.3, -0.088, 0.0)))
+    robot.advance(0.3)
+    assert not made.done()
+    until(made.done)
+    made.result()
+    assert not walking(robot)
+
+
+# Walks to one place after the other
+
+
+@pytest.fixture
+def moving(standing, driver_robot, closing):
+    return closing(MoveToWalk(driver_robot))
+
+
+def goal(name, *way):
+    return Goal(name, lambda: Place(*way))
+
+
+def test_a_goal_is_walked_to_and_a_new_one_takes_over_without_a_stop(moving, robot, until, soon):
+    assert moving.report().message == "no goal yet"
+    moving.go(goal("door", 1.0, 0.5, 0.25))
+    soon(lambda: "walks to door: 1.00 m ahead, 0.50 m left" in moving.report().message)
+    robot.advance(1.0)
+    start = place(robot)
+    moving.go(goal("window", 0.05, 0.0, 0.0))
+    soon(lambda: "walks to window" in moving.report().message)
+    assert walking(robot)
+    until(lambda: "window is reached" in moving.report().message)
+    assert moving.report().level == Level.OK
+    assert place(robot).seen_from(start).x == pytest.approx(0.05, abs=0.05)
+
+
+def test_a_walk_that_is_cancelled_or_stopped_by_others_is_told(moving, robot, until, soon):
+    for stop, words, level in (
+        (moving.cancel, "was stopped", Level.OK),
+        (lambda: robot.post("ALMotion", "stopMove"), "door was not reached", Level.WARN),
+    ):
+        moving.go(goal("door", 1.0, 0.0, 0.0))
+        soon(lambda: "walks to door" in moving.report().message)
+        robot.advance(0.5)
+        stop()
+        until(lambda words=words: words in moving.report().message)
+        assert moving.report().level == level
+        until(lambda: not walking(robot))
+
+
+def test_a_goal_nobody_can_find_leaves_the_walk_alone_and_refusals_are_told(moving, robot, soon):
+    def nowhere():
+        raise NaoError("no such frame")
+
+    robot.ALMotion.setStiffnesses("Body", 0.0)
+    moving.go(goal("window", 1.0, 0.0, 0.0))
+    soon(lambda: "window: " in moving.report().message and "stiff" in moving.report().message)
+    assert moving.report().level == Level.ERROR
+    robot.ALMotion.setStiffnesses("Body", 1.0)
+    moving.go(goal("door", 1.0, 0.0, 0.0))
+    soon(lambda: "walks to door" in moving.report().message)
+    robot.advance(0.3)
+    moving.go(Goal("nowhere", nowhere))
+    soon(lambda: "nowhere: no such frame" in moving.report().message)
+    robot.advance(0.3)
+    assert walking(robot) and moving.report().level == Level.ERROR
+
+
+def test_the_end_of_the_node_stops_a_walk(moving, robot, until, soon):
+    moving.go(goal("door", 1.0, 0.0, 0.0))
+    soon(lambda: "walks to door" in moving.report().message)
+    robot.advance(0.5)
+    closed = begin(moving.close)
+    until(closed.done)
+    assert not walking(robot)
