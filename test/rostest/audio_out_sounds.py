@@ -15,7 +15,7 @@ from nao_library_actions.msg import NaoAudioOutAction, NaoAudioOutGoal
 from nao_library_msgs.msg import AudioOutFunction
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from sound_fixture import SILENT, Loudspeakers, level, recording, strongest_frequency  # noqa: E402
 
 RATE = 48000

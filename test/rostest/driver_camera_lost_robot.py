@@ -15,7 +15,7 @@ from nao_library_msgs.srv import VisionMotionSensitivity
 from nao_sim_bridge.testing import wait_until
 from naoqi import ALProxy
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from camera_fixture import LIMIT, Look  # noqa: E402
 from mortal_simulator import PORT, MortalSimulator  # noqa: E402
 

@@ -18,7 +18,7 @@ from nao_library_msgs.srv import GetMemory
 from nao_sim_bridge.testing import send, wait_until
 from naoqi import ALProxy
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from mortal_simulator import PORT, MortalSimulator  # noqa: E402
 from news import LIMIT, News  # noqa: E402
 

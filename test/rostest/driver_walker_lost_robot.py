@@ -17,7 +17,7 @@ from nao_sim_bridge.testing import wait_until
 from naoqi import ALProxy
 from naoqi.errors import NaoError
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from mortal_simulator import PORT, MortalSimulator  # noqa: E402
 
 LIMIT = 60.0

@@ -14,7 +14,7 @@ import rostest
 from nao_sim_bridge.testing import SimulatedRobot
 from naoqi import ALProxy
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from things_fixture import ROBOT, Things  # noqa: E402
 
 HELLO, BREATHE = "nao_library/hello", "nao_library/breathe"

@@ -11,7 +11,7 @@ from actionlib_msgs.msg import GoalStatus
 from rospy import Duration
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from motion_fixture import MotionTest, f  # noqa: E402
 
 ARM = ["RShoulderPitch", "RShoulderRoll", "RElbowYaw", "RElbowRoll", "RWristYaw", "RHand"]

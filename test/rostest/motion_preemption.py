@@ -14,7 +14,7 @@ from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.testing import send, wait_until
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from motion_fixture import MotionTest, f  # noqa: E402
 
 COMMAND = "Device/SubDeviceList/{}/Position/Actuator/Value"

@@ -10,7 +10,7 @@ from actionlib_msgs.msg import GoalStatus
 
 from nao_sim_bridge.testing import wait_until
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from motion_fixture import MotionTest, f  # noqa: E402
 
 NAME = "rostest_turn"

@@ -12,7 +12,7 @@ from std_srvs.srv import SetBool
 from nao_library_msgs.srv import SetFloat
 from nao_sim_bridge.testing import wait_until
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from motion_fixture import MotionTest, f  # noqa: E402
 from services import service  # noqa: E402
 

@@ -17,7 +17,7 @@ from nao_library_actions.msg import NaoAudioOutAction, NaoBehaviorAction, NaoTac
 from nao_library_msgs.msg import TactileFunction
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from examples_fixture import EXAMPLES, start  # noqa: E402
 
 WALL = "{name: tactile_wall, box: [0.1, 2.0, 2.0], position: [%g, 0.0, 1.0]}"

@@ -15,7 +15,7 @@ from PIL import Image
 from nao_library_msgs.srv import MoveObject, PlaceObject, RemoveObject
 from nao_sim_bridge.testing import SimulatedRobot
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from services import service  # noqa: E402
 
 HALF_TURN = Quaternion(0.0, 0.0, 1.0, 0.0)

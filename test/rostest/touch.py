@@ -14,7 +14,7 @@ from nao_library_msgs.srv import ReleaseSensors, TouchSensors
 from nao_sim_bridge.testing import SimulatedRobot
 from naoqi import ALBroker, ALModule, ALProxy
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))  # the fixture is beside this file, not beside its relay
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from services import service  # noqa: E402
 
 PORT = int(os.environ.get("NAO_PORT", "9559"))

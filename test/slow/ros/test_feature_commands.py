@@ -1,0 +1,85 @@
+"""The tables of features in README.md: every command that has no star is run, and does what it says."""
+
+import os
+import re
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import rospy
+from feature_runner import run, run_all
+from feature_table import README, features
+
+from nao_library_actions.msg import (
+    NaoAudioInAction,
+    NaoAudioOutAction,
+    NaoBehaviorAction,
+    NaoLedAction,
+    NaoMotionAction,
+    NaoTactileAction,
+    NaoVisionAction,
+)
+from nao_sim_bridge.testing import SimulatedRobot
+
+SERVERS = {
+    "NaoLights": NaoLedAction,
+    "nao_audio_out": NaoAudioOutAction,
+    "nao_audio_in": NaoAudioInAction,
+    "NaoMotion": NaoMotionAction,
+    "NaoVision": NaoVisionAction,
+    "NaoTactile": NaoTactileAction,
+    "NaoBehavior": NaoBehaviorAction,
+}
+LIMIT = 90.0
+"""s of wall time for one command."""
+AT_ONCE = 3
+"""Commands side by side: most of their time is spent on waiting for speech, lights and legs."""
+ANSWERS = {
+    "getColor": r"LeftFaceLed1 ",
+    "--person yes": r"(?i)heard: yes",
+    "localizeSound": r"\d\.\d",
+    "getAngles names": r"(?s)HeadYaw .*LHand ",
+    "moveIsActive": r"(?i)false",
+    "/nao_alife/state": r"solitary",
+    "lookFor": r"kind ball",
+    "detectLandmarks": r"kind landmark, name 68",
+    "detectFaces": r"name Anna",
+    "readBarcodes": r"hello",
+    "detectMovement": r"kind movement",
+    "getTouched": r"front head",
+    "getBumpers": r"left bumper",
+    "/tactile_touch": r"button: 2",
+    "getPosture": r"Stand",
+    "get Mine/Answer": r"42",
+    "setColour": r"did you mean 'setColor'",
+    "dry_run": r"2\.",
+}
+"""Part of a command -> what it has to print: these could find nothing and still end well."""
+
+
+class FeatureCommands(unittest.TestCase):
+    def test_every_command_does_what_it_says(self):
+        robot = SimulatedRobot()
+        for name, action in SERVERS.items():
+            robot.action_client(name, action)
+        folder = Path(tempfile.mkdtemp(prefix="nao_features_"))
+        self.addCleanup(shutil.rmtree, folder, ignore_errors=True)
+        rows = [row for row in features(README.read_text(encoding="utf-8")) if not row.starred]
+        self.assertGreater(len(rows), 50)
+
+        def run_one(row):
+            outcome = run(row, folder, os.environ, robot.port, LIMIT)
+            rospy.loginfo("%5.1f s, status %s: %s", outcome.seconds, outcome.status, row.command)
+            return outcome
+
+        outcomes = run_all(rows, run_one, AT_ONCE)
+        self.assertEqual(len(outcomes), len(rows))
+        failed = [outcome for outcome in outcomes if outcome.refused or not answers(outcome)]
+        self.assertEqual(failed, [], "\n\n".join(map(str, failed)))
+
+
+def answers(outcome):
+    """Whether a command has printed what it has to."""
+    wanted = [answer for part, answer in ANSWERS.items() if part in outcome.feature.command]
+    return all(re.search(answer, outcome.output) for answer in wanted)
