@@ -1,0 +1,274 @@
+"""ALTextToSpeech: speech, events, files, the voice and its parameters."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import soundfile
+from sounds import loudness, played, until
+
+LONG = "This is a text that takes a while, and nobody hears its end."
+EVENTS = ["TextStarted", "TextDone", "TextInterrupted", "CurrentWord", "PositionOfCurrentWord", "CurrentSentence"]
+EVENTS += ["CurrentBookMark", "Status"]
+
+
+@pytest.fixture
+def tts(robot):
+    """The service, as at the start, silent."""
+    robot.ALTextToSpeech.setLanguage("English")
+    robot.ALTextToSpeech.reset()
+    yield robot.ALTextToSpeech
+    robot.ALTextToSpeech.stopAll()
+
+
+@pytest.fixture
+def begin(robot, tts):
+    def call(*arguments, method="say"):
+        future = robot.post("ALTextToSpeech", method, *arguments)
+        robot.handed_over("ALTextToSpeech")
+        return future
+
+    return call
+
+
+@pytest.fixture
+def say(robot, begin):
+    """Says a text; how long it takes, s."""
+    return lambda *arguments: until(robot, begin(*arguments))
+
+
+@pytest.fixture
+def events(robot):
+    """What events tell, as (event, value, time)."""
+    found = []
+    for name in EVENTS:
+        key = f"ALTextToSpeech/{name}"
+        robot.server.memory.listen(key, lambda value, name=name: found.append((name, value, robot.now.time)))
+    return found
+
+
+def test_say_is_over_when_the_sound_is_and_events_tell_what_is_said(robot, say, events):
+    began = robot.now.time
+    duration = say(r"Hello \mrk=12\ world.")
+    sound = played(robot, began)
+    loud = np.flatnonzero(np.abs(sound[:, 0]) > 0.02) / 48000.0
+    assert 0.5 < duration < 2.5 and loud[0] < 0.25 and duration - 0.7 < loud[-1] < duration
+    assert np.array_equal(sound[:, 0], sound[:, 1])
+    (number,) = {value[0] for name, value, _ in events if name == "Status"}
+    assert [(name, value) for name, value, _ in events] == [
+        ("Status", [number, "enqueued"]),
+        ("Status", [number, "started"]),
+        ("TextStarted", True),
+        ("CurrentSentence", "Hello world."),
+        ("PositionOfCurrentWord", 0),
+        ("CurrentWord", "Hello"),
+        ("CurrentBookMark", 12),
+        ("PositionOfCurrentWord", 1),
+        ("CurrentWord", "world"),
+        ("Status", [number, "done"]),
+        ("TextStarted", False),
+        ("TextDone", True),
+    ]
+    assert robot.ALMemory.getData("ALTextToSpeech/TextDone") is True
+
+
+def test_events_come_at_the_time_of_what_they_tell(robot, say, events):
+    began = robot.now.time
+    say("One, two, three.")
+    starts = {value: at for name, value, at in events if name == "CurrentWord"}
+    assert list(starts) == ["One", "two", "three"] and 0.0 <= starts["One"] - began < 0.15
+    assert began < starts["One"] < starts["two"] - 0.2 < starts["three"] - 0.4 < events[-1][2] - 0.2
+    for start in starts.values():
+        assert np.abs(played(robot, start, start + 0.25)).max() > 0.1
+
+
+def test_the_keys_tell_while_it_speaks_that_it_is_not_done(robot, tts, say, begin):
+    keys = [f"ALTextToSpeech/{name}" for name in ("TextStarted", "TextDone", "TextInterrupted")]
+    say("One.")
+    future = begin(LONG)
+    robot.advance(0.5)
+    assert robot.ALMemory.getListData(keys) == [True, False, False]
+    tts.stopAll()
+    robot.answer(future)
+    assert robot.ALMemory.getListData(keys) == [False, False, True]
+
+
+def test_texts_that_are_said_at_once_are_said_one_after_the_other(robot, say, begin):
+    alone = [say(text) for text in ("One two.", "Three four five.")]
+    assert say("One two. Three four five.") == pytest.approx(sum(alone), abs=0.15)
+    first, second = begin("One two."), begin("Three four five.")
+    assert until(robot, first) == pytest.approx(alone[0], abs=0.11) and second.isRunning()
+    assert until(robot, second) == pytest.approx(alone[1], abs=0.11)
+
+
+@pytest.mark.parametrize("way", ["stopAll", "stop", "cancel", "reset"])
+def test_a_stop_is_silence_at_once_for_those_that_wait_too(robot, tts, begin, events, way):
+    if way == "stop":
+        number = tts.pCall("say", LONG)
+        robot.handed_over("ALTextToSpeech")
+    else:
+        futures = [begin(LONG) for _ in range(1 if way == "cancel" else 3)]
+    robot.advance(1.0)
+    assert np.abs(played(robot, robot.now.time - 0.5)).max() > 0.05
+    if way == "stop":
+        tts.stop(number)
+    else:
+        {"stopAll": tts.stopAll, "cancel": futures[0].cancel, "reset": robot.NaoSimulation.reset}[way]()
+        for future in futures:
+            future.wait(int(1000 * robot.patience))
+            assert not future.isRunning()
+        assert [value[1] for name, value, _ in events if name == "Status"].count("stopped") == len(futures)
+        assert ("TextInterrupted", True) in [event[:2] for event in events]
+    robot.settled()
+    stopped = robot.now.time
+    robot.advance(0.5)
+    assert not played(robot, stopped + 0.05).any() and ("TextDone", True) not in [event[:2] for event in events]
+    assert way != "stop" or not tts.isRunning(number)
+
+
+def test_a_posted_text_has_a_number_to_wait_for(robot, tts):
+    number = tts.pCall("say", "One.")
+    assert tts.isRunning(number)
+    robot.finish("ALTextToSpeech", "wait", number, 0, after=2.0)
+    assert not tts.isRunning(number)
+
+
+@pytest.mark.parametrize("text", ["", " \n", r"\rspd=80\ ", "..."])
+def test_nothing_to_say_is_said_at_once(say, text):
+    assert say(text) < 0.2
+
+
+def test_without_notifications_there_are_no_events(tts, say, events):
+    tts.disableNotifications()
+    say("One.")
+    assert not events
+    tts.enableNotifications()
+    say("Two.")
+    assert "CurrentSentence" in [name for name, _, _ in events]
+
+
+# --- files ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_file_has_the_speech_and_nothing_is_heard(robot, tts, say):
+    duration, path = say("This is in a file."), robot.server.files.folder / "day/one.wav"
+    began = robot.now.time
+    tts.sayToFile("This is in a file.", "day/one.wav")
+    robot.advance(0.5)
+    assert not played(robot, began).any()
+    sound, rate = soundfile.read(path)
+    assert (rate, sound.ndim) == (22050, 1) and soundfile.info(str(path)).subtype == "PCM_16"
+    assert len(sound) / rate == pytest.approx(duration, abs=0.06)
+    tts.sayToFile("This is in a file.", "/home/nao/day/one.raw")
+    assert np.corrcoef(np.fromfile(path.with_suffix(".raw"), "<i2") / 32768.0, sound)[0, 1] > 0.999
+
+
+def test_a_file_can_be_heard_as_well_unless_all_is_stopped(robot, tts, begin):
+    began, future = robot.now.time, begin("Twice.", method="sayToFileAndPlay")
+    until(robot, future)
+    assert np.abs(played(robot, began)).max() > 0.05
+    assert (robot.server.files.folder / "sayToFileAndPlay.wav").exists()
+    began, future = robot.now.time, begin("Never heard, " * 20, method="sayToFileAndPlay")
+    tts.stopAll()
+    robot.answer(future)
+    robot.advance(0.5)
+    assert not played(robot, began).any()
+
+
+# --- the voice --------------------------------------------------------------------------------------------------------
+
+
+def test_languages_and_voices_belong_together(tts, say):
+    assert say("Guten Tag.", "German") > 0.3
+    assert (tts.getLanguage(), tts.getVoice()) == ("English", "naoenu")
+    assert tts.locale() == "en_US" and tts.getLanguageEncoding("French") == "UTF-8"
+    assert set(tts.getAvailableLanguages()) <= set(tts.getSupportedLanguages())
+    tts.setLanguage("French")
+    assert (tts.getVoice(), tts.locale()) == ("naofrf", "fr_FR")
+    tts.setVoice("rms")
+    assert tts.getLanguage() == "English"
+    tts.setLanguageDefaultVoice("English", "awb")
+    assert tts.getVoice() == "awb"
+    tts.setLanguage("German")
+    tts.setLanguage("English")
+    assert tts.getVoice() == "awb"
+    tts.setLanguageDefaultVoice("English", "naoenu")
+
+
+def test_speed_has_a_default_that_it_goes_back_to(tts, say):
+    usual = say(LONG)
+    tts.setParameter("speed", 200.0)
+    assert say(LONG) == pytest.approx(usual / 2.0, rel=0.2)
+    tts.resetSpeed()
+    assert tts.getParameter("speed") == 100.0
+    tts.setParameter("defaultVoiceSpeed", 150.0)
+    assert tts.getParameter("speed") == 150.0
+    tts.setLanguage("German")
+    assert tts.getParameter("defaultVoiceSpeed") == tts.getParameter("speed") == 100.0
+
+
+def test_volume_makes_it_quieter_and_reset_brings_back_the_start(robot, tts, say):
+    levels = []
+    for volume in (1.0, 0.5):
+        tts.setVolume(volume)
+        began = robot.now.time
+        say("Away.")
+        levels.append(loudness(played(robot, began, began + 0.6)))
+    assert tts.getVolume() == 0.5 and levels[1] == pytest.approx(0.5 * levels[0], rel=0.01)
+    for name, value in (("pitchShift", 1.5), ("volume", 30.0)):
+        tts.setParameter(name, value)
+    tts.setVoice("kal")
+    tts.reset()
+    assert tts.getParameter("pitchShift") == 1.0 and tts.getParameter("volume") == 80.0
+    assert (tts.getVolume(), tts.getVoice()) == (1.0, "naoenu")
+
+
+def test_the_dictionary_changes_what_is_heard(tts, say):
+    usual = say("xy")
+    assert tts.addToDictionary("xy", "something that takes much longer") is True
+    assert say("xy") > usual + 0.5
+    tts.showDictionary()
+    assert tts.addToDictionary("xy", r"\toi=lhp\E'mil\toi=orth\ ") is False
+    assert tts.deleteFromDictionary("xy") is True and tts.deleteFromDictionary("xy") is False
+    assert say("xy") == pytest.approx(usual, abs=0.06)
+    assert tts.addToDictionary("noun", "ab", "1", "another one", "0") is True
+    assert tts.deleteFromDictionary("noun", "ab") is True
+
+
+def test_a_voice_preference_is_a_file(robot, tts):
+    path = robot.server.files.folder / "ALTextToSpeech_Voice_mine.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps({"voice": "rms", "volume": 0.5, "parameters": {"speed": 120}}))
+    tts.loadVoicePreference("mine")
+    assert (tts.getVoice(), tts.getVolume(), tts.getParameter("speed")) == ("rms", 0.5, 120.0)
+    path.write_text(json.dumps({"volume": 0.9, "parameters": {"sped": 120}}))
+    with pytest.raises(RuntimeError, match="parameter is 'sped', allowed is one of pitchShift"):
+        tts.loadVoicePreference("mine")
+    assert tts.getVolume() == 0.5
+    path.write_text("{")
+    with pytest.raises(RuntimeError, match="ALTextToSpeech_Voice_mine.json cannot be read"):
+        tts.loadVoicePreference("mine")
+
+
+def test_errors_name_what_is_wrong_and_what_is_allowed(tts, refused):
+    rows = [
+        ("setVoice", ("Bob",), "voice is 'Bob', allowed is one of naoenu, slt"),
+        ("setLanguage", ("Klingon",), "language is 'Klingon', allowed is one of English, French"),
+        ("say", ("text", "Klingon"), "language is 'Klingon', allowed is one of English, French"),
+        ("setLanguageDefaultVoice", ("French", "rms"), "Voice is 'rms', allowed is a voice of French: naofrf"),
+        ("getLanguageEncoding", ("Klingon",), "pLanguage is 'Klingon'"),
+        ("setParameter", ("speed", 20.0), "speed is 20.0, allowed is 50 to 400"),
+        ("setParameter", ("pitchShift", 0.5), r"pitchShift is 0.5, allowed is 0 \(off\) or 1 to 4"),
+        ("setParameter", ("doubleVoice", float("nan")), "doubleVoice is nan, allowed is a finite number"),
+        ("setParameter", ("sped", 100.0), "parameter is 'sped', allowed is one of pitchShift, doubleVoice"),
+        ("getParameter", ("sped",), "parameter is 'sped', allowed is one of"),
+        ("setVolume", (1.5,), "volume is 1.5, allowed is 0 to 1"),
+        ("addToDictionary", (" ", "x"), "word is ' ', allowed is a word"),
+        ("sayToFile", ("text", "one.mp3"), r"pFileName is 'one.mp3', allowed is a name that ends in .wav or .raw"),
+        ("sayToFile", ("text", "../one.wav"), "file '../one.wav' is not inside"),
+        ("loadVoicePreference", ("none",), "no file 'ALTextToSpeech_Voice_none.json'"),
+    ]
+    refused("ALTextToSpeech", rows)
+    assert (tts.getVoice(), tts.getVolume(), tts.getParameter("speed")) == ("naoenu", 1.0, 100.0)
