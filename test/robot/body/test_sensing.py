@@ -1,0 +1,362 @@
+"""What the robot notices of itself and its surroundings: walls, boxes, fingers, hands, heat, noise, broken devices."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.sim.errors import BadValue, NotAllowed, SimulationError, UnknownName
+from nao_sim_bridge.sim.faults import CRITICAL, NEGLIGIBLE, SERIOUS, severity
+from nao_sim_bridge.sim.hand_path import AWAY
+from nao_sim_bridge.sim.hands import COME_TIME, LEAVE_TIME, PATIENCE
+from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.rotations import roll_pitch_yaw
+from nao_sim_bridge.sim.sensors.sonar import NO_ECHO
+from nao_sim_bridge.sim.touch_gestures import GestureBook, GestureRecogniser, Times
+from nao_sim_bridge.sim.touch_names import CHEST_BUTTON, HEAD, SENSORS
+from nao_sim_bridge.sim.walk.gait import feet_gait
+from nao_sim_bridge.sim.world_objects import read_object
+
+MODEL = load_model()
+YAW = MODEL.joint_index["HeadYaw"]
+SILENCE = (NO_ECHO, NO_ECHO)
+ALL = (*SENSORS, CHEST_BUTTON)
+
+# --- bumpers
+
+BUMPERS = {f"{side}Foot/Bumper/{half}" for side in "LR" for half in ("Left", "Right")}
+RAMP = "{name: ramp, box: [0.3, 1.0, 0.02], position: [0.27, 0, 0.018], rpy: [0, -0.2, 0], friction: 0}"
+
+
+@pytest.mark.parametrize(
+    "y, width, pressed",
+    [
+        (0.0, 0.4, BUMPERS),
+        (0.09, 0.02, {"LFoot/Bumper/Left", "LFoot/Bumper/Right"}),
+        (-0.05, 0.02, {"RFoot/Bumper/Left"}),
+        (0.3, 0.05, set()),
+    ],
+)
+def test_bumpers_feel_a_cart_that_slides_down_against_the_toes(bench, world_file, y, width, pressed):
+    place = f"box: [0.05, {width}, 0.05], position: [0.2, {y}, 0.06]"
+    cart = f"{{name: cart, {place}, rpy: [0, -0.2, 0], mass: 0.6, friction: 0}}"
+    one = bench(world=world_file(RAMP, cart))
+    assert not one.run(0.05).touched and one.run(1.0).touched == pressed
+    one.simulation.reset()
+    assert one.now.touched == frozenset()
+
+
+# --- sonars
+
+
+def place(one, **entry):
+    """A thing in the world in place of the one before."""
+    if "it" in one.simulation.things.things:
+        one.simulation.things.remove("it")
+    one.simulation.things.place(read_object({"name": "it", **entry}, "it", Path))
+    return one.run(0.2)
+
+
+def test_both_sonars_measure_the_distance_of_a_wall(bench):
+    one = bench()
+    for distance in (0.25, 0.3, 0.5, 0.8, 1.0, 1.5, 2.0, 2.5):
+        now = place(one, box=[0.1, 4, 2], position=[distance + 0.05, 0, 1])
+        sonar = one.model.sonars[0].position[0] + now.torso.position[0]
+        assert now.sonars == pytest.approx((distance - sonar,) * 2, abs=0.003)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_slanting_wall_is_heard_by_the_sonar_that_it_faces(bench, side):
+    """Turned by 30 degrees, `distance` from the origin; the other sonar gets nothing back from this mirror."""
+    one, turn = bench(), side * math.pi / 6.0
+    for distance in (0.3, 0.5, 1.0, 1.5, 2.0, 2.5):
+        x, y = ((distance + 0.05) * f(turn) for f in (math.cos, math.sin))
+        now = place(one, box=[0.1, 8, 2], position=[x, y, 1], rpy=[0, 0, turn])
+        at = one.model.sonars[0 if side > 0.0 else 1].position + now.torso.position
+        near, far = now.sonars[:: int(side)]
+        assert near == pytest.approx(distance - (at[0] * math.cos(turn) + at[1] * math.sin(turn)), abs=0.003)
+        assert far == NO_ECHO
+
+
+@pytest.mark.parametrize("world", ["empty", "uneven"])
+def test_only_who_lies_hears_the_floor(bench, world):
+    for posture in ("Stand", "StandInit", "Crouch", "Sit"):
+        assert bench(posture, world=world).run(0.3).sonars == SILENCE
+    if world == "empty":
+        assert max(bench("LyingBelly").run(0.5).sonars) < 0.3
+        one = bench("StandInit")
+        one.run(0.3)
+        one.robot.locomotion.move(0.06, 0.0, 0.0, feet_gait({}))
+        assert {snapshot.sonars for snapshot in one.watch(2.0)} == {SILENCE}
+
+
+def test_people_robots_and_things_are_heard_on_their_side_and_nothing_low_or_behind(bench):
+    one = bench()
+    for entry, distance, gap in (
+        ({"person": "anna", "position": [1.5, 0, 0], "heading": 3.14}, 1.5, 0.25),
+        ({"person": "ben", "position": [2.2, 0, 0], "heading": 3.14}, 2.2, 0.25),
+        ({"nao": "Stand", "position": [1.0, 0, 0], "heading": 3.14}, 1.0, 0.15),
+        ({"box": [0.2, 0.3, 0.3], "position": [0.7, 0, 0.15]}, 0.7, 0.12),
+        ({"cylinder": [0.03, 1.0], "position": [0.8, 0, 0.5]}, 0.8, 0.04),
+    ):
+        assert all(distance - gap <= echo <= distance for echo in place(one, **entry).sonars), entry
+    for near, y in ((0, 0.3), (1, -0.3)):
+        sonars = place(one, cylinder=[0.05, 1.0], position=[0.5, y, 0.5]).sonars
+        assert sonars[near] == pytest.approx(0.53, abs=0.05) and sonars[1 - near] == NO_ECHO
+    assert place(one, ball=0.03, position=[0.4, 0, 0.03], mass=0).sonars == SILENCE
+    assert place(one, box=[0.2, 0.4, 0.8], position=[-0.4, 0, 0.4]).sonars == SILENCE
+    one.aim(3.0, LShoulderPitch=0.6, LElbowRoll=-1.5, LElbowYaw=-1.2)
+    assert one.run(1.2).sonars == SILENCE, "nor its own arm"
+
+
+# --- noise and delay
+
+
+def test_a_robot_with_noise_feels_errors_of_its_seed_but_the_truth_stays_true(bench):
+    noisy, same, other = (bench("Crouch", sensor_noise=1.0, seed=seed).run(0.4) for seed in (1, 1, 2))
+    true = bench("Crouch").run(0.4)
+    assert noisy == same and noisy.imu != other.imu
+    assert noisy.positions != true.positions and noisy.positions == pytest.approx(true.positions, abs=0.01)
+    assert noisy.imu.angles != true.imu.angles and noisy.odometry != true.odometry
+    assert roll_pitch_yaw(noisy.torso.orientation) == pytest.approx(true.imu.angles, abs=2e-3)
+    assert max(map(abs, noisy.angular_velocity)) < 0.01 < max(map(abs, noisy.imu.gyroscope))
+
+
+def test_a_late_robot_feels_what_was_all_of_one_time(bench):
+    angles = []
+    for delay in (0.05, 0.0):
+        one = bench("Stand", sensor_delay=delay)
+        one.run(1.0)
+        one.aim(3.0, HeadYaw=1.0)
+        angles.append([snapshot.positions[YAW] for snapshot in one.watch(0.5)])
+    late, truth = angles
+    assert late[6:] == pytest.approx(truth[:-6], abs=1e-3) and abs(late[10] - truth[10]) > 0.02
+    one = bench("Stand", sensor_delay=0.1)
+    one.push((60.0, 0.0, 0.0), 0.2)
+    for snapshot in one.watch(1.0):
+        assert set(snapshot.link_poses) == {contact.link for contact in snapshot.contacts}
+        assert snapshot.left_foot.total >= 0.0
+
+
+# --- heat and faults
+
+
+def test_a_motor_that_gets_critically_hot_goes_limp_and_cools_down_again(bench):
+    one = bench()
+    one.robot.reflexes.diagnosis_enabled = False
+    one.robot.warm_up("HeadYaw", 75.0)
+    one.aim(2.0, LShoulderPitch=0.0)
+    assert one.run(0.2).temperatures[YAW] > 74.0 and one.robot.joints.efforts[YAW] < 0.7
+    one.run(1.3)
+    held = one.joint("LShoulderPitch")
+    one.robot.warm_up("LShoulderPitch", 85.0)
+    one.run(1.5)
+    assert one.joint("LShoulderPitch") > held + 0.2
+    assert one.robot.joints.stiffnesses[MODEL.joint_index["LShoulderPitch"]] == 1.0
+    assert one.run(3.5).temperatures[YAW] < 74.0
+    with pytest.raises(RuntimeError, match="unknown joint 'Tail'"):
+        one.robot.warm_up("Tail", 50.0)
+
+
+def test_how_bad_a_broken_device_is():
+    devices = {
+        CRITICAL: ["LHipYawPitch", "RAnkleRoll"],
+        SERIOUS: ["HeadYaw", "LHand", "InertialSensor", "LFoot/FSR/RearLeft"],
+        NEGLIGIBLE: ["US/Left", "Head/Touch/Rear", "LFoot/Bumper/Left", "ChestBoard/Button"],
+    }
+    for how, names in devices.items():
+        assert [severity(name) for name in names] == [how] * len(names)
+
+
+def test_a_broken_motor_gives_no_torque_until_it_is_repaired_and_only_stiff_ones_are_found(bench):
+    one = bench()
+    faults = one.robot.faults
+    faults.break_device("HeadYaw")
+    one.aim(3.0, HeadYaw=0.8)
+    one.run(1.0)
+    assert one.joint("HeadYaw") == pytest.approx(0.0, abs=0.02) and one.robot.joints.efforts[YAW] == 0.0
+    for how, found in ((0.0, frozenset()), (1.0, {YAW})):
+        limp = bench().robot.faults
+        limp.break_device("HeadYaw")
+        limp.try_motors([how] * 26)
+        assert limp.found == found
+    faults.repair("HeadYaw")
+    one.run(1.0)
+    assert one.joint("HeadYaw") == pytest.approx(0.8, abs=0.02) and faults.found == frozenset()
+    for call in (faults.break_device, faults.repair):
+        with pytest.raises(UnknownName, match="unknown device 'US/Middle'"):
+            call("US/Middle")
+
+
+def test_broken_sensors_read_an_error_beside_others_that_work(bench):
+    one = bench()
+    whole = one.run(0.5).right_foot
+    one.robot.faults.break_device("Head/Touch/Rear")
+    seen = one.watch(0.3)
+    assert len({id(now.sonars) for now in seen}) == len({id(now.echoes) for now in seen}) in (3, 4)
+    for device in ("US/Right", "RFoot/FSR/RearLeft", "InertialSensor", "LKneePitch"):
+        one.robot.faults.break_device(device)
+    one.run(0.2)
+    assert one.now.sonars[1] == 0.0 and one.now.currents and one.now.right_foot.forces[2] == 0.0
+    assert one.now.right_foot.total == pytest.approx(whole.total - whole.forces[2], rel=0.05)
+    assert one.now.left_foot.total > 5.0
+    one.simulation.reset()
+    assert (one.robot.faults.sensors, one.robot.faults.motors) == (frozenset(), frozenset()), "a new robot is whole"
+
+
+# --- fingers
+
+
+def test_fingers_stay_until_they_are_taken_away_and_a_ball_is_felt_where_it_lies(bench, world_file):
+    one = bench(world=world_file("{name: ball, sphere: 0.02, position: [0, 0, 0.55], mass: 0.05}"))
+    felt = set().union(*(snapshot.touched for snapshot in one.watch(0.6)))
+    assert felt and felt <= set(HEAD)
+    one = bench()
+    one.robot.press(["Head/Touch/Front", "RHand/Touch/Back"])
+    assert one.run(0.2).touched == {"Head/Touch/Front", "RHand/Touch/Back"}
+    for pressed in ({CHEST_BUTTON}, set()):
+        one.robot.press(pressed)
+        assert one.simulation.tick().touched == pressed
+
+
+def ray_at(one, name):
+    """From a place outside the robot that looks at a sensor, nearly straight."""
+    at = next(place for place in one.model.touch if place.name == name)
+    torso = transform(quaternion_matrix(one.now.torso.orientation), one.now.torso.position)
+    link = torso @ link_transforms(one.model, one.now.positions)[at.parent_link]
+    eye = (link @ [*(at.position + rpy_matrix(at.rpy) @ (0.7, 0.1, 0.2)), 1.0])[:3]
+    direction = (link @ [*at.position, 1.0])[:3] - eye
+    return tuple(eye), tuple(direction / np.linalg.norm(direction))
+
+
+def test_pointing_at_a_sensor_touches_it_until_the_button_is_released(bench, world_file):
+    one = bench("StandInit")
+    for name in ALL:
+        if name in ("LHand/Touch/Left", "RHand/Touch/Right"):
+            continue  # legs hide the inner sides of the hands
+        for aside in (None, ((1.2, -0.7, 0.6), (0.0, 1.0, 0.0))):
+            one.robot.point_at(ray_at(one, name))
+            assert one.simulation.tick().touched == {name}
+            one.robot.point_at(aside)
+            assert one.simulation.tick().touched == frozenset()
+    one.robot.press([HEAD[2]])
+    one.robot.point_at(ray_at(one, CHEST_BUTTON))
+    assert one.simulation.tick().touched == {HEAD[2], CHEST_BUTTON}, "fingers stay when somebody points"
+    one = bench(world=world_file("{name: wall, box: [0.02, 2, 2], position: [0.4, 0, 1]}"))
+    one.robot.point_at(ray_at(one, CHEST_BUTTON))
+    assert one.simulation.tick().touched == frozenset(), "what hides a sensor is pointed at instead"
+
+
+# --- hands
+
+
+def touch(one, sensors, duration, limit=3.0):
+    """Touch, and the snapshots until the hand has gone."""
+    task, seen = one.simulation.hands.touch(sensors, duration), []
+    while not task.finished and len(seen) < limit * 120:
+        seen.append(one.simulation.tick())
+    assert task.result(0) is None and not task.killed
+    return seen
+
+
+@pytest.mark.parametrize("posture, stiffness", [("Stand", 0.0), ("Crouch", 1.0)])
+def test_each_sensor_feels_a_hand_and_the_robot_keeps_still(bench, posture, stiffness):
+    one = bench(posture, stiffness)
+    start = one.run(0.3)
+    for name in ALL:
+        seen = touch(one, [name], 0.3)
+        felt = [snapshot.time for snapshot in seen if name in snapshot.touched]
+        assert (felt[0] - seen[0].time, felt[-1] - felt[0]) == pytest.approx((COME_TIME, 0.3), abs=0.05), name
+        # A finger between two sensors of one part may touch both.
+        parts = {other.rsplit("/", 1)[0] for snapshot in seen for other in snapshot.touched}
+        assert parts == {name.rsplit("/", 1)[0]}, name
+        links = [(one.robot.link_name(c.link), c.force) for snapshot in seen for c in snapshot.contacts]
+        assert max((force for link, force in links if "ankle" not in link), default=0.0) < 8.0, name
+    for snapshot in (start, one.now):
+        assert math.hypot(*snapshot.imu.angles[:2]) == pytest.approx(math.hypot(*start.imu.angles[:2]), abs=0.02)
+    assert math.dist(start.torso.position, one.now.torso.position) < 0.005
+    assert "hand" not in one.now.objects and one.now.placed == ()
+
+
+@pytest.mark.parametrize("sensors, gesture", [(HEAD, "CaressFtoR"), (HEAD[::-1], "CaressRtoF")])
+def test_a_stroke_over_the_head_is_a_caress_the_same_in_every_run(bench, sensors, gesture):
+    for duration in (0.3, 1.2):
+        ends = []
+        for _ in range(2):
+            one, recogniser, told = bench(), GestureRecogniser(GestureBook(), Times()), []
+            one.run(0.2)
+            for snapshot in [*touch(one, sensors, duration), *one.watch(0.3)]:
+                pattern = "".join("1" if sensor in snapshot.touched else "0" for sensor in HEAD)
+                told += filter(None, [recogniser.feed(pattern, snapshot.time).gesture])
+            assert told == [gesture]
+            ends.append((one.now.positions, one.now.torso))
+        assert ends[0] == ends[1]
+
+
+def test_hands_stay_until_they_are_released_are_seen_and_go_with_a_robot_that_moves(bench, world_file):
+    one = bench()
+    task = one.simulation.hands.touch(["MiddleTactilTouched"], 0.0)
+    one.simulation.tick()
+    (hand,) = one.now.placed
+    assert hand.name == "hand" and "hand" in one.simulation.render_state(one.now).objects
+    far = one.now.objects["hand"].position[2]
+    near = one.run(0.5).objects["hand"].position[2]
+    assert far - near == pytest.approx(AWAY, abs=0.03) and task.finished
+    one.aim(0.8, HeadYaw=0.7, HeadPitch=0.2)
+    felt = [HEAD[1] in snapshot.touched for snapshot in one.watch(1.5)]
+    assert sum(felt) > 0.98 * len(felt)
+    with pytest.raises(NotAllowed, match="a hand touches Head/Touch/Middle already: release it first"):
+        one.simulation.hands.touch(HEAD, 1.0)
+    for sensor in (HEAD[0], CHEST_BUTTON):
+        one.simulation.hands.touch([sensor], 0.0)
+    assert one.run(0.6).touched == {HEAD[0], HEAD[1], CHEST_BUTTON}
+    assert set(one.now.objects) == {"hand", "hand_2", "hand_3"}
+    one.simulation.hands.release([HEAD[1]])
+    assert one.run(LEAVE_TIME + 0.02).touched == {HEAD[0], CHEST_BUTTON}
+    one.simulation.hands.release()
+    assert one.run(0.3).touched == frozenset() and one.now.placed == ()
+    shelf = bench(world=world_file("{name: box, box: [0.2, 0.2, 0.03], position: [0.35, 0, 0.42]}"))
+    assert any(CHEST_BUTTON in snapshot.touched for snapshot in touch(shelf, [CHEST_BUTTON], 0.2))
+
+
+def test_a_hand_that_is_not_felt_says_so(bench):
+    one = bench()
+    one.robot.faults.break_device(HEAD[0])
+    task = one.simulation.hands.touch([HEAD[0]], 0.2)
+    one.run(COME_TIME + PATIENCE + 0.1)
+    with pytest.raises(SimulationError, match="the hand is not felt at Head/Touch/Front"):
+        task.result(0)
+    assert one.run(LEAVE_TIME + 0.1).placed == ()
+
+
+@pytest.mark.parametrize("end", ["kill", "reset", "remove"])
+def test_a_touch_that_is_killed_reset_or_removed_is_over_and_another_may_come(bench, end):
+    one = bench()
+    task = one.simulation.hands.touch([HEAD[0]], 5.0)
+    assert HEAD[0] in one.run(0.5).touched
+    {"kill": task.kill, "reset": one.simulation.reset, "remove": lambda: one.simulation.things.remove("hand")}[end]()
+    assert not one.run(0.3).touched and one.now.placed == () and task.killed
+    one.simulation.hands.release()
+    assert touch(one, [HEAD[0]], 0.1)
+
+
+@pytest.mark.parametrize(
+    "sensors, duration, error, text",
+    [
+        (["Head/Touch/Fron"], 1.0, UnknownName, "did you mean 'Head/Touch/Front'"),
+        ([], 1.0, BadValue, "number of sensors is 0, allowed is 1 to 8"),
+        ([HEAD[0], CHEST_BUTTON], 1.0, BadValue, "sensors of one part of the robot"),
+        (HEAD, 0.0, BadValue, "duration is 0.0, allowed is above 0 for a stroke"),
+        ([HEAD[0]], -1.0, BadValue, "duration is -1.0"),
+        ([HEAD[0]], math.nan, BadValue, "duration is nan"),
+    ],
+)
+def test_what_no_hand_can_do_is_refused(bench, sensors, duration, error, text):
+    one = bench()
+    with pytest.raises(error, match=text):
+        one.simulation.hands.touch(sensors, duration)
+    assert one.simulation.tick().placed == ()
