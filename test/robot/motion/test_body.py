@@ -191,7 +191,11 @@ def test_breath_whole_body_and_collisions(stiff_robot, motion, angle):
     )  # fmt: skip
     assert dict(json.loads(pair) for pair in result.results[1].values) == {"Bpm": 20.0, "Amplitude": pytest.approx(0.3)}
     assert result.results[2].values == ["none"]
-    motion.succeed(f("wbEnable", enable=True), f("wbFootState", texts=["Fixed"], str_param="Legs"))
+    motion.succeed(
+        f("goToPosture", str_param="StandInit"),
+        f("wbEnable", enable=True),
+        f("wbFootState", texts=["Fixed"], str_param="Legs"),
+    )
     told = answers(
         motion.succeed(
             f("wbGoToBalance", str_param="LLeg", duration=3.0),

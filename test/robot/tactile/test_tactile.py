@@ -1,0 +1,359 @@
+"""Goals of NaoTactile: what the robot feels, waiting for it, and behaviours that a touch starts."""
+
+from __future__ import annotations
+
+import math
+import threading
+
+import pytest
+from sensor_msgs.msg import BatteryState
+
+from nao_library_actions.msg import NaoTactileGoal
+from nao_library_modules.tactile import NaoTactile
+from nao_library_msgs.msg import TactileFunction
+from naoqi.errors import NaoError
+
+FRONT, MIDDLE, REAR = (f"Head/Touch/{place}" for place in ("Front", "Middle", "Rear"))
+CHEST, LEFT_BUMPER, HAND = "ChestBoard/Button", "LFoot/Bumper/Left", "RHand/Touch/Back"
+WALL = "{name: wall, box: [0.1, 2.0, 2.0], position: [%g, 0.0, 1.0]}"
+HELLO = TactileFunction(function="onTouch", sensors=["head"], behavior="hello", parameters=["text=Hi"])
+SLACK = 0.3
+"""Simulated time that the way of an event takes on a busy computer, s."""
+
+
+def f(function, **fields):
+    return TactileFunction(function=function, **fields)
+
+
+class Runner:
+    """Runs behaviours as long as the test wants."""
+
+    def __init__(self):
+        self.runs, self.ends = [], []
+        self.broken = self.closed = False
+        self.started = threading.Semaphore(0)
+
+    def run(self, behavior, parameters, done):
+        self.started.release()
+        if self.broken:
+            raise NaoError("there is no server")
+        self.runs.append((behavior, list(parameters)))
+        self.ends.append(done)
+
+    def close(self):
+        self.closed = True
+
+
+@pytest.fixture
+def runner():
+    return Runner()
+
+
+@pytest.fixture
+def tactile(goals_to, runner):
+    return goals_to(NaoTactile, NaoTactileGoal, runner=runner)
+
+
+@pytest.fixture
+def press(robot):
+    def press(*sensors, duration=0.1):
+        """Press these sensors and no others for a while."""
+        robot.NaoSimulation.press(list(sensors))
+        robot.advance(duration)
+
+    return press
+
+
+@pytest.fixture
+def tap(press):
+    def tap(sensor):
+        press(sensor)
+        press()
+
+    return tap
+
+
+@pytest.fixture
+def idle(robot):
+    """The sonars measure for nobody."""
+    return lambda: robot.ALSonar.getSubscribersInfo() == []
+
+
+# Reading
+
+
+def test_what_is_touched_is_read(tactile, press):
+    press(REAR, "LFoot/Bumper/Right", HAND)
+    result = tactile.succeed(
+        f("getTouched"), f("getBumpers"), f("getTouched", sensors=["head"]), f("getTouched", sensors=["chest"])
+    )
+    assert [each.values for each in result.results] == [
+        ["rear head", "right hand back", "left bumper"], ["left bumper"], ["rear head"], [],
+    ]  # fmt: skip
+    assert result.touched == result.memList
+
+
+def test_sonars_measure_for_a_reading_only_and_silence_is_infinitely_far(robot, tactile, idle):
+    result = tactile.succeed(f("getSonar"))
+    assert (result.sonar_names, list(result.sonar)) == (["left", "right"], [math.inf, math.inf])
+    assert idle()
+    robot.NaoSimulation.placeObject(WALL % 0.7)
+    result = tactile.succeed(f("getSonar", sensors=["right"]))
+    assert result.sonar_names == ["right"] and 0.45 < result.sonar[0] < 0.75 and idle()
+    robot.NaoSimulation.breakDevice("US/Right")
+    left, right = tactile.succeed(f("getSonar")).sonar
+    assert math.isnan(right) and 0.45 < left < 0.75, "a sonar that failed is not taken for silence"
+
+
+def test_sonars_can_be_left_on_and_are_let_go_at_the_end(robot, tactile, idle):
+    robot.NaoSimulation.placeObject(WALL % 0.7)
+    result = tactile.succeed(f("setSonarEnabled", enable=True), f("getSonar"))
+    assert all(0.45 < metres < 0.75 for metres in result.sonar), "what they have measured since"
+    assert len(robot.ALSonar.getSubscribersInfo()) == 1
+    tactile.succeed(f("setSonarEnabled", enable=False, revert=True), f("getSonar"))
+    assert len(robot.ALSonar.getSubscribersInfo()) == 1
+    tactile.succeed(f("setSonarEnabled", enable=False))
+    assert idle()
+    tactile.succeed(f("setSonarEnabled", enable=True))
+    tactile.module.shut_down()
+    assert idle()
+
+
+def test_weights_of_the_feet_have_names(robot, tactile):
+    robot.advance(0.5)
+    result = tactile.succeed(f("getFsr"))
+    corners = [f"left foot {corner}" for corner in ("front left", "front right", "rear left", "rear right")]
+    assert result.fsr_names[:5] == [*corners, "left foot"] and len(result.fsr_names) == 10
+    assert sum(result.fsr[:4]) == pytest.approx(result.fsr[4], abs=0.05)
+    assert result.fsr[4] + result.fsr[9] == pytest.approx(5.4, abs=0.5)
+    assert tactile.succeed(f("getFsr", sensors=["right foot"])).fsr_names == result.fsr_names[5:]
+
+
+def test_the_battery_is_a_message(robot, tactile):
+    for charge, plugged, status in (
+        (0.8, False, BatteryState.POWER_SUPPLY_STATUS_DISCHARGING),
+        (0.5, True, BatteryState.POWER_SUPPLY_STATUS_CHARGING),
+        (1.0, True, BatteryState.POWER_SUPPLY_STATUS_FULL),
+    ):
+        robot.NaoSimulation.setBatteryCharge(charge)
+        robot.NaoSimulation.plugCharger(plugged)
+        robot.advance(1.0)
+        result = tactile.succeed(f("getBattery"))
+        (battery,) = result.battery
+        assert battery.percentage == pytest.approx(charge, abs=0.01) and battery.present
+        assert battery.power_supply_status == status, charge
+        assert 15.0 < battery.voltage < 30.0 and (status == 3 or (battery.current > 0.0) is plugged)
+        assert float(result.memList[0]) == pytest.approx(battery.percentage)
+
+
+def test_temperatures_of_joints_chains_and_computers(robot, tactile):
+    robot.NaoSimulation.setTemperature("HeadPitch", 86.0)
+    robot.advance(0.1)
+    result = tactile.succeed(f("getTemperatures", sensors=["Head", "battery"]))
+    assert result.devices == ["HeadYaw", "HeadPitch", "battery"]
+    assert result.temperatures[1] == pytest.approx(86.0, abs=0.5) and 15.0 < result.temperatures[2] < 60.0
+    assert result.heat[0] == result.heat[2] == 0 < result.heat[1]
+    everything = tactile.succeed(f("getTemperatures"))
+    assert len(everything.devices) == 28 and everything.devices[-2:] == ["head", "battery"]
+    assert tactile.succeed(f("getTemperatures", sensors=["head"])).devices == ["head"]
+
+
+# Waiting
+
+
+def test_a_wait_ends_with_its_touch_and_with_no_other(robot, tactile, tap, press):
+    goal = tactile.send(f("waitForTouch", sensors=["head", "chest"], timeout=60.0))
+    robot.advance(0.3)
+    tap(LEFT_BUMPER)
+    assert goal.active
+    press(MIDDLE)
+    goal.finish()
+    assert goal.result.touched == goal.result.memList == ["middle head"]
+    assert (goal.feedback[-1].status, goal.feedback[-1].touched) == ("waiting", ["middle head"])
+
+
+def test_releases_holds_and_counts(robot, tactile, press, tap):
+    def wait(*taps, **fields):
+        goal = tactile.send(f("waitForTouch", **{"timeout": 4.0, **fields}))
+        robot.advance(0.3)
+        for sensors, duration in taps:
+            press(*sensors, duration=duration)
+        return goal.finish().result
+
+    press(CHEST)
+    assert wait(([], 0.1), sensors=["chest"], touch="release").touched == ["chest"]
+    held = wait(([HAND], 0.1), sensors=["right hand"], touch="hold", duration=1.5)
+    assert held.touched == ["right hand back"] and held.results[0].elapsed.to_sec() == pytest.approx(1.8, abs=SLACK)
+    press()
+    short = wait(([HAND], 0.5), ([], 0.1), touch="hold", duration=1.5)
+    assert short.touched == [] and short.results[0].elapsed.to_sec() == pytest.approx(4.0, abs=SLACK)
+    three = [step for _ in range(3) for step in (([FRONT], 0.1), ([], 0.1))]
+    assert wait(*three, touch="count", count=3).touched == ["front head"]
+
+
+def test_clicks_of_the_chest_button(robot, tactile, tap):
+    goal = tactile.send(f("waitForChestButton", count=2, timeout=10.0))
+    robot.advance(0.3)
+    tap(CHEST)
+    tap(CHEST)
+    assert goal.finish().result.touched == ["chest"]
+    goal = tactile.send(f("waitForChestButton", timeout=1.5))
+    robot.advance(0.2)
+    tap(CHEST)
+    tap(CHEST)
+    assert goal.finish().result.touched == [], "two clicks are not one"
+
+
+def test_an_obstacle_comes_near(robot, tactile, idle):
+    robot.NaoSimulation.placeObject(WALL % 1.5)
+    goal = tactile.send(f("waitForObstacle", distance=0.8, timeout=20.0))
+    robot.advance(1.5)
+    assert goal.active and len(robot.ALSonar.getSubscribersInfo()) == 1
+    robot.NaoSimulation.moveObject("wall", [0.7, 0.0, 1.0], [0.0, 0.0, 0.0], 0.0)
+    result = goal.finish().result
+    assert set(result.sonar_names) == set(result.memList) == {"left", "right"} and idle()
+    assert all(0.45 < metres < 0.75 for metres in result.sonar)
+    assert goal.feedback[-1].sonar == result.sonar and min(goal.feedback[1].sonar) > 0.8
+
+
+def test_a_fall(robot, tactile):
+    goal = tactile.send(f("waitForFall", timeout=60.0))
+    robot.advance(0.2)
+    robot.ALMemory.raiseEvent("robotHasFallen", True)
+    assert goal.finish().result.fell is True
+    assert goal.result.memList == ["True"]
+
+
+def test_nothing_in_time_is_an_answer_and_a_cancel_leaves_nothing(robot, tactile, idle):
+    began = robot.now.time
+    result = tactile.succeed(
+        f("waitForTouch", timeout=0.5), f("waitForFall", timeout=0.5), f("waitForObstacle", timeout=0.5)
+    )
+    assert (result.touched, result.fell, result.memList) == ([], False, ["False"])
+    assert robot.now.time - began == pytest.approx(1.5, abs=0.6) and idle()
+    for function in ("waitForTouch", "waitForChestButton", "waitForObstacle", "waitForFall"):
+        goal = tactile.send(f(function, timeout=100.0))
+        robot.advance(0.3)
+        assert goal.cancel().state == "preempted" and idle()
+
+
+REFUSED = [
+    (f("waitForTouch", sensors=["nose"]), "nothing that can be touched"),
+    (f("waitForTouch", touch="stroke"), "press, release, hold, count"),
+    (f("waitForTouch", touch="count", count=21), "0..20"),
+    (f("waitForTouch", timeout=-1.0), "0..3600 s"),
+    (f("waitForTouch", timeout=math.nan), "0..3600 s"),
+    (f("waitForTouch", touch="hold", duration=-1.0), "field duration"),
+    (f("waitForChestButton", count=4), "0..3"),
+    (f("waitForObstacle", distance=3.0), "0.1..2.5 m"),
+    (f("waitForFall", timeout=3601.0), "0..3600 s"),
+    (f("getSonar", sensors=["rear"]), "left, right"),
+    (f("getBumpers", sensors=["chest"]), "chest is no bumper"),
+    (f("getFsr", sensors=["left hand"]), "left foot, right foot"),
+    (f("getTemperatures", sensors=["Heed"]), "did you mean 'Head'"),
+    (f("onTouch"), "the name of a stored behaviour"),
+    (f("onTouch", behavior="hello", parameters=["text"]), "name=value"),
+    (f("onTouch", behavior="hello", cooldown=-1.0), "0..3600 s"),
+    (f("removeOnTouch", str_param="x"), "no link between a touch and a behaviour"),
+]
+
+
+def test_what_makes_no_sense_is_refused_before_anything_begins(tactile, idle):
+    for function, text in REFUSED:
+        refusal = tactile.refused(f("setSonarEnabled", enable=True), function)
+        assert refusal.startswith("function 2") and text in refusal
+    assert idle()
+
+
+# Behaviours that a touch starts
+
+
+@pytest.fixture
+def started(runner):
+    """Waits for the next start."""
+    return lambda: runner.started.acquire(timeout=15.0) or pytest.fail("nothing was started")
+
+
+def test_a_touch_starts_its_behaviour_each_time(tactile, tap, runner, started):
+    result = tactile.succeed(HELLO)
+    assert result.memList == ["hello"]
+    (binding,) = result.bindings
+    assert binding.sensors == ["front head", "middle head", "rear head"]
+    assert (binding.touch, binding.behavior, binding.parameters) == ("press", "hello", ["text=Hi"])
+    for count in (1, 2):
+        tap(FRONT)
+        started()
+        (binding,) = tactile.succeed(f("listOnTouch")).bindings
+        assert (binding.runs, binding.running) == (count, True)
+        runner.ends[-1]("succeeded", "")
+    assert runner.runs == [("hello", ["text=Hi"])] * 2
+    (binding,) = tactile.succeed(f("listOnTouch")).bindings
+    assert (binding.runs, binding.running, binding.last) == (2, False, "succeeded")
+
+
+def test_touches_while_it_runs_and_cools_down_do_not_count(robot, tactile, tap, runner, started):
+    tactile.succeed(
+        f("onTouch", sensors=["chest"], behavior="bow", cooldown=5.0), f("onTouch", sensors=["head"], behavior="nod")
+    )
+    tap(CHEST)
+    started()
+    tap(CHEST)  # it still runs
+    runner.ends[0]("succeeded", "")
+    tap(CHEST)  # it has just ended
+    tap(FRONT)  # touches are followed in their order
+    started()
+    assert [name for name, _ in runner.runs] == ["bow", "nod"]
+    robot.advance(5.0)
+    tap(CHEST)
+    started()
+    assert runner.runs[-1][0] == "bow"
+
+
+def test_a_binding_is_replaced_and_removed(tactile, tap, runner, started):
+    tactile.succeed(HELLO, f("onTouch", str_param="left", sensors=["left bumper"], behavior="nod"))
+    tactile.succeed(f("onTouch", str_param="hello", sensors=["rear head"], behavior="bow"))
+    tap(FRONT)
+    tap(REAR)
+    started()
+    assert runner.runs == [("bow", [])]
+    assert tactile.succeed(f("removeOnTouch", str_param="hello"), f("listOnTouch")).memList == ["left"]
+    tap(REAR)
+    tap(LEFT_BUMPER)
+    started()
+    assert runner.runs[1:] == [("nod", [])]
+    tactile.succeed(HELLO, f("removeOnTouch", str_param="hello"), f("removeOnTouch"))
+    assert tactile.succeed(f("listOnTouch")).memList == []
+    assert "removeOnTouch" in tactile.module.function_table
+    assert tactile.module.argument_choices("removeOnTouch", "str_param") == []
+
+
+def test_a_hold_starts_when_it_is_long_enough(robot, tactile, press, runner, started):
+    tactile.succeed(f("onTouch", sensors=["right hand"], touch="hold", duration=0.5, behavior="nod"))
+    press(HAND, duration=0.3)
+    press()
+    press(HAND, duration=0.3)
+    assert runner.runs == []
+    robot.server.runner.resume()
+    started()
+    robot.server.runner.pause()
+    assert runner.runs == [("nod", [])]
+
+
+def test_a_behaviour_that_cannot_run_is_told_and_can_be_tried_again(tactile, tap, runner, started):
+    runner.broken = True
+    tactile.succeed(HELLO)
+    tap(FRONT)
+    started()
+    runner.broken = False
+    tap(FRONT)
+    started()
+    (binding,) = tactile.succeed(f("listOnTouch")).bindings
+    assert (runner.runs, binding.runs) == ([("hello", ["text=Hi"])], 2)
+    assert (binding.last, binding.text) == ("rejected", "there is no server")
+
+
+def test_the_end_of_the_server_ends_everything(tactile, tap, runner):
+    tactile.succeed(HELLO)
+    tactile.module.shut_down()
+    tap(FRONT)
+    assert runner.closed and runner.runs == []
