@@ -1,0 +1,479 @@
+"""Files of behaviours: what they may hold, what is said about wrong ones, how they are kept, recorded and damaged."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from dataclasses import dataclass
+from pathlib import Path
+
+import genpy
+import pytest
+import roslib.message
+from actionlib_msgs.msg import GoalStatus
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from nao_library_actions.msg import NaoLedGoal, NaoMotionGoal
+from nao_library_modules.behaviors import (
+    BehaviorError,
+    BehaviorStore,
+    NoSuchBehavior,
+    bind,
+    check,
+    from_goal,
+    problems_of,
+    read,
+)
+from nao_library_modules.behaviors.expressions import BadExpression, escaped, names_in, substitute
+from nao_library_modules.behaviors.messages import fields_of, message_of
+from nao_library_modules.behaviors.model import (
+    Barrier,
+    Box,
+    Functions,
+    Parallel,
+    Repeat,
+    Sequence,
+    Step,
+    Timeline,
+    Wait,
+)
+from nao_library_modules.behaviors.program import Goal, walk
+from nao_library_modules.behaviors.reader import require_name
+from nao_library_modules.behaviors.recording import Recording
+from nao_library_modules.behaviors.servers import NAMES, server_of
+from nao_library_modules.behaviors.step_reader import COMMON, FURTHER, KINDS
+from nao_library_modules.behaviors.times import At
+from nao_library_modules.behaviors.writer import text_of
+from nao_library_modules.behaviors.yaml_text import dump, load
+from nao_library_modules.errors import BadGoal
+from nao_library_modules.paths import config_file
+from nao_library_msgs.msg import LedFunction, MotionFunction
+
+GUIDE = (Path(__file__).parents[3] / "docs" / "behaviors.md").read_text(encoding="utf-8")
+SHOWN, TIMELINE = re.findall(r"```yaml\n(.*?)```", GUIDE, re.DOTALL)
+EVERYTHING = """
+help: Waves and
+  says hello.
+tags: [greeting]
+parameters:
+  text: {default: "Hello!", help: what it says}
+  count: {default: 2, help: how often, min: 1, max: 5, unit: times}
+  colour: {default: green, help: of the eyes, choices: [green, red]}
+do:
+  - NaoMotion.goToPosture: {str_param: Stand}
+  - parallel:
+      - nao_audio_out.say: {str_param: "${text}"}
+      - [{NaoLights.setColor: {lights: [FaceLeds], str_param: "${colour}"}}, {wait: 0.5}]
+  - timeline:
+      - {NaoLights.on: {lights: [FaceLeds]}, at: 0.5, label: eyes}
+      - {wait: 1, at: eyes.end + 0.5}
+      - {wait: 1, at: "eyes + ${count / 2}"}
+      - {barrier: all}
+      - {wait: 0, at: all}
+  - behavior: bow
+    parameters: {depth: 0.3}
+  - chain: {NaoLights: [{function: on, lights: [A]}, {function: off, lights: [A]}]}
+  - {repeat: "${count}", as: round, do: [{wait: "${round}"}]}
+  - {label: x, on_error: retry 2 skip, for: 3.0, NaoVision.lookFor: {str_param: ball}}
+  - {do: [{wait: 1}], on_error: skip}
+"""
+WAITS, LONGER = "help: Waits.\ndo: [{wait: 1}]\n", "help: Waits longer.\ndo: [{wait: 2}]\n"
+
+
+def told_of(text):
+    with pytest.raises(BehaviorError) as caught:
+        read(text, "test")
+    return caught.value.problems
+
+
+# --- read -------------------------------------------------------------------------------------------------------------
+
+
+def test_everything_that_a_file_may_hold_is_read():
+    behavior = read(EVERYTHING, "hello")
+    assert (behavior.name, behavior.help, behavior.tags) == ("hello", "Waves and says hello.", ("greeting",))
+    assert [each.kind for each in behavior.parameters.values()] == ["text", "number", "text"]
+    steps = behavior.body.steps
+    kinds = [Functions, Parallel, Timeline, Box, Functions, Repeat, Functions, Sequence]
+    assert [type(step) for step in steps] == kinds
+    assert steps[0].functions == ({"function": "goToPosture", "str_param": "Stand"},)
+    assert isinstance(steps[1].steps[1], Sequence) and isinstance(steps[1].steps[1].steps[1], Wait)
+    assert [each.at for each in steps[2].steps[:3]] == [At(0.5), At(0.5, "eyes", True), At("${count / 2}", "eyes")]
+    assert isinstance(steps[2].steps[3], Barrier)
+    assert (steps[3].name, steps[3].arguments) == ("bow", {"depth": 0.3})
+    assert [each["function"] for each in steps[4].functions] == ["on", "off"]
+    assert (steps[5].variable, steps[6].label, steps[6].limit) == ("round", "x", 3.0)
+    assert (steps[6].policy.retries, steps[6].policy.skip) == (2, True)
+    with pytest.raises(TypeError, match="abstract.*what"):
+        dataclass(frozen=True)(type("Jump", (Step,), {}))(("do", 0))
+
+
+HEADS = [
+    ("", "no mapping"),
+    ("- a", "no mapping"),
+    ("help: a\nhelp: b", "'help' comes twice"),
+    ("help: [a", "no YAML"),
+    ("help: x\nsteps: []", "unknown key 'steps'"),
+    ("do: [{wait: 1}]", "help: a line is needed"),
+    ("help: x", "do: a list of steps"),
+    ("help: x\ndo: []", "at least one"),
+    ("help: x\ntags: a\ndo: [{wait: 1}]", "tags"),
+]
+PARAMETERS = [
+    ("a: 1", "{default: ..., help: ...}"),
+    ("a: {default: 1}", "field help"),
+    ("a: {default: 1, help: x, minn: 1}", "did you mean 'min'"),
+    ("a: {default: hi, help: x, min: 1}", "field min: it is for numbers, and the default 'hi' makes this parameter a "
+     "text: a text may have choices; for min, let the default be a number"),
+    ("a: {default: true, help: x, max: 1}", "makes this parameter a truth"),
+    ("a: {default: [1], help: x, max: 1}", "makes this parameter a list"),
+    ("a: {default: hi, help: x, unit: s}", "let the default be a number, or"),
+    ("a: {default: 1, help: x, min: low}", "'low' is not allowed: a number"),
+    ("a: {default: 1, help: x, unit: 3}", "a text, as m, rad or s"),
+    ("a: {default: 9, help: x, max: 5}", "field a: 9 is not allowed"),
+    ("a: {default: a, help: x, max: 5}", "field max"),
+    ("a: {default: {}, help: x}", "a text, a number"),
+    ("1a: {default: 1, help: x}", "no digit in front"),
+    ("a: {default: b, help: x, choices: [c]}", "'b' is not allowed"),
+]  # fmt: skip
+STEPS = [
+    ("{wait: -1}", "0 or more"),
+    ("{wait: .nan}", "0 or more"),
+    ("{wait: true}", "0 or more"),
+    ("{wait: '${n}'}", "no parameter 'n'"),
+    ("{wait: 1, at: 2}", "for entries of a timeline"),
+    ("{wait: 1, on_eror: skip}", "did you mean 'on_error'"),
+    ("{wait: 1, on_error: maybe}", "field on_error"),
+    ("{wait: 1, NaoLights.on: {}}", "several things at once"),
+    ("{label: x}", "does not say what to do"),
+    ("{paralel: []}", "did you mean 'parallel'"),
+    ("4", "a mapping with one of"),
+    ("[]", "the sequence is empty"),
+    ("{parallel: []}", "at least one"),
+    ("{A.b.c: {}}", "SERVER.FUNCTION"),
+    ("{NaoLights.on: [1]}", "{FIELD: VALUE, ...}"),
+    ("{NaoLights.on: {function: off}}", "the key names it already"),
+    ("{chain: {A: [], B: []}}", "field chain"),
+    ("{chain: {A: [{lights: []}]}}", "function 1 has no name"),
+    ("{behavior: 3}", "name of a behavior"),
+    ("{repeat: 3}", "field do"),
+    ("{repeat: 2, as: i, do: [{repeat: 2, as: i, do: [{wait: 1}]}]}", "there is a 'i' already"),
+    ("{repeat: 2, as: i, do: [{wait: 1}]}, {wait: '${i}'}", "no parameter 'i'"),
+    ("{repeat: 2, as: [], do: [{wait: 1}]}", "field as"),
+    ("{repeat: 2, as: 0, do: [{wait: 1}]}", "field as"),
+    ("{repeat: 2, as: null, do: [{wait: 1}]}", "field as"),
+    ("{wait: 1, label: a}, {wait: 1, label: a}", "the label 'a' is taken by step 1"),
+    ("{timeline: [{wait: 1, at: b}]}", "no label 'b'"),
+    ("{timeline: [{wait: 1, at: a - 1, label: a}]}", "field at"),
+    ("{timeline: [{wait: 1, at: a, label: a}]}", "wait for each other"),
+    ("{timeline: [{barrier: a}, {wait: 1}]}", "nothing is above"),
+    ("{timeline: [{wait: 1, at: b}, {barrier: b}]}", "wait for each other"),
+    ("{barrier: b}", "stands on a timeline"),
+    ("{parallel: [[{barrier: b}], [{wait: 1}]]}", "only one branch"),
+    ("{parallel: [[{repeat: 2, do: [{barrier: b}]}], [{barrier: b}]]}", "in no repetition"),
+    ("{parallel: [[{barrier: a}, {barrier: b}], [{barrier: b}, {barrier: a}]]}", "in circles"),
+]
+WRONG = [
+    *HEADS,
+    *((f"help: x\nparameters: {{{each}}}\ndo: [{{wait: 1}}]", told) for each, told in PARAMETERS),
+    *((f"help: x\ndo: [{each}]", told) for each, told in STEPS),
+]
+
+
+@pytest.mark.parametrize("text, told", WRONG)
+def test_what_is_wrong_is_told(text, told):
+    assert told in "; ".join(map(str, told_of(text)))
+
+
+def test_all_that_is_wrong_is_told_with_path_and_line():
+    found = told_of("help: x\ndo:\n  - {wait: -1}\n  - parallel:\n      - {wait: 1}\n      - {waitt: 2}\n")
+    assert [(each.where, each.line) for each in found] == [("step 1", 3), ("step 2.2", 6)]
+
+
+def test_a_few_lines_cannot_stand_for_endless_values():
+    doubled = [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]\n" for i in range(1, 9)]
+    assert "values" in str(told_of("a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n" + "".join(doubled))[0])
+    assert "levels" in str(told_of("[" * 60 + "]" * 60)[0])
+
+
+# --- values and messages ----------------------------------------------------------------------------------------------
+
+MOMENTS = {"time": genpy.Time, "duration": genpy.Duration}
+VALUES = {"n": 3, "x": 0.5, "text": "hi", "flag": True, "names": ["a", "b"]}
+
+
+@pytest.mark.parametrize(
+    "value, expected",
+    [
+        ("${n}", 3), ("${flag}", True), ("${names}", ["a", "b"]), ("${n / 2}", 1.5), ("${-(n + 1) * x}", -2.0),
+        ("say ${text}, ${n} times, ${x}", "say hi, 3 times, 0.5"), ("${n * 1.0}x", "3x"), ("${flag}!", "true!"),
+        ("${names}!", "a, b!"), ("$${n} and ${n}", "${n} and 3"), ("$${n}", "${n}"), ("${n - 1}", 2), (4, 4),
+        ({"a": ["${x}", {"b": "${n}"}]}, {"a": [0.5, {"b": 3}]}),
+    ],
+)  # fmt: skip
+def test_values_take_the_place_of_expressions(value, expected):
+    result = substitute(value, VALUES)
+    assert result == expected and type(result) is type(expected)
+
+
+@pytest.mark.parametrize(
+    "text, told",
+    [
+        ("${m}", "there is no parameter 'm'"), ("${txt}", "did you mean 'text'"), ("${n", "its } is missing"),
+        ("${}", "cannot be read"), ("${n +}", "cannot be read"), ("${n ** 9999999}", "cannot be read"),
+        ("${n(3)}", "cannot be read"), ("${n.real}", "cannot be read"), ("${'a' * 9}", "cannot be read"),
+        ("${n / 0}", "divides by zero"), ("${1e308 * 1e308}", "too large"), ("${text + 1}", "'hi' is no number"),
+        ("${flag + 1}", "no number"), ("${" + "1+" * 150 + "1}", "characters"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_worked_out_is_told(text, told):
+    with pytest.raises(BadExpression, match=re.escape(told)):
+        substitute(text, VALUES)
+
+
+@settings(max_examples=50)
+@given(st.text("$${}nx \\", max_size=8))
+def test_escaped_values_stay_as_they_are(text):
+    assert substitute(escaped(text), VALUES) == text and substitute(escaped([{"a": text}]), VALUES) == [{"a": text}]
+    assert sorted(names_in({"a": ["${x + n}", "$${no}", 3], "b": "${text}"})) == ["n", "text", "x"]
+
+
+@pytest.mark.parametrize(
+    "fields, told",
+    [
+        ({"light": []}, "did you mean 'lights'"), ({"lights": "FaceLeds"}, "a list: [FaceLeds]"),
+        ({"lights": [["a"]]}, "lights[0]"), ({"str_param": True}, "is no text"), ({"str_param": None}, "a text"),
+        ({"i_values": ["1"]}, "i_values[0]"), ({"i_values": [float("nan")]}, "finite"),
+        ({"i_values": [10**400]}, "finite"), ({"revert": 1}, "true or false"), ({"angle": 1.5}, "a whole number"),
+        ({"angle": 2**31}, "-2147483648..2147483647"), ({"angle": True}, "a whole number"),
+        ({"time": 1e12}, "2147483648"), ({"time": "1"}, "a number"), ({3: 4}, "no field 3"),
+    ],
+)  # fmt: skip
+def test_fields_of_the_wrong_kind_are_refused(fields, told):
+    with pytest.raises(BadGoal, match=re.escape(told)):
+        message_of(LedFunction, fields)
+    with pytest.raises(BadGoal, match=r"trajectory\.points\[0\]\.position"):
+        message_of(MotionFunction, {"trajectory": {"points": [{"position": [1]}]}})
+
+
+def test_fields_become_what_they_are_in_the_message():
+    points = [{"positions": [1], "time_from_start": 0.7}]
+    fields = {"angles": [1, 0.5], "time": 1.3, "str_param": 4, "limp": True, "trajectory": {"points": points}}
+    message = message_of(MotionFunction, fields)
+    assert (message.angles, message.str_param, message.limp) == ([1.0, 0.5], "4", True)
+    assert message.time == genpy.Duration(1, 300000000)
+    assert message.trajectory.points[0].time_from_start == genpy.Duration(0, 700000000)
+
+
+def values_of(kind):
+    """A strategy for values of a field of this type."""
+    if kind.endswith("[]"):
+        return st.lists(values_of(kind[:-2]), max_size=2)
+    moments = st.tuples(st.integers(0, 99), st.integers(0, 10**9 - 1))
+    texts = ["", "a", "on", "${x}", "3", "1e3", "1:30", "010", "~", "2024-01-01", "ä\n#: '\"", " x "]
+    known = {"string": st.sampled_from(texts), "bool": st.booleans()}
+    known.update((name, moments.map(lambda each, kind=kind: kind(*each))) for name, kind in MOMENTS.items())
+    if kind in known:
+        return known[kind]
+    if re.fullmatch(r"float\d+|u?int\d+", kind):
+        return st.integers(0, 99) if "int" in kind else st.sampled_from([0.0, -1.25, 0.1, 1e-12, 1e22])
+    message = roslib.message.get_message_class(kind)
+    fields = {name: values_of(each) for name, each in zip(message.__slots__, message._slot_types)}
+    return st.fixed_dictionaries({}, optional=fields).map(lambda given: message(**given))
+
+
+@pytest.mark.parametrize("server", NAMES)
+def test_messages_come_back_through_a_file(server):
+    @settings(max_examples=12, suppress_health_check=list(HealthCheck))
+    @given(values_of(server_of(server).function._type))
+    def comes_back(message):
+        assert message_of(type(message), load(dump(fields_of(message)), "test") or {}) == message
+
+    comes_back()
+
+
+# --- kept -------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def store(tmp_path):
+    shipped = tmp_path / "shipped"
+    shipped.mkdir()
+    (shipped / "hello.yaml").write_text(WAITS)
+    return BehaviorStore(tmp_path / "own", shipped)
+
+
+def test_what_is_saved_is_there_and_replaced_only_when_that_is_said(store):
+    store.save("a", WAITS)
+    assert store.names() == ["a", "hello"] and (store.text("a"), store.load("a").help) == (WAITS, "Waits.")
+    with pytest.raises(BadGoal, match="there is a behavior 'a' already"):
+        store.save("a", LONGER)
+    assert store.text("a") == WAITS
+    store.save("a", LONGER, overwrite=True)
+    assert store.text("a") == LONGER and [path.name for path in store.folder.iterdir()] == ["a.yaml"]
+
+
+def test_those_of_the_library_stay_and_can_be_put_behind(store):
+    for change in (lambda: store.delete("hello"), lambda: store.rename("hello", "b")):
+        with pytest.raises(BadGoal, match="comes with the library"):
+            change()
+    store.save("hello", LONGER)
+    assert (store.text("hello"), store.shipped_text("hello"), store.names()) == (LONGER, WAITS, ["hello"])
+    store.delete("hello")
+    assert store.text("hello") == WAITS
+
+
+def test_names_change_and_users_of_a_box_are_known(store):
+    store.save("a", "help: x\ndo: [{parallel: [{wait: 1}, [{behavior: hello}]]}]")
+    store.save("b", "help: broken")
+    assert store.users_of("hello") == ["a"]
+    store.rename("a", "c")
+    assert store.names() == ["b", "c", "hello"]
+    with pytest.raises(BadGoal, match="field new_name"):
+        store.rename("c", "b")
+    store.rename("c", "b", overwrite=True)
+    assert store.users_of("hello") == ["b"] and store.names() == ["b", "hello"]
+    for ask in (store.text, store.load, store.delete, lambda name: store.rename(name, "x")):
+        with pytest.raises(NoSuchBehavior, match="did you mean 'hello'"):
+            ask("helloo")
+
+
+@pytest.mark.parametrize("name", ["", "../x", "a/b", ".hidden", "a b", "-a", "a.yaml", "ä", "a" * 101, "a\n", "a\0"])
+def test_names_stay_in_their_folder(store, name):
+    store.save("a", WAITS)
+    asks = [require_name, store.text, store.delete, store.of_user, lambda n: store.save(n, WAITS)]
+    for ask in [*asks, lambda n: store.rename("a", n)]:
+        with pytest.raises(BadGoal, match="no name for a behavior"):
+            ask(name)
+
+
+def test_broken_files_are_told_and_do_not_hide_the_others(store, tmp_path):
+    store.save("a", WAITS)
+    store.folder.joinpath("bad.yaml").write_bytes(b"\xff\xfe")
+    with pytest.raises(BehaviorError, match="cannot be read"):
+        store.load("bad")
+    assert store.names() == ["a", "bad", "hello"]
+    (tmp_path / "file").write_text("a file")
+    with pytest.raises(BadGoal, match="cannot be written"):
+        BehaviorStore(tmp_path / "file", tmp_path).save("a", WAITS)
+
+
+# --- recorded ---------------------------------------------------------------------------------------------------------
+
+RED = NaoLedGoal([LedFunction(function="setColor", lights=["FaceLeds"], str_param="${red}")])
+ODD = NaoLedGoal([LedFunction(function="no name")])
+MOVE = NaoMotionGoal(
+    [MotionFunction(function="setAngles", names=["HeadYaw"], angles=[0.1]), MotionFunction(function="stopMove")]
+)
+
+
+def goals_in(text):
+    return [each for each in walk(bind(read(text, "test"), {}, lambda name: None)) if isinstance(each, Goal)]
+
+
+def recorded(*goals, servers=NAMES, check=lambda step: None):
+    """A recording of goals: server, goal, when it was sent, how and when it ended, s."""
+    recording = Recording("x", servers)
+    for number, (server, goal, sent, *_) in enumerate(goals):
+        recording.sent(server, str(number), goal, sent)
+    for number, (_, _, _, *end) in sorted(enumerate(goals), key=lambda each: each[1][4:]):
+        if end:
+            recording.ended(str(number), *end)
+    return recording.timeline(check)
+
+
+@pytest.mark.parametrize("server, goal", [("NaoLights", RED), ("NaoMotion", MOVE), ("NaoLights", ODD)])
+def test_a_goal_becomes_a_behaviour_that_sends_it(server, goal):
+    (node,) = goals_in(from_goal(server, goal))
+    assert (node.server, node.goal) == (server, goal)
+    with pytest.raises(BadGoal, match="there is no server"):
+        from_goal("NaoSmell", RED)
+
+
+def test_recorded_goals_come_again_at_their_times_and_are_cut_short_again():
+    entries, left = recorded(("NaoMotion", MOVE, 101.5), ("NaoLights", RED, 100.25, GoalStatus.SUCCEEDED, 100.5))
+    assert left == [] and [entry["at"] for entry in entries] == [0.0, 1.25]
+    assert [node.goal for node in goals_in(text_of("x", [{"timeline": entries}]))] == [RED, MOVE]
+    entries, _ = recorded(
+        ("NaoLights", RED, 10.0, GoalStatus.PREEMPTED, 12.1),
+        ("NaoLights", RED, 12.0, GoalStatus.ABORTED, 13.0),
+        ("NaoMotion", MOVE, 12.0, GoalStatus.PREEMPTED, 12.5),
+    )
+    # The first was replaced by the second: it goes when that one comes, not when it was over.
+    assert [entry.get("for") for entry in entries] == [2.0, None, 0.5]
+    assert [entry.get("on_error") for entry in entries] == [None, "skip", None]
+
+
+def test_what_cannot_be_stored_is_left_out_and_other_servers_do_not_count():
+    def no_chains(step):
+        if "chain" in step:
+            raise BadGoal("function", "setAngles", "nothing")
+
+    entries, (left,) = recorded(("NaoLights", RED, 1.0), ("NaoMotion", MOVE, 1.5), check=no_chains)
+    assert len(entries) == 1 and "NaoMotion at 0.500 s" in left and "setAngles" in left
+    with pytest.raises(BadGoal, match="nothing was sent"):
+        recorded(("NaoLights", RED, 1.0), servers=["NaoMotion"])
+
+
+# --- shown, shipped, damaged ------------------------------------------------------------------------------------------
+
+
+def test_what_the_guide_shows_and_what_comes_with_the_library_can_be_run(tmp_path, tables):
+    store = BehaviorStore(tmp_path, config_file("behaviors"))
+    check(read(SHOWN, "shown"), store.load, {"tempo": 2.0, "colour": "red"}, tables)
+    text = "help: x\nparameters: {tempo: {default: 1.0, help: x}}\ndo:\n" + textwrap.indent(TIMELINE, "  ")
+    check(read(text, "shown"), store.load, None, tables)
+    names = store.names()
+    found = {name: problems_of(lambda name=name: store.load(name), store.load, tables) for name in names}
+    assert len(names) == 10 and found == {name: [] for name in names}
+
+
+@pytest.mark.parametrize("key", sorted({*COMMON, *KINDS, *(key for keys in FURTHER.values() for key in keys), "at"}))
+def test_every_key_is_explained(key):
+    assert re.search(rf"`{re.escape(key)}\b", GUIDE)
+
+
+STRANGE = [
+    "null", "~", "-1", "1e999", ".inf", ".nan", "9" * 400, "[]", "{}", "[[[[]]]]", "'", '"', "&a", "*a", "on", "\t",
+    "!!python/name:os", "!!binary aGk=", "2024-01-01", "${", "${}", "${count}", "${count / 0}", "? a", "<<: 3", "---",
+    "${" + "(" * 150 + "1" + ")" * 150 + "}", "${9" + "9" * 150 + " * 9" + "9" * 30 + "}", "...", "\x00", "\u202e",
+    "\ud800", "x" * 5000,
+]  # fmt: skip
+
+
+@st.composite
+def damaged(draw):
+    """A text with some of its parts cut out, doubled, moved or replaced."""
+    lines = EVERYTHING.splitlines()
+    for _ in range(draw(st.integers(1, 3))):
+        at, kind = (
+            draw(st.integers(0, len(lines) - 1)),
+            draw(st.sampled_from(["cut", "double", "word", "part", "value"])),
+        )
+        words, strange = lines[at].split(" "), draw(st.sampled_from(STRANGE))
+        if kind == "double":
+            lines.insert(draw(st.integers(0, len(lines))), lines[at])
+        elif kind == "word":
+            words[draw(st.integers(0, len(words) - 1))] = strange
+            lines[at] = " ".join(words)
+        elif kind == "part":
+            start = draw(st.integers(0, len(lines[at])))
+            lines[at] = lines[at][:start] + lines[at][start + draw(st.integers(1, 4)) :]
+        else:
+            key, colon, _ = lines[at].rpartition(": ")
+            lines[at] = "" if kind == "cut" else f"{key}{colon}{strange}"
+    return "\n".join(lines)
+
+
+def only_bow(name):
+    if name != "bow":
+        raise NoSuchBehavior(name, ["bow"])
+    return read("help: Bows.\nparameters: {depth: {default: 0.2, help: x}}\ndo: [{wait: '${depth}'}]", "bow")
+
+
+@settings(max_examples=100, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+@given(damaged())
+def test_what_is_wrong_with_damaged_files_is_told_and_never_more(tables, text):
+    found = problems_of(lambda: read(text, "test"), only_bow, tables)
+    assert all(isinstance(problem, str) and problem for problem in found)
