@@ -1,0 +1,326 @@
+"""Cameras on the robot: pictures while somebody looks, tuning of the picture, and modules that look for something."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from nao_library_modules.driver import camera_stream, demand
+from nao_library_modules.driver.camera_stream import BEGIN_LIMIT, SILENCE_LIMIT, CameraStream
+from nao_library_modules.driver.camera_subscriber import StreamSettings
+from nao_library_modules.driver.camera_tuning import CameraTuning
+from nao_library_modules.driver.vision_detection import FACES, MOVEMENT, Detection
+from nao_library_modules.health import Level
+from naoqi.errors import CallTimeout, NaoError, RobotUnreachable, UnknownModule
+
+NAME = "ros_nao_camera_top"
+
+
+@pytest.fixture(autouse=True)
+def _impatient(monkeypatch):
+    """What runs on demand is looked after at once."""
+    for name, seconds in (("RETRY", 0.02), ("FIRST_RETRY", 0.02), ("LOOK_PERIOD", 0.02)):
+        monkeypatch.setattr(demand, name, seconds)
+    monkeypatch.setattr(camera_stream, "FAILURE_PAUSE", 0.02)
+
+
+@pytest.fixture
+def video(robot):
+    device = robot.ALVideoDevice
+    for handle in device.getSubscribers():
+        device.unsubscribe(handle)
+    yield device
+    for camera in (0, 1):
+        device.resetCamera(camera)
+
+
+# Pictures
+
+
+@pytest.fixture
+def seen():
+    return []
+
+
+@pytest.fixture
+def stream(video, driver_robot, clock, seen, closing):
+    settings = StreamSettings(0, 1, 13, 15)
+    return closing(CameraStream(driver_robot, NAME, settings, clock, lambda *picture: seen.append(picture)))
+
+
+def ours(video):
+    return [handle for handle in video.getSubscribers() if handle.startswith(NAME)]
+
+
+def test_pictures_come_with_their_times_while_somebody_looks(stream, robot, video, seen, until, soon):
+    assert stream.report().message == "nobody looks" and not ours(video)
+    stream.want(True)
+    until(lambda: len(seen) >= 5, step=1 / 15)
+    picture = seen[-1][0]
+    assert (picture.width, picture.height, picture.encoding, picture.camera) == (320, 240, "bgr8", 0)
+    times = [picture.time for picture, _ in seen]
+    assert times == sorted(set(times)) and times[-1] <= robot.now.time
+    taken = [time for _, time in seen]
+    assert taken == sorted(set(taken)) and all(time >= own for time, own in zip(taken, times))
+    assert stream.report().level is Level.OK and stream.report().values["size"] == "320x240"
+    stream.want(False)
+    soon(lambda: not ours(video))
+    assert stream.report().message == "nobody looks"
+    count = len(seen)
+    robot.advance(0.5)
+    assert len(seen) == count
+
+
+def test_settings_change_while_pictures_come_and_what_the_robot_refuses_leaves_all_as_it_was(
+    stream, video, seen, until
+):
+    stream.change(StreamSettings(0, 0, 13, 30))  # before: those of the beginning
+    stream.want(True)
+    until(lambda: seen, step=1 / 15)
+    assert seen[0][0].width == 160
+    handles = ours(video)
+    stream.change(StreamSettings(0, 1, 0, 15))
+    until(lambda: seen[-1][0].encoding == "mono8", step=1 / 15)
+    assert seen[-1][0].width == 320 and ours(video) == handles
+    with pytest.raises(NaoError):
+        stream.change(StreamSettings(0, 0, 99, 30))
+    assert stream.settings == StreamSettings(0, 1, 0, 15) and video.getResolution(handles[0]) == 1
+    stream.change(replace(stream.settings, camera=1))
+    until(lambda: seen[-1][0].camera == 1, step=1 / 15)
+    assert len(ours(video)) == 1
+
+
+def test_pictures_come_again_after_a_loss_or_when_the_robot_has_ended_the_subscription(
+    stream, driver_robot, video, seen, until
+):
+    stream.want(True)
+    until(lambda: seen, step=1 / 15)
+    for harm in (driver_robot.lose, lambda: video.unsubscribe(ours(video)[0])):
+        harm()
+        count = len(seen)
+        until(lambda count=count: len(seen) > count + 1, step=1 / 15)
+        until(lambda: stream.report().level is not Level.ERROR, step=1 / 15)
+
+
+def test_leftovers_of_a_node_that_was_killed_make_room(stream, video, seen, until):
+    other = video.subscribeCamera("other", 0, 1, 13, 15)
+    handle = "first"
+    while handle:
+        try:
+            handle = video.subscribeCamera(NAME, 0, 1, 13, 15)
+        except RuntimeError:
+            break
+    stream.want(True)
+    until(lambda: seen, step=1 / 15)
+    assert len(ours(video)) == 1 and other in video.getSubscribers()
+    video.unsubscribe(other)
+
+
+def test_silence_is_asked_about_unless_time_stands_still_and_the_first_picture_may_take_longer(
+    video, driver_robot, seen, closing, soon, until
+):
+    wall, ros = [1000.0], SimpleNamespace(time=500.0)
+    ros.now = lambda: ros.time
+    prepared = []
+    stream = closing(
+        CameraStream(
+            driver_robot,
+            NAME,
+            StreamSettings(0, 1, 13, 15),
+            ros,
+            lambda *picture: seen.append(picture),
+            lambda: prepared.append(len(prepared)),
+            lambda: wall[0],
+        )
+    )
+    stream.want(True)
+    soon(lambda: stream.running)
+    wall[0], ros.time = wall[0] + BEGIN_LIMIT - 1.0, ros.time + BEGIN_LIMIT - 1.0
+    until(lambda: seen, step=1 / 15)
+    assert prepared == [0]
+    wall[0] += 2 * SILENCE_LIMIT
+    count = len(seen)
+    assert stream.report().level is not Level.ERROR  # the robot's time stands still
+    ros.time += 2 * SILENCE_LIMIT
+    soon(lambda: len(prepared) == 2)  # it is asked anew
+    assert "no picture has come" in stream.report().message
+    until(lambda: len(seen) > count and stream.report().level is not Level.ERROR, step=1 / 15)
+
+
+def test_the_report_tells_the_rate_and_a_sink_that_fails_does_not_end_the_pictures(
+    robot, video, driver_robot, clock, closing, until
+):
+    seen = []
+
+    def sink(picture, _):
+        seen.append(picture)
+        if len(seen) == 1:
+            raise ValueError("a mistake")
+
+    stream = closing(CameraStream(driver_robot, NAME, StreamSettings(0, 0, 0, 30), clock, sink))
+    stream.want(True)
+    until(lambda: len(seen) > 2, step=1 / 30)
+    until(lambda: "only" in stream.report().message, limit=20.0, step=0.25)  # time passes faster than it asks
+    report = stream.report()
+    assert report.level is Level.WARN and "of 30 pictures a second" in report.message
+
+
+# Tuning of the picture: NAOqi's numbers of the parameters
+
+BRIGHTNESS, CONTRAST, GAIN, AUTO_EXPOSITION, EXPOSURE = 0, 1, 6, 11, 17
+
+
+@pytest.fixture
+def ask(driver_robot, video):
+    """Calls a method of ALVideoDevice; fails with `ask.silence` when there is one."""
+
+    def call(method, *arguments):
+        if call.silence is not None:
+            raise call.silence
+        return driver_robot.proxy("ALVideoDevice").call_async(method, *arguments).result(timeout=10.0)
+
+    call.silence = None
+    return call
+
+
+def test_values_are_set_the_automatic_ones_first_and_what_the_camera_chooses_itself_is_not(ask, video):
+    tuning = CameraTuning(ask, {})
+    tuning.choose(1, {"exposure": 100, "contrast": 40, "auto_exposition": 0}, connected=True)
+    assert [video.getParameter(1, number) for number in (EXPOSURE, CONTRAST, AUTO_EXPOSITION)] == [100, 40, 0]
+    gain = video.getParameter(0, GAIN)
+    CameraTuning(ask, {}).choose(0, {"gain": gain + 50, "contrast": 50}, connected=True)
+    assert (video.getParameter(0, GAIN), video.getParameter(0, CONTRAST)) == (gain, 50)
+    found = tuning.read(1)
+    assert (found["exposure"], found["contrast"], found["auto_exposition"]) == (100, 40, 0)
+
+
+def test_values_out_of_range_are_told_and_nothing_is_set(ask, video, caplog):
+    highest = video.getParameterRange(0, CONTRAST)[1]
+    before = video.getParameter(0, BRIGHTNESS)
+    words = f"contrast is {highest + 1}: the robot's CameraTop takes"
+    tuning = CameraTuning(ask, {})
+    with pytest.raises(NaoError, match=words):
+        tuning.choose(0, {"brightness": 9, "contrast": highest + 1}, connected=True)
+    tuning.set_again(0)
+    assert video.getParameter(0, BRIGHTNESS) == before
+    tuning = CameraTuning(ask, {"contrast": highest + 1, "brightness": 9})
+    tuning.set_again(0)  # at the start it still gives pictures
+    assert words in caplog.text and video.getParameter(0, BRIGHTNESS) == 9
+
+
+def test_what_was_chosen_is_set_on_a_robot_that_comes_later_and_on_the_next_one(ask, video):
+    tuning = CameraTuning(ask, {"brightness": 9})
+    tuning.choose(0, {"contrast": 40}, connected=False)
+    assert video.getParameter(0, CONTRAST) != 40
+    for _ in range(2):
+        tuning.set_again(0)
+        assert (video.getParameter(0, BRIGHTNESS), video.getParameter(0, CONTRAST)) == (9, 40)
+        video.resetCamera(0)
+
+
+@pytest.mark.parametrize(
+    "silence",
+    [
+        RobotUnreachable("10.0.0.7", 9559, "not there"),
+        UnknownModule("ALVideoDevice", "10.0.0.7:9559", [], ["ALMemory"]),
+        CallTimeout("ALVideoDevice", "getParameter", 5.0),
+    ],
+    ids=["lost", "still starting", "busy"],
+)
+def test_a_robot_that_does_not_answer_is_no_camera_that_lacks_something(ask, video, silence):
+    tuning = CameraTuning(ask, {"contrast": 40})
+    ask.silence = silence
+    for call in (lambda: tuning.read(0), lambda: tuning.set_again(0)):
+        with pytest.raises(type(silence)):
+            call()
+    ask.silence = None
+    tuning.set_again(0)
+    assert video.getParameter(0, CONTRAST) == tuning.read(0)["contrast"] == 40
+
+
+def test_what_the_camera_lacks_is_left_out_with_one_warning(ask, video, caplog):
+    def lacking(method, camera, number, *value):
+        return ask(method, camera, 9999 if number == BRIGHTNESS else number, *value)
+
+    tuning = CameraTuning(lacking, {})
+    with caplog.at_level(logging.WARNING):
+        for value in (9, 10):
+            tuning.choose(0, {"brightness": value, "contrast": 40}, connected=True)
+    told = [record.getMessage() for record in caplog.records]
+    assert told == ["the robot's CameraTop has no brightness, which is left out"]
+    assert video.getParameter(0, CONTRAST) == 40 and "brightness" not in tuning.read(0)
+
+
+# Modules that look for something
+
+
+@pytest.fixture
+def make(robot, driver_robot, closing):
+    seen = []
+
+    def make(kind, **options):
+        detection = closing(Detection(driver_robot, kind, "ros_nao_vision", seen.append, **options))
+        detection.seen = seen
+        return detection
+
+    return make
+
+
+def test_events_come_while_a_detection_is_on_and_switching_twice_changes_nothing(make, robot, soon):
+    def raised(value):
+        robot.ALMemory.raiseEvent("FaceDetected", [value])
+
+    def lookers():
+        return [name for name, *_ in robot.ALFaceDetection.getSubscribersInfo()]
+
+    prepared = []
+    faces = make(FACES, prepare=lambda: prepared.append(lookers()))
+    faces.disable()
+    raised("before")
+    for _ in range(2):
+        faces.enable()
+    assert lookers() == ["ros_nao_vision"] and faces.report().message == "on" and prepared == [[]]
+    raised("while")
+    soon(lambda: faces.seen)
+    for _ in range(2):
+        faces.disable()
+    raised("after")
+    assert lookers() == [] and faces.report().message == "off" and faces.seen == [["while"]]
+    assert "somebody" not in faces.call("getLearnedFacesList")
+    faces.enable()
+    faces.close()
+    assert lookers() == []
+
+
+def test_a_lost_robot_looks_again_once_and_without_one_it_is_not_switched_on(make, robot, driver_robot, soon):
+    prepared = []
+    faces = make(FACES, prepare=lambda: prepared.append(1))
+    faces.enable()
+    driver_robot.lose()
+    soon(lambda: faces.report().message == "on" and len(prepared) == 2)
+    soon(lambda: faces.seen or robot.ALMemory.raiseEvent("FaceDetected", ["warm"]))
+    count = len(faces.seen)
+    robot.ALMemory.raiseEvent("FaceDetected", ["again"])
+    soon(lambda: ["again"] in faces.seen)
+    assert faces.seen[count:].count(["again"]) == 1
+
+    def refuse():
+        raise NaoError("no camera")
+
+    refusing = make(MOVEMENT, prepare=refuse)
+    with pytest.raises(NaoError, match="no camera"):
+        refusing.enable()
+    assert refusing.report().message == "off" and not robot.ALMovementDetection.getSubscribersInfo()
+
+
+def test_an_event_without_a_value_is_read_from_the_memory(make, robot, soon):
+    robot.ALMemory.insertData(MOVEMENT.key, [[1, 0], ["cluster"]])
+    movement = make(MOVEMENT)
+    movement.enable()
+    robot.ALMemory.raiseEvent(MOVEMENT.event, None)
+    soon(lambda: movement.seen == [[[1, 0], ["cluster"]]])
+    robot.ALMemory.raiseEvent(MOVEMENT.event, [[2, 0], ["other"]])
+    soon(lambda: movement.seen[1:] == [[[2, 0], ["other"]]])

@@ -1,0 +1,444 @@
+"""Sound on the robot: microphones, files, volume, directions, speech and the recognition of words."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from nao_library_modules.driver import demand
+from nao_library_modules.driver import speech as speech_module
+from nao_library_modules.driver.audio_directions import SoundDirections
+from nao_library_modules.driver.audio_player import AudioPlayer
+from nao_library_modules.driver.audio_requests import read_recording
+from nao_library_modules.driver.microphone import SILENCE_LIMIT, Microphone
+from nao_library_modules.driver.speech import LONGEST_QUEUE, QUIET_LIMIT, NothingSaid, Speech
+from nao_library_modules.driver.speech_recognition import Heard, Recognition, RecognitionInUse
+from nao_library_modules.driver.speech_settings import SpeechSettings
+from nao_library_modules.errors import Preempted
+from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.robot import Robot
+from naoqi.errors import NaoError, RobotError, RobotUnreachable
+
+LIMIT = 15.0
+BLOCK = 0.17
+
+
+@pytest.fixture(autouse=True)
+def _impatient(monkeypatch):
+    """What runs on demand is looked after at once."""
+    for name, seconds in (("RETRY", 0.02), ("FIRST_RETRY", 0.02), ("LOOK_PERIOD", 0.02)):
+        monkeypatch.setattr(demand, name, seconds)
+
+
+def begin(function, *arguments):
+    """Run in a thread; the future of what it returns."""
+    pool = ThreadPoolExecutor(1)
+    future = pool.submit(function, *arguments)
+    pool.shutdown(wait=False)
+    return future
+
+
+# Microphones
+
+
+@pytest.fixture
+def blocks():
+    return []
+
+
+@pytest.fixture
+def microphone(driver_robot, clock, blocks, closing):
+    return closing(Microphone(driver_robot, "ros_naoqi_microphone", clock, blocks.append))
+
+
+def test_blocks_come_while_somebody_listens_with_samples_times_and_places(microphone, robot, blocks, until, soon):
+    assert microphone.report().message == "nobody listens"
+    microphone.want(True)
+    soon(lambda: microphone.report().message == "heard")
+    robot.post("ALAudioDevice", "playSine", 1000, 80, 0, 2.0)
+    until(lambda: len(blocks) >= 6)
+    assert {(block.rate, len(block.places), len(block.samples)) for block in blocks} == {(16000, 1, 2720)}
+    assert np.diff([block.time.robot for block in blocks]) == pytest.approx(BLOCK, abs=1e-3)
+    spectrum = np.abs(np.fft.rfft(blocks[-2].samples))
+    assert np.argmax(spectrum) * 16000 / 2720 == pytest.approx(1000.0, abs=6.0)
+    assert microphone.report().values["lost blocks"] == "0"
+    microphone.set_rate(48000)
+    until(lambda: blocks[-1].rate == 48000)
+    assert (len(blocks[-1].places), len(blocks[-1].samples)) == (4, 4 * 8160)
+    microphone.want(False)
+    soon(lambda: microphone.report().message == "nobody listens")
+    robot.advance(0.5)
+    count = len(blocks)
+    robot.advance(1.0)
+    assert len(blocks) == count
+    for rate in (0, 22050, 44100):
+        with pytest.raises(NaoError, match=rf"{rate}: 16000 \(1 channel\) or 48000 \(4 channels\)"):
+            microphone.set_rate(rate)
+
+
+def test_microphones_are_heard_again_after_a_loss_and_their_end_leaves_nothing_on_the_robot(
+    microphone, driver_robot, blocks, until
+):
+    microphone.want(True)
+    until(lambda: blocks)
+    driver_robot.lose()
+    blocks.clear()
+    until(lambda: len(blocks) >= 2, limit=60.0, step=BLOCK)
+    ended = begin(microphone.close)
+    until(ended.done)
+    assert "ros_naoqi_microphone" not in driver_robot.connection.module_names()
+
+
+def test_silence_of_a_robot_that_cannot_reach_us_is_told_and_tried_again(
+    driver_robot, robot, blocks, closing, soon, until
+):
+    wall, ros = [1000.0], [100.0]
+    clock = SimpleNamespace(now=lambda: ros[0])
+    microphone = closing(Microphone(driver_robot, "ros_quiet", clock, blocks.append, lambda: wall[0]))
+    microphone.want(True)
+    until(lambda: blocks)
+    wall[0] += SILENCE_LIMIT + 1.0
+    assert microphone.report().message == "heard"  # a simulation that stands still sends nothing
+    ros[0] += SILENCE_LIMIT + 1.0
+    soon(lambda: "no sound comes from the microphones" in microphone.report().message)
+    assert "has to reach this program at 127.0.0.1:" in microphone.report().message
+    blocks.clear()
+    until(lambda: blocks and microphone.report().message == "heard")
+
+
+# Files, volume and directions
+
+
+@pytest.fixture
+def interrupt():
+    return Interrupt()
+
+
+@pytest.fixture
+def player(driver_robot, clock, interrupt):
+    return AudioPlayer(driver_robot, clock, interrupt)
+
+
+def recording(seconds, name="driver/tone.wav"):
+    return read_recording(name, seconds, 0, (True,) * 4, 48000)
+
+
+def test_a_recording_takes_its_time_of_the_robot_and_plays_as_long(player, robot, until):
+    start = robot.now.time
+    record = begin(player.record, recording(2))
+    robot.advance(0.5)
+    with pytest.raises(NaoError, match="one at a time"):
+        player.record(recording(1, "b.wav"))
+    until(record.done)
+    record.result()
+    assert robot.now.time - start == pytest.approx(2.0, abs=0.2)
+    start = robot.now.time
+    play = begin(player.play, recording(1).file)
+    until(play.done)
+    play.result()
+    assert robot.now.time - start == pytest.approx(2.0, abs=0.3)
+    with pytest.raises(RobotError, match="no file"):
+        player.play("/home/nao/missing.wav")
+    player.set_volume(35)
+    assert player.volume() == robot.ALAudioDevice.getOutputVolume() == 35
+
+
+def test_an_interrupt_ends_what_is_played_and_completes_what_is_recorded(player, robot, driver_robot, interrupt, until):
+    record = begin(player.record, recording(20, "cut.wav"))
+    robot.advance(1.0)
+    interrupt.trigger()
+    until(record.done, limit=1.0)
+    with pytest.raises(Preempted):
+        record.result()
+    interrupt.clear()
+    start = robot.now.time
+    play = begin(player.play, recording(1, "cut.wav").file)
+    until(play.done)
+    play.result()  # what was recorded until then
+    assert robot.now.time - start == pytest.approx(1.0, abs=0.3)
+    play = begin(player.play, recording(1, "cut.wav").file)
+    robot.advance(0.2)
+    interrupt.trigger()
+    until(play.done, limit=0.3)
+    with pytest.raises(Preempted):
+        play.result()
+    interrupt.clear()
+    record = begin(player.record, recording(20, "lost.wav"))
+    robot.advance(0.5)
+    driver_robot.lose()
+    until(record.done, limit=1.0)
+    assert robot.now.time < start + 10.0  # the wait ended with the connection
+
+
+def test_sounds_are_located_only_while_somebody_listens_and_once_after_a_loss(robot, driver_robot, closing, soon):
+    found, event = [], [[12, 500000], [0.5, -0.1, 0.9, 0.04], [0.0, 0.0, 0.1265, 0.0, 0.1, 0.2], [0.0] * 6]
+    directions = closing(SoundDirections(driver_robot, "ros_nao_audio", 0.8, found.append))
+    subscribers = robot.ALSoundLocalization.getSubscribersInfo
+    robot.ALMemory.raiseEvent("ALSoundLocalization/SoundLocated", event)
+    assert not subscribers() and directions.report().message == "nobody listens"
+    directions.want(True)
+    soon(lambda: directions.report().message == "sounds are located")
+    assert [name for name, *_ in subscribers()] == ["ros_nao_audio"]
+    driver_robot.lose()
+    soon(lambda: directions.report().message == "sounds are located")
+    robot.ALMemory.raiseEvent("ALSoundLocalization/SoundLocated", event)
+    soon(lambda: found)
+    directions.want(False)
+    soon(lambda: not subscribers())
+    robot.ALMemory.raiseEvent("ALSoundLocalization/SoundLocated", event)
+    assert [each.azimuth for each in found] == [0.5]
+
+
+# Speech
+
+
+@pytest.fixture
+def settings():
+    return [SpeechSettings()]
+
+
+@pytest.fixture
+def speech(robot, driver_robot, clock, settings, closing):
+    return closing(Speech(driver_robot, clock, lambda: settings[0]))
+
+
+def voice(robot):
+    tts = robot.ALTextToSpeech
+    return tts.getLanguage(), tts.getVoice(), round(tts.getVolume(), 3)
+
+
+@pytest.fixture
+def speaks(robot, until):
+    """Lets time pass until the robot talks."""
+    return lambda: until(lambda: robot.value("ALTextToSpeech/TextStarted") in (1, True))
+
+
+def test_texts_wait_for_each_other_are_said_once_and_their_starts_are_told(speech, robot, until):
+    events = []
+    said = robot.heard("ALTextToSpeech/CurrentSentence")
+    texts = [speech.say(text, on_start=lambda text=text: events.append(text)) for text in ("one", "two")]
+    assert events == []
+    until(lambda: events == ["one"])
+    assert not texts[1].ended.is_set() and speech.report().message == "speaks"
+    until(texts[1].ended.is_set)
+    assert [text.error for text in texts] == [None, None] and events == ["one", "two"]
+    sentences = [said.get(timeout=LIMIT) for _ in range(said.qsize())]
+    assert [text for text in sentences if text] == ["one", "two"]
+    assert speech.report().values["said"] == "2" and speech.report().message == "ready for texts"
+
+
+def test_voice_language_and_volume_are_used_for_the_text_and_put_back(speech, robot, settings, until):
+    robot.ALTextToSpeech.setVoice("slt")
+    before, during = voice(robot), []
+    for chosen in (SpeechSettings(voice="rms", volume=0.6), SpeechSettings(language="French")):
+        settings[0] = chosen
+        text = speech.say("bonjour", on_start=lambda: during.append(voice(robot)))
+        until(text.ended.is_set)
+        assert text.error is None and voice(robot) == before
+    assert during == [("English", "rms", 0.6), ("French", "naofrf", before[2])]
+
+
+def test_what_somebody_changes_meanwhile_is_left_alone(speech, robot, settings, until):
+    language, before, _ = voice(robot)
+    settings[0] = SpeechSettings(voice="awb", volume=0.6)
+    text = speech.say("hello", on_start=lambda: robot.ALTextToSpeech.setVolume(0.1))
+    until(text.ended.is_set)
+    assert voice(robot) == (language, before, 0.1) and before != "awb"
+
+
+def test_settings_that_the_robot_refuses_are_an_error_and_change_nothing(speech, robot, settings, soon, until):
+    before, failures = voice(robot), []
+    settings[0] = SpeechSettings(language="French", voice="nobody")
+    text = speech.say("hello", on_failure=failures.append)
+    soon(text.ended.is_set)
+    assert isinstance(text.error, RobotError) and failures == [text.error] and voice(robot) == before
+    settings[0] = SpeechSettings()
+    text = speech.say("again")
+    until(text.ended.is_set)
+    assert text.error is None
+
+
+def test_a_text_is_silenced_at_once_or_before_it_begins(speech, robot, settings, until):
+    settings[0] = SpeechSettings(volume=0.6)
+    before, started = voice(robot), []
+    first, second, third = (
+        speech.say(text, on_start=lambda text=text: started.append(text))
+        for text in ("a very long text that goes on and on and on", "two", "three")
+    )
+    until(lambda: started)
+    now = robot.now.time
+    for text in (second, first):
+        speech.silence(text)
+    until(first.ended.is_set)
+    assert robot.now.time < now + 1.0
+    assert isinstance(first.error, Preempted) and isinstance(second.error, Preempted)
+    until(third.ended.is_set)
+    assert third.error is None and len(started) == 2 and voice(robot) == before
+    assert speech.report().values["interrupted"] == "2"
+
+
+class HandClock:
+    """Time that the test turns; waits end when it does."""
+
+    def __init__(self):
+        self.time, self._turned = 0.0, threading.Condition()
+
+    def now(self):
+        return self.time
+
+    def turn(self, time=None):
+        with self._turned:
+            self.time = self.time if time is None else time
+            self._turned.notify_all()
+
+    def wait(self, duration, interrupt):
+        with interrupt.waking(self.turn), self._turned:
+            end = self.time + duration
+            self._turned.wait_for(lambda: self.time >= end or interrupt.is_set())
+
+
+def test_a_robot_that_says_nothing_for_two_minutes_is_given_up(robot, driver_robot, closing, soon):
+    clock, started = HandClock(), []
+    speech = closing(Speech(driver_robot, clock, SpeechSettings))
+    text = speech.say("a long story", on_start=lambda: started.append(clock.time))
+    soon(lambda: speech.report().message == "speaks" and robot.ALTextToSpeech.getLanguage())
+    clock.turn(0.9 * QUIET_LIMIT)
+    soon(lambda: started or robot.ALMemory.raiseEvent("ALTextToSpeech/TextStarted", True))  # a sign of life
+    clock.turn(1.8 * QUIET_LIMIT)
+    assert not text.ended.is_set() and started == [0.9 * QUIET_LIMIT]
+    soon(lambda: text.ended.is_set() or clock.turn(clock.time + QUIET_LIMIT))
+    assert isinstance(text.error, NothingSaid)
+
+
+def test_texts_for_a_lost_robot_fail_and_later_ones_are_said_in_its_own_voice(
+    speech, robot, driver_robot, settings, until
+):
+    before, failures = voice(robot), []
+    settings[0] = SpeechSettings(volume=0.6)
+    started = []
+    first = speech.say("a text that goes on and on and on", lambda: started.append(1), failures.append)
+    until(lambda: started)
+    driver_robot.lose()
+    until(first.ended.is_set)
+    assert isinstance(first.error, NaoError) and failures == [first.error]
+    speech.robot_is_back()
+    until(lambda: voice(robot) == before)  # what was owed is put back
+    second = speech.say("two", on_start=lambda: started.append(2))
+    until(second.ended.is_set)
+    assert second.error is None and started == [1, 2] and voice(robot) == before
+
+
+def test_there_is_an_end_to_the_queue_and_the_end_of_the_node_silences_everything(
+    robot, driver_robot, clock, settings, until
+):
+    settings[0] = SpeechSettings(volume=0.6)
+    before, speech = voice(robot), Speech(driver_robot, clock, lambda: settings[0])
+    started = []
+    texts = [speech.say("first and foremost", lambda: started.append(1))]
+    until(lambda: started)
+    texts += [speech.say(str(n)) for n in range(LONGEST_QUEUE)]
+    with pytest.raises(NaoError, match="100 texts are waiting"):
+        speech.say("one too many")
+    closed = begin(speech.close)
+    until(closed.done)
+    assert all(isinstance(text.error, Preempted) for text in texts) and voice(robot) == before
+    assert isinstance(speech.say("after the end").error, Preempted)
+
+
+def test_a_text_waits_a_moment_for_a_robot_that_was_never_there(driver_robot, clock, closing, soon, until, monkeypatch):
+    connection = SimpleNamespace(state="connecting", generation=1)
+    connection.wait_connected = lambda limit: setattr(connection, "state", "connected") or True
+    arriving = SimpleNamespace(connection=connection, proxy=driver_robot.proxy, address="nao:9559")
+    text = closing(Speech(arriving, clock, SpeechSettings)).say("Walker online")
+    until(text.ended.is_set)
+    assert text.error is None
+    monkeypatch.setattr(speech_module, "PATIENCE", 0.0)
+    absent = Robot("127.0.0.1", 1)
+    text = closing(Speech(absent, clock, SpeechSettings)).say("hello")
+    soon(text.ended.is_set)
+    assert isinstance(text.error, RobotUnreachable)
+    absent.connection.close()
+
+
+# Recognition of words
+
+
+@pytest.fixture
+def heard():
+    return []
+
+
+@pytest.fixture
+def recognition(robot, driver_robot, settings, heard, closing):
+    robot.ALSpeechRecognition.setVocabulary(["yes"], False)  # its engine starts with the first words
+    settings[0] = SpeechSettings(vocabulary=("yes", "no"), word_spotting=True, audio_expression=False)
+    return closing(Recognition(driver_robot, "ros_nao_speech", lambda: settings[0], heard.append))
+
+
+def listeners(robot):
+    return [name for name, *_ in robot.ALSpeechRecognition.getSubscribersInfo()]
+
+
+def test_it_listens_for_the_vocabulary_until_it_is_stopped(recognition, robot, settings, soon):
+    beeps = robot.ALSpeechRecognition.getAudioExpression()
+    for _ in range(2):
+        recognition.start()
+        assert listeners(robot) == ["ros_nao_speech"] and recognition.report().message == "listens"
+    assert robot.ALSpeechRecognition.getAudioExpression() is False
+    for _ in range(2):
+        recognition.stop()
+    assert listeners(robot) == [] and robot.ALSpeechRecognition.getAudioExpression() is beeps
+    settings[0] = SpeechSettings()
+    with pytest.raises(NaoError, match="no vocabulary"):
+        recognition.start()
+    assert not recognition.running and listeners(robot) == []
+
+
+def test_it_does_not_take_the_vocabulary_from_others_but_from_a_killed_run(recognition, robot):
+    robot.ALSpeechRecognition.subscribe("Dialog")
+    with pytest.raises(RecognitionInUse, match="in use by Dialog"):
+        recognition.start()
+    robot.ALSpeechRecognition.unsubscribe("Dialog")
+    robot.ALSpeechRecognition.subscribe("ros_nao_speech")
+    recognition.start()
+    assert listeners(robot) == ["ros_nao_speech"]
+
+
+def test_a_new_vocabulary_is_used_at_once_and_one_that_is_refused_leaves_the_old_one(
+    recognition, robot, settings, soon
+):
+    recognition.apply()  # while it does not listen a vocabulary waits
+    recognition.start()
+    good = settings[0] = replace(settings[0], vocabulary=("stop",))
+    recognition.apply()
+    settings[0] = replace(good, vocabulary=("",))
+    with pytest.raises(NaoError):
+        recognition.apply()
+    settings[0] = good
+    assert listeners(robot) == ["ros_nao_speech"] and recognition.report().message == "listens"
+
+
+def test_words_are_passed_on_whoever_listens_and_once_after_a_loss(recognition, robot, driver_robot, heard, soon):
+    def raised(value, count):
+        robot.ALMemory.raiseEvent("WordRecognized", value)
+        soon(lambda: len(heard) == count)
+
+    soon(lambda: (robot.ALMemory.raiseEvent("WordRecognized", ["yes", 0.7, "no", 0.1]), heard)[1])
+    heard.clear()
+    robot.ALMemory.raiseEvent("WordRecognized", ["", 0.0])
+    raised(["<...> no <...>", 0.5], 1)
+    assert heard == [Heard(("no",), (0.5,))]
+    recognition.start()
+    driver_robot.lose()
+    soon(lambda: listeners(robot) == ["ros_nao_speech"] and recognition.report().message == "listens")
+    soon(lambda: (robot.ALMemory.raiseEvent("WordRecognized", ["yes", 0.6]), len(heard) > 1)[1])
+    count = len(heard)
+    raised(["no", 0.4], count + 1)
+    recognition.stop()
+    driver_robot.lose()
+    assert listeners(robot) == [] and not recognition.running
