@@ -1,7 +1,7 @@
 # Everything a user types. Each target installs and builds what it needs first; with nothing to do that takes no time.
 
 .DEFAULT_GOAL := help
-.PHONY: docs pictures urdf help setup build demo test test-slow test-all bench soak lint format clean
+.PHONY: docs pictures urdf help setup build demo test test-slow test-all bench soak faults lint format clean
 
 # Tests to run: parts of their paths or names (make test TESTS="lights walk"). SEED: their random order.
 TESTS ?=
@@ -35,6 +35,9 @@ bench: build ## Print the benchmarks: ratios measured side by side
 
 soak: build ## Half an hour of random goals on two machines, with accidents; report in soak_output (SOAK="--minutes 5")
 	@scripts/ros-env python3 test/soak/run.py $(SOAK)
+
+faults: build ## Apply faults one by one and see which test notices each (FAULTS="lights odometry"); test/faults/README.md
+	@.venv/bin/python test/faults/run.py $(FAULTS)
 
 lint: setup ## Check the form of Python files, packages and scripts
 	@scripts/lint
