@@ -1,0 +1,335 @@
+"""Goals of NaoBehavior on the robot: real modules for its steps, libqi, physics, simulated time."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+import rospy
+import yaml
+from actionlib_msgs.msg import GoalID, GoalStatus
+from plan_clients import client_of
+from std_msgs.msg import Header
+
+from nao_library_actions.msg import (
+    NaoAudioOutGoal,
+    NaoBehaviorGoal,
+    NaoLedActionGoal,
+    NaoLedActionResult,
+    NaoLedGoal,
+    NaoMotionGoal,
+)
+from nao_library_modules.audio_out import NaoAudioOutput
+from nao_library_modules.behaviors.server import NaoBehavior
+from nao_library_modules.behaviors.servers import FunctionTables
+from nao_library_modules.motion import NaoMotion
+from nao_library_msgs.msg import BehaviorFunction, LedFunction
+
+TABLES = FunctionTables()
+BRAIN, RED = "Device/SubDeviceList/Head/Led/Front/Right/1/Actuator/Value", "Device/SubDeviceList/Face/Led/Red/Left/0Deg"
+TURN = "NaoMotion.angleInterpolation: {names: [HeadYaw], angles: [%s], times: [%s], stiffness: 1.0}"
+LONG = "help: Goes on.\ndo: [{NaoLights.setIntensity: {lights: [Brain0], i_values: [0.5], time: 60}}, {wait: 1}]"
+TEXTS = {
+    "lights": """
+help: Lights up.
+tags: [light]
+parameters: {light: {default: Brain0, help: which}, n: {default: 1, help: how often, min: 1, max: 3, unit: times}}
+do: [{repeat: "${n}", do: [{NaoLights.setIntensity: {lights: ["${light}"], i_values: [0.25]}}]}]
+""",
+    "three": f"""
+help: Three servers at once, then others at their times.
+parameters: {{colour: {{default: green, help: of the eyes, choices: [green, red]}}}}
+do:
+  - parallel:
+      - NaoLights.fadeRGB: {{lights: [FaceLeds], str_param: "${{colour}}", duration: 1.0}}
+      - {TURN % (0.5, 1.0)}
+      - [{{wait: 0.2}}, {{nao_audio_out.playSine: {{frequency: 400, volume: 0.1, duration: 0.5}}}}]
+  - timeline:
+      - {{NaoLights.setIntensity: {{lights: [Brain0], i_values: [0.5]}}, at: 0.5}}
+      - {{{TURN % (0.2, 0.5)}, at: 0.2, label: head}}
+      - {{NaoLights.off: {{lights: [Brain0]}}, at: head.end + 0.3}}
+""",
+    "turn": f"""
+help: Turns the head.
+parameters: {{angle: {{default: 0.2, help: where to look, unit: rad, min: -1, max: 1}}}}
+do: [{{{TURN % ('"${angle}"', 0.4)}}}]
+""",
+    "boxes": """
+help: Turns the head by a box.
+parameters: {angle: {default: 0.1, help: where to look}}
+do: [{behavior: turn}, {repeat: 2, as: i, do: [{behavior: turn, parameters: {angle: "${angle * i / 2}"}}]}]
+""",
+    "busy": f"""
+help: Keeps two servers busy.
+do:
+  - parallel: [{{NaoLights.fadeRGB: {{lights: [FaceLeds], str_param: red, duration: 60}}}}, {{{TURN % (1.0, 60)}}}]
+  - wait: 1
+""",
+    "fails": """
+help: Goes on in spite of failures.
+do:
+  - {NaoLights.on: {lights: [NoSuchLight]}, on_error: retry 1 skip}
+  - NaoLights.setIntensity: {lights: [Brain0], i_values: [0.75]}
+  - NaoLights.on: {lights: [NoSuchLight]}
+  - wait: 1
+""",
+    "long": LONG,
+}  # fmt: skip
+GREEN = NaoLedGoal([LedFunction(function="setColor", lights=["FaceLeds"], str_param="green")])
+BLINK = NaoLedGoal([LedFunction(function="blink")])
+
+
+def f(function, name="", **fields):
+    return BehaviorFunction(function=function, str_param=name, **fields)
+
+
+@pytest.fixture
+def servers(robot, goals_to, lights):
+    """Clients of the servers of the steps; a server is made when it is asked for."""
+    kinds = {"NaoMotion": (NaoMotion, NaoMotionGoal), "nao_audio_out": (NaoAudioOutput, NaoAudioOutGoal)}
+    made = {"NaoLights": client_of(lights, robot)}
+
+    def find(name):
+        if name not in made:
+            made[name] = client_of(goals_to(*kinds[name]), robot)
+        return made[name]
+
+    return find
+
+
+@pytest.fixture
+def behaviors(goals_to, servers, tmp_path):
+    goals = goals_to(NaoBehavior, NaoBehaviorGoal, behavior_dir=tmp_path, clients=servers)
+    goals.module.tables = TABLES  # looking them up takes a while
+    for name, text in TEXTS.items():
+        goals.module.store.save(name, text)
+    return goals
+
+
+@pytest.fixture
+def to_lights(behaviors):
+    """Somebody sends a goal to the lights, so many s ago; it has ended already if there is a status."""
+
+    def send(goal, number, ago=0.0, status=None):
+        id_, edge = GoalID(id=str(number)), behaviors.edge
+        header = Header(stamp=rospy.Time.from_sec(edge.clock.now() - ago))
+        edge.subscribers["NaoLights/goal"](NaoLedActionGoal(header=header, goal_id=id_, goal=goal))
+        if status is not None:
+            edge.subscribers["NaoLights/result"](NaoLedActionResult(status=GoalStatus(goal_id=id_, status=status)))
+
+    return send
+
+
+def steps_of(goal):
+    return {step.path: step for step in goal.result.steps}
+
+
+def value(robot, key):
+    return robot.ALMemory.getData(key)
+
+
+def head(robot):
+    return robot.ALMotion.getAngles("HeadYaw", True)[0]
+
+
+# --- run --------------------------------------------------------------------------------------------------------------
+
+
+def test_a_behaviour_runs_with_its_parameters_and_tells_its_steps(behaviors, robot):
+    goal = behaviors.play(f("runBehavior", "lights", parameters=["n=2", "light=Brain0"]))
+    assert (goal.state, goal.text, value(robot, BRAIN)) == ("succeeded", "", 0.25)
+    steps = goal.result.steps
+    assert [(step.path, step.what, step.state, step.behavior) for step in steps] == [
+        ("1", "repeat", "ended", "lights"), ("1#1.1", "NaoLights.setIntensity", "ended", "lights"),
+        ("1#2.1", "NaoLights.setIntensity", "ended", "lights"),
+    ]  # fmt: skip
+    assert steps[1].results[0].function == "setIntensity" and float(goal.result.memList[0]) >= steps[0].ended
+    told = [(each.path, each.state) for each in goal.feedback if each.behavior]
+    assert told[0] == ("1", "began") and told[-1] == ("1", "ended")
+    assert {each.function for each in goal.feedback} == {"runBehavior"}
+
+
+def test_several_servers_work_at_once_and_at_their_times(behaviors, robot):
+    goal = behaviors.play(f("runBehavior", "three", parameters=["colour=red"]))
+    steps = steps_of(goal)
+    assert goal.state == "succeeded" and {step.state for step in steps.values()} == {"ended"}, goal.text
+    assert abs(steps["1.1"].began - steps["1.2"].began) < 0.3
+    assert [steps[path].ended - steps[path].began for path in ("1.1", "1.2")] == pytest.approx([1.0, 1.0], abs=0.3)
+    assert steps["1.3.2"].began - steps["1.3.1"].began == pytest.approx(0.2, abs=0.1)
+    assert steps["1"].ended < 1.7, "one after the other they would take 2.7 s"
+    began = {path: steps[path].began - steps["2"].began for path in ("2.1", "2.2")}
+    assert began == pytest.approx({"2.1": 0.5, "2.2": 0.2}, abs=0.1)
+    assert steps["2.3"].began - steps["2.2"].ended == pytest.approx(0.3, abs=0.1)
+    assert head(robot) == pytest.approx(0.2, abs=0.03) and value(robot, BRAIN) == 0.0
+    assert value(robot, f"{RED}/Actuator/Value") == 1.0
+
+
+def test_a_box_has_its_own_parameters(behaviors, robot):
+    goal = behaviors.play(f("runBehavior", "boxes", parameters=["angle=0.4"]))
+    steps = steps_of(goal)
+    assert {"1", "1/1", "2#1.1/1", "2#2.1/1"} <= set(steps) and head(robot) == pytest.approx(0.4, abs=0.03)
+    assert (steps["1/1"].behavior, steps["1"].behavior) == ("turn", "boxes")
+
+
+def test_failures_are_retried_skipped_or_end_it(behaviors, robot):
+    goal = behaviors.play(f("runBehavior", "fails"))
+    steps = steps_of(goal)
+    assert [steps[path].state for path in "1234"] == ["skipped", "ended", "failed", "not run"]
+    assert steps["1"].attempts == 2 and "NoSuchLight" in steps["1"].error and value(robot, BRAIN) == 0.75
+    assert goal.state == "aborted" and "function 1 (runBehavior): step 3 (NaoLights.on): " in goal.text
+    assert ("1", "retried") in {(each.path, each.state) for each in goal.feedback}
+
+
+def test_a_cancel_ends_all_servers_and_stop_tells_what_was_ended(behaviors, robot, lights):
+    goal = behaviors.send(f("runBehavior", "busy"))
+    robot.advance(5.0)
+    assert head(robot) > 0.01
+    begin = robot.now.time
+    goal.cancel()
+    assert goal.state == "preempted" and robot.now.time - begin < 0.5
+    assert [step.state for step in goal.result.steps] == ["preempted"] * 3 + ["not run"]
+    where = head(robot)
+    robot.advance(1.0)
+    assert head(robot) == pytest.approx(where, abs=0.01) and lights.play().state == "aborted", "it takes goals again"
+    assert behaviors.succeed(f("stopBehavior")).memList == ["busy"]
+    assert behaviors.succeed(f("stopBehavior")).memList == []
+
+
+REFUSED = [
+    ([f("runBehavior", "light")], "did you mean 'lights'"),
+    ([f("runBehavior", "")], "no name for a behavior"),
+    ([f("runBehavior", "lights", parameters=["n"])], "has no '='"),
+    ([f("runBehavior", "lights", parameters=["n=4"])], "1 to 3 times"),
+    ([f("runBehavior", "lights", parameters=["n=x"])], "is no number"),
+    ([f("runBehavior", "lights", parameters=["n=1", "n=2"])], "comes twice"),
+    ([f("runBehavior", "lights", parameters=["m=1"])], "there is no parameter 'm'"),
+    ([f("storeBehavior", "x")], "either a behavior, or the server"),
+    ([f("storeBehavior", "x", text="help: x")], "a list of steps"),
+    ([f("storeBehavior", "x", text="help: x\ndo: [{behavior: x}]")], "x -> x"),
+    ([f("storeBehavior", "lights", text=LONG)], "already"),
+    ([f("storeBehavior", "../x", text=LONG)], "letters, digits"),
+    ([f("storeBehavior", "x", server="NaoLight")], "did you mean 'NaoLights'"),
+    ([f("renameBehavior", "lights", new_name="fails")], "already"),
+    ([f("renameBehavior", "lights", new_name="a/b")], "field new_name"),
+    ([f("copyBehavior", "nothing", new_name="b")], "there is no behavior 'nothing'"),
+    ([f("deleteBehavior", "lights"), f("runBehavior", "lights")], "function 3 (runBehavior): there is no"),
+    ([f("deleteBehavior", "lights"), f("deleteBehavior", "lights")], "there is no behavior 'lights'; there are"),
+    ([f("stopRecording")], "nothing is recorded"),
+    ([f("recordBehavior", "x"), f("recordBehavior", "y")], "goes on"),
+    ([f("recordBehavior", "x", servers=["NaoSmell"])], "NaoSmell"),
+    ([f("recordBehavior", "x", duration=-1.0)], "field duration"),
+    ([f("recordBehavior", "lights")], "already"),
+    ([f("checkBehavior")], "either a name"),
+    ([f("describeBehavior", "nothing")], "there is no behavior"),
+]
+
+
+def test_what_cannot_be_done_is_refused_before_anything_happens(behaviors, robot):
+    store = behaviors.module.store
+    before = {name: store.text(name) for name in store.names()}
+    for functions, told in REFUSED:
+        assert told in behaviors.refused(f("runBehavior", "lights"), *functions), told
+        assert behaviors.module.recording is None
+    assert value(robot, BRAIN) == 1.0 and {name: store.text(name) for name in store.names()} == before
+    assert "got no goal so far" in behaviors.refused(f("storeBehavior", "x", server="NaoLights"))
+
+
+# --- kept and shown ---------------------------------------------------------------------------------------------------
+
+
+def test_a_chain_may_use_what_it_stores(behaviors):
+    result = behaviors.succeed(
+        f("storeBehavior", "inner", text="help: x\ndo: [{wait: 0}]"),
+        f("storeBehavior", "outer", text="help: x\ndo: [{behavior: inner}]"),
+        f("runBehavior", "outer"),
+        f("renameBehavior", "inner", new_name="moved"),
+        f("copyBehavior", "moved", new_name="again"),
+        f("runBehavior", "again"),
+        f("deleteBehavior", "moved"),
+    )
+    assert result.results[3].values == ["outer"], "it still uses the old name"
+    names = set(behaviors.module.store.names())
+    assert {"again", "outer"} <= names and not {"moved", "inner"} & names
+
+
+def test_behaviours_are_shown_and_listed(behaviors):
+    result = behaviors.succeed(f("listBehaviors"))
+    shown = {info.name: info for info in result.behaviors}
+    lights = shown["lights"]
+    assert (lights.help, lights.tags, lights.servers, lights.shipped) == ("Lights up.", ["light"], ["NaoLights"], False)
+    assert [(each.name, each.type, each.default, each.unit) for each in lights.parameters] == [
+        ("light", "text", "Brain0", ""), ("n", "number", "1", "times"),
+    ]  # fmt: skip
+    assert shown["hello"].shipped and set(result.memList) == set(shown) >= {*TEXTS}
+    assert behaviors.succeed(f("describeBehavior", "lights")).memList == [TEXTS["lights"]]
+    behaviors.module.store.save("broken", "help: x\ndo: [{wat: 1}]")
+    listed = lambda name: behaviors.edge.services["NaoBehavior/list"](SimpleNamespace(name=name)).behaviors  # noqa: E731
+    problems = {info.name: info.problem for info in listed("")}
+    assert "did you mean 'wait'" in problems["broken"] and problems["lights"] == ""
+    (asked,) = listed("lights")
+    assert list(asked.steps) == ["1 repeat 1 times", "1#1.1 NaoLights.setIntensity: lights [Brain0], i_values [0.25]"]
+    assert not any(info.steps for info in listed(""))
+
+
+def test_a_check_tells_problems_what_would_be_done_and_what_only_the_robot_knows(behaviors):
+    wrong = ", ".join(["{NaoLights.on: {lights: [FaceLeds], time: x}}"] * 15)
+    result = behaviors.succeed(
+        f("checkBehavior", "lights", parameters=["light=Brain1"]),
+        f("checkBehavior", text=f"help: x\ndo: [{wrong}]"),
+        f("checkBehavior", "lights", parameters=["n=9"]),
+    )
+    assert [len(each.values) for each in result.results] == [0, 15, 1]
+    lights, wrong, _ = result.behaviors
+    assert (lights.problem, lights.servers, lights.shipped) == ("", ["NaoLights"], False)
+    step = "1#1.1 NaoLights.setIntensity: lights [Brain1], i_values [0.25]"
+    assert (list(lights.steps), list(lights.unchecked)) == (["1 repeat 1 times", step], [step])
+    assert "and 5 more" in wrong.problem and not (wrong.steps or wrong.shipped)
+
+
+# --- recorded ---------------------------------------------------------------------------------------------------------
+
+
+def test_the_last_goal_of_a_server_is_stored_and_runs(behaviors, to_lights, robot):
+    to_lights(NaoLedGoal([LedFunction(function="setIntensity", lights=["Brain0"], i_values=[0.5])]), 1)
+    behaviors.succeed(f("storeBehavior", "half", server="NaoLights"), f("runBehavior", "half"))
+    assert value(robot, BRAIN) == 0.5
+
+
+def test_a_recording_goes_on_until_it_is_stopped_and_plays_the_same_again(behaviors, to_lights, robot):
+    behaviors.succeed(f("recordBehavior", "taken"))
+    robot.advance(1.0)
+    to_lights(GREEN, 1, 0.75, GoalStatus.SUCCEEDED)
+    to_lights(GREEN, 2, 0.25, GoalStatus.ABORTED)
+    to_lights(GREEN, 3, -100.0)  # by another clock: it counts as sent now
+    to_lights(BLINK, 4)
+    name, count, left_out = behaviors.succeed(f("stopRecording")).memList
+    assert (name, count) == ("taken", "3") and "unknown function 'blink'" in left_out
+    entries = yaml.safe_load(behaviors.module.store.text("taken"))["do"][0]["timeline"]
+    assert [entry["at"] for entry in entries] == pytest.approx([0.0, 0.5, 0.75], abs=0.05)
+    assert [entry.get("on_error") for entry in entries] == [None, "skip", None]
+    to_lights(GREEN, 5)
+    taken = behaviors.module.store.load("taken")
+    assert len(taken.body.steps[0].steps) == 3 and taken.tags == ("recorded",)
+    steps = steps_of(behaviors.play(f("runBehavior", "taken")))
+    assert [steps[f"1.{i}"].began for i in (1, 2, 3)] == pytest.approx([0.0, 0.5, 0.75], abs=0.1)
+    assert value(robot, f"{RED}/Actuator/Value") == 0.0
+
+
+def test_a_recording_that_is_preempted_or_that_the_node_ends_keeps_what_came(behaviors, to_lights, robot):
+    goal = behaviors.send(f("recordBehavior", "taken", duration=100.0))
+    robot.advance(0.5)
+    to_lights(GREEN, 1)
+    goal.cancel()
+    told = [(each.what, each.state) for each in goal.feedback if each.behavior]
+    assert goal.state == "preempted" and told == [("NaoLights.setColor", "recorded")]
+    assert "setColor" in behaviors.module.store.text("taken") and behaviors.module.recording is None
+    behaviors.succeed(f("recordBehavior", "other"))
+    to_lights(GREEN, 2)
+    behaviors.module.shut_down()
+    assert "setColor" in behaviors.module.store.text("other")
+
+
+def test_a_recording_without_goals_is_not_stored(behaviors):
+    assert "nothing was sent" in behaviors.refused(f("recordBehavior", "nothing"), f("stopRecording"))
+    assert "nothing" not in behaviors.module.store.names()
+    behaviors.succeed(f("recordBehavior", "other"))

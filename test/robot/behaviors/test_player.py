@@ -1,0 +1,142 @@
+"""Behaviours that are played under physics: what they do, how they end, and what they leave behind."""
+
+from __future__ import annotations
+
+import pytest
+
+from nao_sim_bridge.sim.behaviors.installed import InstalledBehaviors, shipped_behaviors
+from nao_sim_bridge.sim.behaviors.player import BehaviorPlayer
+from nao_sim_bridge.sim.behaviors.reader import behaviors_of
+from nao_sim_bridge.sim.behaviors.steps import joints_of
+from nao_sim_bridge.sim.motion.posture_change import PostureChange
+from nao_sim_bridge.sim.posture_moves import load_moves
+from nao_sim_bridge.sim.posture_recognition import STANDING, recognise
+from nao_sim_bridge.sim.speech.animations import load_animations
+from nao_sim_bridge.sim.speech.animator import Animator
+from nao_sim_bridge.sim.tasks import Task
+
+LONGEST = 40.0
+SPEAKS = 0.5
+"""Time that any text takes here, s."""
+
+
+class Stage:
+    """A robot that stands, a player, and what was said."""
+
+    def __init__(self, bench):
+        self.bench, self.simulation, self.said = bench, bench.simulation, []
+        library = load_animations()
+        self.installed = InstalledBehaviors(library)
+        animator = Animator(self.simulation)
+        self.player = BehaviorPlayer(self.simulation, animator, library, self.speak, self.go_to)
+
+    @property
+    def leds(self):
+        return self.simulation.robot.leds
+
+    def speak(self, text, animated):
+        self.said.append((self.simulation.time, text))
+        command, voice = Task("say", 0), self.simulation.task_ids.make("say")
+        command.finish(voice)
+        end = self.simulation.time + SPEAKS
+        self.simulation.after_tick.append(lambda now: voice.finish() if now.time >= end else None)
+        return command
+
+    def go_to(self, name, speed):
+        robot = self.simulation.robot
+        return PostureChange(robot, lambda: self.simulation.snapshot, name, speed, 3, load_moves()).start()
+
+    def play(self, *steps):
+        return self.player.start(behaviors_of({"behaviors": {"test": {"do": list(steps)}}}, "file")["test"])
+
+    def until_over(self, task):
+        """Let time pass until a task has ended; how long that was, s."""
+        begin = self.simulation.time
+        while not task.finished and self.simulation.time < begin + LONGEST:
+            self.bench.run(0.05)
+        return self.simulation.time - begin
+
+    def command(self, name):
+        return self.bench.joint(name, of="commands")
+
+
+@pytest.fixture
+def stage(bench):
+    return Stage(bench())
+
+
+def nod(time=0.3, to=0.1):
+    return {"frames": [{"time": time, "angles": {"HeadPitch": to}}]}
+
+
+def test_steps_follow_each_other_branches_run_beside_each_other_and_repeats_are_done_so_often(stage):
+    begin, again = stage.simulation.time, {"repeat": 2, "do": [{"say": "again"}]}
+    task = stage.play({"together": [{"say": "one"}, [{"wait": 1.0}, {"say": "two"}]]}, {"say": "three"}, again)
+    assert stage.until_over(task) == pytest.approx(1.0 + 4 * SPEAKS, abs=0.1)
+    said = [(round(t - begin, 1), text) for t, text in stage.said]
+    assert said == [(0.0, "one"), (1.0, "two"), (1.5, "three"), (2.0, "again"), (2.5, "again")]
+
+
+def test_joints_get_to_their_key_frames_in_time_and_a_posture_comes_before_what_follows(stage):
+    task = stage.play({"frames": [{"time": 0.5, "angles": {"HeadYaw": 0.5}}, nod()["frames"][0]]})
+    stage.bench.run(0.5)
+    assert stage.bench.joint("HeadYaw") == pytest.approx(0.5, abs=0.03)
+    stage.until_over(task)
+    stage.bench.run(0.2)
+    assert stage.bench.joint("HeadPitch") == pytest.approx(0.1, abs=0.02)
+    task = stage.play({"posture": "Crouch", "speed": 1.0}, {"say": "down"})
+    assert stage.until_over(task) > 1.0 and task.error is None
+    assert recognise(stage.bench.model, stage.bench.now).posture == "Crouch"
+    assert [text for _, text in stage.said] == ["down"]
+
+
+def test_stopping_ends_everything_at_once_and_brings_gestures_and_lights_back(stage):
+    home, before = stage.command("RShoulderPitch"), stage.leds.values
+    gesture, red = (
+        {"gesture": "animations/Stand/Gestures/Hey_1"},
+        {"lights": "FaceLeds", "color": "red", "duration": 0.5},
+    )
+    task = stage.play({"together": [{"repeat": 0, "do": [nod(), nod(0.3, -0.1)]}, gesture, red, {"wait": 30.0}]})
+    stage.bench.run(1.0)
+    assert stage.command("RShoulderPitch") != pytest.approx(home, abs=0.1) and stage.leds.values != before
+    task.kill()
+    assert task.finished and task.killed and stage.leds.values == before
+    pitch = stage.command("HeadPitch")
+    stage.bench.run(2.0)
+    assert stage.command("HeadPitch") == pitch and stage.command("RShoulderPitch") == pytest.approx(home, abs=1e-6)
+    assert stage.simulation.robot.motion.tasks() == []
+
+
+def test_lights_show_afterwards_what_they_showed_before_unless_somebody_else_has_changed_them(stage):
+    before, eye = stage.leds.values, stage.simulation.led_layout.devices_of("FaceLeds")[0]
+    stage.until_over(stage.play({"lights": "FaceLeds", "color": "red", "duration": 0.2}, {"wait": 0.1}))
+    assert stage.leds.values == before
+    task = stage.play({"lights": "FaceLeds", "color": "green", "duration": 0.2}, {"wait": 0.3})
+    stage.bench.run(0.3)
+    stage.leds.set({eye: 0.25})
+    stage.until_over(task)
+    assert stage.leds.values == tuple(0.25 if i == eye else value for i, value in enumerate(before))
+
+
+def test_limp_joints_a_kill_of_its_motion_and_a_reset_end_a_behaviour(stage, bench):
+    limp = Stage(bench(stiffness=0.0)).play({"together": [{"wait": 5.0}, nod()]})
+    assert limp.finished and "HeadPitch are limp, wakeUp" in str(limp.error)
+    task = stage.play(nod(2.0), {"say": "never"})
+    stage.bench.run(0.5)
+    stage.simulation.robot.motion.kill_all()
+    assert task.killed and stage.said == []
+    task = stage.play({"wait": 30.0})
+    stage.simulation.reset()
+    assert task.finished
+
+
+LEGS = {"LHipPitch", "LHipRoll"}
+
+
+@pytest.mark.parametrize("name", [name for name, b in shipped_behaviors().items() if LEGS & joints_of(b.step)])
+def test_those_that_move_legs_stay_on_their_feet_even_when_stopped_half_way(stage, name):
+    whole = stage.player.start(stage.installed.resolve(name))
+    stage.bench.run(2.3)
+    whole.kill()
+    stage.bench.run(0.7)
+    assert recognise(stage.bench.model, stage.bench.now).family == STANDING
