@@ -5,6 +5,7 @@ import inspect
 import json
 import math
 import pkgutil
+from functools import lru_cache
 
 import pytest
 
@@ -25,6 +26,7 @@ def described(name):
     return Description(server.module, server.action)
 
 
+@lru_cache(maxsize=None)
 def functions(name):
     return {function.name: function for function in described(name).functions()}
 

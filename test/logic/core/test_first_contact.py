@@ -1,0 +1,182 @@
+"""Goals that come before the robot has ever been there, and a robot that goes away: the connection is the test's."""
+
+from __future__ import annotations
+
+import threading
+from types import SimpleNamespace
+
+import pytest
+from edge import Edge
+from genpy import Duration
+
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_modules.errors import RobotLost
+from nao_library_modules.first_contact import require_patience
+from nao_library_modules.nao_basic import NaoBasic
+from nao_library_msgs.msg import LedFunction
+from nao_library_msgs.srv import DescribeFunctionsRequest
+from naoqi.errors import NaoError, RobotUnreachable
+
+LIMIT = 15.0
+ADDRESS = "10.0.0.7:9559"
+AWAITED = f"the robot at {ADDRESS}"
+
+
+class Connection:
+    """A connection of the proxy layer, in the state that the test says."""
+
+    latency = 0.001
+
+    def __init__(self, state, generation):
+        self.state, self.generation, self.last_error = state, generation, None
+        self.listeners = []
+
+    def add_listener(self, listener):
+        self.listeners.append(listener)
+
+    def remove_listener(self, listener):
+        self.listeners.remove(listener)
+
+    def become(self, state, last_error=None):
+        self.state, self.last_error = state, last_error
+        self.generation += state == "connected"
+        for listener in list(self.listeners):
+            listener(state)
+
+
+class Module(NaoBasic):
+    """A module with one function, which needs the robot."""
+
+    def __init__(self, connection, **options):
+        robot = SimpleNamespace(address=ADDRESS, connection=connection, proxy=lambda name: None)
+        self.edge = Edge()
+        super().__init__("10.0.0.7", 9559, robot=robot, edge=self.edge, **options)
+        self.chains = 0
+        self.function_table["look"] = self.look
+        self.serve("Module", NaoLedAction)
+        self.told = threading.Event()
+        tell = self.server.publish_feedback
+        self.server.publish_feedback = lambda feedback: (tell(feedback), self.told.set())
+
+    def begin_chain(self):
+        """Count the chains for which the wait is over."""
+        self.chains += 1
+
+    def look(self):
+        if self.robot.connection.state != "connected":
+            raise RobotUnreachable("10.0.0.7", 9559, "not reached yet")
+        return "nao"
+
+    def play(self, *functions, wait=0.0):
+        messages = [LedFunction(function=name, str_param="a", time=Duration.from_sec(wait)) for name in functions]
+        self.server.execute(NaoLedGoal(messages))
+        return self.server
+
+    def start(self, *functions, **fields):
+        """Play in the background; what ends the wait for its end."""
+        thread = threading.Thread(target=self.play, args=functions, kwargs=fields, daemon=True)
+        thread.start()
+        assert self.told.wait(LIMIT)
+
+        def end():
+            thread.join(LIMIT)
+            return self.server
+
+        return end
+
+    def feedback(self):
+        told, self.server.feedback = self.server.feedback, []
+        return [(f.waiting, f.index, f.function, f.count) for f in told]
+
+
+@pytest.fixture
+def absent():
+    """A robot that has never been reached."""
+    return Connection("connecting", 0)
+
+
+def test_the_first_goal_waits_for_the_robot_and_says_so(absent, caplog):
+    caplog.set_level("INFO")
+    module = Module(absent, patience=LIMIT)
+    end = module.start("look")
+    assert (module.chains, module.server.end) == (0, None)
+    told = module.edge.descriptions["Module"](DescribeFunctionsRequest())
+    assert (list(told.running), told.connected) == (["look"], False)
+    assert f"a goal waits for {AWAITED}, which was not reached yet" in caplog.text
+    absent.become("connected")
+    server = end()
+    assert (server.end, server.result.memList) == ("succeeded", ["nao"])
+    assert module.feedback() == [(AWAITED, 0, "", 1), ("", 0, "look", 1)]
+    assert len(absent.listeners) == 1, "who waited listens no more"
+
+
+def test_patience_is_counted_from_the_start_of_the_module(absent):
+    module = Module(absent, patience=0.2)
+    assert module.play("look").text.endswith("not reached yet.")
+    assert module.feedback() == [(AWAITED, 0, "", 1), ("", 0, "look", 1)]
+    assert module.play("look").end == "aborted"
+    assert module.feedback() == [("", 0, "look", 1)], "the second goal did not wait"
+
+
+def test_a_goal_that_is_wrong_anyway_is_refused_at_once(absent):
+    module = Module(absent, patience=60.0)
+    assert module.play("lok").text.startswith("function 1 (lok): unknown function")
+    assert module.play().end == "aborted" and module.feedback() == []
+
+
+def test_preemption_ends_the_wait(absent):
+    module = Module(absent, patience=60.0)
+    end = module.start("look")
+    module.server.preempt()
+    assert end().end == "preempted"
+
+
+@pytest.mark.parametrize("state", ["lost", "closed"])
+def test_nobody_waits_for_a_robot_that_went_away(state):
+    assert Module(Connection(state, 1), patience=60.0).play("look").end == "aborted"
+
+
+def test_functions_that_need_no_robot_do_not_wait_unless_one_does(absent):
+    module = Module(absent, patience=0.3)
+    module.without_robot = frozenset({"look"})
+    module.play("look")
+    assert module.feedback() == [("", 0, "look", 1)]
+    module.play("look", "getData")
+    assert module.feedback()[0] == (AWAITED, 0, "", 2)
+
+
+def test_a_robot_that_goes_away_ends_a_goal_that_only_waits():
+    connection = Connection("connected", 1)
+    module = Module(connection)
+    end = module.start("look", wait=60.0)
+    connection.become("lost", "no heartbeat")
+    server = end()
+    text = f"function 1 (look): the robot at {ADDRESS} went away: no heartbeat"
+    assert (server.end, server.text) == ("aborted", text)
+    connection.become("connected")
+    assert module.play("look").end == "succeeded"
+
+
+@pytest.mark.parametrize("noticed", ["by the call", "by the connection"])
+def test_the_function_that_a_robot_left_is_told_whoever_notices_first(noticed):
+    connection = Connection("connected", 1)
+    module = Module(connection)
+
+    def leave():
+        if noticed == "by the connection":
+            connection.become("lost", "no heartbeat")
+            module.interrupt.wait(LIMIT)
+        raise RobotLost(ADDRESS, "no heartbeat")
+
+    module.function_table["leave"] = leave
+    server = module.play("look", "leave", "look")
+    text = f"the robot at {ADDRESS} went away: no heartbeat"
+    assert (server.end, server.text) == ("aborted", f"function 2 (leave): {text}")
+    assert [(done.function, done.error) for done in server.result.results] == [("look", ""), ("leave", text)]
+
+
+def test_a_patience_is_a_time():
+    assert [require_patience(value) for value in (0, 12.5)] == [0, 12.5]
+    for value in (-1.0, float("inf"), float("nan"), True, "30"):
+        with pytest.raises(NaoError, match="0 s or more"):
+            require_patience(value)

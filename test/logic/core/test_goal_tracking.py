@@ -1,0 +1,149 @@
+"""Goals whose servers are quick or late, with actionlib's own client but its topics."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+from actionlib import CommState
+from actionlib import simple_action_client as of_actionlib
+from actionlib_msgs.msg import GoalStatus
+from fake_goals import FakeGoal
+
+from nao_library_modules.goal_watch import GoalWatch
+from nao_library_modules.simple_action_client import SimpleActionClient
+
+SENDING = 0.05
+"""s that a busy computer takes from the server's answer to the end of `send_goal`."""
+LIMIT = 15.0
+
+
+class Acknowledged(threading.Event):
+    """The server tells of the goal as soon as somebody waits for that."""
+
+    goal = None
+
+    def wait(self, timeout=None):
+        self.goal.tell(GoalStatus.ACTIVE)
+        return super().wait(timeout)
+
+
+@pytest.fixture
+def watch():
+    return GoalWatch()
+
+
+@pytest.fixture
+def goal(watch):
+    return FakeGoal(watch.look)
+
+
+@pytest.mark.parametrize("told", ["before", "meanwhile"])
+def test_a_goal_that_goes_on_is_cancelled_when_its_server_knows_of_it(watch, goal, told):
+    if told == "before":
+        goal.tell(GoalStatus.ACTIVE)
+    else:
+        watch.acknowledged = Acknowledged()
+        watch.acknowledged.goal = goal
+    assert watch.cancel(goal.handle)
+    assert goal.cancelled == [CommState.ACTIVE] and watch.over.wait(LIMIT)
+    assert goal.handle.get_terminal_state() == GoalStatus.PREEMPTED
+
+
+def test_a_goal_that_is_over_is_neither_cancelled_nor_lost(watch, goal):
+    goal.end(GoalStatus.ABORTED, "no such light")
+    assert not watch.cancel(goal.handle)
+    goal.tell()  # told before the goal came to the server
+    assert (goal.cancelled, goal.handle.get_terminal_state()) == ([], GoalStatus.ABORTED)
+
+
+def test_a_goal_that_ends_while_it_is_to_be_cancelled_is_not_cancelled(watch, goal):
+    goal.tell(GoalStatus.ACTIVE)
+    goal.just_before_the_cancel(lambda: goal.end(GoalStatus.SUCCEEDED))
+    assert not watch.cancel(goal.handle)
+    assert (goal.cancelled, goal.handle.get_terminal_state()) == ([], GoalStatus.SUCCEEDED)
+
+
+def test_a_goal_of_which_the_server_never_tells_is_cancelled_all_the_same(watch, goal):
+    assert watch.cancel(goal.handle, limit=0.01)
+    assert goal.cancelled == [CommState.WAITING_FOR_GOAL_ACK]
+
+
+def test_the_end_is_passed_on_once():
+    ends = []
+    watch = GoalWatch(lambda: ends.append("over"))
+    goal = FakeGoal(watch.look)
+    goal.tell(GoalStatus.ACTIVE)
+    assert watch.acknowledged.is_set() and not ends
+    goal.end(GoalStatus.SUCCEEDED)
+    assert ends == ["over"]
+
+
+# Servers that answer before `send_goal` has returned
+
+
+class Hasty:
+    """Stands for actionlib's ActionClient: the news of the server come while a goal is still being sent."""
+
+    def __init__(self, name, action):
+        self.ns = name
+        self.threads, self.callbacks = [], []
+
+    def send_goal(self, number, on_transition, on_feedback):
+        goal = FakeGoal(on_transition, name=f"goal {number}")
+        self.callbacks.append((on_transition, on_feedback))
+
+        def answer():
+            goal.tell(GoalStatus.ACTIVE)
+            on_feedback(goal.handle, f"feedback {number}")
+            goal.end(GoalStatus.SUCCEEDED, f"goal {number}")
+
+        self.threads.append(threading.Thread(target=answer, daemon=True))
+        self.threads[-1].start()
+        self.threads[-1].join(SENDING)
+        return goal.handle
+
+    def join(self):
+        for thread in self.threads:
+            thread.join(LIMIT)
+            assert not thread.is_alive()
+
+
+@pytest.fixture
+def client(monkeypatch):
+    monkeypatch.setattr(of_actionlib, "ActionClient", Hasty)
+    monkeypatch.setattr(of_actionlib.rospy, "resolve_name", lambda name: name)
+    return SimpleActionClient("NaoLights", None)
+
+
+def test_nothing_of_a_goal_that_is_over_at_once_is_lost(client):
+    ends, news = [], []
+    client.send_goal(
+        1, lambda state, _: ends.append(state), lambda: news.append("active"), lambda text: news.append(text)
+    )
+    client.action_client.join()
+    assert client.simple_state == of_actionlib.SimpleGoalState.DONE
+    assert client.get_state() == GoalStatus.SUCCEEDED and client.get_goal_status_text() == "goal 1"
+    assert (ends, news) == ([GoalStatus.SUCCEEDED], ["active", "feedback 1"])
+
+
+def test_news_of_the_goal_before_are_neither_taken_for_those_of_this_one_nor_told(client, caplog):
+    news = []
+    client.send_goal(1)
+    client.action_client.join()
+    former = client.gh
+    client.send_goal(2, feedback_cb=news.append)
+    client.action_client.join()
+    on_transition, on_feedback = client.action_client.callbacks[0]
+    on_feedback(former, "feedback 1, late")
+    on_transition(former)
+    assert news == ["feedback 2"] and client.get_goal_status_text() == "goal 2"
+    assert not caplog.records
+
+
+def test_a_callback_may_wait_for_the_one_who_sends(client):
+    sent, seen = threading.Event(), threading.Event()
+    client.send_goal(1, done_cb=lambda *_: sent.wait(LIMIT) and seen.set())
+    sent.set()
+    assert seen.wait(LIMIT)
+    client.action_client.join()

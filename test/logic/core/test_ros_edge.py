@@ -1,0 +1,135 @@
+"""The ROS side as far as it goes without a master: events, logs, diagnostics, frames of /tf."""
+
+from __future__ import annotations
+
+import logging
+import math
+import threading
+
+import pytest
+import rospy
+import tf2_ros
+from diagnostic_updater import DiagnosticStatusWrapper
+from geometry_msgs.msg import TransformStamped
+
+from nao_library_modules import diagnostics, robot_frames, ros_edge
+from nao_library_modules.health import Level, Report
+from naoqi.errors import NaoError
+
+
+def test_events_are_published_with_name_value_and_type(monkeypatch):
+    published = []
+
+    class Publisher:
+        def __init__(self, topic, message_type, queue_size):
+            assert (topic, queue_size > 0) == ("memory_events", True)
+            self.publish = published.append
+
+    monkeypatch.setattr(ros_edge.rospy, "Publisher", Publisher)
+    monkeypatch.setattr(ros_edge.rospy.Time, "now", lambda: ros_edge.rospy.Time(5))
+    tell = ros_edge.RosEdge().event_sink()
+    types = {
+        "null": None, "bool": True, "int": 7, "float": 0.5, "string": "text", "list": [1.0, "x"], "object": {"a": 1},
+    }  # fmt: skip
+    for value in (*types.values(), (1, 2)):
+        tell("FrontTactilTouched", value)
+    assert [event.type for event in published] == [*types, "list"]
+    event = published[5]
+    assert (event.name, event.value, event.header.stamp.to_sec()) == ("FrontTactilTouched", '[1.0, "x"]', 5.0)
+
+
+@pytest.mark.parametrize("level", [logging.DEBUG, logging.INFO, logging.WARNING, logging.ERROR, logging.CRITICAL])
+def test_records_reach_the_log_of_the_node_at_their_level(level):
+    heard = []
+
+    class Listen(logging.Handler):
+        def emit(self, record):
+            heard.append((record.levelno, record.getMessage()))
+
+    node_log, listen = logging.getLogger("rosout"), Listen()
+    node_log.addHandler(listen)
+    before = node_log.level
+    node_log.setLevel(logging.DEBUG)
+    try:
+        record = logging.LogRecord("naoqi", level, __file__, 1, "100 %% of %s", ("calls",), None)
+        ros_edge.RosoutHandler().emit(record)
+    finally:
+        node_log.removeHandler(listen)
+        node_log.setLevel(before)
+    assert heard == [(level, "100 % of calls")]
+
+
+def test_reports_become_diagnostics_once_and_again_until_closed(monkeypatch):
+    statuses, twice = [], threading.Event()
+
+    class Updater:
+        def __init__(self):
+            self.tasks = {}
+
+        def setHardwareID(self, hardware_id):
+            self.hardware_id = hardware_id
+
+        def add(self, name, run):
+            self.tasks[name] = run
+
+        def force_update(self):
+            for name, run in self.tasks.items():
+                statuses.append((self.hardware_id, name, run(DiagnosticStatusWrapper())))
+            if len(statuses) >= 2:
+                twice.set()
+
+    monkeypatch.setattr(diagnostics, "Updater", Updater)
+    monkeypatch.setattr(diagnostics, "PERIOD", 0.001)
+    threads = set(threading.enumerate())
+    report = Report(Level.WARN, "connected, but slow", {"latency (ms)": "800.0"})
+    publisher = diagnostics.DiagnosticsPublisher("10.0.0.7:9559", {"robot": lambda: report})
+    assert twice.wait(15.0)
+    publisher.close()
+    for thread in set(threading.enumerate()) - threads:
+        thread.join(15.0)
+        assert not thread.is_alive()
+    hardware_id, name, status = statuses[0]
+    assert (hardware_id, name) == ("10.0.0.7:9559", "robot")
+    assert (status.level, status.message) == (1, "connected, but slow")
+    assert [(v.key, v.value) for v in status.values] == [("latency (ms)", "800.0")]
+
+
+# Frames
+
+
+class Buffer(tf2_ros.BufferCore):
+    """A buffer that is filled by hand, and waits for nothing."""
+
+    def __init__(self):
+        super().__init__(rospy.Duration(10))
+        for child, x, y, turn in (("base_footprint", 1.0, 0.0, math.pi / 2), ("table", 1.0, 0.6, math.pi)):
+            stamped = TransformStamped()
+            stamped.header.frame_id, stamped.child_frame_id, stamped.header.stamp = "odom", child, rospy.Time(1)
+            stamped.transform.translation.x, stamped.transform.translation.y = x, y
+            stamped.transform.rotation.z, stamped.transform.rotation.w = math.sin(turn / 2), math.cos(turn / 2)
+            self.set_transform(stamped, "test")
+
+    def lookup_transform(self, target, source, time, patience):
+        return self.lookup_transform_core(target, source, time)
+
+
+@pytest.fixture
+def frames(monkeypatch):
+    monkeypatch.setattr(robot_frames.tf2_ros, "TransformListener", lambda buffer: None)
+    monkeypatch.setattr(robot_frames.tf2_ros, "Buffer", Buffer)
+    monkeypatch.setattr(robot_frames.rospy, "search_param", lambda name: None)
+    return robot_frames.RobotFrames()
+
+
+def test_a_frame_is_seen_from_the_robot(frames):
+    assert frames.locate("table") == pytest.approx((0.6, 0.0, math.pi / 2))
+    assert frames.locate("/odom") == pytest.approx((0.0, 1.0, -math.pi / 2))
+    with pytest.raises(NaoError, match="the frame chair cannot be found from base_footprint"):
+        frames.locate("chair")
+
+
+def test_frames_of_one_of_several_robots_have_its_prefix(frames, monkeypatch):
+    monkeypatch.setattr(robot_frames.rospy, "search_param", lambda name: "/robot1/tf_prefix")
+    monkeypatch.setattr(robot_frames.rospy, "get_param", lambda name: "/robot1/")
+    with pytest.raises(NaoError, match="robot1/base_footprint"):
+        frames.locate("table")

@@ -1,0 +1,174 @@
+"""The flag that ends waiting, and waits on wall-clock and ROS time; rospy's time is set by hand."""
+
+from __future__ import annotations
+
+import gc
+import threading
+import weakref
+
+import pytest
+import rospy
+from rospy import rostime
+
+from nao_library_modules.clock import WallClock
+from nao_library_modules.errors import Preempted, RobotLost
+from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.ros_clock import RosClock
+
+LIMIT = 15.0
+LOST = "10.0.0.7:9559", "no answer"
+
+
+@pytest.fixture
+def interrupt():
+    return Interrupt()
+
+
+def test_the_first_reason_counts_until_it_is_cleared(interrupt):
+    interrupt.check()
+    interrupt.trigger(RobotLost(*LOST))
+    interrupt.trigger()
+    with pytest.raises(RobotLost, match="10.0.0.7:9559"):
+        interrupt.check()
+    interrupt.clear()
+    interrupt.check()
+    interrupt.trigger()
+    with pytest.raises(Preempted):
+        interrupt.check()
+
+
+def test_stop_outlives_clear(interrupt):
+    interrupt.stop()
+    interrupt.clear()
+    with pytest.raises(Preempted):
+        interrupt.check()
+
+
+def test_wakers_are_called_once_each_and_not_after_their_block(interrupt):
+    woken = []
+    with interrupt.waking(lambda: woken.append("inner")):
+        interrupt.trigger()
+    interrupt.clear()
+    interrupt.trigger()
+    assert woken == ["inner"]
+    with interrupt.waking(lambda: woken.append("late")):
+        assert woken == ["inner", "late"], "one that comes late is called at once"
+
+
+def test_a_waker_may_use_the_interrupt_itself(interrupt):
+    """Wakers run without the lock; with it this would be a deadlock."""
+    seen = []
+    with interrupt.waking(lambda: seen.append(interrupt.is_set())):
+        thread = threading.Thread(target=interrupt.trigger, daemon=True)
+        thread.start()
+        thread.join(LIMIT)
+    assert seen == [True]
+
+
+def test_what_was_interrupted_is_not_kept(interrupt):
+    """The error keeps the frames that it went through: none of them may keep it."""
+
+    class Goal:
+        pass
+
+    goals = []
+
+    def work():
+        goal = Goal()
+        goals.append(weakref.ref(goal))
+        interrupt.check()
+
+    gc.collect()
+    gc.disable()  # objects that keep each other in a ring stay
+    try:
+        interrupt.trigger()
+        with pytest.raises(Preempted):
+            work()
+        interrupt.clear()
+        assert goals[0]() is None
+    finally:
+        gc.enable()
+
+
+# Clocks
+
+
+@pytest.fixture(params=[WallClock, RosClock])
+def wall_clock(request):
+    rostime.set_rostime_initialized(True)
+    yield request.param()
+    rostime.set_rostime_initialized(False)
+
+
+def test_a_wait_takes_its_time_and_ends_at_the_trigger_from_another_thread(wall_clock, interrupt):
+    began = wall_clock.now()
+    assert wall_clock.wait(0.05, interrupt) and wall_clock.now() - began >= 0.045
+    threading.Timer(0.05, interrupt.trigger).start()
+    assert not wall_clock.wait(60.0, interrupt) and wall_clock.now() - began < 30.0
+
+
+@pytest.fixture
+def set_time():
+    """Sets simulated time in s, as rospy does it for each message of /clock; wall-clock time is back afterwards."""
+    rostime.set_rostime_initialized(True)
+
+    def to(seconds):
+        rostime._set_rostime(rospy.Time.from_sec(seconds))
+
+    to(100.0)
+    yield to
+    rostime.switch_to_wallclock()
+    rostime.set_rostime_initialized(False)
+
+
+class Waiter(threading.Thread):
+    """Waits for 2 s in a thread of its own."""
+
+    def __init__(self, interrupt):
+        super().__init__(daemon=True)
+        self.interrupt, self.result = interrupt, None
+        self.start()
+        assert self.still_waits()
+
+    def run(self):
+        self.result = RosClock().wait(2.0, self.interrupt)
+
+    def still_waits(self):
+        """Whether it waits (again) for the next message of /clock; False when it has ended."""
+        while self.is_alive():
+            with rostime.get_rostime_cond():
+                if rostime.get_rostime_cond()._waiters:
+                    return True
+            self.join(0.001)
+        return False
+
+    def end(self):
+        self.join(LIMIT)
+        assert not self.is_alive()
+        return self.result
+
+
+@pytest.mark.parametrize(
+    "moments, last",
+    [
+        ((101.0,), 102.0),
+        ((101.0, 0.5), 1.5),  # the simulation started again: a jump back does not lengthen the wait
+        ((0.0, 500.0), 502.0),  # time that has not begun does not count
+    ],
+)
+def test_a_wait_ends_when_simulated_time_has_passed(set_time, interrupt, moments, last):
+    moments = list(moments)
+    if moments[0] == 0.0:
+        set_time(moments.pop(0))
+    waiter = Waiter(interrupt)
+    for moment in moments:
+        set_time(moment)
+        assert waiter.still_waits()
+    set_time(last)
+    assert waiter.end() is True and RosClock().now() == pytest.approx(last)
+
+
+def test_an_interrupt_ends_the_wait_while_time_stands_still(set_time, interrupt):
+    waiter = Waiter(interrupt)
+    interrupt.trigger()
+    assert waiter.end() is False
