@@ -58,6 +58,9 @@ def ours(video):
 def test_pictures_come_with_their_times_while_somebody_looks(stream, robot, video, seen, until, soon):
     assert stream.report().message == "nobody looks" and not ours(video)
     stream.want(True)
+    until(lambda: seen, step=1 / 60)
+    report = stream.report()
+    assert (report.level, report.message, report.values["size"]) == (Level.OK, "pictures come", "320x240")
     until(lambda: len(seen) >= 5, step=1 / 15)
     picture = seen[-1][0]
     assert (picture.width, picture.height, picture.encoding, picture.camera) == (320, 240, "bgr8", 0)
@@ -65,7 +68,6 @@ def test_pictures_come_with_their_times_while_somebody_looks(stream, robot, vide
     assert times == sorted(set(times)) and times[-1] <= robot.now.time
     taken = [time for _, time in seen]
     assert taken == sorted(set(taken)) and all(time >= own for time, own in zip(taken, times))
-    assert stream.report().level is Level.OK and stream.report().values["size"] == "320x240"
     stream.want(False)
     soon(lambda: not ours(video))
     assert stream.report().message == "nobody looks"
