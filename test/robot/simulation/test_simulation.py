@@ -1,0 +1,265 @@
+"""A simulation as a whole: its clock, its reset, equal runs, plain snapshots; and the thread that runs it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import threading
+import time
+
+import pytest
+
+from nao_sim_bridge.sim import led_animations
+from nao_sim_bridge.sim import runner as module
+from nao_sim_bridge.sim.errors import BadValue, SimulationStopped
+from nao_sim_bridge.sim.motion import sequences
+from nao_sim_bridge.sim.motion.curves import Ramp
+from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
+from nao_sim_bridge.sim.runner import FASTEST, SimulationRunner
+from nao_sim_bridge.sim.simulation import Scene, Simulation
+
+PATIENCE = 30.0
+DERIVED = ("left_foot", "right_foot", "touched", "currents", "velocity_in_torso", "turn_in_torso")
+BALL = "{name: ball, sphere: 0.04, position: [0.3, 0.02, 0.3], mass: 0.2}"
+
+
+def state(snapshot, *without):
+    """All values of a snapshot, of fields and of what follows from them, by name."""
+    names = [field.name for field in dataclasses.fields(snapshot) if field.compare]
+    return {name: getattr(snapshot, name) for name in [*names, *DERIVED] if name not in without}
+
+
+def story(bench):
+    """Wakes up, sways, is pushed, twinkles; the states of every tick."""
+    robot = bench.robot
+    sequences.wake_up(robot, lambda: bench.now, lambda: None)
+    seen = bench.watch(0.6)
+    bench.aim(0.5, HeadYaw=0.8, LShoulderPitch=0.2)
+    bench.push((12.0, 4.0, 0.0), 0.2)
+    animation = led_animations.random_eyes(bench.simulation.led_layout, 1.0, robot.random)
+    robot.leds.animate("eyes", animation, robot.time, step=True)
+    seen += bench.watch(0.3)
+    robot.press(["Head/Touch/Front"])
+    seen += bench.watch(0.3)
+    return seen, robot.leds.values
+
+
+def test_equal_commands_at_equal_ticks_give_equal_snapshots_also_after_a_reset(bench, world_file):
+    path = world_file(BALL)
+    one, other = (bench("Crouch", 0.0, world=path, seed=5) for _ in range(2))
+    start = one.now
+    (first, lights), (second, same_lights) = story(one), story(other)
+    assert first == second and lights == same_lights
+    assert [state(snapshot) for snapshot in first] == [state(snapshot) for snapshot in second]
+    one.simulation.reset()
+    assert state(one.now, "tick", "time") == state(start, "tick", "time")
+    again, same_lights = story(one)
+    assert [state(s, "tick", "time") for s in again] == [state(s, "tick", "time") for s in first]
+    assert lights == same_lights and bench(seed=1).robot.random.random() != bench(seed=2).robot.random.random()
+    # The clock counts ticks and never goes back.
+    tick_s = one.simulation.settings.tick_s
+    assert [s.tick for s in (*first, *again)] == list(range(1, 1 + len(first) + len(again)))
+    assert all(snapshot.time == pytest.approx(snapshot.tick * tick_s) for snapshot in again)
+
+
+def test_it_starts_limp_in_the_posture_asked_for_and_runs_for_the_time_asked_for(bench):
+    one = bench("StandInit", 0.0)
+    assert one.now.tick == 0 and one.now.stiffnesses == (0.0,) * 26
+    assert one.joint("LKneePitch") == pytest.approx(one.joint("LKneePitch", of="commands"))
+    assert one.robot.leds.values[one.simulation.led_layout.devices_of("FaceLeds")[0]] == 1.0
+    assert one.run(0.25).time == pytest.approx(0.25)
+
+
+def test_a_reset_brings_robot_objects_and_lights_back_and_kills_tasks(bench, world_file):
+    one = bench(world=world_file(BALL))
+    ball = one.now.objects["ball"]
+    motion = sequences.posture_task(one.robot, "rest", "Crouch")
+    fade = one.robot.leds.animate("off", [led_animations.LedKeyframe(3.0, {0: 0.0})], one.robot.time)
+    one.push((60.0, 0.0, 0.0), 5.0)
+    one.robot.press(["Head/Touch/Rear"])
+    one.run(1.0)
+    assert one.now.objects["ball"] != ball
+    one.simulation.reset()
+    assert motion.killed and fade.killed and one.now.objects["ball"] == ball
+    assert one.now.stiffnesses == (0.0,) * 26 and one.now.touched == frozenset() and one.robot.leds.values[0] == 1.0
+    # The push is over, too: limp in Stand, it would fall at once under it.
+    assert one.run(0.5).torso.position[2] > 0.3
+
+
+def test_two_simulations_do_not_disturb_each_other(bench):
+    alone = bench().watch(0.3)
+    beside, other, seen = bench(), bench(), []
+    for _ in alone:
+        other.push((60.0, 0.0, 0.0), 0.1)
+        other.simulation.tick()
+        seen.append(beside.simulation.tick())
+    assert seen == alone
+
+
+# --- snapshots
+
+
+def leaves(value):
+    """All single values in nested tuples, mappings and dataclasses."""
+    if dataclasses.is_dataclass(value):
+        value = [getattr(value, field.name) for field in dataclasses.fields(value) if field.compare]
+    elif isinstance(value, dict):
+        value = [*value, *value.values()]
+    if isinstance(value, (list, tuple, frozenset)):
+        return [leaf for item in value for leaf in leaves(item)]
+    return [value]
+
+
+def test_a_snapshot_holds_plain_numbers_and_names_and_never_changes(bench, world_file):
+    """Numpy's own numbers look alike, but cannot go over the network."""
+    one = bench(world=world_file(BALL))
+    one.robot.press(["Head/Touch/Front"])
+    snapshot = one.run(0.5)
+    found = leaves(list(state(snapshot).values()))
+    assert {type(leaf) for leaf in found} == {int, float, str, bool}
+    assert all(math.isfinite(leaf) for leaf in found if isinstance(leaf, float))
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        snapshot.time = 0.0
+    feet = snapshot.left_foot
+    one.push((60.0, 0.0, 0.0), 0.3)
+    one.run(1.0)
+    assert snapshot.left_foot is feet and snapshot.right_foot.total == pytest.approx(26.0, abs=1.5)
+
+
+def test_velocities_turn_with_the_torso_and_are_true(bench):
+    one = bench()
+    one.push((0.0, 20.0, 0.0), 0.1)
+    pushed = one.run(0.1)
+    assert pushed.turn_in_torso == pytest.approx(pushed.imu.gyroscope)
+    spoilt = dataclasses.replace(pushed, imu=dataclasses.replace(pushed.imu, gyroscope=(9.0, 9.0, 9.0)))
+    assert spoilt.turn_in_torso == pushed.turn_in_torso
+    turned = Pose((0.0, 0.0, 0.3), from_roll_pitch_yaw(0.0, 0.0, math.pi / 2))
+    turned = dataclasses.replace(pushed, torso=turned, linear_velocity=(0.0, 0.5, 0.1))
+    assert turned.velocity_in_torso == pytest.approx((0.5, 0.0, 0.1))
+
+
+# --- the thread
+
+
+@pytest.fixture
+def start():
+    """Starts a runner of a simulation of its own; both."""
+    runners = []
+
+    def make(speed=1.0, paused=True, **options):
+        simulation = Simulation(Scene())
+        runners.append(SimulationRunner(simulation, speed, paused, **options))
+        runners[-1].start()
+        return runners[-1], simulation
+
+    yield make
+    for runner in runners:
+        runner.stop()
+
+
+def follow(runner, simulation):
+    """A motion of ten seconds."""
+    return runner.call(lambda: simulation.robot.motion.follow("glide", [0], lambda _: {0: Ramp(0.0, 1.0, 0.1)}))
+
+
+def test_commands_run_in_order_in_the_simulation_thread_and_what_they_raise_comes_back(start):
+    (runner, _), order = start(), []
+    task = runner.execute(lambda: 1 / 0, "divide")
+    with pytest.raises(ZeroDivisionError):
+        task.result(PATIENCE)
+    assert task.name == "divide" and runner.call(lambda: threading.current_thread().name) == "simulation"
+    for number in range(50):
+        runner.execute(lambda number=number: order.append(number))
+    long = runner.advance(1000.0)
+    assert runner.call(lambda: list(order), PATIENCE) == list(range(50)) and not long.finished
+
+
+@pytest.mark.parametrize("paused", [True, False])
+def test_advances_follow_each_other_and_end_after_exactly_their_time(start, paused):
+    runner, simulation = start(speed=0.001, paused=paused)
+    before, tick_s = runner.snapshot.tick, simulation.settings.tick_s
+    ends = [task.result(PATIENCE) for task in [runner.advance(seconds) for seconds in (0.1, 0.0, 0.4)]]
+    assert [end.tick - before for end in ends] == [round(seconds / tick_s) for seconds in (0.1, 0.1, 0.5)]
+    assert ends[-1].time == pytest.approx(0.5, abs=tick_s)
+
+
+def test_impossible_times_and_speeds_are_refused(start):
+    runner, _ = start()
+    for seconds in (-0.1, math.inf, math.nan):
+        with pytest.raises(BadValue, match="seconds is .*, allowed is 0 or more, finite"):
+            runner.advance(seconds)
+    for speed in (0.0, -1.0, math.nan):
+        with pytest.raises(BadValue, match="speed is .*, allowed is above 0"):
+            runner.set_speed(speed)
+    assert runner.speed == 1.0
+
+
+def test_time_stands_still_while_paused_and_passes_no_faster_than_asked(start):
+    runner, simulation = start(speed=4.0)
+    runner.call(lambda: None)
+    assert runner.paused and runner.snapshot.tick == 0 and runner.wait_for_tick(after=0, timeout=0.05) is None
+    begin = time.monotonic()
+    runner.resume()
+    snapshot = runner.wait_for_tick(after=60, timeout=PATIENCE)
+    assert snapshot.time <= 4.0 * (time.monotonic() - begin) + simulation.settings.tick_s
+    runner.pause()
+    tick = runner.call(lambda: runner.snapshot.tick)
+    assert runner.call(lambda: runner.snapshot.tick) == tick
+    runner.set_speed(FASTEST)
+    assert runner.speed == math.inf
+    runner.resume()
+    assert runner.wait_for_tick(after=tick + 240, timeout=PATIENCE).tick > tick + 240
+
+
+def test_time_that_a_busy_machine_lost_is_not_made_up_for(start, monkeypatch):
+    class Clock:
+        now = 100.0
+        sleep = staticmethod(time.sleep)
+
+        def monotonic(self):
+            return self.now
+
+    clock = Clock()
+    monkeypatch.setattr(module, "time", clock)
+    runner, simulation = start(paused=False)
+    runner.call(lambda: setattr(clock, "now", 110.0))
+    allowed = round(module.MAX_LAG / simulation.settings.tick_s) + 2
+    assert runner.wait_for_tick(after=allowed, timeout=0.2) is None
+
+
+def test_another_thread_may_ask_for_the_end_of_a_motion(start):
+    runner, simulation = start()
+    task = follow(runner, simulation)
+    runner.advance(0.1).result(PATIENCE)
+    task.request_kill()
+    task.result(PATIENCE)
+    assert task.killed
+
+
+def test_stop_ends_everybody_who_waits_with_an_error(start):
+    (runner, simulation), seen = start(), []
+    task, advance = follow(runner, simulation), runner.advance(1000.0)
+    waiting = threading.Thread(target=lambda: seen.append(runner.wait_for_tick(after=10**9, timeout=PATIENCE)))
+    waiting.start()
+    runner.stop()
+    waiting.join(PATIENCE)
+    assert seen == [None] and not runner.running and task.finished
+    for late in (lambda: advance.result(0), lambda: runner.execute(lambda: None), lambda: runner.advance(1.0)):
+        with pytest.raises(SimulationStopped, match="has stopped"):
+            late()
+
+
+def test_a_failing_simulation_tells_everybody_why(start, monkeypatch):
+    ended = threading.Event()
+    runner, simulation = start(on_end=ended.set)
+
+    def fail():
+        raise ValueError("the floor is gone")
+
+    monkeypatch.setattr(simulation, "tick", fail)
+    with pytest.raises(SimulationStopped, match="the simulation failed: the floor is gone"):
+        runner.advance(1.0).result(PATIENCE)
+    assert ended.wait(PATIENCE)
+    runner.stop(PATIENCE)
+    assert not runner.running

@@ -1,0 +1,295 @@
+"""Several robots in one world: they see, hear and touch each other, time is one, and each has its own ground."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.sim.errors import NotAllowed
+from nao_sim_bridge.sim.places import on_circle, parse_places
+from nao_sim_bridge.sim.render.scene import Camera, preset_camera
+from nao_sim_bridge.sim.rotations import roll_pitch_yaw
+from nao_sim_bridge.sim.scene import Scene
+from nao_sim_bridge.sim.shared_world import SharedWorld
+from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.sound.samples import RATE, Sound
+from nao_sim_bridge.sim.world_objects import read_object
+
+FACE_TO_FACE = "0,0,0; 0.6,0,180"
+SPEED_OF_SOUND = 343.0
+PUSHED_AWAY = (0.0, 90.0, 0.0), 0.3
+
+
+@pytest.fixture
+def company():
+    """Makes stiff robots in one world; the first one's `run` lets time pass for all."""
+    worlds = []
+
+    def make(places=None, **scene):
+        start = Scene(**{"posture": "Stand", **scene})
+        worlds.append(SharedWorld(start))
+        where = enumerate(parse_places(places) if places else on_circle(3))
+        robots = [Simulation(replace(start, seed=start.seed + n), shared=worlds[-1], place=place) for n, place in where]
+        for one in robots:
+            one.robot.joints.set_stiffness(dict.fromkeys(range(26), 1.0))
+        return robots
+
+    yield make
+    for world in worlds:
+        world.close()
+
+
+def burst(seconds=0.1):
+    return Sound(np.random.default_rng(1).normal(0.0, 0.2, round(seconds * RATE)).astype(np.float32))
+
+
+def place(one, **entry):
+    one.things.place(read_object(entry, "entry", Path))
+
+
+def heard(one, sound, since):
+    """When each microphone hears the beginning of a sound after a time, s, and how loud it is, RMS."""
+    record, wanted = one.sound.microphones.heard(since, one.time), sound.samples[:, 0]
+    starts = [int(np.argmax(np.correlate(record[:, i], wanted, "valid"))) for i in range(4)]
+    loud = [float(np.sqrt(np.mean(record[s : s + len(wanted), i] ** 2))) for i, s in enumerate(starts)]
+    return np.array(starts) / RATE, np.array(loud)
+
+
+def resets(robots):
+    """The robots that have been reset, from now on."""
+    again = []
+    for one in robots:
+        one.after_reset.append(lambda one=one: again.append(one))
+    return again
+
+
+# --- places and time
+
+
+def test_robots_stand_on_a_circle_look_at_its_middle_and_reckon_from_their_own_start(company):
+    robots = company()
+    robots[1].run(0.5)
+    assert {(one.ticks, one.time, one.snapshot.tick) for one in robots} == {(60, 0.5, 60)}
+    assert len({one.task_ids.make("x").task_id for one in robots}) == len(robots)
+    for now in (one.snapshot for one in robots):
+        x, y, height = now.torso.position
+        yaw = roll_pitch_yaw(now.torso.orientation)[2]
+        assert math.hypot(x, y) == pytest.approx(1.0, abs=0.02) and height > 0.32
+        assert max(map(abs, now.velocity_in_torso)) < 0.01, "at rest"
+        assert -(x * math.cos(yaw) + y * math.sin(yaw)) == pytest.approx(1.0, abs=0.02)
+        assert now.imu.angles[2] == pytest.approx(0.0, abs=0.01)
+        assert now.odometry.position[:2] == pytest.approx((0.0, 0.0), abs=0.02)
+
+
+def test_the_same_seed_is_the_same_run_and_each_robot_has_noise_of_its_own(company):
+    runs = []
+    for _ in range(2):
+        robots = company(sensor_noise=1.0, seed=5)
+        robots[0].robot.push((30.0, 10.0, 0.0), 0.1)
+        robots[0].sound.loudspeakers.play(burst(), "burst")
+        robots[0].run(0.5)
+        sensed = [(one.snapshot.positions, one.snapshot.torso, one.snapshot.imu) for one in robots]
+        runs.append((sensed, [one.sound.microphones.heard(0.2, 0.4).tobytes() for one in robots]))
+    assert runs[0] == runs[1]
+    sensed, sounds = runs[0]
+    assert len({repr(positions) for positions, _, _ in sensed}) == len(set(sounds)) == 3
+
+
+def test_a_robot_that_is_alone_does_not_notice_that_it_could_have_company(company, bench):
+    ((one,), alone) = company("0,0,0"), bench().simulation
+    for simulation in (one, alone):
+        simulation.robot.push((25.0, 5.0, 0.0), 0.2)
+        simulation.run(1.0)
+    assert one.snapshot == alone.snapshot
+    place(one, name="b", ball=0.04, position=[0.5, 0.0, 0.04])
+    one.run(0.2)
+    one.reboot()
+    assert one.snapshot.objects == {} and one.time == pytest.approx(1.2), "its reboot is a reset"
+
+
+def test_time_waits_for_each_of_them(company):
+    robots, called = company(), []
+    shared = robots[0].shared
+    assert not shared.holds()
+    robots[2].holds.append(lambda: True)
+    shared.wake = lambda: called.append(True)
+    robots[1].wake()
+    assert shared.holds() and called == [True]
+
+
+# --- touching
+
+
+def test_they_push_each_other_with_equal_forces_until_one_falls(company):
+    standing, coming, third = company("0,0,0; 0.38,0,180; -2,0,0")
+
+    def body(one):
+        return [c for c in one.snapshot.contacts if "ankle" not in one.robot.link_name(c.link)]
+
+    before = third.snapshot.torso.position
+    coming.robot.push((-60.0, 0.0, 0.0), 0.5)
+    while not body(standing) and standing.time < 2.0:
+        standing.tick()
+    felt, given = body(standing), body(coming)
+    assert sum(c.force for c in felt) == pytest.approx(sum(c.force for c in given)) and felt[0].force > 1.0
+    assert np.dot(felt[0].normal, given[0].normal) == pytest.approx(-1.0)
+    assert felt[0].normal[0] < 0.0, "towards the robot that stands: away from the one that comes"
+    assert standing.run(1.5).torso.position[2] < 0.25
+    assert math.dist(before, third.snapshot.torso.position) < 0.02, "who is far is left alone"
+
+
+def test_a_foot_of_another_robot_presses_a_bumper_and_sonars_hear_it(company):
+    one, other = company(FACE_TO_FACE)
+    one.run(1.0)
+    for robot in (one, other):
+        assert robot.snapshot.sonars == pytest.approx((0.54, 0.54), abs=0.03)
+    walls, feet = company("0,0,0; 0.36,-0.1,180")
+    assert not walls.snapshot.touched
+    for ankle in ("l_ankle", "r_ankle"):
+        feet.robot.push((-45.0, 0.0, 0.0), 1.0, ankle)
+    pressed = set()
+    while not pressed and walls.time < 1.0:
+        pressed = {name for name in walls.tick().touched if "Bumper" in name}
+    assert pressed and all(name.startswith("RFoot") for name in pressed), "the other one stands to its right"
+
+
+# --- things, seeing
+
+
+def test_things_are_everybodys_and_nothing_is_placed_inside_any_robot(company):
+    robots = company()
+    place(robots[0], name="b", ball=0.04, position=[0.0, 0.0, 0.04])
+    assert all("b" in one.snapshot.objects for one in robots), "also while time stands still"
+    robots[2].things.move("b", (0.2, 0.1, 0.04), None)
+    robots[1].run(0.1)
+    assert {one.snapshot.objects["b"].position for one in robots} == {robots[0].snapshot.objects["b"].position}
+    for one in robots:
+        x, y, _ = one.snapshot.torso.position
+        with pytest.raises(NotAllowed, match="inside the robot"):
+            place(robots[0], name="c", ball=0.05, position=[x, y, 0.33])
+    free, there = company("0,0,0; 1,0,180", world="lab")
+    assert free.inside() == {} and list(there.inside()) == ["table"] and there.inside()["table"] > 0.01
+
+
+def test_each_robot_sees_what_the_others_look_like_now(company):
+    robots = company()
+    robots[1].robot.leds.set({0: 0.25})
+    robots[2].robot.push((0.0, 40.0, 0.0), 0.2)
+    robots[0].run(0.3)
+    seen = robots[0].render_state(robots[0].snapshot).others
+    assert [look.base_position for look in seen] == [one.snapshot.torso.position for one in robots[1:]]
+    assert [look.joint_positions for look in seen] == [one.snapshot.positions for one in robots[1:]]
+    assert seen[0].led_values[0] == 0.25 and seen[0].led_values == robots[1].robot.leds.values
+    own = robots[1].render_state(robots[1].snapshot)
+    assert (own.base_position, own.led_values) == (seen[0].base_position, seen[0].led_values)
+
+
+@pytest.mark.parametrize("places", [FACE_TO_FACE, "3,1,0; -2,1,0; 0,5,0"])
+def test_one_view_has_all_robots_in_it(company, places):
+    robots = company(places)
+    camera = preset_camera("robots", robots[0].model, robots[0].render_state(robots[0].snapshot), 640, 480)
+    ahead = np.subtract(camera.target, camera.eye)
+    for one in robots:
+        way = np.subtract(one.snapshot.torso.position, camera.eye)
+        angle = math.acos(np.dot(way, ahead) / np.linalg.norm(way) / np.linalg.norm(ahead))
+        assert angle < camera.fov / 2.0
+
+
+def test_a_picture_shows_another_robot_where_it_is(company):
+    looks, _ = company("0,0,0; 0.8,0.25,180")
+    state = looks.render_state(looks.run(0.1))
+    camera = Camera(eye=(0.1, 0.0, 0.45), target=(1.0, 0.0, 0.35), width=160, height=120, fov=math.radians(50.0))
+    pictures = [looks.renderer.render(one, camera, 60.0).astype(int) for one in (state, replace(state, others=()))]
+    columns = np.flatnonzero(np.abs(pictures[0] - pictures[1]).max(axis=(0, 2)) > 60)
+    assert len(columns) > 10 and columns.max() < 80, "to the left of the middle"
+
+
+# --- hearing
+
+
+def test_a_voice_arrives_with_distance_delay_and_the_direction_of_the_head(company):
+    speaker, near, far, turned = company("0,0,0; 0,1,-90; 0,-3,90; 1,0,180")
+    yaw = turned.model.joint_index["HeadYaw"]
+    for _ in range(60):
+        turned.robot.joints.step({yaw: 1.2}, turned.settings.tick_s)
+        turned.tick()
+    began, sound = speaker.time, burst()
+    speaker.sound.loudspeakers.play(sound, "burst")
+    speaker.run(0.3)
+    (near_delays, near_levels), (far_delays, far_levels) = heard(near, sound, began), heard(far, sound, began)
+    assert near_delays * SPEED_OF_SOUND == pytest.approx([1.02] * 4, abs=0.03)
+    assert (far_delays - near_delays).mean() * SPEED_OF_SOUND == pytest.approx(2.0, abs=0.02)
+    assert near_levels.mean() / far_levels.mean() == pytest.approx(3.0, rel=0.03)
+    left, right, front, _ = near_delays
+    assert left == right and front < left, "the speaker is ahead"
+    left, right, _, _ = heard(turned, sound, began)[0]
+    assert right < left, "the head looks to the left, so the speaker is to its right"
+    assert near.sound.sources is far.sound.sources and near.sound.sources.names() == []
+    assert not near.sound.loudspeakers.playing, "voices are not sounds of the world"
+
+
+def test_what_the_ears_hear_is_the_same_whenever_they_hear_it(company):
+    (speaker, listener), blocks = company(FACE_TO_FACE), []
+    ears = listener.sound.ears.listen("test", lambda block: blocks.append(block.samples), exact=True)
+    speaker.sound.loudspeakers.play(burst(seconds=0.4), "burst")
+    listener.robot.push((0.0, 30.0, 0.0), 0.3)
+    listener.run(0.6)
+    ears.close()
+    at_once, later = np.concatenate(blocks), listener.sound.microphones.heard(0.0, listener.time)
+    assert np.abs(at_once / 32768.0 - later).max() < 2.0 / 32768.0 and np.abs(later).max() > 0.01
+
+
+# --- starting again
+
+
+def test_a_reset_puts_all_back_and_kills_what_runs(company):
+    robots = company()
+    starts = [one.snapshot.torso.position[:2] for one in robots]
+    place(robots[0], name="b", ball=0.04, position=[0.0, 0.0, 0.04])
+    playing = [one.sound.loudspeakers.play(burst(), "burst") for one in robots]
+    robots[1].robot.push(*PUSHED_AWAY)
+    again = resets(robots)
+    robots[0].run(1.0)
+    robots[2].reset()
+    assert again == robots and robots[0].time == 1.0 and all(sound.ended for sound in playing)
+    for one, start in zip(robots, starts):
+        assert one.snapshot.torso.position[:2] == pytest.approx(start, abs=0.03) and "b" not in one.snapshot.objects
+
+
+def test_a_reboot_puts_one_back_and_leaves_the_rest(company):
+    robots = company()
+    start = robots[1].snapshot.torso.position[:2]
+    place(robots[0], name="b", ball=0.04, position=[0.0, 0.0, 0.04])
+    for one in robots:
+        one.robot.push(*PUSHED_AWAY)
+    robots[0].run(1.0)
+    fallen = [one.snapshot.torso for one in robots]
+    playing = [one.sound.loudspeakers.play(burst(), "burst") for one in robots]
+    again = resets(robots)
+    robots[1].reboot()
+    assert again == [robots[1]] and [sound.ended for sound in playing] == [False, True, False]
+    assert robots[1].snapshot.torso.position[:2] == pytest.approx(start, abs=0.03)
+    assert (robots[0].snapshot.torso, robots[2].snapshot.torso) == (fallen[0], fallen[2])
+    assert "b" in robots[1].snapshot.objects
+    stood = robots[1].run(0.5)
+    assert stood.stiffnesses == (0.0,) * 26 and stood.odometry.position[:2] == pytest.approx((0.0, 0.0), abs=0.1)
+
+
+def test_a_robot_whose_place_is_taken_reboots_beside_it(company):
+    one, other = company("0,0,0; 0.45,0,180")
+    other.robot.push((-60.0, 0.0, 0.0), 0.6)  # falls over the one that stands, and takes its place
+    one.robot.push((-90.0, 0.0, 0.0), 0.6)
+    one.run(2.0)
+    place(one, name="post", box=[0.1, 0.1, 0.6], position=[0.0, 0.0, 0.3])
+    one.reboot()
+    assert one.inside() == {}
+    x, y, _ = one.snapshot.torso.position
+    assert 0.2 < math.hypot(x, y) < 0.9
+    before = one.run(0.1), other.snapshot
+    one.run(0.5)
+    for was, robot in zip(before, (one, other)):
+        assert math.dist(was.torso.position, robot.snapshot.torso.position) < 0.05, "nobody is hurled away"
