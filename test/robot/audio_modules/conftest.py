@@ -25,7 +25,7 @@ def refused(robot):
         for method, arguments, words in rows:
             with pytest.raises(RuntimeError, match=words):
                 robot.answer(getattr(robot, module).call(method, *arguments, _async=True))
-        assert getattr(robot, module).ping() is True
+        assert robot.ALMemory.ping() is True
 
     return check
 

@@ -156,7 +156,11 @@ def test_what_is_refused_names_what_is_allowed(robot, device, refused):
         ("sendRemoteBufferToOutput", (1, [1, 2, 3]), "pBuffer is 'list', allowed is bytes of 1 frames of two channels"),
         ("sendRemoteBufferToOutput", (1, [1, 40000]), r"pBuffer\[1\] is 40000, allowed is -32768 to 32767"),
         ("sendLocalBufferToOutput", (100, 4096), "addresses are for modules inside the robot's own process"),
-        ("setClientPreferences", ("Hearing", 16000, 0, 0), "48000 Hz with channels 0 .all four., or 16000 Hz with 1 .l"),
+        (
+            "setClientPreferences",
+            ("Hearing", 16000, 0, 0),
+            "48000 Hz with channels 0 .all four., or 16000 Hz with 1 .l",
+        ),
         ("setClientPreferences", ("Hearing", 44100, [1, 1, 1, 1], 0, 0), "48000 Hz with channels 0"),
         ("setClientPreferences", ("Hearing", 48000, 0, 2), "deinterleaved is 2, allowed is 0 or 1"),
         ("subscribe", ("Nobody",), "there is no module 'Nobody' to send sound to; register it first"),
@@ -192,7 +196,8 @@ def test_energies_rise_with_what_sounds_and_are_zero_when_not_computed(robot, de
     loud = energies()
     device.setOutputVolume(50)
     half = energies()
-    assert all(l > 50.0 * q for l, q in zip(loud, quiet)) and half == pytest.approx([0.5 * l for l in loud], rel=0.02)
+    assert all(now > 50.0 * before for now, before in zip(loud, quiet))
+    assert half == pytest.approx([0.5 * energy for energy in loud], rel=0.02)
     robot.advance(0.5)
     put(robot, (0.0, 0.4, 0.5), noise(1.0), level_db=80.0, loop=True)
     left, right, _, _ = energies()
@@ -297,7 +302,9 @@ def test_the_forms_of_a_module_hold_the_channels_of_a_file_that_stands_for_the_m
         samples = found[3].reshape(shape)
         rows = samples.T if axis else samples
         assert found[:2] == (len(rows), rows.shape[1])
-        return [(round(frequency(row, rate) / 300.0), round(10 * np.sqrt(2.0) * loudness(row) / 32768.0)) for row in rows]
+        return [
+            (round(frequency(row, rate) / 300.0), round(10 * np.sqrt(2.0) * loudness(row) / 32768.0)) for row in rows
+        ]
 
     assert heard((8160, 4), 48000, axis=1) == [(1, 1), (2, 2), (3, 3), (4, 4)]
     device.setClientPreferences("Forms", 48000, [1, 1, 1, 1], 1, 0)

@@ -187,7 +187,9 @@ def test_tones_swell_and_fade_within_milliseconds_and_do_not_drift(robot, begin)
     assert level[:5].max() < 0.1 and level[-5:].max() < 0.1
     assert level[150:250].max() > 0.95 and level[-250:-150].max() > 0.95
     last = np.arange(60 * RATE - 4896, 60 * RATE - 96)
-    np.testing.assert_allclose(sine(441, 100, 60.0).samples[last, 0], np.sin(2.0 * np.pi * 441 * last / RATE), atol=1e-3)
+    np.testing.assert_allclose(
+        sine(441, 100, 60.0).samples[last, 0], np.sin(2.0 * np.pi * 441 * last / RATE), atol=1e-3
+    )
 
 
 def test_what_is_refused_names_what_is_allowed(robot, refused, player, monkeypatch):
@@ -226,7 +228,11 @@ def test_what_is_refused_names_what_is_allowed(robot, refused, player, monkeypat
         ("playSine", (440, 50, 0, 1e9), "duration is 1000000000.0"),
         ("playSoundSetFile", ("nowhere", "bip"), "no sound set 'nowhere'; installed are .*nao_library"),
         ("loadSoundSet", ("mine/..",), "no sound set 'mine/..'; installed are"),
-        ("playWebStream", ("ftp://x/a.wav", 1.0, 0.0), "streamName is .*, allowed is an address of http, https or file"),
+        (
+            "playWebStream",
+            ("ftp://x/a.wav", 1.0, 0.0),
+            "streamName is .*, allowed is an address of http, https or file",
+        ),
         ("playWebStream", ("http://127.0.0.1:9/a.wav", 1.0, 0.0), "nothing can be fetched from .*refused"),
     ]
     begun = robot.now.time

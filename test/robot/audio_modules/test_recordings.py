@@ -32,7 +32,9 @@ def recorder(robot):
         ("/home/nao/recordings/d.ogg", "ogg", 48000, ALL, 4),
     ],
 )
-def test_a_tone_is_in_the_recording_from_its_first_to_its_last_moment(robot, recorder, name, kind, rate, flags, channels):
+def test_a_tone_is_in_the_recording_from_its_first_to_its_last_moment(
+    robot, recorder, name, kind, rate, flags, channels
+):
     robot.advance(0.05)
     recorder.startMicrophonesRecording(name, kind, rate, flags)
     begun = robot.now.time
@@ -129,7 +131,10 @@ def test_what_is_refused_names_what_is_allowed(robot, recorder, refused):
     for name in ("folder.wav", "folder.ogg"):
         (folder / name).mkdir(parents=True, exist_ok=True)
     rows = [
-        (("a.mp3", "mp3", 48000, ALL), "ALAudioRecorder::startMicrophonesRecording type is 'mp3', allowed is wav or ogg"),
+        (
+            ("a.mp3", "mp3", 48000, ALL),
+            "ALAudioRecorder::startMicrophonesRecording type is 'mp3', allowed is wav or ogg",
+        ),
         (("a.wav", "ogg", 48000, ALL), "filename is 'a.wav', allowed is a name that ends in .ogg, as the type says"),
         (("a", "wav", 48000, ALL), "filename is 'a', allowed is a name that ends in .wav or .ogg"),
         (("a.wav", "wav", 44100, ALL), "48000 Hz with channels 0 .all four., or 16000 Hz with 1 .left"),
