@@ -1,33 +1,25 @@
 #!/usr/bin/env python3
 """The example of docs/testing.md: a suite as users of nao_library write it for their own experiment."""
 
-import unittest
-
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_actions.msg import NaoLedAction
 from nao_library_msgs.msg import LedFunction
-from nao_sim_bridge.testing import SimulatedRobot, send
+from nao_sim_bridge.testing import RobotTestCase
 
 
-class ExampleSuite(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.robot = SimulatedRobot()
-        cls.lights = cls.robot.action_client("NaoLights", NaoLedAction)
-
-    def setUp(self):
-        self.robot.reset()
+class ExampleSuite(RobotTestCase):
+    server = ("NaoLights", NaoLedAction)
 
     def test_eyes_are_red_while_the_robot_waits(self):
         red = LedFunction(
             function="setColor", lights=["FaceLeds"], str_param="red", time=rospy.Duration(3), revert=True
         )
-        run = send(self.lights, NaoLedGoal([red]))
+        run = self.send(red)
         self.robot.wait_for_leds({"Face/Led/Red/Left/0Deg": 1.0, "Face/Led/Green/Left/0Deg": 0.0})
-        self.assertEqual(run.wait().state, GoalStatus.SUCCEEDED)
+        self.ends(run, GoalStatus.SUCCEEDED)
         self.assertEqual(self.robot.led("Face/Led/Green/Left/0Deg"), 1.0)
 
     def test_it_still_stands_after_a_push(self):

@@ -39,7 +39,8 @@ class OwnStack:
     ) -> None:
         self.ros_port, self.nao_port = ros_port or free_port(), free_port()
         self.log = log
-        command = ["roslaunch", "--port", str(self.ros_port), *launch]
+        # It gets Ctrl-C when this process is killed, and ends its nodes.
+        command = ["setpriv", "--pdeathsig", "INT", "roslaunch", "--port", str(self.ros_port), *launch]
         command += [f"{name}:={value}" for name, value in {"nao_port": str(self.nao_port), **arguments}.items()]
         with log.open("wb") as output:
             self._process = subprocess.Popen(
