@@ -105,7 +105,7 @@ def test_a_robot_that_is_alone_does_not_notice_that_it_could_have_company(compan
         simulation.robot.push((25.0, 5.0, 0.0), 0.2)
         simulation.run(1.0)
     assert one.snapshot == alone.snapshot
-    place(one, name="b", ball=0.04, position=[0.5, 0.0, 0.04])
+    place(one, name="b", ball=0.04, position=[-1.5, 0.0, 0.04])
     one.run(0.2)
     one.reboot()
     assert one.snapshot.objects == {} and one.time == pytest.approx(1.2), "its reboot is a reset"

@@ -1,0 +1,258 @@
+"""The picture process: what is where and what lights up, which engine draws, and what happens when it fails."""
+
+from __future__ import annotations
+
+import logging
+import math
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from seen import AWAY, GREEN, MODEL, STATE, UNTURNED, clear, middle, placed, shot
+
+from nao_sim_bridge.paths import data_root
+from nao_sim_bridge.sim.cameras.photograph import photograph, read_photograph
+from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.leds_layout import load_leds
+from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.render import PRESETS, Camera, Renderer, RenderError, RenderState, Viewer, preset_camera
+from nao_sim_bridge.sim.render.engines import open_engine
+from nao_sim_bridge.sim.render.view import View
+from nao_sim_bridge.sim.world import load_world
+
+SMALL = {"width": 160, "height": 120, "supersampling": 1}
+FRONT = preset_camera("front", MODEL, STATE, **SMALL)
+AHEAD = Camera((0.0, 0.0, 0.5), (1.0, 0.0, 0.5), width=160, height=120)
+BALL = {"name": "ball", "sphere": 0.05, "position": [1.0, 0.2, 0.5], "color": list(GREEN)}
+HELP = "install the packages libegl1, libgl1 and libgl1-mesa-dri"
+
+
+def lit(name, channel, level=1.0):
+    leds = load_leds()
+    lamps = {index for index in leds.devices_of(name) if leds.channels[index] == channel}
+    return tuple(level if index in lamps else 0.0 for index in range(89))
+
+
+def at(x, state=STATE):
+    return replace(state, base_position=(x, 0.0, 0.333))
+
+
+def shining(leds):
+    return replace(STATE, led_values=leds)
+
+
+def count(picture, channel):
+    """Number of pixels that are clearly of one primary colour."""
+    values = picture.astype(int)
+    others = [values[..., i] for i in range(3) if i != channel]
+    return int(np.sum((values[..., channel] > 120) & (values[..., channel] > 1.8 * np.maximum(*others))))
+
+
+def warnings_of(caplog):
+    return [record.getMessage() for record in caplog.records if record.levelno >= logging.WARNING]
+
+
+@pytest.fixture(scope="module", params=["opengl", "builtin"])
+def renderer(request):
+    with Renderer("empty", engine=request.param) as started:
+        yield started.start()
+
+
+def take(renderer, state, view, **size):
+    return renderer.render(state, preset_camera(view, MODEL, state, **{**SMALL, **size}))
+
+
+def test_green_eyes_are_green_each_on_its_own_side_and_dark_eyes_are_not(renderer):
+    size = {"width": 640, "height": 480, "supersampling": 2}
+    dark, green = (take(renderer, state, "front", **size) for state in (STATE, shining(lit("FaceLeds", "green"))))
+    assert dark.shape == (480, 640, 3) and dark.dtype == np.uint8
+    assert count(dark, 1) == 0 and count(green, 1) > 150
+    rows, columns = np.nonzero(np.any(dark != green, axis=2))
+    # The eyes and their glow, nothing else: the head is in the middle of the upper third.
+    assert rows.max() < 480 / 3 and columns.min() > 640 * 0.4 and columns.max() < 640 * 0.6
+    left = take(renderer, shining(lit("LeftFaceLeds", "green")), "front")
+    rows, columns = np.nonzero((left[..., 1].astype(int) - left[..., 0]) > 60)
+    assert len(rows) and columns.min() >= 80, "seen from the front, the robot's left is on the right"
+
+
+def test_other_lamps_light_up_as_bright_as_they_are(renderer):
+    for name, view in (("ChestLeds", "front"), ("LeftEarLeds", "side")):
+        pictures = [take(renderer, one, view, width=320, height=240) for one in (STATE, shining(lit(name, "blue")))]
+        before, after = (count(picture, 2) for picture in pictures)
+        assert before == 0 and after > 10, name
+    levels = [shining(lit("FaceLeds", "red", level)) for level in (0.0, 0.5, 1.0)]
+    dark, half, full = (take(renderer, state, "face")[..., 0].astype(int).sum() for state in levels)
+    assert dark < half < full
+
+
+def test_an_arm_that_rises_is_seen_higher_and_a_robot_far_away_smaller(renderer):
+    angles = list(STATE.joint_positions)
+    angles[MODEL.joint_index["LShoulderPitch"]] = -1.5
+    raised = replace(STATE, joint_positions=tuple(angles))
+    before, after = (renderer.render(state, FRONT).astype(int) for state in (STATE, raised))
+    changed = np.any(np.abs(before - after) > 40, axis=2)
+    assert changed[:30, 80:].sum() > 20, "above the left shoulder, where nothing was"
+    assert changed[:30, :60].sum() == 0
+    empty = renderer.render(at(50.0), FRONT).astype(int)
+    near, far = (np.any(np.abs(renderer.render(at(x), FRONT) - empty) > 40, axis=2).sum() for x in (0.0, -1.5))
+    assert near > 2 * far > 0
+    darker = (renderer.render(STATE, replace(FRONT, shadows=False)).astype(int) - before).sum(axis=2) > 60
+    assert darker[80:].sum() > 100, "the robot throws a shadow on the floor"
+
+
+@pytest.mark.parametrize("view", PRESETS)
+def test_every_view_shows_the_robot_also_when_it_lies(renderer, view):
+    belly = (0.0, math.sin(math.pi / 4), 0.0, math.cos(math.pi / 4))
+    state = RenderState((0.3, 0.2, 0.08), belly, posture(MODEL, "LyingBelly"), lit("FaceLeds", "green"))
+    picture = take(renderer, state, view, width=320, height=240)
+    red, green, blue = (picture[..., i].astype(int) for i in range(3))
+    assert int(np.sum((red > 100) & (green < 0.75 * red) & (blue < 0.45 * red))) > 20, "orange"
+
+
+# --- the process
+
+
+def test_objects_of_the_world_are_seen_where_they_are(world_file):
+    entry = "{name: ball, sphere: 0.1, position: [0.3, 0.22, 0.1], mass: 0.1, color: [0, 1, 0]}"
+    moved = replace(STATE, objects={"ball": Pose((0.3, -0.22, 0.1), UNTURNED)})
+    with Renderer(world_file(entry)) as own:
+        before, after = own.render(STATE, FRONT), own.render(moved, FRONT)
+        with pytest.raises(RenderError, match="unknown object 'bal': did you mean 'ball'"):
+            own.render(replace(STATE, objects={"bal": moved.objects["ball"]}), FRONT)
+        assert np.array_equal(own.render(moved, FRONT), after), "a picture it cannot make is no reason to end"
+    # Seen from the front, positive y is on the right.
+    assert count(before[:, 80:], 1) > 30 and count(before[:, :80], 1) == 0
+    assert count(after[:, :80], 1) > 30 and count(after[:, 80:], 1) == 0
+
+
+def test_a_process_that_is_killed_or_hangs_is_started_again(caplog):
+    with Renderer() as own:
+        first = own.start().pid
+        os.kill(first, signal.SIGKILL)
+        with pytest.raises(RenderError, match="ended with status -9"):
+            own.render(STATE, FRONT)
+        before = own.render(STATE, FRONT)
+        second = own.pid
+        os.kill(second, signal.SIGKILL)
+        caplog.clear()
+        assert np.array_equal(own.render(STATE, FRONT), before), "after a first picture nobody notices"
+        assert warnings_of(caplog) == ["picture: the picture process ended with status -9; it is started again"]
+        assert len({first, second, own.pid}) == 3
+        os.kill(own.pid, signal.SIGSTOP)
+        with pytest.raises(RenderError, match="no answer .* within 0.2 s"):
+            own.render(STATE, FRONT, timeout=0.2)
+        assert own.render(STATE, FRONT).shape == (120, 160, 3)
+        process = own.pid
+    assert own.pid is None
+    with pytest.raises(ProcessLookupError):
+        os.kill(process, 0)
+
+
+def test_the_process_ends_with_its_parent():
+    program = (
+        "import os, signal\nfrom nao_sim_bridge.sim.render import Renderer\n"
+        "print(Renderer().start().pid, flush=True)\nos.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(data_root() / "src")}
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL, "text": True}
+    parent = subprocess.Popen([sys.executable, "-c", program], env=environment, **streams)
+    assert int(parent.stdout.readline()) != parent.pid
+    # The picture process holds the other end of its parent's output: it closes when both have ended.
+    parent.communicate(timeout=60.0)
+    assert parent.returncode == -signal.SIGKILL
+
+
+def test_what_cannot_start_says_why(monkeypatch):
+    with pytest.raises(RenderError, match="no world 'moon'"):
+        Renderer("moon").start()
+    with pytest.raises(UnknownName, match="unknown renderer 'opengles': did you mean 'opengl'"):
+        Renderer(engine="opengles")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    with pytest.raises(RenderError, match="no display"):
+        Viewer().start()
+    monkeypatch.setenv("DISPLAY", ":97")
+    with pytest.raises(RenderError, match="window: "):
+        Viewer().start()
+
+
+# --- engines
+
+
+def test_opengl_draws_where_it_can_be_had(caplog):
+    caplog.set_level(logging.INFO)
+    with Renderer() as own:
+        assert own.engine is None and own.start().engine.startswith("OpenGL: ")
+    assert f"pictures are drawn by {own.engine}" in caplog.text and not warnings_of(caplog)
+
+
+def test_without_opengl_the_built_in_engine_draws_and_one_warning_says_how_to_get_it(monkeypatch, caplog):
+    for name in ("FILENAMES", "DIRS"):  # EGL finds no driver in processes that are started from now on
+        monkeypatch.setenv(f"__EGL_VENDOR_LIBRARY_{name}", "/nowhere/at/all.json")
+    with Renderer() as own:
+        picture = own.render(AWAY, AHEAD)
+        assert own.engine.startswith("the built-in renderer")
+        os.kill(own.pid, signal.SIGKILL)
+        assert np.array_equal(own.render(AWAY, AHEAD), picture)
+    help_once, again = warnings_of(caplog)
+    assert HELP in help_once and "is started again" in again
+    with pytest.raises(RenderError, match=f"OpenGL: .*{HELP}"):
+        Renderer(engine="opengl").start()
+
+
+def test_a_driver_that_takes_its_process_with_it_or_is_not_there_is_done_without(tmp_path, monkeypatch, caplog):
+    (tmp_path / "moderngl.py").write_text("import os\nos._exit(7)\n")
+    with monkeypatch.context() as broken:
+        broken.setenv("PYTHONPATH", str(tmp_path))
+        with Renderer() as own:
+            assert own.start().engine.startswith("the built-in renderer")
+        with pytest.raises(RenderError, match="ended with status 7"):
+            Renderer(engine="opengl").start()
+    (warning,) = warnings_of(caplog)
+    assert "ended with status 7" in warning
+    monkeypatch.setitem(sys.modules, "moderngl", None)
+    for name in ("opengl", "opengl.engine"):
+        monkeypatch.delitem(sys.modules, f"nao_sim_bridge.sim.render.{name}", raising=False)
+    drawing, complaint = open_engine("auto", load_world("empty"), "V6")
+    drawing.close()
+    assert drawing.name.startswith("the built-in renderer") and HELP in complaint
+
+
+# --- captures
+
+
+@pytest.fixture(scope="module")
+def own():
+    with Renderer("empty") as started:
+        yield started.start()
+
+
+def test_a_capture_is_what_the_camera_makes_of_what_is_drawn(own):
+    state, view = placed(BALL), shot(width=160, height=120)
+    drawing, _ = open_engine("auto", load_world("empty"), "V6")
+    expected = photograph(drawing.draw(state, View.of_shot(view)), view)
+    drawing.close()
+    captured = own.capture(state, view)
+    assert captured == expected
+    pixels = np.frombuffer(read_photograph(captured).data, np.uint8).reshape(120, 160, 3)
+    assert middle(clear(pixels, 1) > 0.3)[0] < 70
+
+
+def test_a_capture_that_cannot_be_made_is_an_error_and_what_was_placed_is_there_afterwards(own):
+    process, state = own.pid, placed(BALL)
+    with pytest.raises(RenderError, match="unknown object 'bal'"):
+        own.capture(placed(BALL, objects={"bal": Pose((0.0, 0.0, 0.0), UNTURNED)}), shot())
+    with pytest.raises(RenderError, match="colorSpace"):
+        own.capture(STATE, replace(shot(), color_space=99))
+    assert read_photograph(own.capture(STATE, shot())).data
+    with pytest.raises(RenderError):
+        own.render(replace(state, gone=frozenset(["nothing"])), AHEAD)
+    before = own.render(state, AHEAD)
+    assert np.count_nonzero(clear(before, 1)) > 50 and own.pid == process
+    os.kill(own.pid, signal.SIGKILL)
+    assert np.array_equal(own.render(state, AHEAD), before)
+    assert not np.array_equal(own.render(AWAY, AHEAD), before)

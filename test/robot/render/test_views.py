@@ -1,0 +1,270 @@
+"""What cameras see, with both engines: where things are in the picture, what hides what, what comes and goes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+from seen import AWAY, BLUE, GREEN, MODEL, RED, STATE, UNTURNED, clear, middle, placed, shot, world
+
+from nao_sim_bridge.sim.cameras.places import CameraPlaces
+from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.sim.render import Camera, RobotLook
+from nao_sim_bridge.sim.render.engines import open_engine
+from nao_sim_bridge.sim.render.view import View
+from nao_sim_bridge.sim.shapes import Shape
+from nao_sim_bridge.sim.world import Part, WorldObject
+from nao_sim_bridge.sim.world_pictures import WorldPicture
+from nao_sim_bridge.sim.world_reader import read_world
+
+VIEW, HERE = View.of_shot(shot()), (0.0, 0.0, 0.0)
+
+
+@pytest.fixture(scope="module", params=["opengl", "builtin"])
+def name(request):
+    """Of each engine."""
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def drawing(name):
+    """An engine with an empty world."""
+    made, _ = open_engine(name, world(), "V6")
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def engine(name):
+    """Makes further engines, which are freed after the test."""
+    made = []
+
+    def make(of):
+        made.append(open_engine(name, of, "V6")[0])
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+def ball(name, position, color=GREEN, radius=0.03):
+    return {"name": name, "sphere": radius, "position": list(position), "color": list(color)}
+
+
+def area(picture, channel=1):
+    """Number of pixels of a primary colour."""
+    return np.count_nonzero(clear(picture, channel))
+
+
+def differ(one, other, by=0):
+    """Where two pictures differ."""
+    return np.any(np.abs(one.astype(int) - other) > by, axis=2)
+
+
+def from_head(state, camera=0):
+    position, orientation = CameraPlaces(MODEL).in_world(state, camera)
+    return View.of_shot(replace(shot(), position=position, orientation=orientation))
+
+
+@pytest.mark.parametrize(
+    "place, position, rpy, fov",
+    [
+        ((1.0, 0.0, 0.5), (0.0, 0.0, 0.5), HERE, (56.3, 43.7)),
+        ((1.0, 0.35, 0.75), (0.0, 0.0, 0.5), HERE, (56.3, 43.7)),
+        ((0.9, -0.4, 0.25), (0.0, 0.0, 0.5), HERE, (60.9, 47.6)),
+        ((0.3, 1.2, 0.2), (0.1, 0.2, 0.6), (0.3, 0.4, 1.3), (56.3, 43.7)),
+        ((-1.0, -0.2, 0.9), (0.0, 0.0, 0.5), (-0.5, -0.3, 3.1), (60.9, 47.6)),
+    ],
+)
+def test_a_ball_is_seen_where_the_projection_says(drawing, place, position, rpy, fov):
+    for size in ((160, 120), (640, 480)):
+        view = View.of_shot(shot(position, rpy, *size, fov))
+        seen, expected = clear(drawing.draw(placed(ball("ball", place, radius=0.025)), view), 1), view.project(place)
+        assert 0.0 < expected[0] < size[0] and 0.0 < expected[1] < size[1]
+        # The middle of what is seen of a ball is a little farther out than the image of its middle.
+        assert middle(seen > 0.0) == pytest.approx(expected, abs=0.5)
+
+
+def test_left_is_left_up_is_up_and_the_near_hides_the_far(drawing):
+    picture = drawing.draw(placed(ball("left", (1.0, 0.3, 0.5)), ball("up", (1.0, 0.0, 0.7), BLUE)), VIEW)
+    assert middle(clear(picture, 1))[0] < 100 and middle(clear(picture, 2))[1] < 80
+    near = {"name": "near", "box": [0.1, 0.4, 0.4], "position": [1.0, 0.0, 0.5], "color": list(RED)}
+    far = {"name": "far", "box": [0.1, 0.3, 0.3], "position": [1.5, 0.0, 0.5], "color": list(GREEN)}
+    picture = drawing.draw(placed(far, near), VIEW)
+    assert area(picture, 0) > 1000 and area(picture) == 0
+    beside = placed(far, near, objects={"near": Pose((1.0, 1.0, 0.5), UNTURNED)})
+    assert area(drawing.draw(beside, VIEW)) > 1000
+
+
+def test_small_and_far_things_have_fewer_triangles_and_the_same_place(drawing):
+    """A ball that shrinks below the size where that begins does not jump."""
+    view, middles = View.of_shot(shot(width=640, height=480)), []
+    empty = drawing.draw(AWAY, view)
+    for radius in (0.0165, 0.0175):  # 9.9 and 10.5 pixels at 1 m
+        changed = differ(drawing.draw(placed(ball("ball", (1.0, 0.1, 0.55), radius=radius)), view), empty, by=40)
+        middles.append(np.argwhere(changed).mean(axis=0))
+        assert changed.sum() == pytest.approx(np.pi * (598.0 * radius) ** 2, rel=0.12)
+    assert middles[0] == pytest.approx(middles[1], abs=0.4)
+
+
+# --- pictures on things
+
+
+@pytest.fixture(scope="module")
+def four_colors(tmp_path_factory):
+    """A picture: red and green above, blue and white below."""
+    pixels = np.zeros((64, 64, 3), dtype=np.uint8)
+    pixels[:32, :32], pixels[:32, 32:] = (220, 0, 0), (0, 220, 0)
+    pixels[32:, :32], pixels[32:, 32:] = (0, 0, 220), (220, 220, 220)
+    path = tmp_path_factory.mktemp("pictures") / "four.png"
+    Image.fromarray(pixels).save(path)
+    return WorldPicture("file", str(path))
+
+
+def card(picture=None, shape=None, color=(0.5, 0.5, 0.5), **changes):
+    """Faces the camera of `shot`, 1 m ahead of it."""
+    part = Part(shape or Shape("box", (0.02, 0.4, 0.4), HERE, HERE), color, picture)
+    physics = {"mass": 0.0, "friction": 1.0, "rolling_friction": 0.0, "restitution": 0.0}
+    return replace(WorldObject("card", (1.01, 0.0, 0.5), (0.0, 0.0, math.pi), (part,), **physics), **changes)
+
+
+def with_things(*things, **changes):
+    return replace(AWAY, placed=things, **changes)
+
+
+@pytest.mark.parametrize("kind, size", [("box", (0.02, 0.4, 0.4)), ("sphere", (0.2,))])
+def test_a_picture_on_a_thing_is_upright_not_mirrored_and_on_its_front_only(drawing, four_colors, kind, size):
+    thing = card(four_colors, Shape(kind, size, HERE, HERE))
+    picture = drawing.draw(with_things(thing), VIEW)
+    red, green, blue = (middle(clear(picture, channel)) for channel in range(3))
+    assert red[0] < 155 and red[1] < 115
+    assert green[0] > 165 and green[1] < 115
+    assert blue[0] < 155 and blue[1] > 125
+    if kind == "box":
+        rows, columns = np.nonzero(clear(picture, 0))
+        # A quarter of 0.4 m at 1 m, where 300 pixels are 1 m.
+        assert (columns.min(), columns.max()) == pytest.approx((100, 160), abs=2)
+        assert (rows.min(), rows.max()) == pytest.approx((60, 120), abs=2)
+        behind = drawing.draw(with_things(replace(thing, rpy=HERE)), VIEW)
+        assert [area(behind, channel) for channel in range(3)] == [0, 0, 0]
+
+
+# --- what comes and goes
+
+
+def test_what_was_placed_comes_moves_and_goes(drawing):
+    thing = card(shape=Shape("sphere", (0.05,), HERE, HERE), color=GREEN, name="ball", position=(1.0, 0.2, 0.5))
+    without = drawing.draw(AWAY, VIEW)
+    assert area(without) == 0
+    assert middle(clear(drawing.draw(with_things(thing), VIEW), 1))[0] == pytest.approx(100, abs=2)
+    moved = with_things(thing, objects={"ball": Pose((1.0, -0.2, 0.5), UNTURNED)})
+    assert middle(clear(drawing.draw(moved, VIEW), 1))[0] == pytest.approx(220, abs=2)
+    assert np.array_equal(drawing.draw(AWAY, VIEW), without)
+    for wrong in ({"objects": {"bal": Pose(HERE, UNTURNED)}}, {"gone": frozenset(["bal"])}):
+        with pytest.raises(UnknownName, match="unknown object 'bal': did you mean 'ball'"):
+            drawing.draw(with_things(thing, **wrong), VIEW)
+
+
+def test_what_is_gone_is_not_seen_and_throws_no_shadow_and_its_name_may_come_again(drawing, engine):
+    plate = {"name": "plate", "box": [0.4, 0.4, 0.02], "position": [1.2, 0.0, 0.3], "color": list(GREEN)}
+    with_plate, view = engine(world(plate)), View.of_shot(shot(rpy=(0.0, 0.25, 0.0)))
+    there, gone = with_plate.draw(AWAY, view), with_plate.draw(replace(AWAY, gone=frozenset(["plate"])), view)
+    assert area(there) > 300 and area(gone) == 0 and np.array_equal(gone, drawing.draw(AWAY, view))
+    again = card(shape=Shape("sphere", (0.05,), HERE, HERE), color=RED, name="plate")
+    back = with_plate.draw(with_things(again, gone=frozenset(["plate"])), view)
+    assert area(back, 0) > 100 and area(back) == 0
+    assert np.array_equal(with_plate.draw(AWAY, view), there)
+
+
+def test_the_same_request_gives_the_same_bytes_in_another_engine_after_other_pictures(engine):
+    first, second = (engine(world({**ball("ball", (1.0, 0.2, 0.1)), "mass": 1.0})) for _ in range(2))
+    moved = replace(STATE, led_values=(0.5,) * 89, objects={"ball": Pose((0.9, 0.0, 0.2), UNTURNED)})
+    view = from_head(moved)
+    expected = first.draw(moved, view)
+    second.draw(STATE, View.of_shot(shot(width=160, height=120)))
+    second.draw(replace(moved, gone=frozenset(["ball"])), view)
+    second.draw(AWAY, replace(view, samples=2, shadows=False))
+    assert np.array_equal(second.draw(moved, view), expected)
+
+
+# --- robots
+
+
+def test_the_head_is_not_in_the_way_of_its_cameras_but_a_raised_arm_is_seen(drawing):
+    for camera, rows in ((0, 240), (1, 120)):  # looking down, its own shadow and feet may be there, nothing above
+        view = from_head(STATE, camera)
+        assert not differ(drawing.draw(STATE, view), drawing.draw(AWAY, view), by=3)[:rows].any()
+    angles = list(STATE.joint_positions)
+    for joint in ("LShoulderPitch", "LShoulderRoll"):
+        angles[MODEL.joint_index[joint]] = -0.2
+    raised, view = replace(STATE, joint_positions=tuple(angles)), from_head(STATE)
+    changed = differ(drawing.draw(raised, view), drawing.draw(STATE, view), by=20)
+    assert changed.sum() > 3000 and middle(changed)[0] < 140, "on the left"
+    outside = replace(View.of_shot(shot((1.0, 0.0, 0.45), (0.0, 0.0, math.pi))), from_head=False)
+    before = drawing.draw(STATE, outside)
+    assert differ(drawing.draw(STATE, replace(outside, from_head=True)), before).sum() > 500
+    assert np.array_equal(drawing.draw(STATE, outside), before), "from outside it has its head again"
+
+
+def test_other_robots_are_seen_with_their_heads_lights_and_postures(drawing):
+    view = from_head(STATE)
+    dark = RobotLook((1.2, 0.0, 0.333), (0.0, 0.0, 1.0, 0.0), STATE.joint_positions, (0.0,) * 89)
+    groups = (
+        (),
+        (dark,),
+        (replace(dark, led_values=(1.0,) * 89),),
+        (dark, replace(dark, base_position=(1.2, 0.4, 0.333))),
+    )
+    alone, one, glowing, two = (drawing.draw(replace(STATE, others=others), view) for others in groups)
+    assert differ(one, alone, by=20).sum() > 3000 and differ(glowing, one, by=40).sum() > 20
+    assert differ(two, one)[:, :100].sum() > 1000 and np.array_equal(drawing.draw(STATE, view), alone)
+
+
+# --- shadows
+
+
+def test_a_thing_throws_a_shadow_that_goes_with_it(drawing):
+    plate = {"name": "plate", "box": [0.3, 0.3, 0.02], "position": [1.2, 0.0, 0.35], "mass": 1.0}
+    view = View.of_shot(shot(rpy=(0.0, 0.4, 0.0)))
+
+    def darker(y):
+        state = placed(plate, objects={"plate": Pose((1.2, y, 0.35), UNTURNED)}, base_position=(-1.0, 0.0, 0.333))
+        difference = drawing.draw(state, replace(view, shadows=False)).astype(int) - drawing.draw(state, view)
+        return difference[130:].sum(axis=2) > 60
+
+    left, here, right = (darker(y) for y in (0.3, 0.0, -0.3))
+    assert np.count_nonzero(here) > 100 and middle(left)[0] < middle(here)[0] - 20 < middle(right)[0] - 40
+
+
+PLATE = {"name": "plate", "box": [0.4, 0.4, 0.02], "position": [2.5, 0.0, 0.5]}
+
+
+def lit_from_above(*objects):
+    content = {"floor": {"friction": 1.0}, "light": {"direction": [0, 0, 1]}, "background": {"haze": 1000.0}}
+    return read_world({**content, "objects": list(objects)}, "test", "test.yaml")
+
+
+def floor(drawing, x, y, state=STATE, eye=None):
+    """Colour of the floor at a point, seen from low enough to look under a plate."""
+    camera = Camera(eye or (x - 1.0, y, 0.3), (x, y, 0.0), fov=0.2, width=41, height=41)
+    return drawing.draw(state, View.of_camera(camera))[20, 20].astype(float)
+
+
+def test_furniture_far_from_the_robot_throws_a_shadow_still_or_moved(engine):
+    with_plate, without = engine(lit_from_above(PLATE)), engine(lit_from_above())
+    assert np.all(floor(with_plate, 2.5, 0.0) < 0.75 * floor(without, 2.5, 0.0))
+    assert floor(with_plate, 2.5, 0.6) == pytest.approx(floor(without, 2.5, 0.6), abs=2.0)
+    still = {**PLATE, "name": "still", "position": [-3.0, 0.0, 0.5]}
+    moving = engine(lit_from_above({**PLATE, "mass": 1.0}, still))
+    here, gone = (replace(STATE, objects={"plate": Pose((2.5, y, 0.5), UNTURNED)}) for y in (0.0, 1.5))
+    assert np.all(floor(moving, 2.5, 0.0, here) < 0.75 * floor(moving, 2.5, 0.0, gone))
+    under = {**PLATE, "position": [0.6, 0.0, 0.5]}
+    lid = {**under, "name": "lid", "position": [0.6, 0.0, 0.6], "mass": 1.0}
+    worlds = lit_from_above(under), lit_from_above(under, lid)
+    one, both = (floor(engine(of), 0.6, 0.0, eye=(0.6, -1.2, 0.3)) for of in worlds)
+    assert both == pytest.approx(one, abs=3.0), "two shadows on each other are no darker than one"
