@@ -158,7 +158,7 @@ def test_several_servers_work_at_once_and_at_their_times(behaviors, robot):
     assert min(first.ended - first.began, second.ended - second.began) >= 0.99 and tone.began >= 0.19
     begun = steps["2"].began
     assert begun >= max(first.ended, second.ended, tone.ended)
-    assert [steps[path].began - begun >= due for path, due in (("2.1", 0.5), ("2.2", 0.2))] == [True, True]
+    assert [steps[path].began - begun > due - 0.01 for path, due in (("2.1", 0.5), ("2.2", 0.2))] == [True, True]
     assert steps["2.2"].began < steps["2.1"].began and steps["2.3"].began - steps["2.2"].ended >= 0.299
     assert head(robot) == pytest.approx(0.2, abs=0.03) and value(robot, BRAIN) == 0.0
     assert value(robot, f"{RED}/Actuator/Value") == 1.0

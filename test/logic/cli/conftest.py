@@ -1,0 +1,105 @@
+"""A stack for the command line without ROS: what servers say is real, what they are sent is kept."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import actionlib
+import pytest
+from actionlib import CommState
+from actionlib_msgs.msg import GoalStatus
+from click.testing import CliRunner
+
+from nao_library_modules.command_line import goals
+from nao_library_modules.command_line.app import nao
+from nao_library_modules.describe_offline import offline_servers
+from nao_library_msgs.msg import FunctionResult
+
+DESCRIBE = "/describe"
+
+
+class FakeGraph:
+    """A master with servers in some namespaces; services answer what the code says."""
+
+    uri = "http://master:11311"
+
+    def __init__(self, spaces, more):
+        self.servers = {space + found.name: found for space in spaces for found in offline_servers()}
+        self.more, self.calls, self.connected = dict(more), [], True
+
+    def services(self):
+        return [name + DESCRIBE for name in self.servers] + list(self.more)
+
+    def subscribed(self):
+        return {f"{name}/goal": ["/node"] for name in self.servers}
+
+    def alive(self, service):
+        return True
+
+    def call(self, service, kind, request, patient=False):
+        self.calls.append((service, request))
+        if service in self.more:
+            return self.more[service](request)
+        answer = self.servers[service[: -len(DESCRIBE)]].service.answer(request)
+        answer.connected = self.connected
+        return answer
+
+
+@pytest.fixture
+def graph(monkeypatch):
+    """Makes a master; without, there is none."""
+
+    def make(*spaces, services=()):
+        fake = FakeGraph(spaces or ("/",), services)
+        monkeypatch.setattr("nao_library_modules.command_line.stack.Graph", lambda limit: fake)
+        return fake
+
+    monkeypatch.delenv("ROS_NAMESPACE", raising=False)
+    monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:9")  # the port of the discard service: nobody listens
+    return make
+
+
+@pytest.fixture
+def sent(monkeypatch):
+    """Goals as they are sent: server and function messages. They end as `end` says, with what `fill` puts in."""
+    noted = SimpleNamespace(goals=[], end=(GoalStatus.SUCCEEDED, ""), fill=lambda result: None)
+
+    class Client:
+        def __init__(self, name, action):
+            self._name, self._result = name, action().action_result.result
+
+        def wait_for_server(self):
+            return True
+
+        def send_goal(self, goal, on_change, on_feedback):
+            functions = getattr(goal, goal.__slots__[0])
+            noted.goals.append((self._name, functions))
+            if hasattr(self._result, "results"):
+                self._result.results = [FunctionResult(function=each.function) for each in functions]
+            noted.fill(self._result)
+            handle = SimpleNamespace(
+                get_comm_state=lambda: CommState.DONE,
+                get_terminal_state=lambda: noted.end[0],
+                get_goal_status_text=lambda: noted.end[1],
+                get_result=lambda: self._result,
+            )
+            on_change(handle)
+            return handle
+
+    monkeypatch.setattr(actionlib, "ActionClient", Client)
+    monkeypatch.setattr(goals, "start_node", lambda: None)
+    return noted
+
+
+@pytest.fixture
+def run():
+    """Runs the command; gives exit status, output and what was said besides."""
+
+    def run(*arguments):
+        # Standard error apart from standard output, whatever this version of click does by default.
+        result = CliRunner(mix_stderr=False).invoke(nao, list(arguments), prog_name="nao")
+        if result.exception is not None and not isinstance(result.exception, SystemExit):
+            raise result.exception
+        return result
+
+    return run

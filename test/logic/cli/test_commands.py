@@ -1,0 +1,441 @@
+"""What each command asks of the servers, how it ends, what it prints, and what a shell is offered."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+
+import click
+import pytest
+import rospy
+from actionlib_msgs.msg import GoalStatus
+
+from nao_library_actions.msg import NaoAudioInFeedback, NaoBehaviorFeedback, NaoLedFeedback
+from nao_library_modules.command_line.app import COMMANDS, main, nao
+from nao_library_modules.command_line.bash_completion import LineComplete, split_line
+from nao_library_modules.command_line.chain_text import build_message, read_chain, read_value
+from nao_library_modules.command_line.output import plain, say_json, say_result, table, words
+from nao_library_modules.command_line.progress import Progress
+from nao_library_modules.command_line.settings import NaoCommand
+from nao_library_msgs.msg import BehaviorInfo, BehaviorParameter, LedFunction, MotionFunction
+from nao_library_msgs.srv import ListBehaviorsResponse
+
+ABORTED = GoalStatus.ABORTED
+
+
+@pytest.mark.parametrize(
+    "line, server, expected",
+    [
+        ("say hello there", "nao_audio_out", {"function": "say", "str_param": "hello there"}),
+        ("say hi --animated --speed 80", "nao_audio_out", {"function": "animatedSay", "speed": 80.0}),
+        ("say hi --volume 0.5 --pitch 90 --background", "nao_audio_out", {"volume": 0.5, "pitch": 90.0,
+         "background": True}),
+        ("leds FaceLeds green --for 2 --revert", "NaoLights", {"function": "setColor", "lights": ["FaceLeds"],
+         "str_param": "green", "revert": True, "time": rospy.Duration(2)}),
+        ("leds Brain0 Brain1 0.5", "NaoLights", {"function": "setIntensity", "lights": ["Brain0", "Brain1"],
+         "i_values": [0.5]}),
+        ("leds FaceLeds red --fade 1", "NaoLights", {"function": "fadeRGB", "duration": 1.0, "str_param": "red"}),
+        ("leds FaceLeds 0 --fade 1", "NaoLights", {"function": "fade", "i_values": [0.0], "duration": 1.0}),
+        ("leds FaceLeds off", "NaoLights", {"function": "off", "lights": ["FaceLeds"]}),
+        ("pose Crouch --speed 0.5", "NaoMotion", {"function": "goToPosture", "str_param": "Crouch", "speed": 0.5}),
+        ("wake", "NaoMotion", {"function": "wakeUp"}),
+        ("rest", "NaoMotion", {"function": "rest"}),
+        ("call motion setAngles names:=HeadYaw angles:=-0.1", "NaoMotion", {"names": ["HeadYaw"], "angles": [-0.1]}),
+        ("run hello text=Hi n=3", "NaoBehavior", {"function": "runBehavior", "str_param": "hello",
+         "parameters": ["text=Hi", "n=3"]}),
+        ("record motion wave LArm --for 2", "NaoMotion", {"function": "recordMotion", "names": ["LArm"],
+         "str_param": "wave", "duration": 2.0}),
+        ("record sound x.wav --for 1 --channels left,right", "nao_audio_in", {"channels": ["left", "right"],
+         "duration": 1.0}),
+        ("record behavior new --for 1 --overwrite", "NaoBehavior", {"function": "recordBehavior", "duration": 1.0,
+         "overwrite": True}),
+    ],
+)  # fmt: skip
+def test_a_command_is_a_function_of_a_server(run, graph, sent, line, server, expected):
+    graph()
+    result = run(*line.split())
+    assert result.exit_code == 0, result.stderr
+    ((name, (message,)),) = sent.goals
+    assert name == f"/{server}" and {field: getattr(message, field) for field in expected} == expected
+
+
+@pytest.mark.parametrize("stands, functions", [(False, ["goToPosture", "moveTo"]), (True, ["moveTo"])])
+def test_walking_stands_up_first_and_tells_how_far_it_got(run, graph, sent, monkeypatch, stands, functions):
+    graph()
+
+    class Robot:
+        def __init__(self, address):
+            assert address == ("10.0.0.7", 9559)
+
+        __enter__, __exit__ = lambda self: self, lambda *_: None
+
+        def call(self, module, method):
+            return stands if method == "robotIsWakeUp" else "Standing"
+
+    monkeypatch.setattr("nao_library_modules.command_line.robot_link.RobotLink", Robot)
+    monkeypatch.setattr("nao_library_modules.command_line.stack.Stack.robot_address", lambda self: ("10.0.0.7", 9559))
+    sent.fill = lambda result: setattr(result.results[-1], "values", ["0.5", "0.01", "-0.02"])
+    result = run("walk", "0.5", "0", "-0.1")
+    assert [message.function for message in sent.goals[0][1]] == functions
+    assert sent.goals[0][1][-1].values == [0.5, 0.0, -0.1]
+    assert result.stdout == "0.500 m ahead, 0.010 m to the left, -0.020 rad to the left\n"
+
+
+def test_several_functions_are_one_goal(run, graph, sent):
+    graph()
+    run("call", "NaoLights", "on", "lights:=Brain0", ",", "off", "lights:=Brain0", "--then", "listGroups")
+    assert [message.function for message in sent.goals[0][1]] == ["on", "off", "listGroups"]
+
+
+# --- exit status and JSON ---------------------------------------------------------------------------------------------
+
+
+def test_a_goal_that_fails_is_status_1_and_3_where_the_robot_is_gone(run, graph, sent):
+    there = graph()
+    sent.end = (ABORTED, "function 1 (setColor): no such light")
+    result = run("leds", "Nose", "green")
+    assert (result.exit_code, result.stderr) == (1, "Error: function 1 (setColor): no such light\n")
+    document = json.loads(run("--json", "say", "hello").stdout)
+    assert (document["server"], document["state"], document["text"]) == ("nao_audio_out", "aborted", sent.end[1])
+    there.connected, sent.end = False, (ABORTED, "NAOqi at 10.0.0.7:9559: not reached")
+    result = run("leds", "Brain0", "green", "--json")
+    assert result.exit_code == 3 and json.loads(result.stdout)["state"] == "aborted", "one document"
+    del there.servers["/NaoMotion"]
+    result = run("pose", "Stand")
+    assert (result.exit_code, "the server NaoMotion does not run" in result.stderr) == (3, True)
+    there.servers.clear()
+    result = run("say", "hello")
+    assert (result.exit_code, result.stderr) == (3, "Error: no robot's servers run at http://master:11311\n")
+
+
+@pytest.mark.parametrize("line", ["status", "say hello", "stop", "get a", "watch a", "sim reset", "run x", "behaviors"])
+def test_without_a_master_it_is_one_line_and_status_3(run, graph, line):
+    result = run(*line.split())
+    assert result.exit_code == 3 and result.stdout == ""
+    (told,) = result.stderr.splitlines()
+    assert "there is no ROS master at http://127.0.0.1:9" in told
+    for words_ in (["--json", *line.split()], [*line.split(), "--json"]):
+        result = run(*words_)
+        document = json.loads(result.stdout)
+        assert (result.exit_code, document["status"], result.stderr) == (3, 3, f"Error: {document['error']}\n")
+
+
+def raises(error):
+    def act(*_, **__):
+        raise error
+
+    return act
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), click.Abort()], ids=["Ctrl-C", "abort"])
+def test_ctrl_c_says_so_in_json_unless_something_was_said(graph, monkeypatch, capsys, error):
+    monkeypatch.setattr(graph(), "services", raises(error))
+    assert main(["status", "--json"]) == 130
+    assert json.loads(capsys.readouterr().out) == {"error": "interrupted", "status": 130}
+    assert main(["status"]) == 130 and capsys.readouterr().out == ""
+    watch = click.Command("watch", callback=lambda: (say_json({"value": 1}, compact=True), raises(error)()))
+    command = NaoCommand(watch.name, callback=watch.callback)
+    monkeypatch.setattr("nao_library_modules.command_line.memory_commands.watch_command", command)
+    assert main(["watch", "--json"]) == 130
+    assert [json.loads(line) for line in capsys.readouterr().out.splitlines()] == [{"value": 1}]
+
+
+def test_every_failure_says_so_in_json_but_mistakes_in_the_command(run, graph, sent, monkeypatch):
+    graph()
+    document = json.loads(run("sim", "pause", "--json").stdout)
+    assert document == {"error": "there is no service /nao_sim/pause: is this a simulated robot?", "status": 3}
+    missing = click.ClickException("the message is not built here")
+    monkeypatch.setattr("nao_library_modules.command_line.goals.message_class", raises(missing))
+    assert json.loads(run("--json", "say", "hello").stdout) == {"error": missing.message, "status": 1}
+    mistake = run("walk", "far", "--json")
+    assert (mistake.exit_code, mistake.stdout) == (2, "")
+
+
+@pytest.mark.parametrize(
+    "line, complaint",
+    [
+        ("leds green", "lights and their look are wanted"), ("leds FaceLeds on --fade 1", "on takes no time"),
+        ("call NaoLigths on", "did you mean 'NaoLights'"), ("call NaoLights on light:=a", "did you mean 'lights'"),
+        ("walk far", "'far' is not a valid float"), ("run hello loud", "'loud' is no PARAMETER=VALUE"),
+        ("help setColour", "did you mean 'setColor'"), ("hlep", "did you mean 'help'"),
+        ("photo x.png --size 5", "'5' is no size"), ("list Nose", "there is no server 'Nose'"),
+        ("say hi --timeout=0", "timeout"), ("say hi --timeout=nan", "timeout"), ("say hi --timeout=-1", "timeout"),
+        ("say hi --timeout=soon", "timeout"), ("- --json", "no command '-'"), ("* --json", "no command '*'"),
+        ("sim * --json", "no command '*'"), ("sim - --json", "no command '-'"), ("sim \u202e", "no command"),
+        ('record " --json', "no command '\"'"),
+    ],
+)  # fmt: skip
+def test_mistakes_in_the_command_are_status_2(run, graph, sent, line, complaint):
+    graph()
+    result = run(*line.split(" "))
+    assert result.exit_code == 2 and complaint in result.stderr and result.stdout == "" and not sent.goals
+
+
+# --- asking -----------------------------------------------------------------------------------------------------------
+
+
+def test_servers_and_functions_are_listed_and_explained(run, graph):
+    graph()
+    assert "NaoLights " in run("list").stdout
+    functions = run("list", "lights").stdout
+    assert "setColor" in functions and "insertData" not in functions
+    assert "insertData" in run("list", "lights", "--all").stdout
+    assert {entry["name"] for entry in json.loads(run("list", "--json").stdout)} >= {"NaoLights", "NaoMotion"}
+    text = run("help", "setintensity").stdout
+    assert text.startswith("NaoLights setIntensity: Set intensities at once")
+    assert "i_values (float64[]) no unit, []" in text and "allowed: each within 0..1" in text
+    (described,) = json.loads(run("help", "setIntensity", "--json").stdout)
+    assert described["server"] == "NaoLights" and described["arguments"][1]["minimum"] is None
+    # A function of several servers is told of all of them; one that all have once.
+    counts = [
+        run("help", *names).stdout.count("nao call") for names in (["setParameter"], ["nao_audio_in", "setParameter"])
+    ]
+    assert counts == [3, 1] and run("help", "getData").stdout.count("nao call") == 1
+    text = run("help", "NaoLights").stdout
+    assert text.startswith("NaoLights: LED goals") and "  setColor" in text and "insertData" in text.splitlines()[-1]
+
+
+def test_without_a_stack_help_comes_from_the_code(run, graph):
+    result = run("help", "setColor")
+    assert result.exit_code == 0 and result.stdout.startswith("NaoLights setColor")
+    assert "this is what the code says" in result.stderr
+
+
+def test_the_robot_is_the_only_one_or_the_one_that_is_chosen(run, graph, sent, monkeypatch):
+    graph("/nao2/")
+    assert run("say", "hello").exit_code == 0 and sent.goals[0][0] == "/nao2/nao_audio_out"
+    fake = graph("/nao1/", "/nao2/")
+    result = run("say", "hello")
+    assert (result.exit_code, "choose a robot with --robot; there are nao1, nao2" in result.stderr) == (2, True)
+    for line in (("--robot", "nao2", "say", "hello"), ("say", "hello", "-n", "/nao2")):
+        fake.calls.clear()
+        assert run(*line).exit_code == 0
+        assert all(service.startswith("/nao2/") for service, _ in fake.calls)
+    assert run("say", "hello", "-n", "nao3").exit_code == 3
+    monkeypatch.setenv("ROS_NAMESPACE", "nao1")
+    assert run("say", "hello").exit_code == 0 and sent.goals[-1][0] == "/nao1/nao_audio_out"
+
+
+# --- behaviours -------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def behaviors():
+    tempo = BehaviorParameter(name="tempo", default="1.0", help="how fast")
+    known = [
+        BehaviorInfo(name="bow", help="Bows.", parameters=[tempo]),
+        BehaviorInfo(name="broken", problem="no steps"),
+    ]
+    answer = lambda request: ListBehaviorsResponse([b for b in known if request.name in ("", b.name)])  # noqa: E731
+    return {"/NaoBehavior/list": answer}
+
+
+def test_behaviors_are_listed_and_checked_by_name_without_a_goal(run, graph, sent, behaviors):
+    graph(services=behaviors)
+    assert run("behaviors").stdout == "bow     Bows.\nbroken  no steps\n"
+    assert run("behaviors", "bow").stdout == "bow: Bows.\n  tempo=1.0  how fast\n"
+    assert [b["name"] for b in json.loads(run("behaviors", "--json").stdout)] == ["bow", "broken"]
+    assert run("check", "bow").stdout == "bow: Bows.\n  tempo=1.0  how fast\nit can be run\n"
+    broken = run("check", "broken", "--json")
+    assert (broken.exit_code, json.loads(broken.stdout)["problems"]) == (1, ["no steps"])
+    assert broken.stderr == "Error: broken cannot be run: no steps\n"
+    for command in ("behaviors", "check"):
+        mistyped = run(command, "bown")
+        assert (mistyped.exit_code, mistyped.stdout, "did you mean 'bow'" in mistyped.stderr) == (1, "", True)
+    assert not sent.goals
+
+
+def test_a_check_with_values_or_of_a_file_tells_what_would_be_done_or_fails(run, graph, sent, tmp_path):
+    graph()
+    step = "1 NaoMotion.goToPosture: str_param Stand"
+    info = BehaviorInfo(name="bow", help="Bows.", tags=["polite"], servers=["NaoMotion"], shipped=True, waits=1.5,
+                        steps=[step, "2 wait 1.5 s"], boxes=["nod"], unchecked=[step])  # fmt: skip
+    sent.fill = lambda result: setattr(result, "behaviors", [info])
+    told = run("check", "bow", "depth=0.2").stdout
+    for text in ("bow: Bows.", "polite", "NaoMotion", "nod", "1.5 s", "    2 wait 1.5 s", "only the robot knows"):
+        assert text in told
+    assert (
+        told.endswith("it can be run\n") and json.loads(run("check", "bow", "d=1", "--json").stdout)["problems"] == []
+    )
+    file = tmp_path / "mine.yaml"
+    file.write_text("help: x\ndo: []")
+    assert run("check", str(file)).stdout.startswith("mine: Bows.")
+    asked = [message for _, (message,) in sent.goals]
+    assert [(m.function, m.str_param, m.text, m.parameters) for m in asked] == [
+        ("checkBehavior", "bow", "", ["depth=0.2"]), ("checkBehavior", "bow", "", ["d=1"]),
+        ("checkBehavior", "", "help: x\ndo: []", []),
+    ]  # fmt: skip
+    info.problem = "no"
+
+    def fill(result):
+        result.behaviors, result.memList = [info], ["step 1: no", "step 2: no"]
+
+    sent.fill = fill
+    result = run("check", "bow", "depth=1")
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert result.stderr == "Error: bow cannot be run: step 1: no; step 2: no\n"
+    assert json.loads(run("check", "bow", "depth=1", "--json").stdout)["problems"] == ["step 1: no", "step 2: no"]
+    assert run("check", "bow", "depth").exit_code == 2
+    assert "cannot be read" in run("check", str(tmp_path / "none.yaml")).stderr
+
+
+# --- chains as they are typed -----------------------------------------------------------------------------------------
+
+
+def test_functions_have_fields_and_a_comma_or_then_between_them():
+    (function,) = read_chain(["setColor", "lights:=FaceLeds,EarLeds", "str_param:=a:=b"])
+    assert (function.name, function.fields) == ("setColor", {"lights": "FaceLeds,EarLeds", "str_param": "a:=b"})
+    for typed in (["on", "a:=1", ",", "off"], ["on", "a:=1", "--then", "off"], ["on,", "off"]):
+        assert [function.name for function in read_chain(typed)] == ["on", "off"]
+    points = "trajectory:={joint_names: [HeadYaw], points: [{positions: [0.1]}]}"
+    message = build_message(read_chain(["setTrajectory", "time:=1.5", points])[0], MotionFunction)
+    assert message.time.to_sec() == 1.5 and message.trajectory.points[0].positions == [0.1]
+    for field, complaint in (("light:=a", "no field 'light': did you mean 'lights'"), ("function:=on", "no field")):
+        with pytest.raises(click.UsageError, match=complaint):
+            build_message(read_chain(["on", field])[0], LedFunction)
+
+
+@pytest.mark.parametrize(
+    "typed, complaint",
+    [
+        ([], "function 1 has no name"), (["on", ","], "function 2 has no name"),
+        (["lights:=a"], "function 1 has no name"), (["on", "lights"], "'lights' is no field:=value"),
+        (["on", "lights:=a", "lights:=b"], "lights is there twice"),
+    ],
+)  # fmt: skip
+def test_what_is_no_chain_is_told(typed, complaint):
+    with pytest.raises(click.UsageError, match=complaint):
+        read_chain(typed)
+
+
+@pytest.mark.parametrize(
+    "kind, text, value",
+    [
+        ("string", "5", "5"), ("string", "a, b", "a, b"), ("string[]", "a, b", ["a", "b"]), ("string[]", "", []),
+        ("string[]", "[a, 'b, c']", ["a", "b, c"]), ("float64", "-1.5e-3", -0.0015), ("int32", "-7", -7),
+        ("float64[]", "0,1,.5", [0.0, 1.0, 0.5]), ("float64[]", "[0, 1]", [0.0, 1.0]), ("bool", "yes", True),
+        ("bool", "False", False),
+    ],
+)  # fmt: skip
+def test_values_are_read_by_their_type(kind, text, value):
+    assert read_value(kind, text) == value
+
+
+@pytest.mark.parametrize(
+    "kind, text, complaint",
+    [
+        ("float64", "one", "'one' is no number"), ("int32", "1.5", "'1.5' is no whole number"),
+        ("int32[]", "[1.5]", "1.5 is no whole number"), ("int32[]", "[.inf]", "inf is no whole number"),
+        ("duration", "inf", "'inf' is no time"), ("duration", "nan", "'nan' is no time"),
+        ("duration", "1e300", "'1e300' is no time"), ("bool", "perhaps", "neither true nor false"),
+        ("float64[]", "1,,2", "'' is no number"), ("string[]", "[a", "is no YAML"),
+        ("trajectory_msgs/JointTrajectory", "5", "is no trajectory_msgs/JointTrajectory"),
+        ("trajectory_msgs/JointTrajectory", "{joint_name: [a]}", "joint_name"),
+    ],
+)  # fmt: skip
+def test_values_of_another_type_are_refused(kind, text, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        read_value(kind, text)
+
+
+# --- what is printed --------------------------------------------------------------------------------------------------
+
+
+def test_messages_become_plain_values_and_words(capsys):
+    value = plain(LedFunction(function="on", lights=["a"], time=rospy.Duration(1.5)))
+    assert (value["function"], value["lights"], value["time"]) == ("on", ["a"], 1.5)
+    say_json({"a": [float("inf"), float("nan"), 1.0]}, compact=True)
+    assert capsys.readouterr().out == '{"a": [null, null, 1.0]}\n'
+    told = {"true": True, "0.123457": 0.1234567, "1, 2": [1, 2.0], "a 1": {"a": 1, "b": ""}, "": None}
+    assert [words(each) for each in told.values()] == list(told)
+    assert table([("a", "1"), ("bbb", "2")], indent=" ") == [" a    1", " bbb  2"]
+
+
+@pytest.mark.parametrize(
+    "result, out, err",
+    [
+        ({"results": [{"function": "f", "values": ["1", "2"]}], "memList": ["1", "2"]}, "1\n2\n", ""),
+        ({"results": [{"function": "f", "values": ["1"]}, {"function": "g", "values": ["2"]}]}, "f: 1\ng: 2\n", ""),
+        ({"results": [{"function": "f", "values": [], "error": "no"}]}, "", "f: no\n"),
+        ({"results": [], "name": ["HeadYaw", "Head"], "position": [0.5, 0.25]}, "HeadYaw  0.5\nHead     0.25\n", ""),
+    ],
+)
+def test_answers_are_printed_with_what_failed(capsys, result, out, err):
+    say_result(result)
+    assert tuple(capsys.readouterr()) == (out, err)
+
+
+def test_progress_is_a_line_a_function_or_a_step_where_there_is_no_terminal(capsys):
+    step = {"index": 0, "function": "runBehavior", "count": 1, "path": "2.1", "what": "nao_audio_out.say"}
+    for shown in (True, False):
+        with Progress(shown=shown) as progress:
+            progress.feedback(NaoLedFeedback(index=0, function="on", count=2))
+            progress.feedback(NaoLedFeedback(index=0, function="on", count=2))
+            progress.feedback(NaoAudioInFeedback(index=1, function="off", count=2, status="listening"))
+            progress.feedback(NaoBehaviorFeedback(state="began", **step))
+            progress.feedback(NaoBehaviorFeedback(state="failed", text="no voice", **step))
+        told = "1/2 on\n2/2 off\n2.1 nao_audio_out.say began\n2.1 nao_audio_out.say failed no voice\n"
+        assert capsys.readouterr().err == (told if shown else "")
+
+
+# --- completion -------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def offered(monkeypatch):
+    def offered(line):
+        monkeypatch.setenv("NAO_LINE", line)
+        complete = LineComplete(nao, {}, "nao", "_NAO_COMPLETE")
+        typed, last = complete.get_completion_args()
+        return [complete.format_completion(item) for item in complete.get_completions(typed, last)]
+
+    return offered
+
+
+@pytest.mark.parametrize(
+    "line, typed, last",
+    [
+        ("nao ", ["nao"], ""), ("nao call", ["nao"], "call"), ("nao say 'good mor", ["nao", "say"], "good mor"),
+        ("nao call NaoLights on lights:=Br", ["nao", "call", "NaoLights", "on"], "lights:=Br"), ("", [], ""),
+    ],
+)  # fmt: skip
+def test_a_line_is_split_as_a_shell_splits_it(line, typed, last):
+    assert split_line(line) == (typed, last)
+
+
+def test_commands_are_offered_without_a_stack_and_names_from_the_servers(offered, graph):
+    assert offered("nao ") == list(COMMANDS) and offered("nao st") == ["status", "stop"]
+    assert "--robot" in offered("nao say --")
+    for line in ("nao call NaoL", "nao pose St", "nao run ", "nao get Dev", "nao help s"):
+        assert offered(line) == []
+    graph()
+    for line, among in (
+        ("nao list Nao", "NaoLights"),
+        ("nao help setC", "setColor"),
+        ("nao call NaoLights setI", "setIntensity"),
+        ("nao call NaoLights setIntensity l", "lights:="),
+        ("nao call NaoLights on lights:=Brain0 , set", "setColor"),
+        ("nao call NaoLights on lights:=Brain0 revert:=t", "true"),
+        ("nao call NaoMotion getMoveConfig str_param:=D", "Default"),
+        ("nao leds FaceLeds gre", "green"),
+        ("nao --robot ", "/"),
+    ):
+        assert among in offered(line), line
+    fields = offered("nao call NaoLights setIntensity lights:=Brain0 ")
+    assert "lights:=" not in fields and "i_values:=" in fields
+
+
+def test_shells_get_their_scripts_and_bash_puts_words_behind_a_colon(run, tmp_path):
+    for shell in ("zsh", "fish"):
+        text = run("completion", shell).stdout
+        assert "_NAO_COMPLETE" in text and "nao" in text
+    program = tmp_path / "nao"
+    program.write_text('#!/bin/sh\n[ "$_NAO_COMPLETE" = bash_complete ] && echo "got-$NAO_LINE"\n')
+    program.chmod(0o755)
+    script = run("completion", "bash").stdout + (
+        'COMP_LINE="nao call a:=b more" COMP_POINT=13\n_nao_completion nao\nprintf "%s\\n" "${COMPREPLY[@]}"\n'
+    )
+    environment = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    done = subprocess.run(["bash", "-c", script], env=environment, capture_output=True, text=True, timeout=60)
+    assert (done.stdout, done.returncode) == ("got-nao call a:=b\n", 0), done.stderr
