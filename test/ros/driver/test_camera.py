@@ -132,28 +132,6 @@ class DriverCamera(unittest.TestCase):
 
     # --- rates and demand -----------------------------------------------------------------------------------------
 
-    def test_pictures_come_at_the_rate_that_was_asked_for_in_the_robots_time(self):
-        for rate, cameras in ((30, (TOP,)), (15, (TOP, BOTTOM)), (5, (BOTTOM,))):
-            with case(rate=rate), self.robot.at_speed(0.5):
-                looks = []
-                for camera in cameras:
-                    self.settings[camera].update_configuration({"frame_rate": float(rate)})
-                    looks.append(Look(FOLDERS[camera]))
-                for look in looks:
-                    look.now()
-                begin = rospy.get_time()
-                for look in looks:
-                    look.after(begin + 2.0)
-                    look.__exit__()
-                    stamps = np.array([image.header.stamp.to_sec() for image, _ in look.pairs])
-                    stamps = stamps[(stamps > begin) & (stamps <= begin + 2.0)]
-                    steps = np.diff(stamps)
-                    self.assertGreater(steps.min(), 1.0 / rate - TICK - 1e-6)
-                    # Now and then the machine does something else for the length of a picture.
-                    self.assertGreaterEqual(len(stamps), 0.9 * 2.0 * rate)
-                    np.testing.assert_allclose(np.median(steps), 1.0 / rate, atol=1e-4 + TICK * (120 % rate > 0))
-                self.wait_for_nobody()
-
     def test_the_robot_is_asked_for_nothing_while_nobody_looks(self):
         self.assertEqual(self.device.getSubscribers(), [])
         with Look(FOLDERS[BOTTOM]) as look:
@@ -215,21 +193,6 @@ class DriverCamera(unittest.TestCase):
                 self.assertLessEqual(difference.mean(), tolerance)
                 self.assertLess(len(file.data), len(image.data))
             subscriber.unregister()
-
-    def test_colour_spaces_are_encodings_of_the_same_picture(self):
-        pictures = {}
-        with Look(FOLDERS[TOP]) as look:
-            for number, encoding in ((11, "rgb8"), (13, "bgr8"), (0, "mono8"), (9, "yuv422")):
-                self.settings[TOP].update_configuration({"color_space": number})
-                image, _ = look.now(lambda image, encoding=encoding: image.encoding == encoding)
-                pictures[encoding] = pixels_of(image).astype(float)
-        self.assertLess(np.abs(pictures["rgb8"] - pictures["bgr8"]).mean(), 4.0)
-        grey = pictures["rgb8"] @ (0.299, 0.587, 0.114)
-        self.assertLess(np.abs(pictures["mono8"] - grey).mean(), 6.0)
-        packed = pictures["yuv422"].astype(np.uint8)
-        self.assertLess(np.abs(packed[..., 1] - pictures["mono8"]).mean(), 4.0)
-        red_green_blue = cv2.cvtColor(packed, cv2.COLOR_YUV2RGB_UYVY).astype(float)
-        self.assertLess(np.abs(red_green_blue - pictures["rgb8"]).mean(), 16.0)
 
     # --- parameters -----------------------------------------------------------------------------------------------
 

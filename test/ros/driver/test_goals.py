@@ -95,19 +95,6 @@ class DriverGoals(unittest.TestCase):
         self.close(run.result.goal_position.position, [0.0])
         self.assertGreaterEqual(took, 2.5)
 
-    def test_the_whole_body_in_one_point(self):
-        run = self.play(self.trajectories, trajectory(["Body"], (1.5, CROUCH)))
-        self.assertEqual(run.result.goal_position.name, ["Body"])
-        self.close(run.result.goal_position.position, CROUCH, 0.08)
-        self.assertLess(self.robot.true_pose().position.z, 0.26)
-
-    def test_many_joints_many_points_and_one_point(self):
-        names = ["HeadYaw", "HeadPitch"]
-        self.play(self.trajectories, trajectory(names, (0.5, [1.0, 0.4]), (1.0, [1.0, 0.0]), (1.5, [0.0, 0.0])))
-        self.close([self.sensed("HeadYaw"), self.sensed("HeadPitch")], [0.0, 0.0])
-        run = self.play(self.trajectories, trajectory(names, (0.5, [0.5, 0.3])))
-        self.close(run.result.goal_position.position, [0.5, 0.3])
-
     def test_angles_with_speed(self):
         run = self.play(self.angles, angles(["HeadYaw", "HeadPitch"], [1.0, 0.0], 0.2))
         self.assertEqual(run.result.goal_position.name, ["HeadYaw", "HeadPitch"])
@@ -158,12 +145,6 @@ class DriverGoals(unittest.TestCase):
         self.assertAlmostEqual(run.result.goal_position.position[0], stopped, delta=0.05)
         stopped, _ = self.cancel_on_the_way(self.angles, angles(["HeadYaw"], [-1.5], 0.01), there)
         self.assertGreater(stopped, -1.4)
-
-    def test_a_cancelled_stiffness_stays_where_it_is(self):
-        stiffness = lambda: self.robot.module("ALMotion").getStiffnesses("HeadYaw")[0]  # noqa: E731
-        stopped, run = self.cancel_on_the_way(self.stiffness, trajectory(["HeadYaw"], (20.0, [0.0])), stiffness)
-        self.assertGreater(stopped, 0.1)
-        self.assertAlmostEqual(run.result.goal_position.position[0], stopped, delta=0.05)
 
     def test_clients_of_different_joints_do_not_know_of_each_other(self):
         head = send(self.trajectories, trajectory(["HeadYaw"], (3.0, [1.0])))
@@ -246,12 +227,6 @@ class DriverGoals(unittest.TestCase):
         self.addCleanup(rospy.delete_param, "pose_manager/poses")
         self.play(self.poses, BodyPoseGoal("nod"))
         self.assertAlmostEqual(self.commanded("HeadPitch"), 0.4, delta=0.01)
-
-    def test_a_cancelled_pose_stops(self):
-        slow = {"slow": {"joint_names": "HeadYaw", "positions": [1.5], "time_from_start": 20.0}}
-        rospy.set_param("pose_manager/poses", slow)
-        self.addCleanup(rospy.delete_param, "pose_manager/poses")
-        self.cancel_on_the_way(self.poses, BodyPoseGoal("slow"), lambda: self.commanded("HeadYaw"))
 
     def test_postures_of_the_robot(self):
         self.serve("body_stiffness/disable")  # the goal switches the motors on itself

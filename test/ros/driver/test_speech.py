@@ -9,7 +9,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from dynamic_reconfigure.client import Client
 from services import answer, configuration, service
-from sound_fixture import Loudspeakers, level
+from sound_fixture import Loudspeakers
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 
@@ -83,28 +83,6 @@ class DriverSpeech(unittest.TestCase):
         self.assertAlmostEqual(run.feedback[0][0], first, delta=0.3)
         self.assertAlmostEqual(run.ended, last, delta=0.4)
         self.assertGreater(last - first, 1.5)
-
-    def test_a_cancelled_goal_is_silent_at_once(self):
-        with self.robot.at_speed(1.0):
-            run = self.say(LONG)
-            wait_until(lambda: run.feedback, LIMIT, "the beginning of the story")
-            run.cancel()
-            run.wait(LIMIT)
-            ended = self.simulation.time()
-        self.assertEqual(run.state, GoalStatus.PREEMPTED, run.text)
-        self.robot.advance(3.0)
-        samples, _ = self.loudspeakers.played(ended + 0.05, ended + 3.0)
-        self.assertEqual(level(samples), 0.0)
-        self.succeed("I can still talk.")
-
-    def test_a_newer_goal_ends_the_one_before_and_is_said(self):
-        first = self.say(LONG)
-        wait_until(lambda: first.feedback, LIMIT, "the beginning of the story")
-        second = self.succeed("Something else.")
-        first.wait(LIMIT)
-        self.assertEqual(first.state, GoalStatus.PREEMPTED)
-        self.assertLess(first.ended, second.ended)
-        self.assertIn("newer goal", first.text)
 
     def test_an_empty_text_is_refused(self):
         for text in ("", "  "):

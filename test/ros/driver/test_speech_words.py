@@ -95,11 +95,3 @@ class DriverSpeechWords(unittest.TestCase):
             self.assertEqual((run.state, run.result.success), (GoalStatus.ABORTED, False))
             self.assertIn(text, run.text)
         self.assertEqual(configuration(self.settings)["vocabulary"], "")
-
-    def test_it_does_not_take_the_recognition_from_somebody_else(self):
-        self.settings.update_configuration({"vocabulary": "yes / no"})
-        self.recognition.setVocabulary(["red", "green"], False)
-        self.recognition.subscribe("Somebody")
-        self.addCleanup(self.recognition.unsubscribe, "Somebody")
-        self.assertIn("in use by Somebody", self.call("start_recognition"))
-        self.assertEqual([info[0] for info in self.recognition.getSubscribersInfo()], ["Somebody"])

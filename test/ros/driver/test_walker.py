@@ -2,7 +2,6 @@
 
 import math
 import os
-import random
 import signal
 import subprocess
 import sys
@@ -123,33 +122,6 @@ class DriverWalker(unittest.TestCase):
             timer.shutdown()
             self.wait_for_walk(active=False)
 
-    def test_velocities_at_fifty_hertz_do_not_pile_up(self):
-        dice = random.Random(1)
-
-        def send_another(_):
-            self.cmd_vel.publish(velocity(dice.uniform(-0.3, 0.6), dice.uniform(-0.4, 0.4), dice.uniform(-0.3, 0.3)))
-
-        timer = rospy.Timer(Duration.from_sec(0.02), send_another)
-        self.addCleanup(timer.shutdown)
-        self.robot.advance(4.0)
-        self.wait_for_walk()
-        timer.shutdown()
-        timer.join()
-        with self.robot.at_speed(1.0):
-            self.cmd_vel.publish(velocity())
-            halted = rospy.get_time()
-            self.wait_for_walk(active=False)
-            self.assertLess(rospy.get_time() - halted, HALT)
-        self.assertTrue(self.upright())
-
-    def test_a_velocity_of_the_service_lasts_until_the_next_command(self):
-        service("cmd_vel_srv", CmdVelService)(velocity(x=0.5))
-        self.wait_for_walk()
-        self.robot.advance(4 * TIMEOUT)
-        self.assertTrue(self.motion.moveIsActive())
-        self.cmd_vel.publish(velocity())
-        self.wait_for_walk(active=False)
-
     def test_bad_velocities(self):
         self.cmd_vel.publish(velocity(x=float("nan")))
         with self.assertRaisesRegex(rospy.ServiceException, "linear.y: inf is not allowed: -1 to 1"):
@@ -185,27 +157,6 @@ class DriverWalker(unittest.TestCase):
 
     # --- targets and steps ----------------------------------------------------------------------------------------
 
-    def test_a_target_is_reached(self):
-        self.walk_to(Pose2D(0.3, 0.1, 0.5))
-        x, y, heading = self.where()
-        print(f"target (0.3, 0.1, 0.5): {x:.3f} m, {y:.3f} m, {heading:.3f} rad")
-        self.assertFalse(self.motion.moveIsActive())
-        self.assertAlmostEqual(x, 0.3, delta=0.05)
-        self.assertAlmostEqual(y, 0.1, delta=0.05)
-        self.assertAlmostEqual(heading, 0.5, delta=0.15)
-
-    def test_a_stop_overtakes_a_target(self):
-        thread, ends = self.in_thread(self.walk_to, Pose2D(3.0, 0.0, 0.0))
-        wait_until(lambda: self.forward() > 0.05, LIMIT, "5 cm of walk")
-        with self.robot.at_speed(1.0):
-            asked = rospy.get_time()
-            self.stop()
-            self.assertLess(rospy.get_time() - asked, HALT)
-        self.assertFalse(self.motion.moveIsActive())
-        thread.join(10.0)
-        self.assertIn(f"stop_walk_srv from {rospy.get_name()} stopped it", ends[0])
-        self.assertTrue(self.upright())
-
     def test_targets_of_the_topic_are_replaced_by_newer_ones(self):
         thread, ends = self.in_thread(self.walk_to, Pose2D(3.0, 0.0, 0.0))
         wait_until(lambda: self.forward() > 0.05, LIMIT, "5 cm of walk")
@@ -227,20 +178,6 @@ class DriverWalker(unittest.TestCase):
         self.motion.rest()
         with self.assertRaisesRegex(rospy.ServiceException, "ALMotion.moveTo failed"):
             self.walk_to(Pose2D(0.3, 0.0, 0.0))
-
-    def test_steps(self):
-        step = service("cmd_step_srv", StepTargetService)
-        start = self.motion.getRobotPosition(True)[0]
-        step(StepTarget(Pose2D(0.04, 0.1, 0.0), StepTarget.left))
-        self.assertFalse(self.motion.moveIsActive())
-        self.assertAlmostEqual(self.motion.getRobotPosition(True)[0] - start, 0.02, delta=0.01)
-        before = self.motion.getRobotPosition(True)[0]
-        for n in range(4):
-            leg = n % 2  # 0 is the right one
-            self.cmd_step.publish(StepTarget(Pose2D(0.04, 0.1 if leg else -0.1, 0.0), leg))
-        wait_until(lambda: self.motion.getRobotPosition(True)[0] - before > 0.1, LIMIT, "four steps")
-        self.wait_for_walk(active=False)
-        self.assertTrue(self.upright())
 
     def test_arms_swing_as_asked(self):
         service("enable_arms_walking_srv", SetArmsEnabled)(False, True)
