@@ -186,6 +186,7 @@ def simulator_only() -> str:
     for name, method in vars(NaoSimulation).items():
         if inspect.isfunction(method) and not name.startswith("_"):
             parameters = list(inspect.signature(method).parameters)[1:]
+            name = method.__qi_name__ or name
             rows.append((code(f"{name}({', '.join(parameters)})"), first_line(method)))
     return table(("method", "what it does"), rows)
 

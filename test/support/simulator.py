@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import queue
+import shutil
 import sys
 import threading
 import time
@@ -81,10 +82,13 @@ class Simulator:
             assert self.now.time < end, f"not within {limit} s of simulated time: {what}"
             self.advance(step)
 
-    def fresh(self):
-        """Put the server into the state of one that has just started."""
+    def fresh(self, world=""):
+        """Put the server into the state of one that has just started, with an empty folder for recordings."""
+        naoqi.close_all()  # whoever asks for a connection gets a new one
         self.server.runner.pause()
-        self.server.reset()
+        for path in self.server.files.folder.glob("*"):
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+        self.server.factory_reset(world)
         self.lockstep.attach()
 
     # --- calls that take simulated time ------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from typing import Any, Callable, List, Optional
 from . import directory
 from .errors import RobotUnreachable
 from .presence import Presence
-from .session import Live, answered, open_live
+from .session import Live, answered, open_live, watch_starts
 from .state import Listener, Listeners, State, Timing
 from .subscriptions import EventSubscriptions
 from .tasks import TaskTable
@@ -27,6 +27,9 @@ FLUSH_LIMIT = 0.5
 """So long `close` waits for the robot to have received everything, in s."""
 EXIT_LIMIT = 1.0
 """So long `close` waits for calls that must end because it has closed the session, in s."""
+
+BOOT_LIMIT = 120.0
+"""So long after the connection ALMemory is looked for, to hear of a new start of NAOqi, in s."""
 
 
 class Connection:
@@ -261,8 +264,10 @@ class Connection:
             if future.hasError():
                 return future.error().rstrip(".").lower()
             self.latency = time.monotonic() - sent
+            if live.start_watch is None and sent < live.connected_at + BOOT_LIMIT:
+                watch_starts(live, self.timing.heartbeat_limit)
             if self._closing.is_set() or live.broken.wait(self.timing.heartbeat_period):
-                return "closed by the robot"
+                return "NAOqi has started again" if live.has_restarted else "closed by the robot"
 
     def _leave(self, live: Live, reason: str) -> None:
         self.latency = None

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import threading
 import time
-from typing import Any, Callable, Dict
+from typing import Any, Callable, Dict, Optional
 
 import qi
 
@@ -13,6 +14,9 @@ from .calls import RUNNING
 from .errors import RobotUnreachable
 from .translate import connect_reason
 
+logger = logging.getLogger("naoqi")
+
+MEMORY, READY = "ALMemory", "NAOqiReady"
 QUIET_LIBQI = "qi.path.sdklayout=0"
 """libqi warns that it found no SDK around it; a program that only talks to a robot needs none."""
 
@@ -26,6 +30,7 @@ class Live:
         broken: Set when libqi reports the end of the session, and when the program wants it.
         services: Remote objects found so far, by name.
         connected_at: Monotonic time of its connection, in s.
+        start_watch: Tells when NAOqi starts again behind this session; None while that cannot be known.
     """
 
     def __init__(self, on_break: Callable[[], None] = lambda: None) -> None:
@@ -40,8 +45,14 @@ class Live:
         self.broken = threading.Event()
         self.services: Dict[str, Any] = {}
         self.connected_at = 0.0
+        self.start_watch: Optional[StartWatch] = None
         self._on_break = on_break
         self._link = self.session.disconnected.connect(self._break)
+
+    @property
+    def has_restarted(self) -> bool:
+        """Whether NAOqi has started again since."""
+        return self.start_watch is not None and self.start_watch.has_restarted
 
     def close(self) -> None:
         """End the session: calls under way fail, also when the robot is silent."""
@@ -54,6 +65,52 @@ class Live:
     def _break(self, _reason: str) -> None:
         self.broken.set()
         self._on_break()
+
+
+class StartWatch:
+    """Hears the event with which NAOqi says that it has started, all its modules with it.
+
+    A robot that boots can be reached before; what comes then is the end of that start, and nothing is lost. Later ones
+    come from a simulated robot only, whose NAOqi begins anew while its network stays: a real one goes with its NAOqi.
+
+    Attributes:
+        has_restarted: Whether it has started again.
+    """
+
+    def __init__(self, live: Live) -> None:
+        """Hear nothing yet."""
+        self.has_restarted = False
+        self._live = live
+        self._ready = False
+        self._subscriber: Any = None
+
+    def begin(self, memory: Any, limit: float) -> None:
+        """Hear from now on; RuntimeError when the robot cannot do that."""
+        self._subscriber = _done(memory.subscriber(READY, _async=True), limit)
+        _done(self._subscriber.signal.connect(self._on_ready, _async=True), limit)
+        self._ready = bool(_done(memory.getEventHistory(READY, _async=True), limit))
+
+    def _on_ready(self, *_: Any) -> None:
+        if self._ready:
+            self.has_restarted = True
+            self._live.broken.set()
+        self._ready = True
+
+
+def watch_starts(live: Live, limit: float) -> None:
+    """Have `has_restarted` known, if there is ALMemory already; its object is found by the way.
+
+    Four questions, each after the answer to the one before; a call that needs ALMemory saves one of them later.
+    """
+    watch = StartWatch(live)
+    try:
+        memory = live.services[MEMORY] = _done(live.session.service(MEMORY, _async=True), limit)
+        watch.begin(memory, limit)
+    except (RuntimeError, AttributeError) as error:
+        live.services.pop(MEMORY, None)
+        logger.debug("a new start of NAOqi cannot be noticed: %s", error)
+    else:
+        live.start_watch = watch
 
 
 def open_live(host: str, port: int, limit: float, announce: Callable[[Live], None]) -> Live:
@@ -78,6 +135,7 @@ def open_live(host: str, port: int, limit: float, announce: Callable[[Live], Non
         directory = _value(future, host, port, deadline - time.monotonic())
         live.heartbeat = directory.machineId
         live.connected_at = time.monotonic()
+        watch_starts(live, deadline - time.monotonic())
         return live
     except RobotUnreachable:
         live.close()
@@ -110,6 +168,14 @@ def answered(future: Any, limit: float) -> bool:
         if future.wait(max(0, int(1000.0 * part * limit))) != RUNNING:
             return True
     return False
+
+
+def _done(future: Any, limit: float) -> Any:
+    if not answered(future, limit):
+        raise RuntimeError(f"no answer within {limit:.1f} s")
+    if future.hasError():
+        raise RuntimeError(future.error())
+    return future.value()
 
 
 def _value(future: Any, host: str, port: int, limit: float) -> Any:

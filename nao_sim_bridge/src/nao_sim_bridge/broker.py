@@ -80,6 +80,17 @@ class Broker:
         with self._lock:
             self._services[module] = (self._session.registerService(module, service), service)
 
+    def serves(self, module: str) -> bool:
+        """Whether an object is served under a name."""
+        with self._lock:
+            return module in self._services
+
+    def drop_calls(self) -> None:
+        """Make no call any more that waits for its turn; the one that is under way goes on."""
+        with self._lock:
+            for caller in self._callers.values():
+                caller.drop()
+
     def unregister(self, module: str) -> None:
         """Serve it no more."""
         with self._lock:
@@ -139,12 +150,16 @@ class _Caller:
 
     def end(self) -> None:
         """End the thread once the call it makes, if any, is over; drop the calls behind it."""
+        self.drop()
+        self.calls.put(None)
+
+    def drop(self) -> None:
+        """Forget the calls that wait for their turn."""
         while True:
             try:
                 self.calls.get_nowait()
             except queue.Empty:
-                break
-        self.calls.put(None)
+                return
 
     def _run(self) -> None:
         while True:

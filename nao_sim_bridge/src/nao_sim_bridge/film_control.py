@@ -68,7 +68,7 @@ class FilmControl:
             raise BadValue("frame_rate", frame_rate, f"1 to {MAX_FRAME_RATE:g} a second")
         if not file.endswith(TYPE):
             raise BadValue("file", file, f"a name that ends with {TYPE}")
-        path = self._files.to_write(file)
+        path = self._files.to_keep(file)
 
         def start() -> str:
             with self._lock:

@@ -27,28 +27,36 @@ class Pictures:
 
     Args:
         simulation: What to draw; only its published values are read.
-        runner: Where snapshots come from.
+        runner: Its thread.
     """
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation
         self._runner = runner
-        self._renderer = simulation.renderer
         self._viewer: Viewer | None = None
         self._closing = threading.Event()
 
-    def state(self) -> RenderState:
+    def follow(self, simulation: Simulation) -> None:
+        """Draw another simulation from now on; the window, if there is one, shows its world."""
+        before, self._simulation = self._simulation.renderer, simulation
+        if self._viewer is not None and simulation.renderer is not before:
+            viewer, self._viewer = self._viewer, None
+            viewer.close()
+            self.open_window()
+
+    def state(self, simulation: Simulation | None = None) -> RenderState:
         """What is to be seen now."""
-        snapshot = self._runner.snapshot
+        simulation = simulation or self._simulation
+        snapshot = simulation.snapshot
         return RenderState(
             snapshot.torso.position,
             snapshot.torso.orientation,
             snapshot.positions,
-            self._simulation.robot.leds.values,
+            simulation.robot.leds.values,
             snapshot.objects,
             snapshot.placed,
             snapshot.gone,
-            self._simulation.shared.looks_beside(self._simulation),
+            simulation.shared.looks_beside(simulation),
         )
 
     def png(self, view: str, width: int, height: int) -> bytes:
@@ -62,10 +70,11 @@ class Pictures:
         whole = isinstance(width, int) and isinstance(height, int)
         if not whole or not (1 <= width <= MAX_PIXELS and 1 <= height <= MAX_PIXELS):
             raise BadValue("picture size", (width, height), f"1 to {MAX_PIXELS} pixels each way")
-        state = self.state()
-        camera = preset_camera(view, self._simulation.model, state, width, height)
+        simulation = self._simulation
+        state = self.state(simulation)
+        camera = preset_camera(view, simulation.model, state, width, height)
         buffer = io.BytesIO()
-        Image.fromarray(self._renderer.render(state, camera, TIMEOUT), "RGB").save(buffer, "PNG")
+        Image.fromarray(simulation.renderer.render(state, camera, TIMEOUT), "RGB").save(buffer, "PNG")
         return buffer.getvalue()
 
     def open_window(self) -> None:
@@ -101,6 +110,6 @@ class Pictures:
             try:
                 viewer.show(self.state())
             except RenderError as error:
-                if not self._closing.is_set():
+                if not self._closing.is_set() and viewer is self._viewer:
                     log.warning("the window is gone: %s", error)
                 return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import posixpath
 from pathlib import Path
@@ -12,6 +13,7 @@ DEFAULT_RECORD_DIR = Path("~/.ros/nao_recordings")
 ROBOT_HOME = "/home/nao"
 # Longest part of a path, and longest path, in bytes; no file system here has longer ones.
 LONGEST_PART, LONGEST_PATH = 255, 4000
+log = logging.getLogger("nao_sim.files")
 
 
 class OutsideRecordDir(ValueError):
@@ -41,9 +43,37 @@ class ClientFiles:
     def __init__(self, folder: Path | str, shipped: Sequence[Path] = ()) -> None:
         self.folder = Path(folder).expanduser().absolute()
         self.shipped = tuple(shipped)
+        self._made: dict[Path, None] = {}  # in the order in which they were asked for; any thread
 
     def to_write(self, name: str) -> Path:
-        """Path of a file that is to be written; folders on the way are made.
+        """Path of a file that a module of the robot is to write; folders on the way are made.
+
+        Raises:
+            OutsideRecordDir: The name leads out of the folder.
+            UnusableName: It is too long, or something else than a file is there.
+        """
+        path = self.to_keep(name)
+        if not path.exists():
+            self._made[path] = None
+        return path
+
+    def forget(self) -> None:
+        """Remove the files that modules of the robot have made; what was there before they wrote to it stays."""
+        for path in list(self._made):
+            try:
+                path.unlink(missing_ok=True)
+            except OSError as error:
+                log.warning("%s stays: %s", path, error.strerror)
+            for folder in path.parents:
+                if folder == self.folder or self.folder not in folder.parents:
+                    break
+                try:
+                    folder.rmdir()  # only an empty one goes
+                except OSError:
+                    break
+
+    def to_keep(self, name: str) -> Path:
+        """As `to_write`, for who runs the simulator: `forget` leaves it.
 
         Raises:
             OutsideRecordDir: The name leads out of the folder.

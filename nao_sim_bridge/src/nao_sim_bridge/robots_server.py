@@ -6,11 +6,12 @@ import logging
 import threading
 from dataclasses import replace
 from pathlib import Path
+from typing import Callable
 
-from nao_sim_bridge.server import ServerOptions, SimulatorServer
+from nao_sim_bridge.server import ServerOptions, SimulatorServer, renderer_for, scene_in
 from nao_sim_bridge.sim.errors import BadValue, NotAllowed, SimulationStopped
 from nao_sim_bridge.sim.places import RobotPlace, checked_places, on_circle
-from nao_sim_bridge.sim.robot_runner import RobotRunner
+from nao_sim_bridge.sim.render.client import Renderer
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.shared_world import SharedWorld
 from nao_sim_bridge.sim.simulation import Simulation
@@ -44,18 +45,14 @@ class RobotsServer:
         if options.sound_card:
             raise BadValue("sound card", True, "False with more than one robot")
         self.ended = threading.Event()
-        shared = SharedWorld(options.scene, renderer=options.renderer)
-        places = _places(options, shared.world.robots)
-        simulations = [
-            Simulation(replace(options.scene, seed=options.scene.seed + SEED_STEP * number), shared=shared, place=place)
-            for number, place in enumerate(places)
-        ]
-        _refuse_overlaps(shared)
+        self._options = options
+        simulations = _simulations(options, options.renderer)
         self.runner = SimulationRunner(simulations[0], options.speed, options.paused, on_end=self.ended.set)
         self.servers = tuple(
-            SimulatorServer(_own_options(options, number), simulation, RobotRunner(self.runner, simulation))
+            SimulatorServer(_own_options(options, number), simulation, self.runner, self.factory_reset)
             for number, simulation in enumerate(simulations)
         )
+        self._resetting = threading.Lock()
         self._lock = threading.Lock()
         self._left: list[SimulatorServer] = []
 
@@ -87,6 +84,37 @@ class RobotsServer:
         for server in self.servers:
             server.close()
 
+    def factory_reset(self, world: str = "") -> None:
+        """Begin anew with all robots; see `SimulatorServer.factory_reset`. Those that were shut down stay limp."""
+        with self._resetting:
+            self._begin_anew(world)
+
+    def _begin_anew(self, world: str) -> None:
+        before = self.servers[0].simulation.shared
+        options = replace(self._options, scene=scene_in(self._options.scene, world))
+        renderer = renderer_for(before.renderer, before.scene.world, options.scene.world)
+        simulations = _simulations(options, renderer or options.renderer)
+
+        def take() -> list[Callable[[], None]]:
+            began = self.runner.take(simulations[0])
+            for server, simulation in zip(self.servers, simulations):
+                if server in self._left:
+                    _go_limp(simulation)
+            return [server.take(robot, began) for server, robot in zip(self.servers, robots)]
+
+        try:
+            robots = [server.modules_for(simulation) for server, simulation in zip(self.servers, simulations)]
+            for robot in robots:
+                robot.begin()
+            close_former = self.runner.execute(take).result()
+        except Exception:
+            simulations[0].shared.close(keep_renderer=renderer is not None)
+            raise
+        for close in close_former:
+            close()
+        if renderer is None:
+            before.renderer.close()
+
     def _mind(self, server: SimulatorServer) -> None:
         """Take a robot that was shut down off the network; it stays in the world without force."""
         server.ended.wait()
@@ -114,11 +142,23 @@ def open_server(options: ServerOptions) -> SimulatorServer | RobotsServer:
     return SimulatorServer(options) if options.robots == 1 else RobotsServer(options)
 
 
+def _simulations(options: ServerOptions, renderer: str | Renderer) -> list[Simulation]:
+    """All robots, in a new world."""
+    shared = SharedWorld(options.scene, renderer=renderer)
+    places = _places(options, shared.world.robots)
+    simulations = [
+        Simulation(replace(options.scene, seed=options.scene.seed + SEED_STEP * number), shared=shared, place=place)
+        for number, place in enumerate(places)
+    ]
+    _refuse_overlaps(shared, keep_renderer=isinstance(renderer, Renderer))
+    return simulations
+
+
 def _places(options: ServerOptions, of_world: tuple[RobotPlace, ...]) -> tuple[RobotPlace, ...]:
     return checked_places(options.places or of_world or on_circle(options.robots), options.robots)
 
 
-def _refuse_overlaps(shared: SharedWorld) -> None:
+def _refuse_overlaps(shared: SharedWorld, keep_renderer: bool) -> None:
     """Refuse places inside things: they would hurl one of both away.
 
     Raises:
@@ -126,7 +166,7 @@ def _refuse_overlaps(shared: SharedWorld) -> None:
     """
     for number, robot in enumerate(shared.robots):
         for name, depth in robot.inside().items():
-            shared.close()
+            shared.close(keep_renderer)
             raise NotAllowed(f"robot {number + 1} would be {depth:.3f} m inside {name!r}: choose other places")
 
 

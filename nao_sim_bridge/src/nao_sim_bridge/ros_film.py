@@ -15,7 +15,7 @@ from nao_library_msgs.srv import (
     StopFilmRequest,
     StopFilmResponse,
 )
-from nao_sim_bridge.film_control import FilmControl
+from nao_sim_bridge.server import SimulatorServer
 
 ERRORS = (RuntimeError, ValueError, OSError)
 
@@ -26,11 +26,11 @@ class RosFilm:
     ROS API: services `~film/start`, `~film/caption`, `~film/stop` (nao_library_msgs).
 
     Args:
-        film: The films of the running simulator.
+        server: The running simulator.
     """
 
-    def __init__(self, film: FilmControl) -> None:
-        self._film = film
+    def __init__(self, server: SimulatorServer) -> None:
+        self._server = server
         self._services = [
             rospy.Service("~film/start", StartFilm, self._on_start),
             rospy.Service("~film/caption", CaptionFilm, self._on_caption),
@@ -39,7 +39,7 @@ class RosFilm:
 
     def _on_start(self, request: StartFilmRequest) -> StartFilmResponse:
         try:
-            path = self._film.start(
+            path = self._server.film.start(
                 request.file, request.view, request.width, request.height, request.frame_rate
             ).result()
         except ERRORS as error:
@@ -48,14 +48,14 @@ class RosFilm:
 
     def _on_caption(self, request: CaptionFilmRequest) -> CaptionFilmResponse:
         try:
-            self._film.caption(request.text)
+            self._server.film.caption(request.text)
         except ERRORS as error:
             return CaptionFilmResponse(False, str(error))
         return CaptionFilmResponse(True, "")
 
     def _on_stop(self, _request: StopFilmRequest) -> StopFilmResponse:
         try:
-            film = self._film.stop().result()
+            film = self._server.film.stop().result()
         except ERRORS as error:
             return StopFilmResponse(success=False, message=str(error))
         return StopFilmResponse(True, "", str(film.path), film.frames, rospy.Duration.from_sec(film.duration))

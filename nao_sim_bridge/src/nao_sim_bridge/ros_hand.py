@@ -10,8 +10,8 @@ from nao_library_msgs.srv import (
     TouchSensorsRequest,
     TouchSensorsResponse,
 )
-from nao_sim_bridge.hands_control import HandsControl
 from nao_sim_bridge.ros_success import success_service
+from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.tasks import Task
 
 KILLED = "the hand was sent away"
@@ -23,19 +23,19 @@ class RosHand:
     ROS API: services `~touch`, `~release` (nao_library_msgs).
 
     Args:
-        hands: Of the running simulator.
+        server: The running simulator.
         private: What the names of its services begin with.
     """
 
-    def __init__(self, hands: HandsControl, private: str = "~") -> None:
-        self._hands = hands
+    def __init__(self, server: SimulatorServer, private: str = "~") -> None:
+        self._server = server
         self._services = [
             success_service(f"{private}touch", TouchSensors, TouchSensorsResponse, self._touch, KILLED),
             success_service(f"{private}release", ReleaseSensors, ReleaseSensorsResponse, self._release, KILLED),
         ]
 
     def _touch(self, request: TouchSensorsRequest) -> Task:
-        return self._hands.touch(request.sensors, request.time.to_sec(), request.wait)
+        return self._server.hands.touch(request.sensors, request.time.to_sec(), request.wait)
 
     def _release(self, request: ReleaseSensorsRequest) -> Task:
-        return self._hands.release(request.sensors)
+        return self._server.hands.release(request.sensors)

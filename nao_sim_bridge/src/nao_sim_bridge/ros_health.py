@@ -5,8 +5,8 @@ from __future__ import annotations
 from std_srvs.srv import SetBool, SetBoolRequest, SetBoolResponse
 
 from nao_library_msgs.srv import SetFloat, SetFloatRequest, SetFloatResponse
-from nao_sim_bridge.health_control import HealthControl
 from nao_sim_bridge.ros_success import success_service
+from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.tasks import Task
 
 KILLED = "it was stopped"
@@ -18,19 +18,19 @@ class RosHealth:
     ROS API: services `~plug_charger` (std_srvs/SetBool), `~set_battery` (nao_library_msgs/SetFloat; 0..1).
 
     Args:
-        health: Of the running simulator.
+        server: The running simulator.
         private: What the names of its services begin with.
     """
 
-    def __init__(self, health: HealthControl, private: str = "~") -> None:
-        self._health = health
+    def __init__(self, server: SimulatorServer, private: str = "~") -> None:
+        self._server = server
         self._services = [
             success_service(f"{private}plug_charger", SetBool, SetBoolResponse, self._plug, KILLED),
             success_service(f"{private}set_battery", SetFloat, SetFloatResponse, self._set, KILLED),
         ]
 
     def _plug(self, request: SetBoolRequest) -> Task:
-        return self._health.plug_charger(request.data)
+        return self._server.health.plug_charger(request.data)
 
     def _set(self, request: SetFloatRequest) -> Task:
-        return self._health.set_battery_charge(request.data)
+        return self._server.health.set_battery_charge(request.data)

@@ -60,16 +60,16 @@ class RosRobot:
             rospy.Service(f"{private}picture", TakePicture, self.on_picture),
             rospy.Service(f"{public}get_truepose", GetTruepose, self._on_true_pose),
         ]
-        self._health = RosHealth(server.health, private)
-        self._hand = RosHand(server.hands, private)
+        self._health = RosHealth(server, private)
+        self._hand = RosHand(server, private)
 
     def tick(self) -> None:
         """Publish what is due."""
-        snapshot = self._server.runner.snapshot
-        if snapshot.time >= self._next_truth:
-            self._next_truth = snapshot.time + TRUTH_PERIOD
+        snapshot, now = self._server.now
+        if now >= self._next_truth:
+            self._next_truth = now + TRUTH_PERIOD
             if self._truth.get_num_connections():
-                self._truth.publish(self._odometry(snapshot))
+                self._truth.publish(self._odometry(snapshot, now))
 
     def on_picture(self, request: TakePictureRequest) -> TakePictureResponse:
         """Take a picture."""
@@ -78,24 +78,24 @@ class RosRobot:
 
         def take() -> None:
             nonlocal path
-            path = self._server.files.to_write(request.file or "picture.png")
+            path = self._server.files.to_keep(request.file or "picture.png")
             path.write_bytes(self._server.picture(request.view or "three_quarter", *size))
 
         success, message = _success(take)
         return TakePictureResponse(success, message, str(path) if success else "")
 
-    def _odometry(self, snapshot: Snapshot) -> Odometry:
+    def _odometry(self, snapshot: Snapshot, now: float) -> Odometry:
         message = Odometry()
-        message.header.stamp = self._stamp(snapshot)
+        message.header.stamp = self._stamp(now)
         message.header.frame_id, message.child_frame_id = WORLD_FRAME, self._frame
         message.pose.pose.position = Point(*snapshot.torso.position)
         message.pose.pose.orientation = Quaternion(*snapshot.torso.orientation)
         message.twist.twist = Twist(Vector3(*snapshot.velocity_in_torso), Vector3(*snapshot.turn_in_torso))
         return message
 
-    def _stamp(self, snapshot: Snapshot) -> rospy.Time:
-        """ROS time of a snapshot: simulated time when this node publishes the clock, else now."""
-        return rospy.Time.from_sec(snapshot.time) if self._simulated_time else rospy.Time.now()
+    def _stamp(self, now: float) -> rospy.Time:
+        """ROS time of a snapshot: the server's `now` when this node publishes the clock, else that of the computer."""
+        return rospy.Time.from_sec(now) if self._simulated_time else rospy.Time.now()
 
     def _on_push(self, request: PushRobotRequest) -> PushRobotResponse:
         force = (request.force.x, request.force.y, request.force.z)
@@ -106,9 +106,9 @@ class RosRobot:
         return PressSensorsResponse(*_success(lambda: self._server.press(request.sensors)))
 
     def _on_true_pose(self, _request: GetTrueposeRequest) -> GetTrueposeResponse:
-        snapshot = self._server.runner.snapshot
+        snapshot, now = self._server.now
         answer = GetTrueposeResponse()
-        answer.pose.header.stamp = self._stamp(snapshot)
+        answer.pose.header.stamp = self._stamp(now)
         answer.pose.header.frame_id = WORLD_FRAME
         answer.pose.pose.pose.position = Point(*snapshot.torso.position)
         answer.pose.pose.pose.orientation = Quaternion(*snapshot.torso.orientation)

@@ -9,7 +9,15 @@ import rospy
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
-from nao_library_msgs.srv import AdvanceTime, AdvanceTimeRequest, AdvanceTimeResponse, TakePicture
+from nao_library_msgs.srv import (
+    AdvanceTime,
+    AdvanceTimeRequest,
+    AdvanceTimeResponse,
+    ResetWorld,
+    ResetWorldRequest,
+    ResetWorldResponse,
+    TakePicture,
+)
 from nao_sim_bridge.ros_film import RosFilm
 from nao_sim_bridge.ros_robot import RosRobot
 from nao_sim_bridge.ros_sounds import RosSounds
@@ -25,9 +33,11 @@ class RosSide:
 
     ROS API (relative names):
         Publishes `/clock` (rosgraph_msgs/Clock) when asked to.
-        Services `~advance` (nao_library_msgs), `~reset`, `~pause`, `~resume` (std_srvs/Empty), with more than one robot
-        `~picture` (nao_library_msgs), which shows the first one, and those of `RosRobot` for each robot, `RosSounds`,
-        `RosThings` and `RosFilm`.
+        Services `~advance` (nao_library_msgs), `~reset`, `~factory_reset`, `~pause`, `~resume` (std_srvs/Empty),
+        `~reset_world` (nao_library_msgs/ResetWorld), with more than one robot `~picture` (nao_library_msgs),
+        which shows the first one, and those of `RosRobot` for each robot, `RosSounds`, `RosThings` and `RosFilm`.
+
+    Time in ROS goes on when a factory reset begins that of the robot anew.
 
     Args:
         server: The running simulator; of several robots that of the first.
@@ -43,15 +53,17 @@ class RosSide:
         self._clock = rospy.Publisher("/clock", Clock, queue_size=1) if publish_clock else None
         self._services = [
             rospy.Service("~advance", AdvanceTime, self._on_advance),
-            rospy.Service("~reset", Empty, self._empty(self._server.reset)),
-            rospy.Service("~pause", Empty, self._empty(self._server.runner.pause)),
-            rospy.Service("~resume", Empty, self._empty(self._server.runner.resume)),
+            rospy.Service("~reset", Empty, self._empty(server.reset)),
+            rospy.Service("~factory_reset", Empty, self._empty(server.factory_reset)),
+            rospy.Service("~reset_world", ResetWorld, self._on_reset_world),
+            rospy.Service("~pause", Empty, self._empty(lambda: server.runner.pause())),
+            rospy.Service("~resume", Empty, self._empty(lambda: server.runner.resume())),
         ]
         if several:
             self._services.append(rospy.Service("~picture", TakePicture, self._robots[0].on_picture))
-        self._sounds = RosSounds(server.sounds)
-        self._things = RosThings(server.things)
-        self._film = RosFilm(server.film)
+        self._sounds = RosSounds(server)
+        self._things = RosThings(server)
+        self._film = RosFilm(server)
         self._closing = threading.Event()
         rospy.on_shutdown(self.close)  # topics close next
         self._thread = threading.Thread(target=self._publish, name="ros publisher", daemon=True)
@@ -65,21 +77,27 @@ class RosSide:
     def _publish(self) -> None:
         last = -1
         while not self._closing.is_set():
-            snapshot = self._server.runner.wait_for_tick(last, timeout=0.5)
-            if snapshot is None:
-                if self._clock is not None:  # time stands still; a node that has just started wants to know it
-                    self._clock.publish(rospy.Time.from_sec(self._server.runner.snapshot.time))
+            runner = self._server.runner
+            passed = runner.wait_for_tick(last, timeout=0.5) is not None
+            last = runner.ticks
+            if self._clock is not None:  # also while time stands still: a node that has just started wants to know it
+                self._clock.publish(rospy.Time.from_sec(self._server.now[1]))
+            if not passed:
                 continue
-            last = snapshot.tick
-            if self._clock is not None:
-                self._clock.publish(rospy.Time.from_sec(snapshot.time))
             for robot in self._robots:
                 robot.tick()
             self._closing.wait(CLOCK_WALL_PERIOD)
 
     def _on_advance(self, request: AdvanceTimeRequest) -> AdvanceTimeResponse:
         snapshot = self._server.runner.advance(request.time.to_sec()).result()
-        return AdvanceTimeResponse(rospy.Time.from_sec(snapshot.time))
+        return AdvanceTimeResponse(rospy.Time.from_sec(self._server.began + snapshot.time))
+
+    def _on_reset_world(self, request: ResetWorldRequest) -> ResetWorldResponse:
+        try:
+            self._server.factory_reset(request.world)
+        except (RuntimeError, ValueError, OSError) as error:
+            return ResetWorldResponse(False, str(error))
+        return ResetWorldResponse(True, "")
 
     @staticmethod
     def _empty(action: Callable[[], object]) -> Callable[[EmptyRequest], EmptyResponse]:

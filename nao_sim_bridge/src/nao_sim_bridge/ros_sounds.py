@@ -19,8 +19,8 @@ from nao_library_msgs.srv import (
     RemoveSoundResponse,
 )
 from nao_sim_bridge.ros_success import success_service
+from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.tasks import Task
-from nao_sim_bridge.world_sounds_control import WorldSoundsControl
 
 KILLED = "it was silenced before its end"
 
@@ -31,11 +31,11 @@ class RosSounds:
     ROS API: services `~place_sound`, `~move_sound`, `~remove_sound`, `~person_says` (nao_library_msgs).
 
     Args:
-        sounds: The sounds of the running simulator.
+        server: The running simulator.
     """
 
-    def __init__(self, sounds: WorldSoundsControl) -> None:
-        self._sounds = sounds
+    def __init__(self, server: SimulatorServer) -> None:
+        self._server = server
         self._services = [
             success_service("~place_sound", PlaceSound, PlaceSoundResponse, self._place, KILLED),
             success_service("~move_sound", MoveSound, MoveSoundResponse, self._move, KILLED),
@@ -45,17 +45,17 @@ class RosSounds:
 
     def _place(self, request: PlaceSoundRequest) -> Task:
         position, level = _listed(request.position), float(request.level_db)
-        return self._sounds.add(request.name, request.sound, position, level, request.loop)
+        return self._server.sounds.add(request.name, request.sound, position, level, request.loop)
 
     def _move(self, request: MoveSoundRequest) -> Task:
-        return self._sounds.move(request.name, _listed(request.position))
+        return self._server.sounds.move(request.name, _listed(request.position))
 
     def _remove(self, request: RemoveSoundRequest) -> Task:
-        return self._sounds.remove(request.name)
+        return self._server.sounds.remove(request.name)
 
     def _person_says(self, request: PersonSaysRequest) -> Task:
         position, level = _listed(request.position), float(request.level_db)
-        return self._sounds.person_says(request.text, position, request.voice, level)
+        return self._server.sounds.person_says(request.text, position, request.voice, level)
 
 
 def _listed(point: Point) -> list[float]:

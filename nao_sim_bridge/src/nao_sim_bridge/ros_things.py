@@ -18,10 +18,10 @@ from nao_library_msgs.srv import (
     RemoveObjectResponse,
 )
 from nao_sim_bridge.ros_success import success_service
+from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.rotations import roll_pitch_yaw
 from nao_sim_bridge.sim.tasks import Task
-from nao_sim_bridge.things_control import ThingsControl
 
 SHAPES = ("box", "sphere", "ball", "cylinder", "capsule")
 SINGLE = ("sphere", "ball")
@@ -39,11 +39,11 @@ class RosThings:
     ROS API: services `~place_object`, `~move_object`, `~remove_object` (nao_library_msgs).
 
     Args:
-        things: The things of the running simulator.
+        server: The running simulator.
     """
 
-    def __init__(self, things: ThingsControl) -> None:
-        self._things = things
+    def __init__(self, server: SimulatorServer) -> None:
+        self._server = server
         self._services = [
             success_service("~place_object", PlaceObject, PlaceObjectResponse, self._place, KILLED),
             success_service("~move_object", MoveObject, MoveObjectResponse, self._move, KILLED),
@@ -52,17 +52,17 @@ class RosThings:
 
     def _place(self, request: PlaceObjectRequest) -> Task:
         if not request.description:
-            return self._things.place(entry_of(request))
+            return self._server.things.place(entry_of(request))
         if request.kind or request.name:
             raise BadValue("description", request.description[:40], "empty when there is a name or a kind")
-        return self._things.place_described(request.description)
+        return self._server.things.place_described(request.description)
 
     def _move(self, request: MoveObjectRequest) -> Task:
         position, turn = _position(request.pose), _turn(request.pose)
-        return self._things.move(request.name, position, turn, request.time.to_sec(), request.wait)
+        return self._server.things.move(request.name, position, turn, request.time.to_sec(), request.wait)
 
     def _remove(self, request: RemoveObjectRequest) -> Task:
-        return self._things.remove(request.name)
+        return self._server.things.remove(request.name)
 
 
 def entry_of(request: PlaceObjectRequest) -> dict[str, Any]:

@@ -5,50 +5,35 @@ from __future__ import annotations
 import logging
 import sys
 import threading
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.broker import Broker
 from nao_sim_bridge.film_control import FilmControl
 from nao_sim_bridge.hands_control import HandsControl
 from nao_sim_bridge.health_control import HealthControl
-from nao_sim_bridge.paths import sounds_directory
 from nao_sim_bridge.pictures import Pictures
 from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR, ClientFiles, unused
-from nao_sim_bridge.services import motion
+from nao_sim_bridge.robot_modules import RobotModules, Workers
 from nao_sim_bridge.services.arguments import number, numbers
-from nao_sim_bridge.services.audio import sound_detection, sound_localization
-from nao_sim_bridge.services.audio.speech_recognition import RecognitionModule
 from nao_sim_bridge.services.audio.speech_wiring import SpeechModules
-from nao_sim_bridge.services.audio.wiring import AudioModules
-from nao_sim_bridge.services.behaviors.wiring import BehaviorModules
-from nao_sim_bridge.services.binding import make_service
-from nao_sim_bridge.services.body_modules import BodyModules
-from nao_sim_bridge.services.diagnosis_events import DiagnosisEvents
-from nao_sim_bridge.services.fall_events import FallEvents
-from nao_sim_bridge.services.leds import ALLeds
-from nao_sim_bridge.services.life.wiring import LifeModules
-from nao_sim_bridge.services.live_keys import constants, live_keys
-from nao_sim_bridge.services.memory import ALMemory
+from nao_sim_bridge.services.binding import Service
 from nao_sim_bridge.services.memory_store import MemoryStore
-from nao_sim_bridge.services.motion.wake import AWAKE
 from nao_sim_bridge.services.nao_simulation import NAME as NAO_SIMULATION
 from nao_sim_bridge.services.nao_simulation import NaoSimulation
-from nao_sim_bridge.services.posture import ALRobotPosture
-from nao_sim_bridge.services.posture_events import PostureEvents
-from nao_sim_bridge.services.senses_wiring import SenseModules
 from nao_sim_bridge.services.system import ALSystem
 from nao_sim_bridge.services.time_zone import TimeZone
-from nao_sim_bridge.services.vision import video_device
-from nao_sim_bridge.services.vision.photo_capture_wiring import PictureModules
 from nao_sim_bridge.services.vision.wiring import VisionModules
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.places import RobotPlace
+from nao_sim_bridge.sim.render.client import Renderer
 from nao_sim_bridge.sim.robot_runner import RobotRunner
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Scene, Simulation
+from nao_sim_bridge.sim.snapshot import Snapshot
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.sim.world import world_names
 from nao_sim_bridge.sound_outlets import SoundCard, SoundFile
 from nao_sim_bridge.things_control import ThingsControl
 from nao_sim_bridge.world_sounds_control import WorldSoundsControl
@@ -57,6 +42,8 @@ MAX_PUSH = 60.0
 # How long a thread that computes keeps Python's interpreter when another wants it, s. The simulation computes nearly
 # all the time when it runs as fast as possible; Python's own 5 ms would be felt in every call.
 SWITCH_INTERVAL = 0.0005
+READY = "NAOqiReady"
+"""The event that clients know a robot by that has started, or started again."""
 log = logging.getLogger("nao_sim.server")
 
 
@@ -98,68 +85,116 @@ class ServerOptions:
 class SimulatorServer:
     """One simulated NAO that answers on libqi.
 
+    What the robot and its modules are is in a `RobotModules`, which a factory reset replaces; the network, the thread
+    and the programs that work for it stay.
+
     Attributes:
-        simulation: Touched in the simulation thread only.
-        runner: That thread.
-        memory: What ALMemory keeps.
         broker: The libqi side.
         pictures: Drawings of the robot.
-        files: Where clients may have files written to and read from.
-        speech: The robot's voice.
-        vision: What it recognises in its pictures.
-        sounds: Sounds of the world.
-        things: Things of the world.
-        hands: What touches the robot.
-        health: Charger, temperatures, broken devices.
-        film: Films of the robot.
         ended: Set when a client shut the robot down or the simulation failed.
 
     Args:
         options: How it is started.
         simulation: A robot in a world that is there already; None for one of its own.
-        runner: Its view of the thread of that world.
+        runner: The thread of that world.
+        factory_reset: Makes that world, the one of this name, and all its robots anew.
     """
 
     def __init__(
-        self, options: ServerOptions, simulation: Simulation | None = None, runner: RobotRunner | None = None
+        self,
+        options: ServerOptions,
+        simulation: Simulation | None = None,
+        runner: SimulationRunner | None = None,
+        factory_reset: Callable[[str], None] | None = None,
     ) -> None:
         self.options = options
         self.ended = threading.Event()
-        self.simulation = simulation or _alone(options)
-        self.runner = runner or SimulationRunner(self.simulation, options.speed, options.paused, self.ended.set)
-        self.memory = MemoryStore(lambda: self.runner.snapshot.time)
+        simulation = simulation or _alone(options)
+        self._shares_thread = runner is not None
+        self._thread = runner or SimulationRunner(simulation, options.speed, options.paused, self.ended.set)
+        self._make_world_anew = factory_reset or self._begin_anew
         self.broker = Broker()
-        self.pictures = Pictures(self.simulation, self.runner)
-        self.files = ClientFiles(options.record_dir, [sounds_directory()])
-        self._audio = AudioModules(self.simulation, self.runner, self.files, self.broker)
-        self.speech = SpeechModules(self.simulation, self.runner, self.memory, self.files, self.broker)
-        self._posture = ALRobotPosture(self.simulation, self.runner, self.memory)
-        self._behaviors = BehaviorModules(
-            self.simulation, self.runner, self.memory, self.files, self.speech, self._posture
-        )
-        self._zone = TimeZone()
-        self._life = LifeModules(
-            self.simulation,
-            self.runner,
-            self.memory,
-            self.broker,
-            self.speech,
-            self._posture,
-            self._behaviors.running,
-            self._zone,
-        )
-        self._recognition = RecognitionModule(self.simulation, self.runner, self.memory, self.files)
-        self._video = video_device.VideoDevice(self.simulation.cameras, self.files)
-        self.vision = VisionModules(self.simulation, self.memory, self.files)
-        self._pictures_taken = PictureModules(self.simulation, self.runner, self.files)
-        self._senses = SenseModules(self.simulation, self.runner, self.memory)
-        self.sounds = WorldSoundsControl(self.simulation, self.runner, self.files)
-        self.things = ThingsControl(self.simulation, self.runner, self.files)
-        self.hands = HandsControl(self.simulation, self.runner)
-        self.film = FilmControl(self.simulation, self.runner, self.files, options.renderer)
-        self.health = HealthControl(self.simulation, self.runner)
-        self._body = BodyModules(self.simulation, self.runner, self.memory)
+        self._workers = Workers()
+        self.pictures = Pictures(simulation, self._thread)
+        self._robot = self.modules_for(simulation)
+        self._services: dict[str, Service] = {}
         self._outlets: list[SoundFile | SoundCard] = []
+        self._resetting = threading.Lock()
+
+    # --- the robot as it is now --------------------------------------------------------------------------------------
+
+    @property
+    def runner(self) -> SimulationRunner | RobotRunner:
+        """The thread of the simulation; of several robots in a world each has its own view of it."""
+        return self._robot.runner if self._shares_thread else self._thread
+
+    @property
+    def simulation(self) -> Simulation:
+        """Touched in the simulation thread only; replaced by a factory reset."""
+        return self._robot.simulation
+
+    @property
+    def memory(self) -> MemoryStore:
+        """What ALMemory keeps."""
+        return self._robot.memory
+
+    @property
+    def files(self) -> ClientFiles:
+        """Where clients may have files written to and read from."""
+        return self._robot.files
+
+    @property
+    def speech(self) -> SpeechModules:
+        """The robot's voice."""
+        return self._robot.speech
+
+    @property
+    def vision(self) -> VisionModules:
+        """What it recognises in its pictures."""
+        return self._robot.vision
+
+    @property
+    def sounds(self) -> WorldSoundsControl:
+        """Sounds of the world."""
+        return self._robot.sounds
+
+    @property
+    def things(self) -> ThingsControl:
+        """Things of the world."""
+        return self._robot.things
+
+    @property
+    def hands(self) -> HandsControl:
+        """What touches the robot."""
+        return self._robot.hands
+
+    @property
+    def health(self) -> HealthControl:
+        """Charger, temperatures, broken devices."""
+        return self._robot.health
+
+    @property
+    def film(self) -> FilmControl:
+        """Films of the robot."""
+        return self._robot.film
+
+    @property
+    def began(self) -> float:
+        """What `now` says at time 0 of the robot, s."""
+        return self._robot.began
+
+    @property
+    def now(self) -> tuple[Snapshot, float]:
+        """The last snapshot, and the simulated time since the start of the program, s: no reset takes that back."""
+        robot = self._robot
+        snapshot = robot.simulation.snapshot
+        return snapshot, robot.began + snapshot.time
+
+    def modules(self) -> dict[str, list[Any]]:
+        """NAOqi's modules by name: the objects that together have the methods of each."""
+        return dict(self._robot.modules)
+
+    # --- start and end -----------------------------------------------------------------------------------------------
 
     def start(self) -> None:
         """Listen, register the modules and let time pass.
@@ -174,57 +209,23 @@ class SimulatorServer:
 
     def prepare(self) -> None:
         """First part of `start`, before time passes: listen, and have a look at every tick."""
-        self.speech.begin()
-        if self.simulation is self.simulation.shared.robots[0]:
-            self.sounds.begin()
+        self._workers.begin()
+        self._robot.begin()
         self._open_outlets()
         sys.setswitchinterval(SWITCH_INTERVAL)
         self.broker.listen(self.options.address, self.options.port, lambda: not self.ended.is_set())
-        self.broker.when_gone(self._video.client_gone)
-        robot_leds = lambda: self.simulation.robot.leds.values  # noqa: E731
-        self.memory.add_live(live_keys(self.runner, self.simulation.model, self.simulation.led_layout, robot_leds))
-        for key, value in constants(self.options.scene.version).items():
-            self.memory.insert(key, value)
-        self.simulation.after_reset.append(lambda: self.memory.raise_event(AWAKE, False))
-        self.simulation.after_tick.append(PostureEvents(self.simulation.model, self.memory))
-        self.simulation.after_tick.append(FallEvents(self.simulation, self.memory))
-        self._senses.begin()
-        self.simulation.after_tick.append(DiagnosisEvents(self.simulation, self.memory))
-        self._body.begin()
+        self.broker.when_gone(lambda module: self._robot.video.client_gone(module))
 
     def serve(self) -> None:
         """Last part of `start`, when time passes: register the modules."""
-        for name, parts in self.modules().items():
-            self.broker.register(name, make_service(name, parts, self.broker))
+        for name, parts in self._robot.modules.items():
+            service = self._services[name] = Service(name, parts, self.broker)
+            self.broker.register(name, service.object)
         self.broker.register(NAO_SIMULATION, NaoSimulation(self))
-        self.memory.raise_event("NAOqiReady", None)
+        self.memory.raise_event(READY, None)
         if self.options.gui:
             self.pictures.open_window()
         log.info("simulated NAO listens on %s:%d", self.options.address, self.broker.port)
-
-    def modules(self) -> dict[str, list[Any]]:
-        """NAOqi's modules by name: the objects that together have the methods of each."""
-        return {
-            "ALMemory": [ALMemory(self.memory, self.broker)],
-            "ALLeds": [ALLeds(self.simulation, self.runner)],
-            "ALMotion": motion.parts(self.simulation, self.runner, self.memory),
-            "ALRobotPosture": [self._posture],
-            **self._audio.modules(),
-            **self.speech.modules(),
-            **self._behaviors.modules(),
-            **self._life.modules(),
-            **self._recognition.modules(),
-            sound_detection.NAME: sound_detection.parts(self.simulation, self.memory),
-            **{name: sound_localization.parts(name, self.simulation, self.memory) for name in sound_localization.NAMES},
-            video_device.NAME: self._video.parts(),
-            **self.vision.modules(),
-            **self._pictures_taken.modules(),
-            **self._senses.modules(),
-            **self._body.modules(),
-            "ALSystem": [
-                ALSystem(self.memory, self.reboot_task, self.ended.set, self._icon, self.options.name, self._zone)
-            ],
-        }
 
     def stop(self) -> None:
         """Leave the network and end the simulation."""
@@ -235,18 +236,15 @@ class SimulatorServer:
     def leave(self) -> None:
         """First part of `stop`: leave the network."""
         self.ended.set()
-        self.film.close()
-        self._audio.close()
-        self.vision.close()  # before what has files to complete, and needs the pictures that are drawn
-        self._pictures_taken.close()
-        self._video.close()
-        self.sounds.close()
+        self._workers.vision.close()  # first: who waits for an answer gets none
+        self._robot.leave()
+        self._workers.persons.close()
         self.broker.close()
 
     def close(self) -> None:
         """Last part of `stop`: end everything else that works for the robot."""
-        self.speech.close()
-        self._recognition.close()
+        self._robot.close()
+        self._workers.close()
         self.pictures.close()
         for outlet in self._outlets:
             outlet.close()
@@ -256,7 +254,7 @@ class SimulatorServer:
             raise BadValue("speed", self.options.speed, "1 with a sound card")
         if self.options.sound_file:
             try:
-                path = self.files.to_write(self.options.sound_file)
+                path = self.files.to_keep(self.options.sound_file)
             except ValueError as error:
                 raise BadValue("sound file", self.options.sound_file, f"a name inside {self.files.folder}") from error
             path = unused(path)  # what was said last time is not lost
@@ -264,6 +262,99 @@ class SimulatorServer:
             self._outlets.append(SoundFile(self.simulation, path))
         if self.options.sound_card:
             self._outlets.append(SoundCard(self.simulation))
+
+    # --- factory reset -----------------------------------------------------------------------------------------------
+
+    def factory_reset(self, world: str = "") -> None:
+        """Begin anew, at time 0, as a server that has just been started; with other robots, for all of them.
+
+        Nothing is left of what clients have changed, but for modules of their own. Pending calls end as if they were
+        killed, and files that modules of the robot have written are removed. What belongs to whoever runs the simulator
+        stays: speed and pause, films, pictures, the file and the card for sound. Connections stay, and the event
+        `NAOqiReady` says that the robot has started again. Blocking; not in the simulation thread.
+
+        Args:
+            world: Name of a world, or path of its file; empty for that of the start.
+
+        Raises:
+            SimulationError: The world cannot be used; everything stays as it is.
+        """
+        with self._resetting:
+            self._make_world_anew(world)
+
+    def factory_reset_task(self, world: str = "") -> Task:
+        """As `factory_reset`, without waiting."""
+        task = Task("factoryReset", 0)
+
+        def run() -> None:
+            try:
+                self.factory_reset(world)
+            except Exception as error:
+                task.finish(error=error)
+            else:
+                task.finish()
+
+        threading.Thread(target=run, name="factory reset", daemon=True).start()
+        return task
+
+    def modules_for(self, simulation: Simulation) -> RobotModules:
+        """Modules for a robot at its start, which do nothing yet."""
+        return RobotModules(self.options, simulation, self._thread, self.broker, self._workers, self._system)
+
+    def take(self, robot: RobotModules, began: float) -> Callable[[], None]:
+        """Be another robot from now on; simulation thread, which has just taken its simulation.
+
+        Args:
+            robot: Its modules.
+            began: Its `began`.
+
+        Returns:
+            To be called outside the thread: closes what was left behind, but for what draws.
+        """
+        former, robot.began = self._robot, began
+        former.runner.leave_behind()
+        former.memory.close()
+        self._robot = robot
+        ends = [self._services[name].rebind(parts) for name, parts in robot.modules.items() if name in self._services]
+        for outlet in self._outlets:
+            outlet.follow(robot.simulation)
+        former.files.forget()
+        self.broker.drop_calls()
+        robot.memory.raise_event(READY, None)
+
+        def close_former() -> None:
+            former.leave()
+            former.runner.end()
+            former.simulation.shared.close(keep_renderer=True)
+            for end in ends:
+                end()
+            former.close()
+            former.files.forget()  # what was completed meanwhile
+            self._serve_again()
+            self.pictures.follow(robot.simulation)
+
+        return close_former
+
+    def _begin_anew(self, world: str) -> None:
+        before = self.simulation.shared
+        renderer = renderer_for(before.renderer, before.scene.world, world or self.options.scene.world)
+        simulation = _alone(replace(self.options, scene=scene_in(self.options.scene, world)), renderer)
+        try:
+            robot = self.modules_for(simulation)
+            robot.begin()
+            close_former = self._thread.execute(lambda: self.take(robot, self._thread.take(simulation))).result()
+        except Exception:
+            simulation.shared.close(keep_renderer=renderer is not None)
+            raise
+        close_former()
+        if renderer is None:
+            before.renderer.close()
+
+    def _serve_again(self) -> None:
+        """Register the modules that a client has taken off the network."""
+        for name, service in self._services.items():
+            if not self.broker.serves(name):
+                self.broker.register(name, service.object)
 
     # --- what only a simulator can do; for any thread, blocking until it is done -----------------------------------
 
@@ -287,19 +378,30 @@ class SimulatorServer:
         """A PNG picture of the robot; see `Pictures.png`."""
         return self.pictures.png(view, width, height)
 
-    def _icon(self, size: int) -> bytes:
-        return self.pictures.png("face", size, size)
-
     def reset_task(self) -> Task:
         """As `reset`, without waiting."""
-        return self.runner.execute(self.simulation.reset, "reset")
+        return self.runner.execute(lambda: self.simulation.reset(), "reset")
 
     def reboot_task(self) -> Task:
         """Put this robot to where it started, without waiting; one that is alone in its world resets that, too."""
-        return self.runner.execute(self.simulation.reboot, "reboot")
+        return self.runner.execute(lambda: self.simulation.reboot(), "reboot")
+
+    def _system(self, memory: MemoryStore, zone: TimeZone) -> ALSystem:
+        icon = lambda size: self.pictures.png("face", size, size)  # noqa: E731
+        return ALSystem(memory, self.reboot_task, self.ended.set, icon, self.options.name, zone)
 
 
-def _alone(options: ServerOptions) -> Simulation:
+def scene_in(scene: Scene, world: str) -> Scene:
+    """A scene in another world; an empty name is that of its own."""
+    return replace(scene, world=world) if world else scene
+
+
+def renderer_for(renderer: Renderer, drew: str, world: str) -> Renderer | None:
+    """What has drawn a world if it can draw the other one; files may have changed meanwhile, those we ship have not."""
+    return renderer if drew == world and world in world_names() else None
+
+
+def _alone(options: ServerOptions, renderer: Renderer | None = None) -> Simulation:
     """A robot in a world of its own."""
     place = options.places[0] if options.places else None
-    return Simulation(options.scene, renderer=options.renderer, place=place)
+    return Simulation(options.scene, renderer=renderer or options.renderer, place=place)

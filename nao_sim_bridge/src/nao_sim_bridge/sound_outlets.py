@@ -52,6 +52,13 @@ class SoundFile:
         """Whether fast time should wait for the file."""
         return self._follower.lag > HOLD_LAG
 
+    def follow(self, simulation: Simulation) -> None:
+        """Write what another simulation plays from now on, behind what there is; in its thread."""
+        self._follower.close()
+        self._loudspeakers, self._wake = simulation.sound.loudspeakers, simulation.wake
+        self._follower = Follower("sound file", simulation.sound.timeline, self._write, FILE_STEP)
+        simulation.holds.append(self.behind)
+
     def close(self) -> None:
         """Write what has been played, and end."""
         self._follower.close()
@@ -77,6 +84,12 @@ class SoundCard:
         self._stream = _open_stream()
         self._stream.write(np.zeros((round(CARD_DELAY * RATE), 2), np.int16))
         self._timeline = simulation.sound.timeline
+        self._follower = Follower("sound card", self._timeline, self._send, CARD_STEP)
+
+    def follow(self, simulation: Simulation) -> None:
+        """Have another simulation heard from now on; in its thread."""
+        self._follower.close(timeout=1.0)
+        self._loudspeakers, self._timeline = simulation.sound.loudspeakers, simulation.sound.timeline
         self._follower = Follower("sound card", self._timeline, self._send, CARD_STEP)
 
     def close(self) -> None:

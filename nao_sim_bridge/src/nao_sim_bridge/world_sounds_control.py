@@ -32,17 +32,14 @@ class WorldSoundsControl:
         simulation: Whose world it is.
         runner: Its thread.
         files: Where clients may have files read from.
-        studio: Makes the voices of persons; one of its own when None.
+        studio: Makes the voices of persons: not that of the robot, for both may speak at the same time.
     """
 
-    def __init__(
-        self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles, studio: Studio | None = None
-    ) -> None:
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles, studio: Studio) -> None:
         self._simulation = simulation
         self._runner = runner
         self._files = files
-        # Not that of the robot: a person and the robot may speak at the same time.
-        self._studio = studio or Studio()
+        self._studio = studio
         self._numbers = simulation.sound.numbers
         self._lock = threading.Lock()
         self._being_made = 0
@@ -112,10 +109,6 @@ class WorldSoundsControl:
                 self._simulation.wake()
 
         return self._studio.in_background(make, "personSays")
-
-    def close(self) -> None:
-        """End what makes voices."""
-        self._studio.close()
 
     def _speak(self, text: str, voice: str) -> Sound:
         voices, engines = load_voices(), self._studio.engines

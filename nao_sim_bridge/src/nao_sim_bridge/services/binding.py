@@ -12,7 +12,7 @@ import inspect
 import logging
 import threading
 from functools import partial, wraps
-from typing import Any, Callable, Iterable, Sequence
+from typing import Any, Callable, Iterable, Mapping, Sequence
 
 import qi
 
@@ -32,43 +32,120 @@ DEFECT = "a defect of the simulator, whose log tells more"
 PACKAGE = __name__.partition(".")[0]
 
 
-def make_service(module: str, parts: Sequence[Any], broker: Any) -> Any:
-    """The object to register under the name `module`.
+class Service:
+    """A libqi service of one NAOqi module. It stays on the network when other objects take over its work.
+
+    Attributes:
+        object: What to register under the name of the module.
 
     Args:
         module: NAOqi name, a key of the API table.
         parts: Objects whose methods do the work; those with the names of the table are published. One with an attribute
-            `signals` publishes these libqi signals, by name.
+            `signals` publishes these libqi signals, by name; it has to keep them in `take_over(former)`.
         broker: What the methods that every module has need to know: its `name` and `unregister(module)`.
     """
-    table = module_methods(module)
-    common = CommonModule(module, table, broker)
-    body: dict[str, Any] = {}
-    for name, method in table.items():
-        if name in NATIVE:
-            continue
-        target = _find(name, [*parts, common])
-        if target is None:
-            continue
-        target = common.targets[name] = _checked(method, target)
-        for position, overload in enumerate(method.overloads):
-            attribute = name if position == 0 else f"{name}_{position}"
-            body[attribute] = _bound(module, method, overload, target)
-    body["pCall"] = _bound_any(module, "pCall", common.pCall)
-    service = type(module, (), body)()
-    for part in parts:
-        for name, signal in getattr(part, "signals", {}).items():
-            setattr(service, name, signal)
-    return service
+
+    def __init__(self, module: str, parts: Sequence[Any], broker: Any) -> None:
+        self._module = module
+        self._broker = broker
+        self._parts = parts
+        self._targets = self._bound_to(parts)
+        body: dict[str, Any] = {}
+        for name, method in module_methods(module).items():
+            if name in self._targets.methods:
+                for position, overload in enumerate(method.overloads):
+                    attribute = name if position == 0 else f"{name}_{position}"
+                    body[attribute] = self._published(method, overload)
+        body["pCall"] = self._published_any("pCall")
+        self.object = type(module, (), body)()
+        for part in parts:
+            for name, signal in getattr(part, "signals", {}).items():
+                setattr(self.object, name, signal)
+
+    def rebind(self, parts: Sequence[Any]) -> Callable[[], None]:
+        """Have other objects of the same kinds do the work from now on.
+
+        Returns:
+            To be called when the former ones do nothing any more: ends calls that wait for something of theirs.
+        """
+        for part in parts:
+            if hasattr(part, "take_over"):
+                part.take_over(next(former for former in self._parts if type(former) is type(part)))
+        former, self._targets, self._parts = self._targets, self._bound_to(parts), parts
+        return former.end
+
+    def _bound_to(self, parts: Sequence[Any]) -> _Targets:
+        table = module_methods(self._module)
+        common = CommonModule(self._module, table, self._broker)
+        for name, method in table.items():
+            target = None if name in NATIVE else _find(name, [*parts, common])
+            if target is not None:
+                common.targets[name] = _checked(method, target)
+        return _Targets({**common.targets, "pCall": common.pCall})
+
+    def _published(self, method: Method, overload: Overload) -> Callable[..., Any]:
+        name = method.name
+
+        def published(_: Any, *args: Any) -> Any:
+            return self._targets.answer(self._module, name, args)
+
+        published.__doc__ = method.summary
+        published.__name__ = name
+        bind = qi.bind(qi_type(method.returns), None, name)
+        bind(published)
+        published.__qi_signature__ = overload.signature
+        return published
+
+    def _published_any(self, name: str) -> Callable[..., Any]:
+        def published(_: Any, *args: Any) -> Any:
+            return self._targets.answer(self._module, name, args)
+
+        published.__doc__ = inspect.getdoc(getattr(CommonModule, name))
+        return qi.bind(qi.Dynamic, qi.AnyArguments, name)(published)
 
 
-def typed(module: str, returns: Any, types: Sequence[Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+class _Targets:
+    """What answers the calls of a service, and the calls that take simulated time and have not ended."""
+
+    def __init__(self, methods: Mapping[str, Callable[..., Any]]) -> None:
+        self.methods = methods
+        self._waiting: set[Task] = set()
+        self._ended = False
+
+    def answer(self, module: str, method: str, args: Iterable[Any]) -> Any:
+        result = answer(module, method, self.methods[method], args, self._note)
+        if self._ended:  # by the time it was noted
+            self.end()
+        return result
+
+    def end(self) -> None:
+        """End what waits, as if it had been killed."""
+        self._ended = True
+        while self._waiting:
+            task = self._waiting.pop()
+            task.killed = task.killed or not task.finished
+            task.finish()
+
+    def _note(self, task: Task) -> None:
+        self._waiting.add(task)
+        task.add_done_callback(self._waiting.discard)
+
+
+def make_service(module: str, parts: Sequence[Any], broker: Any) -> Any:
+    """The object to register under the name `module`; see `Service`."""
+    return Service(module, parts, broker).object
+
+
+def typed(
+    module: str, returns: Any, types: Sequence[Any], name: str | None = None
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """For methods of a service that is no NAOqi module: as qi.bind, but arguments of other types are refused.
 
     Args:
         module: Name of the service.
         returns: Type of the answer, as for qi.bind.
         types: Types of the parameters after `self`, as for qi.bind.
+        name: Of the method on the network; None for that of the function.
     """
 
     def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
@@ -79,9 +156,9 @@ def typed(module: str, returns: Any, types: Sequence[Any]) -> Callable[[Callable
 
         @wraps(method)
         def published(*args: Any) -> Any:
-            return answer(module, method.__name__, checked, args)
+            return answer(module, name or method.__name__, checked, args)
 
-        return qi.bind(returns, types)(published)
+        return qi.bind(returns, types, name)(published)
 
     return decorate
 
@@ -98,27 +175,41 @@ def _find(name: str, parts: Iterable[Any]) -> Callable[..., Any] | None:
     return next((getattr(part, name) for part in parts if hasattr(part, name)), None)
 
 
-def answer(module: str, method: str, call: Callable[..., Any], args: Iterable[Any]) -> Any:
+def answer(
+    module: str,
+    method: str,
+    call: Callable[..., Any],
+    args: Iterable[Any],
+    note: Callable[[Task], None] = lambda task: None,
+) -> Any:
     """What libqi sends back for a call: a value, or a future for what takes simulated time.
 
     Errors go back as failed futures: raised through libqi they would carry a Python traceback in their text.
+
+    Args:
+        module: Of the method.
+        method: Its name.
+        call: What does the work.
+        args: Of the call.
+        note: Called with each task that the client waits for.
     """
     try:
         result = call(*args)
     except Exception as error:
         return _failed(_text(f"{module}::{method}", error))
     if isinstance(result, Task):
-        return as_future(result, f"{module}::{method}")
+        return as_future(result, f"{module}::{method}", note)
     return result
 
 
-def as_future(task: Task, label: str) -> Any:
+def as_future(task: Task, label: str, note: Callable[[Task], None] = lambda task: None) -> Any:
     """A libqi future that ends with the task; cancelling it kills the task.
 
     Args:
         task: A command of the simulation thread, whose value may be a further task that takes simulated time, or such
             a task itself.
         label: "Module::method", for error texts.
+        note: Called with each task that is waited for.
     """
     cancelled = threading.Event()
 
@@ -127,35 +218,23 @@ def as_future(task: Task, label: str) -> Any:
         task.request_kill()
 
     promise = qi.Promise(cancel)
-    task.add_done_callback(partial(_settle, promise, cancelled, label))
+    note(task)
+    task.add_done_callback(partial(_settle, promise, cancelled, label, note))
     return promise.future()
 
 
-def _settle(promise: Any, cancelled: threading.Event, label: str, done: Task) -> None:
+def _settle(promise: Any, cancelled: threading.Event, label: str, note: Callable[[Task], None], done: Task) -> None:
     # Not a closure that names itself: such a cycle would keep the promise until the next garbage collection, and a
     # promise with a value that is still there when the interpreter ends makes libqi abort the process.
     if done.error is not None:
         promise.setError(_text(label, done.error))
     elif isinstance(done.value, Task):
-        done.value.add_done_callback(partial(_settle, promise, cancelled, label))
+        note(done.value)
+        done.value.add_done_callback(partial(_settle, promise, cancelled, label, note))
     elif done.killed and cancelled.is_set():
         promise.setCanceled()
     else:
         promise.setValue(done.value)
-
-
-def _bound(module: str, method: Method, overload: Overload, target: Callable[..., Any]) -> Callable[..., Any]:
-    name = method.name
-
-    def published(self: Any, *args: Any) -> Any:
-        return answer(module, name, target, args)
-
-    published.__doc__ = method.summary
-    published.__name__ = name
-    bind = qi.bind(qi_type(method.returns), None, name)
-    bind(published)
-    published.__qi_signature__ = overload.signature
-    return published
 
 
 def _checked(method: Method, target: Callable[..., Any]) -> Callable[..., Any]:
@@ -163,14 +242,6 @@ def _checked(method: Method, target: Callable[..., Any]) -> Callable[..., Any]:
         return target(*fitted(method, args))
 
     return checked
-
-
-def _bound_any(module: str, name: str, target: Callable[..., Any]) -> Callable[..., Any]:
-    def published(self: Any, *args: Any) -> Any:
-        return answer(module, name, target, args)
-
-    published.__doc__ = inspect.getdoc(target)
-    return qi.bind(qi.Dynamic, qi.AnyArguments, name)(published)
 
 
 def _failed(text: str) -> Any:

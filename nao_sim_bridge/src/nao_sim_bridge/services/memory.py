@@ -30,6 +30,7 @@ class ALMemory:
         self._store = store
         self._broker = broker
         self._signals: dict[str, EventSubscriber] = {}
+        self._mappings: list[tuple[Any, int]] = []  # signals of clients, and links to them
 
     def getData(self, key: str, *_deprecated: Any) -> Any:
         return self._store.get(key)
@@ -121,9 +122,10 @@ class ALMemory:
 
     def subscriber(self, name: str) -> EventSubscriber:
         if name not in self._signals:
-            self._signals[name] = subscriber = EventSubscriber()
-            self._store.listen(name, subscriber.signal)
-        return self._signals[name]
+            self._signals[name] = EventSubscriber()
+        subscriber = self._signals[name]
+        self._store.listen(name, subscriber.signal)
+        return subscriber
 
     def subscribeToEvent(self, name: str, module: str, *rest: str) -> None:
         message, method = rest if len(rest) == 2 else ("", rest[0])
@@ -146,6 +148,17 @@ class ALMemory:
         for signal, event in pairs.items():
             self._connect_signal(service, signal, event)
 
+    def take_over(self, former: ALMemory) -> None:
+        """Go on with the signals that clients are connected to; nobody is told of what the former one had."""
+        self._signals = former._signals
+        for name, subscriber in self._signals.items():
+            self._store.listen(name, subscriber.signal, declare=False)
+        for signal, link in former._mappings:
+            try:
+                signal.disconnect(link)
+            except RuntimeError:
+                pass  # the client has gone
+
     def _subscribe(self, name: str, module: str, message: str, method: str, kind: str) -> None:
         def notify(event: str, value: Any, text: str) -> None:
             self._broker.call(module, method, [event, value, text])
@@ -157,7 +170,9 @@ class ALMemory:
         if not hasattr(source, signal):
             raise NaoqiError(f"service {service!r} has no signal {signal!r}")
         self._store.declare_event(event)
-        getattr(source, signal).connect(lambda *values: self._store.raise_event(event, _one(values)))
+        raising = getattr(source, signal)
+        link = raising.connect(lambda *values: self._store.raise_event(event, _one(values)))
+        self._mappings.append((raising, link))
 
     def _no_pointer(self, key: str) -> None:
         self._store.kind(key)

@@ -229,11 +229,26 @@ class MemoryStore:
         with self._lock:
             return sorted(self._subscribers.get(name, {}))
 
-    def listen(self, name: str, listener: Callable[[Any], None]) -> None:
-        """Call `listener(value)` at each event; for the signals of qi-style subscribers."""
+    def listen(self, name: str, listener: Callable[[Any], None], declare: bool = True) -> None:
+        """Call `listener(value)` once at each event; for the signals of qi-style subscribers.
+
+        Args:
+            name: Of the event.
+            listener: See above; one that listens already goes on.
+            declare: Whether the event becomes known by it.
+        """
         with self._lock:
-            self._entries.setdefault(name, _Entry(EVENT))
-            self._listeners.setdefault(name, []).append(listener)
+            if declare:
+                self._entries.setdefault(name, _Entry(EVENT))
+            listeners = self._listeners.setdefault(name, [])
+            if not any(known is listener for known in listeners):
+                listeners.append(listener)
+
+    def close(self) -> None:
+        """Tell nobody anything any more."""
+        with self._lock:
+            for table in (self._subscribers, self._listeners, self._changes, self._watchers):
+                table.clear()
 
     # --- inside ---------------------------------------------------------------------------------------------------
 

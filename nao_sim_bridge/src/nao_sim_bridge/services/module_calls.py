@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import threading
 from typing import Any, Callable
 
 from nao_sim_bridge.services.audio.background import Background
@@ -25,13 +26,23 @@ class ModuleCalls:
     def __init__(self, broker: Any, released: Callable[[], None]) -> None:
         self._broker = broker
         self._background = Background(released)
+        self._calling = threading.Lock()
+        self._closed = False
         self.holds = self._background.holds
 
     def call(self, module: str, method: str, *arguments: Any) -> Task:
         """Call a method that is answered at once; the task ends with what it answers, or with its error."""
-        return self._background.in_turn(
-            lambda _: self._broker.service(module).call(method, *arguments), f"{module}.{method}"
-        )
+
+        def call(_: Any) -> Any:
+            with self._calling:
+                return None if self._closed else self._broker.service(module).call(method, *arguments)
+
+        return self._background.in_turn(call, f"{module}.{method}")
+
+    def close(self) -> None:
+        """Call nothing any more; waits for the call that is under way."""
+        with self._calling:
+            self._closed = True
 
     def tell(self, module: str, method: str, *arguments: Any) -> None:
         """As `call`, for who does not wait: a failure goes to the log."""

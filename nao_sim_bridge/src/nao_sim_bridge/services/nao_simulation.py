@@ -17,12 +17,15 @@ class NaoSimulation:
 
     Args:
         host: The server: its `runner`, `sounds`, `things`, `hands`, `film`, `health`, and its methods `push`, `press`,
-            `picture`, `reset_task`.
+            `picture`, `reset_task`, `factory_reset_task`.
     """
 
     def __init__(self, host: Any) -> None:
         self._host = host
-        self._runner = host.runner
+
+    @property
+    def _runner(self) -> Any:
+        return self._host.runner
 
     @typed(NAME, qi.Float, [])
     def time(self) -> float:
@@ -63,6 +66,16 @@ class NaoSimulation:
     def reset(self) -> Any:
         """Put robot and world to where they started; tasks are killed, time goes on."""
         return self._host.reset_task()
+
+    @typed(NAME, qi.Void, [qi.String], "reset")
+    def resetTo(self, world: str) -> Any:
+        """Begin anew in another world, a name or the path of a file; all that clients have changed is forgotten."""
+        return self._host.factory_reset_task(world)
+
+    @typed(NAME, qi.Void, [])
+    def factoryReset(self) -> Any:
+        """Begin anew as at the start of the program, at time 0: all that clients have changed is forgotten."""
+        return self._host.factory_reset_task("")
 
     @typed(NAME, qi.Void, [qi.List(qi.Float), qi.Float, qi.String])
     def push(self, force: Sequence[float], duration: float, link: str) -> Any:

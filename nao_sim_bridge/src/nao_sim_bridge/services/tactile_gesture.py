@@ -69,6 +69,12 @@ class ALTactileGesture:
         """Signals of the service by name."""
         return {"onGesture": self._gestures.on_gesture, "onRelease": self._gestures.on_release}
 
+    def take_over(self, former: ALTactileGesture) -> None:
+        """Go on with the signals that clients are connected to."""
+        gestures = former._gestures
+        self._gestures.on_gesture, self._gestures.on_release = gestures.on_gesture, gestures.on_release
+        gestures.on_gesture = gestures.on_release = lambda *_: None
+
     def createGesture(self, sequence: Any) -> str:
         with self._lock:
             return self._gestures.book.add(_patterns(sequence))

@@ -91,6 +91,12 @@ class Hands:
         for hand in ended.values():
             hand.task.kill()
 
+    def end(self) -> None:
+        """End all touches; the world ends with them."""
+        hands, self._hands = self._hands, {}
+        for hand in hands.values():
+            hand.task.kill()
+
     def touch(self, sensors: Sequence[str], duration: float) -> Task:
         """Let a hand come and touch a sensor, or stroke over several in turn.
 

@@ -28,7 +28,7 @@ HOLD_LOOK = 0.005
 
 
 class SimulationRunner:
-    """Runs a simulation in its own thread.
+    """Runs a simulation in its own thread; `take` gives it another one, as if the first had never been.
 
     Args:
         simulation: What to run, with all robots of its world; from `start` on they belong to the thread.
@@ -45,6 +45,7 @@ class SimulationRunner:
         on_end: Callable[[], None] = lambda: None,
     ) -> None:
         self._simulation = simulation
+        self._run_now = (simulation, 0)  # with the ticks of those before it, in one reference
         self._speed = _checked_speed(speed)
         self._paused = paused
         self._on_end = on_end
@@ -56,8 +57,7 @@ class SimulationRunner:
         self._stopping = False
         self._pace_wall = 0.0
         self._pace_time = 0.0
-        simulation.task_ids.ask = self._kill_later
-        simulation.shared.wake = self._notify
+        self._connect(simulation)
         self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
 
     # --- from any thread ------------------------------------------------------------------------------------------
@@ -66,6 +66,12 @@ class SimulationRunner:
     def snapshot(self) -> Snapshot:
         """What the robot sensed at the last tick."""
         return self._simulation.snapshot
+
+    @property
+    def ticks(self) -> int:
+        """Ticks since the start of the thread, of all simulations that it has run; it never goes back."""
+        simulation, before = self._run_now
+        return before + simulation.snapshot.tick
 
     @property
     def speed(self) -> float:
@@ -141,11 +147,11 @@ class SimulationRunner:
         return task
 
     def wait_for_tick(self, after: int, timeout: float) -> Snapshot | None:
-        """The first snapshot with a tick number above `after`, None when none came within `timeout` (wall time, s)."""
+        """The first snapshot at which `ticks` is above `after`, None when none came within `timeout` (wall time, s)."""
         with self._ticked:
-            if not self._ticked.wait_for(lambda: self.snapshot.tick > after or self._stopping, timeout):
+            if not self._ticked.wait_for(lambda: self.ticks > after or self._stopping, timeout):
                 return None
-        return self.snapshot if self.snapshot.tick > after else None
+        return self.snapshot if self.ticks > after else None
 
     def _notify(self) -> None:
         with self._wake:
@@ -157,7 +163,26 @@ class SimulationRunner:
                 self._commands.append((self._ids.make("kill"), task.kill))
                 self._wake.notify()
 
+    def _connect(self, simulation: Simulation) -> None:
+        simulation.task_ids.ask = self._kill_later
+        simulation.shared.wake = self._notify
+
     # --- in the simulation thread ---------------------------------------------------------------------------------
+
+    def take(self, simulation: Simulation) -> float:
+        """Run another simulation from now on; pace, pause and what `advance` has begun stay.
+
+        Returns:
+            How much time the ones before have had in all, s.
+        """
+        before = self.ticks
+        self._connect(simulation)
+        self._simulation = simulation
+        self._run_now = (simulation, before)
+        self._ids = TaskIds()
+        with self._wake:
+            self._restart_pace()
+        return before * simulation.settings.tick_s
 
     def _run(self) -> None:
         error: Exception = SimulationStopped("the simulation has stopped")

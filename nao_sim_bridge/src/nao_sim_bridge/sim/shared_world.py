@@ -42,10 +42,10 @@ class SharedWorld:
     Args:
         scene: World, version of all robots, friction.
         settings: None for those of the file.
-        renderer: What draws: "auto", "opengl" or "builtin"; see `Renderer`.
+        renderer: What draws: "auto", "opengl" or "builtin", see `Renderer`; or one that has drawn this world before.
     """
 
-    def __init__(self, scene: Scene, settings: Settings | None = None, renderer: str = "auto") -> None:
+    def __init__(self, scene: Scene, settings: Settings | None = None, renderer: str | Renderer = "auto") -> None:
         self.scene = scene
         self.settings = settings or load_settings()
         self.world = scene.load_world(self.settings.contact.sole_friction)
@@ -56,7 +56,7 @@ class SharedWorld:
         self.task_ids = TaskIds()
         self.wake: Callable[[], None] = lambda: None
         self.air = Air(self.task_ids, self.settings.tick_s)
-        self.renderer = Renderer(scene.world, scene.version, renderer)
+        self.renderer = renderer if isinstance(renderer, Renderer) else Renderer(scene.world, scene.version, renderer)
         self.things = Things(self.world, self.task_ids, lambda: self.time, self._look_again)
 
     @property
@@ -124,16 +124,22 @@ class SharedWorld:
         """What all robots but one look like at the last tick. Any thread."""
         return tuple(other.look() for other in self.robots if other is not robot)
 
-    def close(self) -> None:
-        """Free the engine; nothing sounds or is heard or seen any more."""
+    def close(self, keep_renderer: bool = False) -> None:
+        """Free the engine; nothing sounds or is heard or seen any more.
+
+        Args:
+            keep_renderer: Leave what draws to another world.
+        """
         self.air.stop_all()
         for robot in self.robots:
             robot.close_senses()
-        self.renderer.close()
+        if not keep_renderer:
+            self.renderer.close()
         self.things.stop()
         if self.physics is not None:
             for robot in self.robots:
                 robot.end_tasks()
+                robot.hands.end()
             self.physics.close()
             self.physics = None
 

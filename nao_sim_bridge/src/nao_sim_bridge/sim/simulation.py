@@ -13,6 +13,7 @@ from nao_sim_bridge.sim.physics import Physics
 from nao_sim_bridge.sim.physics_world import PhysicsWorld
 from nao_sim_bridge.sim.places import RobotPlace
 from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.sim.render.client import Renderer
 from nao_sim_bridge.sim.render.scene import RenderState, RobotLook
 from nao_sim_bridge.sim.robot import SimulatedRobot
 from nao_sim_bridge.sim.scene import Scene
@@ -46,7 +47,7 @@ class Simulation:
     Args:
         scene: World, robot, posture, seed.
         settings: Of the physics, for a world of its own; None for those of the file.
-        renderer: What draws, for a world of its own; see `Renderer`.
+        renderer: What draws, for a world of its own; see `SharedWorld`.
         shared: A world that others are in, too; None for one of its own.
         place: Where on the floor it starts; None for where the world says, or else the origin.
     """
@@ -55,7 +56,7 @@ class Simulation:
         self,
         scene: Scene | None = None,
         settings: Settings | None = None,
-        renderer: str = "auto",
+        renderer: str | Renderer = "auto",
         shared: SharedWorld | None = None,
         place: RobotPlace | None = None,
     ) -> None:

@@ -14,7 +14,7 @@ from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Pose, Vector3
 from std_srvs.srv import Empty
 
-from nao_library_msgs.srv import AdvanceTime, GetTruepose, PressSensors, PushRobot, TakePicture
+from nao_library_msgs.srv import AdvanceTime, GetTruepose, PressSensors, PushRobot, ResetWorld, TakePicture
 from nao_sim_bridge.broker import QUIET_LIBQI
 from nao_sim_bridge.testing.goal_run import send
 from nao_sim_bridge.testing.waits import wait_for_service, wait_until
@@ -45,6 +45,8 @@ class SimulatedRobot:
         self._press = self._service("nao_sim/press", PressSensors, limit)
         self._picture = self._service("nao_sim/picture", TakePicture, limit)
         self._reset = self._world_service("nao_sim/reset", Empty, limit)
+        self._factory_reset = self._world_service("nao_sim/factory_reset", Empty, limit)
+        self._reset_world = self._world_service("nao_sim/reset_world", ResetWorld, limit)
         self._pause = self._world_service("nao_sim/pause", Empty, limit)
         self._resume = self._world_service("nao_sim/resume", Empty, limit)
         self._true_pose = self._service("get_truepose", GetTruepose, limit)
@@ -93,6 +95,24 @@ class SimulatedRobot:
         before.
         """
         self._reset()
+
+    def factory_reset(self, world: str = "") -> None:
+        """Begin anew, as a simulator that has just been started; simulated time goes on in ROS and is 0 over NAOqi.
+
+        The robot has started again, so that modules and drivers connect to it anew: goals that run end.
+
+        Args:
+            world: Name of a world, or path of its file; empty for that of the start.
+
+        Raises:
+            ValueError: The world cannot be used; everything stays as it is.
+        """
+        if not world:
+            self._factory_reset()
+            return
+        answer = self._reset_world(world)
+        if not answer.success:
+            raise ValueError(answer.message)
 
     def advance(self, seconds: float) -> float:
         """Let simulated time pass as fast as possible; returns the time after it, s."""

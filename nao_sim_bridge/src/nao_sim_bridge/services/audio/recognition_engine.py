@@ -9,7 +9,7 @@ from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.services.switch import Switch
 from nao_sim_bridge.sim.hearing.listening import Hypothesis, Listening, Recognised
-from nao_sim_bridge.sim.hearing.recogniser import Recogniser
+from nao_sim_bridge.sim.hearing.recogniser import Recogniser, SpareProcess
 from nao_sim_bridge.sim.hearing.voice_activity import SpeechChange
 from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.sound.ears import Listener, MicrophoneBlock
@@ -39,6 +39,7 @@ class RecognitionEngine(Switch):
         on_listen: Called with True when listening begins and with False when it ends; it returns how long, in s, what
             is heard next should be left out (the bip that it makes).
         accepts: Tells whether a hypothesis is good enough for its grammar.
+        spare: Where the recogniser's process comes from and goes to; see `Recogniser`.
     """
 
     def __init__(
@@ -47,6 +48,7 @@ class RecognitionEngine(Switch):
         memory: MemoryStore,
         on_listen: Callable[[bool], float],
         accepts: Callable[[Hypothesis], bool],
+        spare: SpareProcess | None = None,
     ) -> None:
         super().__init__()
         self._simulation = simulation
@@ -56,7 +58,7 @@ class RecognitionEngine(Switch):
         self._listener: Listener | None = None
         self._deaf_until = 0.0
         self._speech = False
-        self._recogniser = Recogniser(self._on_event, on_progress=lambda: simulation.wake())
+        self._recogniser = Recogniser(self._on_event, on_progress=lambda: simulation.wake(), spare=spare)
         simulation.holds.append(self.behind)
         for key in KEYS:
             memory.insert(key, NO_WORD)

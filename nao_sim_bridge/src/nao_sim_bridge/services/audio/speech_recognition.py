@@ -16,6 +16,7 @@ from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.hearing.contexts import Context, Contexts
 from nao_sim_bridge.sim.hearing.grammar import Grammar, vocabulary
 from nao_sim_bridge.sim.hearing.listening import Hypothesis
+from nao_sim_bridge.sim.hearing.recogniser import SpareProcess
 from nao_sim_bridge.sim.hearing.settings import load_recognition
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
@@ -264,10 +265,16 @@ class RecognitionModule:
         runner: Its thread.
         memory: Where events go.
         files: Where grammars are read from and written to.
+        spare: Where the recogniser's process comes from and goes to; see `Recogniser`.
     """
 
     def __init__(
-        self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore, files: ClientFiles
+        self,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        memory: MemoryStore,
+        files: ClientFiles,
+        spare: SpareProcess | None = None,
     ) -> None:
         contexts = Contexts()
         expression = ListeningExpression(simulation, runner)
@@ -275,7 +282,7 @@ class RecognitionModule:
         def accepts(hypothesis: Hypothesis) -> bool:
             return hypothesis.confidence >= contexts.threshold(hypothesis.grammar)
 
-        self.engine = RecognitionEngine(simulation, memory, expression.show, accepts)
+        self.engine = RecognitionEngine(simulation, memory, expression.show, accepts, spare)
         service = ALSpeechRecognition(self.engine, expression, contexts, files)
         self._parts = [service, Extractor(NAME, memory, self.engine.start, self.engine.stop, EVENTS, KEYS)]
 
@@ -284,5 +291,5 @@ class RecognitionModule:
         return {NAME: self._parts}
 
     def close(self) -> None:
-        """End the recogniser's process."""
+        """Recognise nothing any more."""
         self.engine.close()

@@ -37,13 +37,21 @@ class SpeechModules:
         memory: Where events are raised.
         files: Where clients may have files read from and written to.
         broker: Finds modules that a text calls: `service(name)`.
+        studio: Makes the sound.
     """
 
     def __init__(
-        self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore, files: ClientFiles, broker: Any
+        self,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        memory: MemoryStore,
+        files: ClientFiles,
+        broker: Any,
+        studio: Studio,
     ) -> None:
         self._broker = broker
-        self.studio = Studio()
+        self._closed = False
+        self.studio = studio
         self.speaker = Speaker(simulation, self.studio)
         self.animator = Animator(simulation)
         self.library = load_animations()
@@ -72,19 +80,17 @@ class SpeechModules:
         """Say a text as a client has it said, with gestures or without."""
         return (self._animated_speech if animated else self._text_to_speech).say(text)
 
-    def begin(self) -> None:
-        """Have the engines ready for the first text."""
-        self.studio.warm_up()
-
     def close(self) -> None:
-        """Whoever waits for speech gets an error; the engines end. When the simulation has ended."""
+        """Whoever waits for speech gets an error. When the simulation has ended."""
+        self._closed = True
         self.speaker.close()
-        self.studio.close()
 
     def _call(self, module: str, method: str, arguments: list) -> Task:
         """Call a method that a text names; the task ends with it, a failure is told in the log."""
 
         def call() -> None:
+            if self._closed:
+                return
             try:
                 self._broker.service(module).call(method, *arguments)
             except (RuntimeError, AttributeError) as error:

@@ -98,6 +98,10 @@ class LifeModules:
         """The modules by name, as `make_service` wants them."""
         return dict(self._modules)
 
+    def close(self) -> None:
+        """Ask nothing of other modules any more; blocking."""
+        self._calls.close()
+
     def _be_aware(self, aware: bool) -> None:
         self._awareness.enabled = aware
         self._awareness.update()

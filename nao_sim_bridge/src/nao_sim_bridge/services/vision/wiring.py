@@ -22,24 +22,23 @@ class VisionModules:
     """ALRedBallDetection, ALLandMarkDetection, ALBarcodeReader, ALFaceDetection and ALMovementDetection of one robot.
 
     Attributes:
-        process: The vision process; it starts when somebody is subscribed first.
         watchings: What looks through the cameras.
 
     Args:
         simulation: Whose cameras these are.
         memory: Where events go.
         files: Where known faces are kept.
+        process: The vision process; it starts when somebody is subscribed first.
     """
 
-    def __init__(self, simulation: Simulation, memory: MemoryStore, files: ClientFiles) -> None:
-        self.process = VisionProcess()
+    def __init__(self, simulation: Simulation, memory: MemoryStore, files: ClientFiles, process: VisionProcess) -> None:
         self._memory = memory
         self._tables = simulation.cameras.tables
-        self._ball = red_ball_detection.RedBallDetection(simulation, memory, self.process).watching
-        self._landmarks = landmark_detection.LandMarkDetection(simulation, memory, self.process).watching
-        self._barcodes = barcode_reader.BarcodeReader(simulation, memory, self.process).watching
-        self._faces = face_detection.ALFaceDetection(simulation, memory, self.process, files)
-        self._movement = movement_detection.ALMovementDetection(simulation, memory, self.process)
+        self._ball = red_ball_detection.RedBallDetection(simulation, memory, process).watching
+        self._landmarks = landmark_detection.LandMarkDetection(simulation, memory, process).watching
+        self._barcodes = barcode_reader.BarcodeReader(simulation, memory, process).watching
+        self._faces = face_detection.ALFaceDetection(simulation, memory, process, files)
+        self._movement = movement_detection.ALMovementDetection(simulation, memory, process)
         self.watchings: list[Watching] = [
             self._ball,
             self._landmarks,
@@ -59,8 +58,7 @@ class VisionModules:
         }
 
     def close(self) -> None:
-        """Look at nothing any more and end the process; blocking."""
+        """Look at nothing any more; blocking."""
         self._faces.learner.close()
-        self.process.close()  # first: who waits for an answer gets none
         for watching in self.watchings:
             watching.stop()

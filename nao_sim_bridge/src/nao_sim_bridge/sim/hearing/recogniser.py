@@ -40,6 +40,43 @@ class RecogniserRefused(RecogniserError):
     """The recogniser is well but cannot do this."""
 
 
+class SpareProcess:
+    """A recogniser's process that nobody needs at the moment: a new one takes long to start. Any thread."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._process: ChildProcess | None = None
+        self._closed = False
+
+    def take(self) -> ChildProcess | None:
+        """The process, for the caller alone; None when there is none."""
+        with self._lock:
+            process, self._process = self._process, None
+        return process
+
+    def give(self, process: ChildProcess) -> None:
+        """Keep a process that is not used any more, as if it had just been started, or end it."""
+        try:
+            process.ask("finish", None, ANSWER_TIMEOUT, WHAT["finish"])
+            process.ask("listen", Listening(), ANSWER_TIMEOUT, WHAT["listen"])
+        except RecogniserError:
+            process.kill()
+            return
+        with self._lock:
+            if self._process is None and not self._closed:
+                self._process = process
+                return
+        process.stop()
+
+    def close(self) -> None:
+        """End it."""
+        with self._lock:
+            self._closed = True
+        process = self.take()
+        if process is not None:
+            process.stop()
+
+
 @dataclass(frozen=True)
 class _Job:
     kind: str
@@ -54,11 +91,16 @@ class Recogniser:
     Args:
         on_event: Called with each SpeechChange and Recognised, in order, in a thread of the recogniser.
         on_progress: Called in that thread whenever `lag` has become smaller.
+        spare: Where a process may be had, and where it goes in the end; None to start and end one.
     """
 
     def __init__(
-        self, on_event: Callable[[SpeechChange | Recognised], None], on_progress: Callable[[], None] = lambda: None
+        self,
+        on_event: Callable[[SpeechChange | Recognised], None],
+        on_progress: Callable[[], None] = lambda: None,
+        spare: SpareProcess | None = None,
     ) -> None:
+        self._spare = spare
         self._on_event = on_event
         self._on_progress = on_progress
         self._jobs: queue.Queue[_Job | None] = queue.Queue()
@@ -155,8 +197,14 @@ class Recogniser:
             self._work(job)
             job = self._jobs.get()
         self._drop(job)
-        if self._process is not None:
-            self._process.stop()
+        process = self._process
+        if process is None:
+            return
+        if self._spare is not None:
+            self._spare.give(process)
+        else:
+            process.stop()
+        self._process = None  # not before: `close` ends one that hangs
 
     def _drop(self, job: _Job | None) -> None:
         """Tell everybody who waits, from `job` on, that nothing comes any more."""
@@ -220,6 +268,8 @@ class Recogniser:
     def _running(self) -> ChildProcess:
         """The process; a new one listens for the same as the old one."""
         if self._process is None:
+            self._process = self._spare_process()
+        if self._process is None:
             process = ChildProcess(MODULE, (), "recogniser", RecogniserError, RecogniserRefused)
             try:
                 process.receive(START_TIMEOUT, "start of speech recognition")
@@ -229,3 +279,15 @@ class Recogniser:
                 raise
             self._process = process
         return self._process
+
+    def _spare_process(self) -> ChildProcess | None:
+        """The spare one, if there is one that is well."""
+        process = self._spare.take() if self._spare is not None else None
+        if process is None:
+            return None
+        try:
+            process.ask("listen", self._listening, ANSWER_TIMEOUT, "start of speech recognition")
+        except RecogniserError:
+            process.kill()
+            return None
+        return process

@@ -1,0 +1,180 @@
+"""All that one simulated robot is made of behind its network: built at the start, and anew by a factory reset."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Callable
+
+from nao_sim_bridge.film_control import FilmControl
+from nao_sim_bridge.hands_control import HandsControl
+from nao_sim_bridge.health_control import HealthControl
+from nao_sim_bridge.paths import sounds_directory
+from nao_sim_bridge.record_dir import ClientFiles
+from nao_sim_bridge.services import motion
+from nao_sim_bridge.services.audio import sound_detection, sound_localization
+from nao_sim_bridge.services.audio.speech_recognition import RecognitionModule
+from nao_sim_bridge.services.audio.speech_wiring import SpeechModules
+from nao_sim_bridge.services.audio.wiring import AudioModules
+from nao_sim_bridge.services.behaviors.wiring import BehaviorModules
+from nao_sim_bridge.services.body_modules import BodyModules
+from nao_sim_bridge.services.diagnosis_events import DiagnosisEvents
+from nao_sim_bridge.services.fall_events import FallEvents
+from nao_sim_bridge.services.leds import ALLeds
+from nao_sim_bridge.services.life.wiring import LifeModules
+from nao_sim_bridge.services.live_keys import constants, live_keys
+from nao_sim_bridge.services.memory import ALMemory
+from nao_sim_bridge.services.memory_store import MemoryStore
+from nao_sim_bridge.services.motion.wake import AWAKE
+from nao_sim_bridge.services.posture import ALRobotPosture
+from nao_sim_bridge.services.posture_events import PostureEvents
+from nao_sim_bridge.services.senses_wiring import SenseModules
+from nao_sim_bridge.services.system import ALSystem
+from nao_sim_bridge.services.time_zone import TimeZone
+from nao_sim_bridge.services.vision import video_device
+from nao_sim_bridge.services.vision.photo_capture_wiring import PictureModules
+from nao_sim_bridge.services.vision.wiring import VisionModules
+from nao_sim_bridge.sim.hearing.recogniser import SpareProcess
+from nao_sim_bridge.sim.robot_runner import RobotRunner
+from nao_sim_bridge.sim.runner import SimulationRunner
+from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.speech.studio import Studio
+from nao_sim_bridge.sim.vision.client import VisionProcess
+from nao_sim_bridge.things_control import ThingsControl
+from nao_sim_bridge.world_sounds_control import WorldSoundsControl
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.broker import Broker
+    from nao_sim_bridge.server import ServerOptions
+
+
+class Workers:
+    """Programs and threads that work for a robot and know nothing of it; they take long to start.
+
+    Attributes:
+        voice: Makes the robot's speech.
+        persons: Makes the speech of persons: they may speak while the robot does.
+        vision: Where detectors look at pictures.
+        recogniser: Recognises speech.
+    """
+
+    def __init__(self) -> None:
+        self.voice = Studio()
+        self.persons = Studio()
+        self.vision = VisionProcess()
+        self.recogniser = SpareProcess()
+
+    def begin(self) -> None:
+        """Have the voice ready for the first text."""
+        self.voice.warm_up()
+
+    def close(self) -> None:
+        """End them."""
+        self.vision.close()
+        self.persons.close()
+        self.voice.close()
+        self.recogniser.close()
+
+
+class RobotModules:
+    """The modules of one robot, and what only a simulator can do to it.
+
+    Attributes:
+        simulation: Touched in the simulation thread only.
+        runner: That thread, for this simulation.
+        began: What `SimulatorServer.now` says at time 0 of the simulation, s.
+        memory: What ALMemory keeps.
+        files: Where clients may have files written to and read from.
+        speech, vision, video, film, sounds, things, hands, health: See `SimulatorServer`.
+
+    Args:
+        options: How the robot is started.
+        simulation: The robot and its world, at time 0.
+        runner: The thread that it runs in, or will.
+        broker: Finds modules of clients.
+        workers: See `Workers`.
+        system: What ALSystem makes of the memory and the time zone.
+    """
+
+    def __init__(
+        self,
+        options: ServerOptions,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        broker: Broker,
+        workers: Workers,
+        system: Callable[[MemoryStore, TimeZone], ALSystem],
+    ) -> None:
+        self.simulation = simulation
+        self.runner = runner = RobotRunner(runner, simulation)
+        self.began = 0.0
+        self.memory = memory = MemoryStore(lambda: simulation.snapshot.time)
+        self.files = files = ClientFiles(options.record_dir, [sounds_directory()])
+        self._audio = AudioModules(simulation, runner, files, broker)
+        self.speech = SpeechModules(simulation, runner, memory, files, broker, workers.voice)
+        posture = ALRobotPosture(simulation, runner, memory)
+        behaviors = BehaviorModules(simulation, runner, memory, files, self.speech, posture)
+        zone = TimeZone()
+        self._life = LifeModules(simulation, runner, memory, broker, self.speech, posture, behaviors.running, zone)
+        self.recognition = RecognitionModule(simulation, runner, memory, files, workers.recogniser)
+        self.video = video_device.VideoDevice(simulation.cameras, files)
+        self.vision = VisionModules(simulation, memory, files, workers.vision)
+        self._pictures_taken = PictureModules(simulation, runner, files)
+        self._senses = SenseModules(simulation, runner, memory)
+        self.sounds = WorldSoundsControl(simulation, runner, files, workers.persons)
+        self.things = ThingsControl(simulation, runner, files)
+        self.hands = HandsControl(simulation, runner)
+        self.film = FilmControl(simulation, runner, files, options.renderer)
+        self.health = HealthControl(simulation, runner)
+        self._body = BodyModules(simulation, runner, memory)
+        self.modules: dict[str, list[Any]] = {
+            "ALMemory": [ALMemory(memory, broker)],
+            "ALLeds": [ALLeds(simulation, runner)],
+            "ALMotion": motion.parts(simulation, runner, memory),
+            "ALRobotPosture": [posture],
+            **self._audio.modules(),
+            **self.speech.modules(),
+            **behaviors.modules(),
+            **self._life.modules(),
+            **self.recognition.modules(),
+            sound_detection.NAME: sound_detection.parts(simulation, memory),
+            **{name: sound_localization.parts(name, simulation, memory) for name in sound_localization.NAMES},
+            video_device.NAME: self.video.parts(),
+            **self.vision.modules(),
+            **self._pictures_taken.modules(),
+            **self._senses.modules(),
+            **self._body.modules(),
+            "ALSystem": [system(memory, zone)],
+        }
+
+    def begin(self) -> None:
+        """Have a look at every tick; before time passes.
+
+        Raises:
+            SimulationError: A sound of the world cannot be had.
+        """
+        simulation, memory = self.simulation, self.memory
+        if simulation is simulation.shared.robots[0]:
+            self.sounds.begin()
+        robot_leds = lambda: simulation.robot.leds.values  # noqa: E731
+        memory.add_live(live_keys(self.runner, simulation.model, simulation.led_layout, robot_leds))
+        for key, value in constants(simulation.scene.version).items():
+            memory.insert(key, value)
+        simulation.after_reset.append(lambda: memory.raise_event(AWAKE, False))
+        simulation.after_tick.append(PostureEvents(simulation.model, memory))
+        simulation.after_tick.append(FallEvents(simulation, memory))
+        self._senses.begin()
+        simulation.after_tick.append(DiagnosisEvents(simulation, memory))
+        self._body.begin()
+
+    def leave(self) -> None:
+        """First part of the end, while the simulation runs or has been left behind: complete what is under way."""
+        self._life.close()
+        self.film.close()
+        self._audio.close()
+        self.vision.close()  # before what has files to complete, and needs the pictures that are drawn
+        self._pictures_taken.close()
+        self.video.close()
+
+    def close(self) -> None:
+        """Last part of the end, when the simulation has ended."""
+        self.speech.close()
+        self.recognition.close()
