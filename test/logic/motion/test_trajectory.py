@@ -7,13 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from nao_library_modules.errors import BadGoal
-from nao_library_modules.joint_trajectory import (
-    H25_BODY,
-    check_range,
-    expand_names,
-    one_each,
-    read_trajectory,
-)
+from nao_library_modules.joint_trajectory import H25_BODY, check_range, expand_names, one_each, read_trajectory
 
 CHAINS = {"Body": ("HeadYaw", "HeadPitch", "LHand"), "Head": ("HeadYaw", "HeadPitch"), "LArm": ("LHand",)}
 
