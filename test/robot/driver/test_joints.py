@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import random
-from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import pytest
 
 from nao_library_modules.body_devices import SONARS as SONAR_KEYS
+from nao_library_modules.driver import demand
 from nao_library_modules.driver.autonomous_life import ABILITIES, AutonomousLife
 from nao_library_modules.driver.behaviors import Behaviors
 from nao_library_modules.driver.blinking import Blinks, blink, fade
@@ -28,14 +28,6 @@ from nao_library_modules.joint_trajectory import H25_BODY
 
 CHARGE = "Device/SubDeviceList/Battery/Charge/Sensor/Value"
 FRONT = "FrontTactilTouched"
-
-
-def begin(function, *arguments):
-    """Run in a thread; the future of what it returns."""
-    pool = ThreadPoolExecutor(1)
-    future = pool.submit(function, *arguments)
-    pool.shutdown(wait=False)
-    return future
 
 
 def angles(robot, *names):
@@ -57,7 +49,7 @@ def trajectory(names, *points):
     return SimpleNamespace(joint_names=names, points=rows)
 
 
-def test_angles_are_set_changed_and_moved_to(joints, robot, until):
+def test_angles_are_set_changed_and_moved_to(joints, robot, until, begin):
     joints.set_angles(["Head"], [0.3, -0.2], 0.5, relative=False)
     robot.advance(1.0)
     joints.set_angles(["HeadYaw"], [0.1], 0.5, relative=True)
@@ -88,7 +80,7 @@ def test_wrong_angles_move_nothing(joints, robot, names, values, speed, field):
         assert caught.value.field == field
 
 
-def test_stiffnesses_have_a_range_and_trajectories(joints, robot, until):
+def test_stiffnesses_have_a_range_and_trajectories(joints, robot, until, begin):
     joints.set_stiffnesses(["Body"], [0.75])
     assert set(robot.ALMotion.getStiffnesses("Body")) == {0.75}
     with pytest.raises(BadGoal, match="HeadPitch is to be 1.5: 0 to 1"):
@@ -101,40 +93,41 @@ def test_stiffnesses_have_a_range_and_trajectories(joints, robot, until):
     assert stiffen.result().values == pytest.approx([0.25, 0.25]) and not stiffen.result().preempted
     interrupt = Interrupt()
     stiffen = begin(joints.stiffen, joints.stiffness_trajectory(trajectory(["HeadYaw"], (9, [1.0], ()))), interrupt)
-    robot.advance(3.0)
+    until(lambda: robot.ALMotion.getStiffnesses("HeadYaw")[0] > 0.4)
     interrupt.trigger()
     until(stiffen.done, limit=1.0)
     robot.advance(1.0)
-    assert stiffen.result().preempted and 0.3 < stiffen.result().values[0] < 0.8
+    assert stiffen.result().preempted and 0.4 < stiffen.result().values[0] < 0.9
     assert robot.ALMotion.getStiffnesses("HeadYaw") == pytest.approx(stiffen.result().values, abs=0.01)
 
 
 @pytest.mark.parametrize("velocities", [(), (0.0, 0.0)], ids=["interpolation", "bezier"])
-def test_a_trajectory_ends_at_its_last_point_counted_from_the_command_and_tells_where(joints, robot, until, velocities):
+def test_a_trajectory_ends_at_its_last_point_counted_from_the_command_and_tells_where(
+    joints, robot, until, velocities, begin
+):
     joints.set_angles(["Head"], [0.1, 0.1], 0.5, relative=False)
     robot.advance(0.5)
     frames = joints.trajectory(
         trajectory(["Head"], (0.5, [0.4, 0.0], velocities), (1, [0.2, -0.2], velocities)), relative=True
     )
-    follow = begin(joints.follow, frames, Interrupt())
-    robot.advance(0.55)
-    assert angles(robot, "HeadYaw")[0] == pytest.approx(0.5, abs=0.06)
-    until(follow.done, limit=1.0)
+    follow, yaws = begin(joints.follow, frames, Interrupt()), []
+    until(lambda: yaws.append(angles(robot, "HeadYaw")[0]) or follow.done(), limit=4.0, step=0.02)
+    assert max(yaws) == pytest.approx(0.5, abs=0.06)
     assert follow.result().values == pytest.approx([0.3, -0.1], abs=0.03)
 
 
-def test_an_interrupt_ends_a_motion_and_tells_where_the_joints_are(joints, robot, until):
+def test_an_interrupt_ends_a_motion_and_tells_where_the_joints_are(joints, robot, until, begin):
     interrupt = Interrupt()
     move = begin(joints.move, ["HeadYaw"], [1.5], 0.1, False, interrupt)
-    robot.advance(1.0)
+    until(lambda: angles(robot, "HeadYaw")[0] > 0.2)
     interrupt.trigger()
     until(move.done, limit=0.5)
-    assert move.result().preempted and 0.1 < move.result().values[0] < 1.2
+    assert move.result().preempted and 0.2 < move.result().values[0] < 1.2
     robot.advance(1.0)
     assert angles(robot, "HeadYaw") == pytest.approx(move.result().values, abs=0.15)
 
 
-def test_the_whole_body_gets_stiff_wakes_up_rests_and_lives(joints, robot, until):
+def test_the_whole_body_gets_stiff_wakes_up_rests_and_lives(joints, robot, until, begin):
     for service, arguments in (("set_body_stiffness", (0.5,)), ("wake_up", ()), ("rest", ())):
         call = begin(getattr(joints, service), *arguments)
         until(call.done, limit=15.0, step=0.25)
@@ -356,6 +349,41 @@ def test_every_change_of_every_touch_sensor_is_told_once(robot, driver_robot, cl
     assert sensors.report().values["LeftBumperPressed"] == "touched" and told == [2, (BUMPER, 1, True)]
 
 
+def test_events_in_the_wrong_order_are_put_right_but_no_event_by_what_was_read_before_it(
+    robot, driver_robot, closing, soon, monkeypatch
+):
+    class LateAnswer:
+        """The memory, with an event between a reading and its answer."""
+
+        def call_async(self, method, *arguments):
+            call = driver_robot.proxy("ALMemory").call_async(method, *arguments)
+            if method == "getListData":
+                call.result()
+                robot.ALMemory.raiseEvent(FRONT, 1.0)
+                soon(lambda: (HEAD, 1, True) in told)
+            return call
+
+        def __getattr__(self, name):
+            return getattr(driver_robot.proxy("ALMemory"), name)
+
+    def tell(sensor, touched):
+        told.append((sensor.place, sensor.number, touched))
+
+    told, late = [], LateAnswer()
+    monkeypatch.setattr(demand, "LOOK_PERIOD", 60.0)
+    slow = SimpleNamespace(proxy=lambda name: late, connection=driver_robot.connection)
+    sensors = closing(TouchSensors(slow, tell, print))
+    soon(lambda: sensors.report().message == "touches are told")
+    assert (HEAD, 1, False) not in told
+    told.clear()
+    monkeypatch.setattr(demand, "LOOK_PERIOD", 0.02)
+    sensors = closing(TouchSensors(driver_robot, tell, print))
+    soon(lambda: sensors.report().message == "touches are told")
+    told.clear()
+    robot.ALMemory.raiseEvent(FRONT, 1.0)  # nobody touches it: pressed and let go at once, the events swapped
+    soon(lambda: told == [(HEAD, 1, True), (HEAD, 1, False)])
+
+
 # Lights, behaviours, life
 
 RED, GREEN, BLACK = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
@@ -365,14 +393,13 @@ def eye(robot):
     return [robot.led(f"Face/Led/{name}/Left/0Deg") for name in ("Red", "Green", "Blue")]
 
 
-def test_eyes_blink_in_thirds_until_they_end_in_the_colour_of_the_background(robot, driver_robot, clock, until):
+def test_eyes_blink_in_thirds_until_they_end_in_the_colour_of_the_background(robot, driver_robot, clock, until, begin):
     interrupt, told = Interrupt(), []
     blinks = Blinks([RED, GREEN], (0.0, 0.0, 1.0), 0.6, 0.5, 0.0)
     blinking = begin(blink, driver_robot, blinks, clock, interrupt, told.append, random.Random(1))
-    until(lambda: len(told) == 1)
-    robot.advance(0.3)  # a third to fade in, a third to hold
-    assert eye(robot) == pytest.approx(told[0], abs=0.1)
-    until(lambda: len(told) == 4, limit=6.0)
+    until(lambda: told and eye(robot) == pytest.approx(told[-1], abs=0.05), limit=1.0, step=0.02)
+    until(lambda: eye(robot) == pytest.approx((0.0, 0.0, 1.0), abs=0.05), limit=2.0, step=0.02)
+    until(lambda: len(told) >= 4, limit=6.0)
     assert set(told) == {RED, GREEN}
     interrupt.trigger()
     until(blinking.done, limit=1.0)
@@ -381,7 +408,9 @@ def test_eyes_blink_in_thirds_until_they_end_in_the_colour_of_the_background(rob
     assert eye(robot) == [0.0, 0.0, 1.0]
 
 
-def test_a_newer_goal_takes_the_eyes_as_they_are_and_a_fade_ends_with_the_interrupt(robot, driver_robot, clock, until):
+def test_a_newer_goal_takes_the_eyes_as_they_are_and_a_fade_ends_with_the_interrupt(
+    robot, driver_robot, clock, until, begin
+):
     interrupt = Interrupt()
     blinks = Blinks([RED], BLACK, 3.0, 0.5, 0.0)
     blinking = begin(blink, driver_robot, blinks, clock, interrupt, lambda colour: None, random.Random(1))
@@ -399,7 +428,7 @@ def test_a_newer_goal_takes_the_eyes_as_they_are_and_a_fade_ends_with_the_interr
     assert eye(robot) == before
 
 
-def test_a_behaviour_runs_to_its_end_or_until_it_is_stopped(stiff_robot, driver_robot, until):
+def test_a_behaviour_runs_to_its_end_or_until_it_is_stopped(stiff_robot, driver_robot, until, begin):
     behaviors = Behaviors(driver_robot)
     installed = behaviors.installed()
     hey = "animations/Stand/Gestures/Hey_1"
@@ -421,7 +450,7 @@ def test_a_behaviour_runs_to_its_end_or_until_it_is_stopped(stiff_robot, driver_
     assert not stiff_robot.ALBehaviorManager.isBehaviorRunning(hey)
 
 
-def test_states_and_abilities_of_life_are_told_and_set(robot, driver_robot, closing, soon, until):
+def test_states_and_abilities_of_life_are_told_and_set(robot, driver_robot, closing, soon, until, begin):
     told = []
     life = closing(AutonomousLife(driver_robot, told.append))
     soon(lambda: told == ["disabled"])
