@@ -388,7 +388,7 @@ def test_places_near_a_thing_look_at_it_from_its_edge(table):
     place, frame = desig.reference()
     assert frame == "odom" and place == pytest.approx((1.0 - 0.35 - 0.1 - RADIUS, 0.0, 0.0), abs=1e-3)
     places = [each for each, _ in desig.solutions()]
-    assert len(places) == 24
+    assert len(places) == 24 and a_place_where(near=table, distance=0.1).reference() == (place, frame)
     for each in places:
         assert table.distance_to(each.x, each.y) == pytest.approx(0.1 + RADIUS, abs=5e-3)
         bearing = math.atan2(table.position.y - each.y, table.position.x - each.x)

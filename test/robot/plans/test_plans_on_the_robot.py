@@ -188,7 +188,7 @@ def test_the_abstract_plan_moves_hands_and_head_at_once(perform, robot, link, an
     assert times.count(link.settings.gripper_time) == 2 and max(times) <= took < max(times) + 0.2
 
 
-def test_hands_grip_what_is_there_and_tell_what_did_not_open(perform, robot):
+def test_hands_grip_what_is_there_and_tell_what_did_not_open(perform, robot, link):
     with pytest.raises(GripperClosedCompletely, match="the left hand closed, and there is nothing in it"):
         perform(to(type="gripping", gripper="left"))
     assert perform(to(type="moving-gripper-joint", gripper="left", joint_angle=0.5)) == pytest.approx(0.5, abs=0.05)
@@ -199,6 +199,9 @@ def test_hands_grip_what_is_there_and_tell_what_did_not_open(perform, robot):
     with pytest.raises(GripperGoalNotReached, match=r"the right hand is 0.\d\d open instead of 1.00") as caught:
         perform(to(type="opening", gripper="right"))
     assert (caught.value.side, caught.value.wanted) == ("right", 1.0)
+    link.answers["joint_trajectory"] = ActionEnd(GoalStatus.ABORTED, "the motors are off", None)
+    with pytest.raises(GripperGoalNotReached, match="LHand: the motors are off"):
+        perform(to(type="opening", gripper="left"))
 
 
 def test_the_head_turns_by_words_but_not_backwards(perform, robot, link, angle):
