@@ -10,8 +10,10 @@ from edge import Edge
 from genpy import Duration
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_modules import nao_basic
 from nao_library_modules.errors import RobotLost
 from nao_library_modules.first_contact import require_patience
+from nao_library_modules.launcher import BadLaunchPath
 from nao_library_modules.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
 from nao_library_msgs.srv import DescribeFunctionsRequest
@@ -173,6 +175,35 @@ def test_the_function_that_a_robot_left_is_told_whoever_notices_first(noticed):
     text = f"the robot at {ADDRESS} went away: no heartbeat"
     assert (server.end, server.text) == ("aborted", f"function 2 (leave): {text}")
     assert [(done.function, done.error) for done in server.result.results] == [("look", ""), ("leave", text)]
+
+
+class Supervisor:
+    """Keeps a launch file running."""
+
+    def __init__(self, *arguments):
+        self.arguments, self.done = arguments, []
+        self.start, self.stop = (lambda: self.done.append("start")), (lambda: self.done.append("stop"))
+
+
+def test_a_launch_file_is_started_at_once_or_when_asked_for_and_stopped_with_the_node(monkeypatch):
+    made = []
+    monkeypatch.setattr(nao_basic, "launch_supervisor", lambda *a: made.append(Supervisor(*a)) or made[-1])
+    path = ("nao_library", "nao.launch")
+    module = Module(Connection("connected", 1), autostart=True, launchpath=path)
+    assert (made[0].arguments, made[0].done) == ((path, "10.0.0.7", 9559, "/robot1/"), ["start"])
+    assert set(module.edge.reports) == {"Module robot", "Module goals", "Module launch file"}
+    for action in module.edge.shutdown_actions:
+        action()
+    assert made[0].done == ["start", "stop"]
+    module = Module(Connection("connected", 1), launchpath=path)
+    module.stop_launch()
+    assert len(made) == 1, "it is left alone until asked for"
+    module.start_launch()
+    module.stop_launch()
+    assert made[1].done == ["start", "stop"]
+    monkeypatch.undo()
+    with pytest.raises(BadLaunchPath):
+        Module(Connection("connected", 1), autostart=True, launchpath=("nao_library", "no.launch"))
 
 
 def test_a_patience_is_a_time():

@@ -1,13 +1,22 @@
-"""Trajectories as clients of nao_robot send them, and those that cannot be carried out."""
+"""Trajectories as clients of nao_robot send them, pose libraries of Choregraphe, and the motions of the library."""
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 
 import pytest
+import yaml
 
+from nao_library_modules.behaviors import BehaviorStore, problems_of
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.joint_trajectory import H25_BODY, check_range, expand_names, one_each, read_trajectory
+from nao_library_modules.motion_store import MotionStore
+from nao_library_modules.paths import config_file
+from nao_library_modules.xap import BadPoseFile, read_poses
+from nao_sim_bridge.paths import sounds_directory
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.motion.curves import SmoothCurve
 
 CHAINS = {"Body": ("HeadYaw", "HeadPitch", "LHand"), "Head": ("HeadYaw", "HeadPitch"), "LArm": ("LHand",)}
 
@@ -16,35 +25,23 @@ def point(time, positions, velocities=()):
     return SimpleNamespace(time_from_start=time, positions=positions, velocities=velocities)
 
 
-def trajectory(names, *points):
-    return SimpleNamespace(joint_names=names, points=list(points))
+def read(names, *points, relative=False, chains=CHAINS):
+    return read_trajectory(SimpleNamespace(joint_names=names, points=list(points)), chains, relative=relative)
 
 
-def test_many_points_for_many_joints():
-    frames = read_trajectory(trajectory(["Head"], point(1, [0.1, 0.2]), point(2.5, [0.3, 0.4])), CHAINS)
-    assert frames.interpolation_arguments() == (
-        ["HeadYaw", "HeadPitch"],
-        [[0.1, 0.3], [0.2, 0.4]],
-        [[1.0, 2.5], [1.0, 2.5]],
-        True,
-    )
-    assert frames.duration == 2.5
-    assert frames.targets == {"HeadYaw": 0.3, "HeadPitch": 0.4}
-
-
-def test_one_value_serves_all_joints():
-    frames = read_trajectory(trajectory(["Body"], point(1.5, [1.0])), CHAINS)
-    assert frames.targets == {"HeadYaw": 1.0, "HeadPitch": 1.0, "LHand": 1.0}
-
-
-def test_a_first_point_at_time_0_is_where_the_robot_is_anyway():
-    frames = read_trajectory(trajectory(["HeadYaw"], point(0, [0.0]), point(1, [0.5])), CHAINS)
-    assert frames.times == (1.0,)
-    assert frames.values == ((0.5,),)
+def test_many_points_for_many_joints_or_one_value_for_all():
+    frames = read(["Head"], point(1, [0.1, 0.2]), point(2.5, [0.3, 0.4]))
+    times = [1.0, 2.5]
+    assert frames.interpolation_arguments() == (list(CHAINS["Head"]), [[0.1, 0.3], [0.2, 0.4]], [times, times], True)
+    assert (frames.duration, frames.targets) == (2.5, {"HeadYaw": 0.3, "HeadPitch": 0.4})
+    assert set(read(["Body"], point(1.5, [1.0])).targets.values()) == {1.0}
+    start = read(["HeadYaw"], point(0, [0.0]), point(1, [0.5]))  # where the robot is anyway
+    assert (start.times, start.values) == ((1.0,), ((0.5,),))
+    assert expand_names(["LArm", "HeadPitch"], CHAINS) == ("LHand", "HeadPitch")
 
 
 def test_relative_values_are_told_to_the_robot_or_added_to_the_start():
-    frames = read_trajectory(trajectory(["Head"], point(1, [0.1, -0.1])), CHAINS, relative=True)
+    frames = read(["Head"], point(1, [0.1, -0.1]), relative=True)
     assert frames.interpolation_arguments()[-1] is False
     assert frames.absolute([1.0, 2.0]).values == ((1.1,), (1.9,))
     assert frames.absolute([1.0, 2.0]).interpolation_arguments()[-1] is True
@@ -61,21 +58,15 @@ def bezier(start, end, share):
 
 
 def test_bezier_points_have_the_velocities_asked_for():
-    asked = trajectory(["HeadYaw"], point(1, [0.2], [0.3]), point(3, [0.6], [-0.1]))
-    names, times, points = read_trajectory(asked, CHAINS).bezier_arguments()
+    names, times, points = read(["HeadYaw"], point(1, [0.2], [0.3]), point(3, [0.6], [-0.1])).bezier_arguments()
     assert (names, times) == (["HeadYaw"], [[1.0, 3.0]])
-    start, end = (1.0, points[0][0]), (2.0, points[0][1])
-    step = 1e-5
+    start, end, step = (1.0, points[0][0]), (2.0, points[0][1]), 1e-5
     for share, velocity in ((0.0, 0.3), (1.0 - step, -0.1)):
         (t0, a0), (t1, a1) = bezier(start, end, share), bezier(start, end, share + step)
         assert (a1 - a0) / (t1 - t0) == pytest.approx(velocity, abs=1e-4)
     assert bezier(start, end, 0.5)[0] == pytest.approx(1.0)  # time runs evenly along the segment
-
-
-def test_bezier_needs_velocities_and_absolute_values():
-    plain = read_trajectory(trajectory(["HeadYaw"], point(1, [0.2])), CHAINS)
-    relative = read_trajectory(trajectory(["HeadYaw"], point(1, [0.2], [0.0])), CHAINS, relative=True)
-    for frames in (plain, relative):
+    relative = read(["HeadYaw"], point(1, [0.2], [0.0]), relative=True)
+    for frames in (read(["HeadYaw"], point(1, [0.2])), relative):
         with pytest.raises(ValueError, match="velocities and absolute"):
             frames.bezier_arguments()
     assert relative.absolute([0.5]).bezier_arguments()[2][0][0][0] == 0.7
@@ -83,43 +74,149 @@ def test_bezier_needs_velocities_and_absolute_values():
 
 def test_a_pose_of_the_whole_h25_body_fits_a_robot_without_wrists_and_hands():
     without = [name for name in H25_BODY if not name.endswith(("Hand", "WristYaw"))]
-    chains = {"Body": without}
-    pose = [float(i) for i in range(len(H25_BODY))]
-    frames = read_trajectory(trajectory(["Body"], point(1, pose)), chains)
-    assert frames.targets == {name: float(H25_BODY.index(name)) for name in without}
-    assert one_each(pose, ["Body"], chains, "joint_angles") == tuple(float(H25_BODY.index(name)) for name in without)
+    chains, pose = {"Body": without}, [float(i) for i in range(len(H25_BODY))]
+    wanted = {name: float(H25_BODY.index(name)) for name in without}
+    assert read(["Body"], point(1, pose), chains=chains).targets == wanted
+    assert one_each(pose, ["Body"], chains, "joint_angles") == tuple(wanted.values())
 
 
 @pytest.mark.parametrize(
     "names, points, field, words",
     [
-        ([], [point(1, [0.0])], "trajectory.joint_names", "no joint is named"),
-        (["HeadJaw"], [point(1, [0.0])], "trajectory.joint_names", "did you mean 'HeadYaw'"),
-        (["Head", "HeadYaw"], [point(1, [0.0])], "trajectory.joint_names", "named twice: HeadYaw"),
-        (["Head"], [], "trajectory.points", "no point"),
-        (["Body"], [point(1, [0.0, 0.0])], "trajectory.points[0].positions", "2 values for 3 joints"),
-        (["Head"], [point(1, [0, 0]), point(2, [])], "trajectory.points[1].positions", "0 values for 2 joints"),
-        (["HeadYaw"], [point(0, [0.0])], "trajectory.points[0].time_from_start", "above 0 s"),
-        (["HeadYaw"], [point(-1, [0.0])], "trajectory.points[0].time_from_start", "above 0 s"),
-        (["HeadYaw"], [point(2, [0]), point(2, [1])], "trajectory.points[1].time_from_start", "2 s after 2 s"),
-        (["HeadYaw"], [point(1, [float("nan")])], "trajectory.points[0].positions", "finite"),
-        (["HeadYaw"], [point(1, [0], [1]), point(2, [0])], "trajectory.points[1].velocities", "point 1 has no"),
-        (["Head"], [point(1, [0, 0], [1, 2, 3])], "trajectory.points[0].velocities", "3 values for 2"),
+        ([], [point(1, [0.0])], "joint_names", "no joint is named"),
+        (["HeadJaw"], [point(1, [0.0])], "joint_names", "did you mean 'HeadYaw'"),
+        (["Head", "HeadYaw"], [point(1, [0.0])], "joint_names", "named twice: HeadYaw"),
+        (["Head"], [], "points", "no point"),
+        (["Body"], [point(1, [0.0, 0.0])], "points[0].positions", "2 values for 3 joints"),
+        (["Head"], [point(1, [0, 0]), point(2, [])], "points[1].positions", "0 values for 2 joints"),
+        (["HeadYaw"], [point(0, [0.0])], "points[0].time_from_start", "above 0 s"),
+        (["HeadYaw"], [point(-1, [0.0])], "points[0].time_from_start", "above 0 s"),
+        (["HeadYaw"], [point(2, [0]), point(2, [1])], "points[1].time_from_start", "2 s after 2 s"),
+        (["HeadYaw"], [point(1, [float("nan")])], "points[0].positions", "finite"),
+        (["HeadYaw"], [point(1, [0], [1]), point(2, [0])], "points[1].velocities", "point 1 has no"),
+        (["Head"], [point(1, [0, 0], [1, 2, 3])], "points[0].velocities", "3 values for 2"),
     ],
 )
 def test_what_is_wrong_is_named(names, points, field, words):
     with pytest.raises(BadGoal) as caught:
-        read_trajectory(trajectory(names, *points), CHAINS)
-    assert caught.value.field == field
-    assert words in str(caught.value)
-
-
-def test_names_are_expanded_in_order():
-    assert expand_names(["LArm", "HeadPitch"], CHAINS) == ("LHand", "HeadPitch")
+        read(names, *points)
+    assert caught.value.field == f"trajectory.{field}" and words in str(caught.value)
 
 
 def test_stiffness_has_a_range():
-    frames = read_trajectory(trajectory(["Head"], point(1, [0.5, 1.2])), CHAINS)
+    frames = read(["Head"], point(1, [0.5, 1.2]))
     with pytest.raises(BadGoal, match=r"HeadPitch is to be 1.2: 0 to 1"):
         check_range(frames, 0.0, 1.0)
     check_range(frames, 0.0, 1.2)
+
+
+# Pose libraries
+
+NAMESPACE = ' xmlns="http://www.aldebaran-robotics.com/schema/choregraphe/position.xsd"'
+
+
+def motors(**angles):
+    return "".join(f"<Motor><name>{name}</name><value>{value}</value></Motor>" for name, value in angles.items())
+
+
+NOD = motors(HeadPitch=0.5)
+
+
+def position(name="Nod", version="2", content=NOD):
+    return f"<position><version>{version}</version><name>{name}</name><Motors>{content}</Motors></position>"
+
+
+@pytest.fixture
+def poses(tmp_path):
+    def poses(*positions, namespace=NAMESPACE):
+        path = tmp_path / "library.xap"
+        path.write_text(f'<?xml version="1.0" encoding="UTF-8" ?>\n<poses{namespace}>{"".join(positions)}</poses>')
+        return read_poses(path)
+
+    return poses
+
+
+def test_version_2_is_in_radians_and_older_in_degrees(poses, tmp_path):
+    found = poses(position(), position("Old", "1", motors(HeadYaw=90.0, LHand=0.25)))
+    assert found == {"Nod": {"HeadPitch": 0.5}, "Old": {"HeadYaw": pytest.approx(math.pi / 2), "LHand": 0.25}}
+    assert poses(position(), namespace="") == {"Nod": {"HeadPitch": 0.5}}
+    library = read_poses(config_file("poses.xap"))
+    assert set(library) == {"ArmsForward", "HandsOnHips"} and all(len(pose) >= 8 for pose in library.values())
+    for positions, problem in (
+        ((), "holds no position"), ((position(name=""),), "position 1 has no name"),
+        ((position(), position()), "two positions are called 'Nod'"), ((position(content=""),), "Nod: no motors"),
+        ((position(content=motors(HeadYaw="far")),), "HeadYaw has the value 'far'"),
+        ((position(content=motors(HeadYaw="nan")),), "HeadYaw has the value 'nan'"),
+        ((position(content=motors(HeadYaw=1) * 2),), "HeadYaw comes twice"),
+    ):  # fmt: skip
+        with pytest.raises(BadPoseFile, match=problem):
+            poses(*positions)
+    with pytest.raises(BadPoseFile, match="No such file"):
+        read_poses(tmp_path / "nothing.xap")
+    (tmp_path / "text.xap").write_text("poses")
+    with pytest.raises(BadPoseFile, match="no XML"):
+        read_poses(tmp_path / "text.xap")
+
+
+# What comes with the library
+
+TEN = "bow count_to_ten dance hello introduce_yourself look_around nod shake_head sit_and_rest tai_chi".split()
+MOTIONS = sorted(path.stem for path in config_file("motions").glob("*.yaml"))
+SHARE = 0.75
+"""Of its top speed that a joint of a shipped motion may need."""
+
+
+@pytest.fixture
+def motions(tmp_path):
+    return MotionStore(tmp_path, config_file("motions"))
+
+
+def fields_named(node, name):
+    """Values of a field, wherever it is in a file."""
+    if isinstance(node, dict):
+        return [value for key, value in node.items() if key == name] + [
+            found for value in node.values() for found in fields_named(value, name)
+        ]
+    return [found for value in node for found in fields_named(value, name)] if isinstance(node, list) else []
+
+
+def test_ten_behaviours_can_be_run_as_they_are_and_play_every_motion(tmp_path):
+    store, played = BehaviorStore(tmp_path, config_file("behaviors")), []
+    assert store.names() == TEN
+    for name in TEN:
+        behavior = store.load(name)
+        assert problems_of(lambda n=name: store.load(n), store.load) == []
+        assert behavior.help and behavior.tags and behavior.parameters
+        content = yaml.safe_load(store.text(name))
+        for step in fields_named(content, "NaoMotion.playMotion"):
+            depths = ["small", "deep"] if "${depth}" in step["str_param"] else [""]
+            played += [step["str_param"].replace("${depth}", depth) for depth in depths]
+    assert sorted(played) == MOTIONS
+    (play,) = fields_named(yaml.safe_load(store.text("dance")), "nao_audio_out.playFile")
+    for tempo in store.load("dance").parameters["tempo"].choices:
+        assert (sounds_directory() / play["str_param"].replace("${tempo}", str(tempo))).is_file()
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_joints_can_follow_a_motion(motions, name):
+    motion, model = motions.load(name).key_frames(), load_model()
+    for place, joint in enumerate(motion.joints):
+        limits = model.joint(joint)
+        curve = SmoothCurve(motion.times, [row[place] for row in motion.angles])
+        low, high = curve.extremes
+        assert limits.lower - 1e-4 <= low and high <= limits.upper + 1e-4, joint
+        assert curve.peak_speed() <= SHARE * limits.max_velocity, joint
+
+
+def test_shipped_motions_can_be_replayed_but_not_changed_and_those_of_the_user_stand_before_them(motions):
+    assert motions.names() == []
+    for change in (motions.delete, motions.require, lambda name: motions.rename(name, "mine")):
+        with pytest.raises(BadGoal, match="'wave' comes with the library"):
+            change("wave")
+    with pytest.raises(BadGoal, match="did you mean 'wave'"):
+        motions.load("wavy")
+    shipped = motions.load("wave")
+    motions.save("wave", shipped.faster(2.0))
+    assert motions.load("wave").duration == pytest.approx(shipped.duration / 2.0) and motions.names() == ["wave"]
+    motions.delete("wave")
+    assert motions.load("wave") == shipped

@@ -100,9 +100,6 @@ def test_sonars_measure_for_a_reading_only_and_silence_is_infinitely_far(robot, 
     robot.NaoSimulation.placeObject(WALL % 0.7)
     result = tactile.succeed(f("getSonar", sensors=["right"]))
     assert result.sonar_names == ["right"] and 0.45 < result.sonar[0] < 0.75 and idle()
-    robot.NaoSimulation.breakDevice("US/Right")
-    left, right = tactile.succeed(f("getSonar")).sonar
-    assert math.isnan(right) and 0.45 < left < 0.75, "a sonar that failed is not taken for silence"
 
 
 def test_sonars_can_be_left_on_and_are_let_go_at_the_end(robot, tactile, idle):
@@ -142,7 +139,7 @@ def test_the_battery_is_a_message(robot, tactile):
         (battery,) = result.battery
         assert battery.percentage == pytest.approx(charge, abs=0.01) and battery.present
         assert battery.power_supply_status == status, charge
-        assert 15.0 < battery.voltage < 30.0 and (status == 3 or (battery.current > 0.0) is plugged)
+        assert 15.0 < battery.voltage < 30.0 and (charge == 1.0 or (battery.current > 0.0) is plugged)
         assert float(result.memList[0]) == pytest.approx(battery.percentage)
 
 
@@ -156,6 +153,7 @@ def test_temperatures_of_joints_chains_and_computers(robot, tactile):
     everything = tactile.succeed(f("getTemperatures"))
     assert len(everything.devices) == 28 and everything.devices[-2:] == ["head", "battery"]
     assert tactile.succeed(f("getTemperatures", sensors=["head"])).devices == ["head"]
+    assert "did you mean 'Head'" in tactile.refused(f("getTemperatures", sensors=["Heed"]))
 
 
 # Waiting
@@ -213,7 +211,9 @@ def test_an_obstacle_comes_near(robot, tactile, idle):
     result = goal.finish().result
     assert set(result.sonar_names) == set(result.memList) == {"left", "right"} and idle()
     assert all(0.45 < metres < 0.75 for metres in result.sonar)
-    assert goal.feedback[-1].sonar == result.sonar and min(goal.feedback[1].sonar) > 0.8
+    assert (
+        goal.feedback[-1].sonar == result.sonar and min(next(told.sonar for told in goal.feedback if told.sonar)) > 0.8
+    )
 
 
 def test_a_fall(robot, tactile):
@@ -250,7 +250,6 @@ REFUSED = [
     (f("getSonar", sensors=["rear"]), "left, right"),
     (f("getBumpers", sensors=["chest"]), "chest is no bumper"),
     (f("getFsr", sensors=["left hand"]), "left foot, right foot"),
-    (f("getTemperatures", sensors=["Heed"]), "did you mean 'Head'"),
     (f("onTouch"), "the name of a stored behaviour"),
     (f("onTouch", behavior="hello", parameters=["text"]), "name=value"),
     (f("onTouch", behavior="hello", cooldown=-1.0), "0..3600 s"),
@@ -262,7 +261,7 @@ def test_what_makes_no_sense_is_refused_before_anything_begins(tactile, idle):
     for function, text in REFUSED:
         refusal = tactile.refused(f("setSonarEnabled", enable=True), function)
         assert refusal.startswith("function 2") and text in refusal
-    assert idle()
+        assert idle(), function
 
 
 # Behaviours that a touch starts
