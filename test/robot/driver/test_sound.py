@@ -416,21 +416,27 @@ def test_a_new_vocabulary_is_used_at_once_and_one_that_is_refused_leaves_the_old
 
 
 def test_words_are_passed_on_whoever_listens_and_once_after_a_loss(recognition, robot, driver_robot, heard, soon):
-    def raised(value, count):
-        robot.ALMemory.raiseEvent("WordRecognized", value)
-        soon(lambda: len(heard) == count)
+    def words():
+        return [each for each in heard if each.words != ("warm up",)]
 
-    soon(lambda: (robot.ALMemory.raiseEvent("WordRecognized", ["yes", 0.7, "no", 0.1]), heard)[1])
-    heard.clear()
-    robot.ALMemory.raiseEvent("WordRecognized", ["", 0.0])
-    raised(["<...> no <...>", 0.5], 1)
-    assert heard == [Heard(("no",), (0.5,))]
+    def hears():
+        """Whether events arrive by now."""
+        count = len(heard)
+        soon(lambda: len(heard) > count or robot.ALMemory.raiseEvent("WordRecognized", ["warm up", 0.5]))
+
+    hears()
+    for value in (["", 0.0], ["yes", 0.7, "no", 0.1], ["<...> no <...>", 0.5]):
+        robot.ALMemory.raiseEvent("WordRecognized", value)
+    soon(lambda: len(words()) == 2)
+    assert sorted(words(), key=str) == [Heard(("no",), (0.5,)), Heard(("yes", "no"), (0.7, 0.1))]
     recognition.start()
     driver_robot.lose()
     soon(lambda: listeners(robot) == ["ros_nao_speech"] and recognition.report().message == "listens")
-    soon(lambda: (robot.ALMemory.raiseEvent("WordRecognized", ["yes", 0.6]), len(heard) > 1)[1])
-    count = len(heard)
-    raised(["no", 0.4], count + 1)
+    hears()
+    robot.ALMemory.raiseEvent("WordRecognized", ["stop", 0.4])
+    soon(lambda: len(words()) == 3)
+    hears()
+    assert len(words()) == 3
     recognition.stop()
     driver_robot.lose()
     assert listeners(robot) == [] and not recognition.running
