@@ -55,9 +55,7 @@ def test_a_ball_has_its_angles_time_camera_and_poses():
 
 def test_landmarks_have_numbers_and_sizes():
     marks = [[[1, 0.1, 0.2, 0.05, 0.09, 0.3], [114]], [[1, 0, 0, 0.1, 0.1], [64.0]]]
-    look = landmark_look(
-        value([[[1, 0.1, 0.2, 0.05, 0.09, 0.3], [114]], [[1, 0, 0, 0.1, 0.1], [64.0]]], "CameraBottom")
-    )
+    look = landmark_look(value(marks, "CameraBottom"))
     assert look.camera == 1
     assert [(s.name, s.alpha, s.beta, s.size_x, s.size_y, s.heading) for s in look.sights] == [
         ("114", 0.1, 0.2, 0.05, 0.09, 0.3), ("64", 0.0, 0.0, 0.1, 0.1, 0.0),
