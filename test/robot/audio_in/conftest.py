@@ -1,0 +1,64 @@
+"""The module for hearing, and what it must leave behind."""
+
+from __future__ import annotations
+
+import module_goals
+import pytest
+from bent_robot import BentRobot
+
+from nao_library_actions.msg import NaoAudioInGoal
+from nao_library_modules.audio_in import NaoAudioInput
+
+EXTRACTORS = ("ALSpeechRecognition", "ALSoundDetection", "ALSoundLocalization")
+
+
+@pytest.fixture
+def ears(goals_to):
+    return goals_to(NaoAudioInput, NaoAudioInGoal)
+
+
+@pytest.fixture
+def bent_ears(goals_to, monkeypatch):
+    """Makes the module on a robot that is different; see BentRobot."""
+
+    def make(**bends):
+        monkeypatch.setattr(module_goals, "WatchedRobot", BentRobot)
+        monkeypatch.setattr(BentRobot, "bends", {("ALSpeechRecognition", name): bend for name, bend in bends.items()})
+        return goals_to(NaoAudioInput, NaoAudioInGoal)
+
+    return make
+
+
+@pytest.fixture
+def subscribers(robot):
+    """Names of the subscribers of what hears."""
+    return lambda: [row[0] for module in EXTRACTORS for row in getattr(robot, module).getSubscribersInfo()]
+
+
+@pytest.fixture
+def restored(robot, subscribers):
+    """Checks that nobody is subscribed and that the recognition has the settings of before."""
+
+    def check():
+        service = robot.ALSpeechRecognition
+        assert subscribers() == []
+        service.pause(True)
+        with pytest.raises(RuntimeError, match="no contexts have been pushed"):
+            service.popContexts()
+        service.pause(False)
+
+    return check
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_left(robot, subscribers):
+    service = robot.ALSpeechRecognition
+    service.setAudioExpression(False)  # its bips would be heard
+    robot.ALSoundLocalization.setParameter("EnergyComputation", False)
+    yield
+    service.pause(False)
+    service.setAudioExpression(True)
+    for module in EXTRACTORS:
+        getattr(robot, module).setParameter("Sensitivity", 0.9)
+    robot.ALAudioDevice.setFileAsInput("")
+    robot.ALAudioDevice.disableEnergyComputation()

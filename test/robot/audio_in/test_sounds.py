@@ -1,0 +1,308 @@
+"""Goals that record, locate and measure sounds, and the settings of hearing."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from genpy import Duration
+from sounds import RATE, frequency, loudness, noise, put, read, take, tone, write
+
+from nao_library_msgs.msg import AudioInFunction
+
+DETECTED, LOCATED = "SoundDetected", "ALSoundLocalization/SoundLocated"
+LEVEL = [0.0] * 6
+ALL = ["left", "right", "front", "rear"]
+
+
+def f(function, **fields):
+    return AudioInFunction(function=function, **fields)
+
+
+# --- recordings -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "fields, rate, channels, kind",
+    [
+        ({"str_param": "day/a.wav"}, 16000, ["front"], "wav"),
+        ({"str_param": "a.ogg", "channels": ["rear"]}, 16000, ["rear"], "ogg"),
+        ({"str_param": "b.wav", "rate": 48000}, 48000, ALL, "wav"),
+        ({"str_param": "/home/nao/c.wav", "rate": 16000, "channels": ["left"]}, 16000, ["left"], "wav"),
+        ({"str_param": "d.ogg", "file_type": "ogg", "channels": ["rear", "front", "left", "right"]}, 48000, ALL, "ogg"),
+    ],
+)
+def test_a_recording_takes_its_time_and_has_what_is_heard(robot, ears, fields, rate, channels, kind):
+    file = tone(500.0, 2.0)[:, None] * [0.1, 0.2, 0.3, 0.4]
+    write(robot, "heard.wav", file)
+    ears.succeed(f("setFileAsInput", str_param="heard.wav"))
+    result = ears.succeed(f("record", duration=1.5, **fields))
+    (recorded,) = result.files
+    assert (recorded.path, recorded.rate, recorded.channels, recorded.file_type) == (
+        fields["str_param"],
+        rate,
+        channels,
+        kind,
+    )
+    assert recorded.duration == pytest.approx(1.5, abs=0.05) and result.memList == []
+    assert result.results[0].values[0] == fields["str_param"]
+    assert float(result.results[0].values[1]) == pytest.approx(recorded.duration)
+    samples, found = read(robot, fields["str_param"].replace("/home/nao/", ""))
+    assert (found, samples.shape[1]) == (rate, len(channels))
+    assert len(samples) / rate == pytest.approx(1.5, abs=0.12)
+    middle = samples[rate // 2 : rate]
+    assert frequency(middle[:, 0], rate) == pytest.approx(500.0, abs=2.1)
+    expected = [0.5 * 0.1 * (1 + ALL.index(name)) / math.sqrt(2.0) for name in channels]
+    assert [loudness(channel) for channel in middle.T] == pytest.approx(expected, rel=0.05)
+
+
+def test_what_the_loudspeakers_play_is_recorded_as_loud_as_it_is(robot, ears):
+    robot.ALAudioDevice.setOutputVolume(100)
+    levels = []
+    for gain in (50, 25):
+        goal = ears.send(f("record", str_param="tone.wav", rate=48000, duration=1.0))
+        robot.advance(0.2)
+        assert goal.feedback[-1].status == "recording"
+        robot.post("ALAudioPlayer", "playSine", 800, gain, 0, 0.5)
+        assert goal.finish().state == "succeeded"
+        samples, rate = read(robot, "tone.wav")
+        envelope = np.array([loudness(samples[i : i + 960]) for i in range(0, len(samples), 960)])
+        assert np.sum(envelope > envelope.max() / 2) / 50 == pytest.approx(0.5, abs=0.05)
+        levels.append(np.median(envelope[envelope > envelope.max() / 2]))
+    assert levels[0] == pytest.approx(2.0 * levels[1], rel=0.05)
+
+
+def test_a_recording_that_is_cancelled_is_closed_and_in_the_result(robot, ears):
+    goal = ears.send(f("record", str_param="cut.ogg", duration=60.0))
+    robot.advance(1.5)
+    goal.cancel()
+    assert goal.state == "preempted"
+    (file,) = goal.result.files
+    assert file.path == "cut.ogg" and file.duration == pytest.approx(1.5, abs=0.1)
+    samples, rate = read(robot, "cut.ogg")
+    assert len(samples) / rate == pytest.approx(1.5, abs=0.1)
+
+
+def test_a_recording_outlives_its_goal_until_it_is_stopped(robot, ears):
+    start, record = f("startRecording", str_param="long.wav", rate=48000), f("record", str_param="b.wav", duration=0.2)
+    text = ears.refused(start, record)
+    assert "function 2 (record)" in text and "stopRecording comes first" in text
+    assert ears.succeed(start).files == []
+    assert "stopRecording comes first" in ears.refused(record)
+    robot.advance(2.0)
+    result = ears.succeed(f("stopRecording"))
+    (file,) = result.files
+    assert file.path == "long.wav" and len(file.channels) == 4 and file.duration == pytest.approx(2.0, abs=0.1)
+    assert len(read(robot, "long.wav")[0]) / RATE == pytest.approx(file.duration, abs=0.05)
+    ears.succeed(start, f("stopRecording"), record)
+
+
+def test_a_recording_of_another_program_is_left_alone_until_it_is_stopped(robot, ears):
+    robot.ALAudioRecorder.startMicrophonesRecording("theirs.wav", "wav", 16000, [1, 0, 0, 0])
+    goal = ears.play(f("record", str_param="a.wav", duration=1.0))
+    assert (
+        goal.state == "aborted" and "a recording to 'theirs.wav' is under way" in goal.text and goal.result.files == []
+    )
+    robot.advance(0.5)
+    assert ears.succeed(f("stopMicrophonesRecording")).files == []
+    assert len(read(robot, "theirs.wav")[0]) >= 7000
+    ears.succeed(f("startMicrophonesRecording", str_param="a.wav"), f("stopMicrophonesRecording"))
+
+
+# --- sounds -----------------------------------------------------------------------------------------------------------
+
+
+def located(azimuth, confidence, head=LEVEL):
+    return [[1, 2], [azimuth, 0.1, confidence, 0.25], LEVEL, head]
+
+
+@pytest.fixture
+def begun(robot, ears, subscribers):
+    """A goal of one function that hears, and a way to raise its event."""
+
+    def send(function):
+        goal = ears.send(function)
+        robot.advance_until(subscribers, 5.0)
+        robot.advance(0.3)
+        return goal
+
+    return send
+
+
+def raised(robot, name, *values):
+    for value in values:
+        robot.ALMemory.raiseEvent(name, value)
+        robot.proxy("ALMemory").ping()
+        robot.advance(0.1)
+
+
+def test_a_sound_that_begins_is_detected_and_not_located(robot, begun, subscribers):
+    goal = begun(f("detectSound", confidence=0.5, timeout=30.0))
+    raised(robot, DETECTED, [[0, 0, 0.9, 1]], [[0, 1, 0.2, 1]], "nonsense")
+    assert goal.active
+    put(robot, (1.0, 0.0, 0.5), noise(0.5), 70.0)
+    goal.finish()
+    (sound,) = goal.result.sounds
+    assert not sound.located and 0.5 < sound.confidence <= 1.0 and sound.header.frame_id == "robot1/Head"
+    values = [float(value) for value in goal.result.results[0].values]
+    assert values == pytest.approx([sound.confidence, 0.7], abs=0.3) and subscribers() == []
+    assert sound.header.stamp.to_sec() == pytest.approx(robot.now.time, abs=0.1)
+
+
+@pytest.mark.parametrize("function", ["detectSound", "localizeSound"])
+def test_silence_is_no_failure(robot, ears, subscribers, function):
+    began = robot.now.time
+    result = ears.succeed(f(function, timeout=2.0))
+    assert (list(result.sounds), list(result.results[0].values)) == ([], []) and subscribers() == []
+    assert robot.now.time - began == pytest.approx(2.0, abs=0.2)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.6])
+def test_a_sound_is_located_in_the_head_and_in_the_base(stiff_robot, begun, yaw):
+    robot = stiff_robot
+    robot.finish("ALMotion", "angleInterpolationWithSpeed", "HeadYaw", yaw, 0.5, after=1.5)
+    goal = begun(f("localizeSound", timeout=15.0, duration=0.5))
+    put(robot, (1.5 * math.cos(0.8), 1.5 * math.sin(0.8), 0.5), noise(2.0), 70.0)
+    (sound,) = goal.finish().result.sounds
+    assert sound.located and sound.base_azimuth == pytest.approx(0.8, abs=0.12)
+    assert sound.azimuth == pytest.approx(0.8 - yaw, abs=0.12) and sound.energy > 10.0
+    assert (sound.header.frame_id, sound.base_frame) == ("robot1/Head", "robot1/base_footprint")
+    assert [sound.head.x, sound.head.y, sound.head.z] == pytest.approx(
+        robot.ALMotion.getPosition("Head", 2, True)[:3], abs=0.01
+    )
+    values = [float(value) for value in goal.result.results[0].values]
+    expected = [sound.azimuth, sound.elevation, sound.confidence, sound.base_azimuth, sound.base_elevation]
+    assert values == pytest.approx(expected, abs=1e-5)
+
+
+def test_with_some_patience_the_most_confident_direction_counts(robot, begun):
+    goal = begun(f("localizeSound", confidence=0.4, duration=1.0, timeout=20.0))
+    raised(robot, LOCATED, "nonsense", located(1.5, 0.2), located(1.0, 0.5), located(0.3, 0.9), located(2.0, 0.6))
+    began = robot.now.time
+    (sound,) = goal.finish().result.sounds
+    assert (sound.azimuth, sound.elevation, sound.confidence) == pytest.approx((0.3, 0.1, 0.9))
+    assert robot.now.time - began == pytest.approx(0.7, abs=0.15)
+    goal = begun(f("localizeSound", timeout=20.0))
+    raised(robot, LOCATED, located(1.0, 0.5), located(0.3, 0.9))
+    assert goal.finish().result.sounds[0].azimuth == pytest.approx(1.0)
+
+
+# --- energies ---------------------------------------------------------------------------------------------------------
+
+
+def test_energies_are_louder_on_the_side_of_a_sound_and_computed_only_for_the_function(robot, ears):
+    quiet = ears.succeed(f("getEnergy", duration=0.6))
+    put(robot, (0.0, 0.5, 0.5), noise(2.0), 75.0, loop=True)
+    began = robot.now.time
+    loud = ears.succeed(f("getEnergy", duration=0.6), f("getRearMicEnergy"), f("getLeftMicEnergy"))
+    assert loud.microphones == ["left", "right", "front", "rear", "rear", "left"] and loud.memList == []
+    assert 0.6 < robot.now.time - began < 4.0
+    assert all(now > 3.0 * before for now, before in zip(loud.energies, quiet.energies))
+    assert loud.energies[0] > loud.energies[1] and loud.energies[5] > loud.energies[4]
+    assert [list(map(float, done.values)) for done in loud.results[1:]] == [
+        [pytest.approx(loud.energies[4])],
+        [pytest.approx(loud.energies[5])],
+    ]
+    robot.advance(0.4)
+    assert robot.ALAudioDevice.getFrontMicEnergy() == 0.0
+    take(robot)
+    result = ears.succeed(f("getRightMicEnergy"), f("getFrontMicEnergy"))
+    assert result.microphones == ["right", "front"]
+
+
+def test_energies_are_the_mean_over_a_while(robot, ears):
+    half = np.r_[noise(0.85), np.zeros(round(0.85 * RATE))]
+    put(robot, (1.0, 0.0, 0.5), half, 80.0, loop=True)
+    ears.succeed(f("enableEnergyComputation"))
+    robot.advance(0.5)
+    (mean,) = ears.succeed(f("getFrontMicEnergy", duration=3.4)).energies
+    readings = []
+    for _ in range(20):
+        robot.advance(0.17)
+        readings.append(robot.ALAudioDevice.getFrontMicEnergy())
+    assert mean == pytest.approx(np.mean(readings), rel=0.15) and max(readings) > 1.5 * mean
+
+
+def test_energies_that_are_computed_anyway_go_on_and_are_there_at_once(robot, ears):
+    device = robot.ALAudioDevice
+    device.enableEnergyComputation()  # another program
+    robot.advance(0.5)
+    ears.succeed(f("getFrontMicEnergy"))
+    robot.advance(0.4)
+    assert device.getFrontMicEnergy() > 0.0
+    device.disableEnergyComputation()
+    ears.succeed(f("enableEnergyComputation", time=Duration.from_sec(0.4)))
+    began = robot.now.time
+    assert ears.succeed(f("getFrontMicEnergy")).energies[0] > 0.0
+    assert robot.now.time - began < 0.05
+    ears.succeed(f("disableEnergyComputation"))
+    robot.advance(0.4)
+    assert device.getFrontMicEnergy() == 0.0
+
+
+# --- settings ---------------------------------------------------------------------------------------------------------
+
+
+def test_sensitivity_of_one_sense_or_of_all(robot, ears):
+    def heard():
+        """Whether a soft sound is detected, and whether it is located."""
+        goal = ears.send(f("detectSound", timeout=2.0), f("localizeSound", timeout=2.0))
+        robot.advance(0.8)
+        put(robot, (1.0, 0.0, 0.5), np.r_[noise(0.4), np.zeros(RATE // 2), noise(0.4)], 46.0, loop=True)
+        found = [bool(done.values) for done in goal.finish().result.results]
+        take(robot)
+        return found
+
+    speech = robot.ALSpeechRecognition
+    before = speech.getParameter("Sensitivity")
+    ears.succeed(f("setSensitivity", sensitivity=0.9, str_param="localization"))
+    ears.succeed(f("setSensitivity", str_param="detection", sensitivity=0.1))
+    assert speech.getParameter("Sensitivity") == pytest.approx(before) and heard() == [False, True]
+    ears.succeed(f("setSensitivity", sensitivity=0.1))
+    assert speech.getParameter("Sensitivity") == pytest.approx(0.1) and heard() == [False, False]
+    ears.succeed(f("setSensitivity", sensitivity=0.9))
+    assert heard() == [True, True]
+
+
+def test_parameters_of_the_recognition_and_of_the_sound_card(ears):
+    chain = [
+        f("setParameter", str_param="NbHypotheses", values=[3]),
+        f("getParameter", str_param="NbHypotheses"),
+        f("setParameter", str_param="outputSampleRate", values=[16000]),
+        f("getParameter", str_param="outputSampleRate"),
+        f("setParameter", str_param="NbHypotheses", values=[1]),
+        f("getAudioExpression"),
+        f("setVisualExpression", enable=False),
+        f("setVisualExpression", enable=True),
+        f("getOutputVolume"),
+    ]
+    assert ears.succeed(*chain).memList[:3] == ["3.0", "16000", "False"]
+    assert "NbHypothesis" in ears.refused(f("getParameter", str_param="NbHypothesis"))
+
+
+def test_settings_go_back_after_the_wait(robot, ears):
+    recognition, device, wait = robot.ALSpeechRecognition, robot.ALAudioDevice, Duration.from_sec(0.5)
+    device.setOutputVolume(60)
+
+    def now():
+        sensitivity = round(recognition.getParameter("Sensitivity"), 3)
+        return (
+            recognition.getAudioExpression(),
+            sensitivity,
+            device.getOutputVolume(),
+            device.getParameter("outputSampleRate"),
+        )
+
+    before = now()
+    for function, changed in [
+        (f("setAudioExpression", enable=True, revert=True, time=wait), (True, *before[1:])),
+        (f("setParameter", str_param="Sensitivity", values=[0.1], revert=True, time=wait), (False, 0.1, *before[2:])),
+        (f("setOutputVolume", volume=20, revert=True, time=wait), (*before[:2], 20, before[3])),
+        (f("setParameter", str_param="outputSampleRate", values=[44100], revert=True, time=wait), (*before[:3], 44100)),
+    ]:
+        goal = ears.send(function)
+        robot.advance(0.3)
+        assert now() == changed, function.function
+        goal.finish()
+        assert now() == before

@@ -1,0 +1,232 @@
+"""Goals that play: how long, how loud, from which side; loops, pauses, the background, and what is silenced."""
+
+from __future__ import annotations
+
+import socket
+
+import numpy as np
+import pytest
+from genpy import Duration
+from sounds import RATE, frequency, loudness, played, span, tone, write
+
+from nao_library_msgs.msg import AudioOutFunction
+
+FULL, LENGTH = 0.5 / np.sqrt(2.0), 1.0
+MESSAGE = 0.1
+"""Simulated s in which the end of a goal is known, and no more."""
+
+
+def f(function, text="", **fields):
+    return AudioOutFunction(function=function, str_param=text, **fields)
+
+
+@pytest.fixture(autouse=True)
+def files(robot):
+    write(robot, "tone.wav", tone(440.0, LENGTH))
+    write(robot, "short.wav", tone(440.0, 0.3))
+
+
+@pytest.fixture
+def levels(robot):
+    """Levels of both sides in the middle of what was played since a time, as parts of the file's."""
+
+    def of(begun):
+        first, last = span(robot, begun)
+        middle = played(robot, first + 0.05, last - 0.05)
+        return [loudness(side) / FULL for side in middle.T]
+
+    return of
+
+
+def test_a_file_is_played_to_its_end(robot, audio):
+    begun = robot.now.time
+    result = audio.succeed(f("playFile", " tone.wav "), f("playFile", "short.wav"))
+    first, last = span(robot, begun)
+    assert last - first == pytest.approx(LENGTH + 0.3, abs=0.05) and first - begun < 0.05
+    assert frequency(played(robot, first, first + 1.0)[:, 0]) == pytest.approx(440.0, abs=1.0)
+    assert loudness(played(robot, first + 0.1, first + 0.9)) == pytest.approx(FULL, rel=0.01)
+    assert result.files == ["tone.wav", "short.wav"] and result.durations == pytest.approx([1.0, 0.3], abs=0.05)
+    assert [each.elapsed.to_sec() for each in result.results] == pytest.approx([1.0, 0.3], abs=0.05)
+    assert (result.volume, result.memList) == (100.0, [])
+
+
+@pytest.mark.parametrize(
+    "function, seconds, left, right",
+    [
+        (f("playFile", "tone.wav", volume=0.5, duration=0.5), 0.5, 0.5, 0.5),
+        (f("playFile", "tone.wav", pan=-1.0, duration=0.5), 0.5, 1.0, 0.0),
+        (f("playFile", "tone.wav", pan=1.0, volume=0.2, duration=2.0), 1.0, 0.0, 0.2),
+        (f("playFileFromPosition", "tone.wav", position=0.5, volume=0.5), 0.5, 0.5, 0.5),
+        (f("playFileInLoop", "short.wav", duration=0.8, volume=0.5), 0.8, 0.5, 0.5),
+        (f("playSine", frequency=800, volume=0.25, duration=0.4, pan=1), 0.4, 0.0, 0.5),
+        (f("playSine", frequency=800, duration=0.4), 0.4, 2.0, 2.0),
+        (f("playSoundSetFile", "beeps", file_name="beep", volume=0.5), 0.3, 0.5, 0.5),
+        (f("playSoundSetFile", "beeps", file_name="beep", position=0.1, pan=-1.0), 0.2, 1.0, 0.0),
+    ],
+)
+def test_a_sound_has_its_length_level_and_side(robot, audio, levels, function, seconds, left, right):
+    write(robot, "soundsets/beeps/beep.wav", tone(440.0, 0.3))
+    begun = robot.now.time
+    result = audio.succeed(function)
+    assert robot.now.time - begun == pytest.approx(seconds, abs=MESSAGE)
+    assert result.results[0].elapsed.to_sec() == pytest.approx(seconds, abs=0.05)
+    assert levels(begun) == pytest.approx([left, right], abs=0.03)
+    if function.function == "playSine":
+        assert result.files == []
+        assert frequency(played(robot, begun + 0.1, begun + 0.35)[:, 1]) == pytest.approx(800.0, abs=4.1)
+    else:
+        names = {"playSoundSetFile": ["beeps/beep"]}
+        assert result.files == names.get(function.function, [function.str_param])
+        assert result.durations == pytest.approx([seconds], abs=0.05)
+
+
+def test_volumes_multiply_and_a_muted_robot_takes_as_long(robot, audio, levels):
+    begun = robot.now.time
+    chain = f("setOutputVolume", volume=50), f("setMasterVolume", volume=0.5), f("playFile", "short.wav")
+    result = audio.succeed(*chain, f("getOutputVolume"), f("getMasterVolume"))
+    assert (result.memList, result.volume) == (["50", "0.5"], 50.0)
+    assert levels(begun) == pytest.approx([0.25, 0.25], abs=0.01)
+    begun = robot.now.time
+    result = audio.succeed(f("muteAudioOut", enable=True), f("playFile", "tone.wav"), f("isAudioOutMuted"))
+    assert result.memList == ["True"] and result.results[1].elapsed.to_sec() == pytest.approx(LENGTH, abs=0.05)
+    assert not played(robot, begun + 0.1).any()
+
+
+def test_a_loop_sounds_on_after_its_goal_until_it_is_stopped(robot, audio):
+    begun = robot.now.time
+    assert audio.succeed(f("playFileInLoop", "short.wav")).durations == [0.0]
+    assert robot.now.time - begun < 0.3
+    audio.succeed(f("getMasterVolume"))
+    robot.advance(1.0)
+    assert loudness(played(robot, begun + 0.1)) == pytest.approx(FULL, rel=0.03)
+    audio.succeed(f("stopAll"))
+    stopped = robot.now.time
+    robot.advance(0.4)
+    assert not played(robot, stopped + 0.05).any()
+
+
+def silent_after(robot, since, seconds=0.4):
+    robot.advance(seconds)
+    return not played(robot, since + 0.05).any()
+
+
+def test_a_chain_that_fails_silences_what_it_left_in_the_background_and_nothing_else(robot, audio):
+    audio.succeed(f("playFileInLoop", "tone.wav", volume=0.5, pan=-1.0))
+    goal = audio.play(f("playFileInLoop", "tone.wav", pan=1.0), f("loadFile", "missing.wav"))
+    assert goal.state == "aborted" and "function 2 (loadFile)" in goal.text and "missing.wav" in goal.text
+    failed = robot.now.time
+    robot.advance(0.4)
+    heard = played(robot, failed + 0.1)
+    assert loudness(heard[:, 0]) == pytest.approx(0.5 * FULL, rel=0.02) and not heard[:, 1].any()
+    audio.close()  # and the end of the node silences what goals have left
+    assert silent_after(robot, robot.now.time)
+
+
+def test_a_goal_that_is_cancelled_silences_its_sounds_of_the_background_as_well(robot, audio):
+    begun = robot.now.time
+    goal = audio.send(
+        f("playFileInLoop", "short.wav", volume=0.5), f("playFile", "tone.wav"), f("playFile", "short.wav")
+    )
+    robot.advance(0.4)
+    goal.cancel()
+    assert (goal.state, goal.text) == ("preempted", "preempted in function 2 (playFile)")
+    assert goal.result.files == ["short.wav", "tone.wav"] and 0.15 < goal.result.durations[1] < 0.9
+    assert loudness(played(robot, begun + 0.1)) > 0.1 and silent_after(robot, robot.now.time)
+
+
+@pytest.mark.parametrize("function", [f("playFileInLoop", "tone.wav", duration=1000.0), f("waitUntilSilent")])
+def test_waits_for_sounds_are_cancelled(robot, audio, function):
+    goal = audio.send(f("playFileInLoop", "tone.wav"), function)
+    robot.advance(0.5)
+    assert goal.cancel().state == "preempted" and silent_after(robot, robot.now.time)
+
+
+def test_only_files_that_were_played_are_in_the_result_and_one_that_is_not_there_is_an_error(audio):
+    goal = audio.play(f("playFile", "short.wav"), f("playFile", "missing.wav"))
+    assert (goal.state, goal.result.files) == ("aborted", ["short.wav"])
+    assert [(done.function, bool(done.error)) for done in goal.result.results] == [
+        ("playFile", False),
+        ("playFile", True),
+    ]
+    assert "missing.wav" in audio.refused(f("playFile", "missing.wav", background=True))
+
+
+def test_waiting_for_silence_lasts_as_long_as_the_background_and_tells_of_a_sound_that_failed(
+    robot, audio, monkeypatch
+):
+    result = audio.succeed(f("playFile", "tone.wav", background=True), f("waitUntilSilent"), f("waitUntilSilent"))
+    assert [each.elapsed.to_sec() for each in result.results] == pytest.approx([0.0, 1.0, 0.0], abs=0.15)
+    assert result.durations == [0.0]
+    monkeypatch.setenv("no_proxy", "127.0.0.1")
+    with socket.create_server(("127.0.0.1", 0)) as radio:
+        address = f"http://127.0.0.1:{radio.getsockname()[1]}/a.ogg"
+        goal = audio.send(f("playWebStream", address, background=True), f("waitUntilSilent"))
+        robot.advance(0.3)
+        radio.accept()[0].close()
+    goal.finish()
+    assert goal.state == "aborted" and "function 2 (waitUntilSilent)" in goal.text and "nothing can be" in goal.text
+
+
+def test_a_loaded_sound_is_played_paused_and_moved(audio):
+    third = Duration.from_sec(0.3)
+    result = audio.succeed(
+        f("loadFile", "tone.wav"),
+        f("getFileLength", "tone.wav"),
+        f("goTo", "tone.wav", position=0.6),
+        f("getCurrentPosition", "tone.wav"),
+        f("play", "tone.wav", volume=0.5),
+        f("play", "tone.wav", background=True, time=third),
+        f("pause", "tone.wav", time=third),
+        f("play", "tone.wav"),
+        f("playInLoop", "tone.wav", duration=1.5),
+        f("getLoadedFilesNames"),
+        f("unloadFile", "tone.wav"),
+        f("getLoadedFilesIds"),
+    )
+    number, length, position, *names = result.memList
+    assert int(number) > 0 and (float(length), float(position), names) == (1.0, 0.6, ["tone.wav"])
+    elapsed = [each.elapsed.to_sec() for each in result.results]
+    assert (elapsed[4], elapsed[8]) == pytest.approx((0.4, 1.5), abs=0.06) and 0.5 < elapsed[7] < 0.75
+    assert result.files == ["tone.wav"] * 4
+
+
+def test_loaded_sounds_go_by_name_by_id_or_by_being_the_last(robot, audio):
+    first, second = audio.succeed(f("loadFile", "tone.wav"), f("loadFile", "short.wav")).memList
+    result = audio.succeed(
+        f("getFileLength", "tone.wav"),
+        f("getFileLength"),
+        f("goTo", sound_id=int(first), position=0.9),
+        f("play", "tone.wav"),
+        f("play", volume=0.5),
+        f("setVolume", "tone.wav", volume=0.25),
+        f("setVolume", volume=0.5, sound_id=int(second), revert=True),
+        f("getVolume", sound_id=int(first)),
+        f("getVolume", sound_id=int(second)),
+        f("unloadFile"),
+        f("play", sound_id=int(first), duration=0.1),
+        f("getLoadedFilesIds"),
+    )
+    assert result.memList == ["1.0", "0.3", "0.25", "0.5", first]
+    assert result.files == ["tone.wav", "short.wav", "tone.wav"]
+    assert result.durations == pytest.approx([0.1, 0.3, 0.1], abs=0.05)
+    text = audio.refused(f("loadFile", "short.wav"), f("unloadFile"), f("play", "short.wav"))
+    assert text == "function 3 (play): field str_param: 'short.wav' is not loaded: one of tone.wav"
+    text = audio.refused(f("unloadAllFiles"), f("play"))
+    assert text == "function 2 (play): field sound_id: no sound is loaded: loadFile comes first"
+
+
+def test_another_pitch(robot, audio):
+    begun = robot.now.time
+    audio.succeed(f("loadFile", "tone.wav"), f("setPitch", pitch=1.5), f("play"), f("disablePitch"), f("play"))
+    first, last = span(robot, begun)
+    heard = [frequency(played(robot, at, at + 0.5)[:, 0]) for at in (first + 0.2, last - 0.7)]
+    assert heard == pytest.approx([660.0, 440.0], abs=2.1) and last - first < 2.2
+
+
+def test_buffers_of_the_robot_are_dropped(robot, audio):
+    begun = robot.now.time
+    robot.ALAudioDevice.setParameter("outputSampleRate", 48000)
+    robot.ALAudioDevice.sendRemoteBufferToOutput(16384, np.full((16384, 2), 8000, "<i2").tobytes())
+    audio.succeed(f("flushAudioOutputs"))
+    robot.advance(0.2)
+    assert len(np.flatnonzero(played(robot, begun)[:, 0])) < 0.1 * RATE

@@ -1,0 +1,191 @@
+"""Goals that speak: how long, which words, how it is silenced, how it sounds; and gestures that go with it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from genpy import Duration
+from sounds import loudness, played, span, tone, write
+
+from nao_library_msgs.msg import AudioOutFunction
+
+TEXT = "The quick brown fox jumps over the lazy dog."
+WORDS = TEXT.rstrip(".").split()
+HEY = "^start(animations/Stand/Gestures/Hey_1)"
+MESSAGE = 0.1
+
+
+def f(function, text="", **fields):
+    return AudioOutFunction(function=function, str_param=text, **fields)
+
+
+def words(goal):
+    return [told.word.strip(".") for told in goal.feedback if told.word]
+
+
+def step(robot, goal, until=lambda: False, limit=20.0):
+    """Let time pass in small steps, in which events come, until something holds or the goal is over."""
+    end = robot.now.time + limit
+    while goal.active and not until():
+        assert robot.now.time < end
+        robot.advance(0.05)
+        for _ in range(3):
+            robot.proxy("ALMemory").ping()
+    return goal
+
+
+def sounding(robot, audio, *functions):
+    """When the sound of a goal began and ended, and its result, after some silence."""
+    begun = robot.now.time
+    result = audio.succeed(*functions)
+    ended = robot.now.time
+    first, last = span(robot, begun)
+    assert first - begun < 0.3 and ended - last < 0.6
+    robot.advance(0.1)
+    return first, last, result
+
+
+def test_a_goal_lasts_as_long_as_its_texts_which_follow_each_other(robot, audio):
+    begun = robot.now.time
+    result = audio.succeed(f("say", "One.", time=Duration.from_sec(0.5)), f("say", "Two."))
+    elapsed = [each.elapsed.to_sec() for each in result.results]
+    assert robot.now.time - begun == pytest.approx(sum(elapsed) + 0.5, abs=MESSAGE) and min(elapsed) > 0.3
+    second = begun + elapsed[0] + 0.5
+    assert not played(robot, second - 0.45, second - 0.05).any()
+    for first in (begun, second):
+        assert loudness(played(robot, first, first + 0.4)) > 0.01
+    assert (result.volume, result.memList, result.files) == (100.0, [], [])
+
+
+def test_words_are_fed_back_as_they_are_spoken_and_those_of_others_are_not(robot, audio):
+    goal = step(robot, audio.send(f("getVoice"), f("say", TEXT))).finish()
+    assert goal.state == "succeeded" and words(goal) == WORDS
+    told = [each for each in goal.feedback if each.word]
+    assert {(each.index, each.function, each.count, each.sentence) for each in told} == {(1, "say", 2, TEXT)}
+    assert [(each.index, each.function) for each in goal.feedback[:2]] == [(0, "getVoice"), (1, "say")]
+    other = robot.post("ALTextToSpeech", "say", "Gossip.")
+    quiet = step(robot, audio.send(f("getVoice", time=Duration.from_sec(1.5)))).finish()
+    robot.answer(other)
+    assert words(quiet) == [] and quiet.state == "succeeded"
+
+
+def test_a_text_over_a_file_in_the_background_has_its_words_in_the_feedback(robot, audio):
+    write(robot, "tone.wav", tone(440.0, 1.0))
+    begun = robot.now.time
+    chain = f("playFileInLoop", "tone.wav", volume=0.5), f("say", "I sing.", background=True), f("waitUntilSilent")
+    goal = audio.send(*chain)
+    step(robot, goal, lambda: len(words(goal)) == 2)
+    assert words(goal) == ["I", "sing"] and {e.function for e in goal.feedback if e.word} <= {"say", "waitUntilSilent"}
+    assert loudness(played(robot, begun + 0.2)) > 0.5 * 0.35
+    assert goal.cancel().state == "preempted"
+
+
+def test_a_goal_that_is_cancelled_is_silent_at_once_and_nothing_else_is(robot, audio):
+    hum = robot.post("ALAudioPlayer", "playSine", 500, 2, 0, 10.0)
+    goal = audio.send(f("say", f"{TEXT} {TEXT}", voice="kal", volume=0.5), f("say", "never"))
+    step(robot, goal, lambda: "fox" in words(goal))
+    speech = robot.ALTextToSpeech
+    assert (speech.getVoice(), speech.getVolume()) == ("kal", 0.5)
+    goal.cancel()
+    assert (goal.state, goal.text) == ("preempted", "preempted in function 1 (say)")
+    assert (speech.getVoice(), speech.getVolume()) == ("naoenu", 1.0)
+    cancelled = robot.now.time
+    robot.advance(1.0)
+    before, after = played(robot, cancelled - 0.5, cancelled), played(robot, cancelled + MESSAGE)
+    alone = loudness(after)
+    assert loudness(before) > 2.0 * alone and hum.isRunning()
+    for tenth in np.array_split(after, 10):
+        assert loudness(tenth) == pytest.approx(alone, rel=0.03)
+    robot.ALAudioPlayer.stopAll()
+
+
+def test_a_robot_whose_calls_cannot_be_cancelled_is_silenced_as_a_whole(robot, bent_audio):
+    audio = bent_audio(stubborn=("ALTextToSpeech", "ALAnimatedSpeech"))
+    for function in ("say", "animatedSay"):
+        goal = audio.send(f(function, TEXT))
+        robot.advance(0.5)
+        assert goal.cancel().state == "preempted"
+        cancelled = robot.now.time
+        robot.advance(0.5)
+        assert not played(robot, cancelled + MESSAGE).any()
+
+
+def test_how_a_text_is_spoken_is_for_this_text_only(robot, audio):
+    speech = robot.ALTextToSpeech
+
+    def settings():
+        return speech.getLanguage(), speech.getVoice(), speech.getVolume(), speech.getParameter("speed")
+
+    before = settings()
+    chains = [{}, {"speed": 200.0}, {"volume": 0.25}, {"voice": "rms"}, {"pitch": 150.0}, {}]
+    spans = [sounding(robot, audio, f("say", TEXT, **fields))[:2] for fields in chains]
+    sounding(robot, audio, f("say", "Bonjour tout le monde.", language="French"))
+    sounding(robot, audio, f("say", "Bonjour.", language="French", voice="naofrf", volume=0.5))
+    assert settings() == before
+    lengths, heard = [last - first for first, last in spans], [loudness(played(robot, *each)) for each in spans]
+    assert lengths[1] / lengths[0] == pytest.approx(0.5, abs=0.1)
+    assert heard[2] / heard[0] == pytest.approx(0.25, abs=0.02)
+    assert abs(lengths[3] / lengths[0] - 1.0) > 0.02
+    assert lengths[4] == pytest.approx(lengths[0], abs=0.05) and abs(heard[4] / heard[0] - 1.0) > 0.001
+    assert lengths[5] == pytest.approx(lengths[0], abs=0.02) and heard[5] == pytest.approx(heard[0], rel=0.02)
+
+
+def test_a_text_in_a_file_sounds_like_a_text_that_is_said(robot, audio):
+    first, last, _ = sounding(robot, audio, f("say", TEXT))
+    begun = robot.now.time
+    result = audio.succeed(f("sayToFile", TEXT, file_name="fox.wav", volume=1.0))
+    robot.advance(0.2)
+    assert not played(robot, begun).any()
+    assert result.files == ["fox.wav"] and result.memList == [str(result.durations[0])]
+    assert robot.ALAudioPlayer.getLoadedFilesIds() == []
+    file_first, file_last, playing = sounding(robot, audio, f("playFile", "fox.wav"))
+    assert result.durations == pytest.approx(playing.durations, abs=0.1)
+    assert file_last - file_first == pytest.approx(last - first, abs=0.02)
+    assert loudness(played(robot, file_first, file_last)) == pytest.approx(
+        loudness(played(robot, first, last)), rel=0.05
+    )
+    assert sounding(robot, audio, f("sayToFileAndPlay", "Yes."))[1] > file_last
+
+
+def arm(robot):
+    return np.array(robot.ALMotion.getAngles("RArm", True))
+
+
+def test_gestures_go_with_a_text_and_end_when_it_is_cancelled(stiff_robot, audio):
+    robot, before = stiff_robot, arm(stiff_robot)
+    goal = audio.send(f("animatedSay", f"{HEY} {TEXT} {TEXT}", body_language="disabled", speed=90.0))
+    step(robot, goal, lambda: "jumps" in words(goal))
+    assert np.abs(arm(robot) - before).max() > 0.3
+    assert goal.cancel().state == "preempted"
+    robot.advance(3.0)
+    at = arm(robot)
+    robot.advance(0.5)
+    assert np.abs(arm(robot) - at).max() < 0.01 and np.abs(at - before).max() < 0.1
+
+
+def test_body_language_of_a_text_and_for_good(stiff_robot, audio):
+    robot, before = stiff_robot, arm(stiff_robot)
+    result = audio.succeed(
+        f("setBodyLanguageMode", body_language="disabled", revert=True, time=Duration.from_sec(0.1)),
+        f("getBodyLanguageMode"),
+        f("animatedSay", "Hello.", body_language="disabled"),
+    )
+    assert result.memList == ["contextual"] and np.abs(arm(robot) - before).max() < 0.05
+    goal = audio.send(f("animatedSay", "Tables are made of wood and metal.", body_language="random"))
+    robot.advance(1.0)
+    assert np.abs(arm(robot) - before).max() + np.abs(robot.ALMotion.getAngles("LArm", True)).max() > 0.1
+    goal.cancel()
+    audio.succeed(f("setBodyLanguageMode", body_language="random"))
+    assert robot.ALAnimatedSpeech.getBodyLanguageModeToStr() == "random"
+
+
+def test_tags_link_words_and_animations(stiff_robot, audio):
+    before = arm(stiff_robot)
+    audio.succeed(
+        f("declareTagForAnimations", "ahoy", texts=["animations/Stand/Gestures/Hey_1"]),
+        f("addTagsToWords", "ahoy", texts=["ship", "boat"]),
+    )
+    goal = audio.send(f("animatedSay", "Boat and ship sail the sea all day.", body_language="contextual"))
+    stiff_robot.advance(1.2)
+    assert np.abs(arm(stiff_robot) - before).max() > 0.3
+    goal.cancel()
