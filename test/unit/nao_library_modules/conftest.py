@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import gc
 import threading
 
 import pytest
-from fake_motion import FakeMotion, FakePostures
 from fake_robot import FakeCall, FakeRobot
 from fake_server import FakeEdge
 
@@ -27,15 +25,6 @@ def make_call():
 
 
 @pytest.fixture
-def no_ring_collector():
-    """Objects that keep each other in a ring stay: only what nobody refers to any more goes."""
-    gc.collect()
-    gc.disable()
-    yield
-    gc.enable()
-
-
-@pytest.fixture
 def in_thread():
     """Runs a function in a thread; gives the thread, and a list that its value or error goes to."""
 
@@ -53,29 +42,6 @@ def in_thread():
         return thread, outcome
 
     return start
-
-
-@pytest.fixture
-def fake(robot, make_call):
-    """ALMotion as NaoMotion finds it; postures are there as well."""
-    fake = FakeMotion(make_call)
-    robot.add("ALMotion", fake)
-    robot.add("ALRobotPosture", FakePostures())
-    return fake
-
-
-@pytest.fixture
-def motion(robot, edge, fake, tmp_path):
-    from nao_library_modules.motion import NaoMotion
-
-    return NaoMotion("10.0.0.7", 9559, robot=robot, edge=edge, motion_dir=tmp_path)
-
-
-@pytest.fixture
-def lights(robot, edge):
-    from nao_library_modules.lights import NaoLights
-
-    return NaoLights("10.0.0.7", 9559, robot=robot, edge=edge)
 
 
 @pytest.fixture
