@@ -1,0 +1,229 @@
+"""What the tools compute: options, bounds, searches, frames and files; nothing is simulated."""
+
+from __future__ import annotations
+
+import json
+from contextlib import nullcontext
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge.paths import config_file
+from nao_sim_bridge.sim.body_mass import center_of_links
+from nao_sim_bridge.sim.hearing.listening import Hypothesis
+from nao_sim_bridge.sim.kinematics import link_transforms
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.posture_moves import FILE, KeyFrame, Move, load_moves, moves_of
+from nao_sim_bridge.sim.postures import posture
+
+MODEL = load_model()
+
+
+def move_named(start, goal):
+    return next(move for move in load_moves() if (move.start, move.goal) == (start, goal))
+
+
+@pytest.mark.parametrize(
+    "name, options, status, text",
+    [
+        *(("check_detection", ["balls"], 2, "no part balls"), ("check_detection", ["--count", "0"], 2, "--count is 0")),
+        ("check_detection", ["--keep", "/no/such/folder"], 2, "which is no folder"),
+        *(
+            ("check_localisation", ["up"], 2, "no part up"),
+            ("check_localisation", ["--sounds", "0"], 2, "--sounds is 0"),
+        ),
+        ("check_localisation", ["--seconds", "nan"], 2, "--seconds is nan"),
+        ("check_posture_graph", ["--help"], 0, "--falls"),
+        ("check_posture_graph", ["--start", "Handstand"], 2, "Handstand"),
+        ("check_recognition", ["word"], 2, "no part 'word'; there are words, second"),
+        ("check_recognition", ["--help"], 0, "  spotting "),
+        *(("check_walk", ["jumps"], 2, "no part jumps"), ("check_walk", ["--jobs", "0"], 2, "--jobs is 0")),
+        ("check_walk", ["--runs", "-1"], 2, "--runs"),
+        ("find_posture_moves", ["search", "--help"], 0, "--minutes"),
+        ("find_posture_moves", ["search", "Crouch", "LyingBelly"], 2, "no move Crouch -> LyingBelly"),
+        ("find_posture_moves", ["search", "LyingBack", "LyingBelly"], 2, "not the same left and right"),
+    ],
+)
+def test_options_are_explained_and_wrong_ones_refused(run, name, options, status, text):
+    assert run(name, *options)[0] == status
+    assert text in run(name, *options)[1]
+
+
+# --- bounds -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("good, mark, status", [(True, "  ok", 0), (None, "", 0), (np.bool_(False), "  MISSED", 1)])
+def test_a_figure_that_misses_its_bound_is_told_and_makes_the_status(tools, capsys, good, mark, status):
+    class Checks(tools.measurement.StageChecks):
+        def found(self):
+            self._tell("faces", "found 0.90", good)
+
+    checks = lambda stage: Checks(stage, 1, 1, seed=1)  # noqa: E731
+    assert tools.measurement.measure(nullcontext(None), checks, ["found"]) == status
+    first, *misses = capsys.readouterr().out.splitlines()
+    assert first.endswith(f"found 0.90{mark}")
+    assert misses == ["misses its bound: faces"] * status
+
+
+@pytest.mark.parametrize("right, located, kept", [(10, 10, True), (9, 10, True), (8, 10, False), (8, 8, False)])
+def test_nine_of_ten_sounds_have_to_be_located_and_right(tools, right, located, kept):
+    tool = tools.check_localisation
+    blocks = [
+        tool.Located(1.0 if n < right else 20.0, 0.0) if n < located else tool.Located(None, None) for n in range(10)
+    ]
+    assert tool.summary("some", blocks, bounded=True).kept is kept
+    assert tool.summary("some", blocks, bounded=False).kept is True
+
+
+@pytest.mark.parametrize("falls, missed", [(0, 0), (2, 0), (3, 4)])
+def test_nine_of_ten_walks_must_survive_a_push_and_a_fall_is_told_with_its_seed(tools, capsys, falls, missed):
+    tool = tools.check_walk
+    made = [tools.walk_runs.Fall(index < falls, None, False, True) for index in range(20)]
+    assert tool.measure(["push"], tool.Extent(None, 60.0, 5.0, 1), lambda run, jobs: made) == missed
+    assert capsys.readouterr().out.count("MISSED") == missed
+    runs = [(True, 300.0, ""), (False, 12.0, "fell")]
+    assert tool.measure(["wander"], tool.Extent(2, 60.0, 5.0, 7), lambda run, jobs: runs) == 1
+    assert "seed 8: fell at 12 s" in capsys.readouterr().out
+
+
+def test_words_that_are_not_in_the_vocabulary_have_a_bound_only_where_the_confidence_counts(tools, capsys):
+    tool, confidences = tools.check_recognition, {"a": 0.1, "b": 0.39, "c": 0.4}
+
+    class Bench:
+        phrases = {"vocabulary": ["yes"], "other_words": ["a", "b", "c", "d"], "other_sentences": ["e"]}
+        listen_for = staticmethod(lambda phrases: None)
+
+        def say(self, phrase, voice, noise, seed):
+            found = [Hypothesis("yes", confidences[phrase], "bench")] if phrase in confidences else []
+            return tool.Heard(phrase, found)
+
+    lines = {line.what: line for line in tool.Check(Bench(), True, tool.Effort(("slt",))).others()}
+    found, sure = lines["other words, clean: any"], lines["other words, clean: from 0.4"]
+    assert (found.total, found.bound, found.kept) == (0.75, "", True)
+    assert (sure.total, sure.bound, sure.kept) == (0.25, "at most 10", False) and "MISSED" in str(sure)
+    assert lines["other sentences, pink: from 0.4"].kept
+    assert "slt, clean: b -> yes 0.39" in capsys.readouterr().out
+
+
+def test_the_table_of_postures_has_a_cell_for_each_change(tools):
+    tool = tools.check_posture_graph
+    one, other = tool.Outcome(True, 1.25, 0, "1.2", ""), tool.Outcome(False, 9.0, 1, "FELL", "it fell on the way")
+    lines = tool.table({("Stand", "Crouch"): one, ("Crouch", "Stand"): other}).splitlines()
+    cells = [["from", "\\", "to", "Crouch", "Stand"], ["Stand", "1.2", "-"], ["Crouch", "-", "FELL"]]
+    assert [line.split() for line in lines] == cells
+
+
+# --- searches and moves -----------------------------------------------------------------------------------------------
+
+
+def test_a_search_finds_the_bottom_of_a_valley_and_goes_on_where_it_was_stored(tools):
+    strategy_of = tools.sep_cma_es.SepCmaEs
+
+    def search(generations, strategy=None):
+        """Least at (1, 2, 3, 4), a hundred times steeper along the last coordinate than along the first."""
+        strategy = strategy or strategy_of([0.0] * 4, 0.5, 10, seed=3)
+        for _ in range(generations):
+            before = strategy.ask()
+            assert (strategy.ask() == before).all(), "candidates stay the same until they are judged"
+            strategy.tell([float(((p - [1, 2, 3, 4]) ** 2) @ [1, 10, 30, 100]) for p in before])
+            assert not (strategy.ask() == before).any()
+        return strategy
+
+    assert search(120).mean == pytest.approx([1.0, 2.0, 3.0, 4.0], abs=1e-3)
+    resumed = search(20, strategy_of.from_state(json.loads(json.dumps(search(20).state()))))
+    assert resumed.generation == 40 and resumed.mean.tolist() == search(40).mean.tolist()
+
+
+def test_frames_become_a_vector_and_frames_that_joints_can_do(tools):
+    tool = tools.symmetric_frames
+    frames = move_named("Stand", "Sit").frames[:-1]
+    again = tool.to_frames(MODEL, tool.to_vector(MODEL, frames))
+    assert [frame.duration for frame in again] == pytest.approx([frame.duration for frame in frames])
+    limbs = [i for i, joint in enumerate(MODEL.joints) if joint.name[1:] in tool.PAIRS]
+    for one, other in zip(frames, again):
+        assert [other.angles[i] for i in limbs] == pytest.approx([one.angles[i] for i in limbs], abs=tool.TOLERANCE)
+    wild = tool.to_frames(MODEL, np.random.default_rng(1).normal(0.0, 3.0, 4 * tool.SIZE))
+    for before, after in zip(wild, wild[1:]):
+        for i, angle in after.angles.items():
+            assert MODEL.joints[i].lower <= angle <= MODEL.joints[i].upper
+            assert 1.5 * abs(angle - before.angles[i]) / after.duration <= MODEL.joints[i].max_velocity + 1e-9
+    pose = dict(enumerate(posture(MODEL, "StandInit")))
+    assert tool.mirrored(MODEL, [KeyFrame(1.0, pose)])
+    assert not tool.mirrored(MODEL, [KeyFrame(1.0, {**pose, MODEL.joint_index["LHipRoll"]: 0.1})])
+    assert not tool.mirrored(MODEL, [KeyFrame(1.0, {MODEL.joint_index["HeadYaw"]: 0.1})])
+
+
+def test_one_move_of_the_file_is_replaced_or_added_and_the_others_stay(tools, tmp_path):
+    path = tmp_path / "moves.json"
+    path.write_text(Path(config_file(FILE)).read_text(encoding="utf-8"), encoding="utf-8")
+    goal = KeyFrame(1.5, dict(enumerate(posture(MODEL, "Sit"))))
+    tools.posture_moves_file.put(MODEL, Move("Stand", "Sit", (goal,)), runs=20, reached=5, path=path)
+    before, after = load_moves(), moves_of(json.loads(path.read_text(encoding="utf-8")))
+    assert [str(move) for move in after] == [str(move) for move in before]
+    (changed,) = [other for one, other in zip(before, after) if one != other]
+    assert (str(changed), changed.certainty) == ("Stand -> Sit", 0.25)
+    assert changed.frames[0].angles == pytest.approx(goal.angles, abs=1e-4)
+    path.write_text('{"_meta": {"what": "moves"}, "moves": []}', encoding="utf-8")
+    tools.posture_moves_file.put(MODEL, move_named("Stand", "Sit"), runs=20, reached=20, path=path)
+    (read,) = moves_of(json.loads(path.read_text(encoding="utf-8")))
+    assert str(read) == "Stand -> Sit" and len(read.frames) == len(move_named("Stand", "Sit").frames)
+
+
+@pytest.mark.parametrize("reached, impact, kept", [(20, 100.0, 1), (19, 50.0, 0), (20, 300.0, 0), (0, 1.0, 0)])
+def test_only_a_better_move_is_written(tools, monkeypatch, reached, impact, kept):
+    tool, written = tools.find_posture_moves, []
+    before, after = move_named("Sit", "LyingBack"), move_named("Stand", "Sit")
+    tallies = {str(before): tool.Tally(20, 20, (), 1.0, 200.0, 0.5, 1.0)}
+    tallies[str(after)] = tool.Tally(20, reached, (), 1.0, impact, 0.5, 1.0)
+    monkeypatch.setattr(tool, "tally", lambda move, *_: tallies[str(move)])
+    monkeypatch.setattr(tool, "put", lambda model, *arguments: written.append(arguments))
+    assert tool.settle(before, after, tool.parse(["search", "Sit", "LyingBack", "--write"])) == 1 - kept
+    assert written == [(after, 20, 20)] * kept
+
+
+# --- motions ----------------------------------------------------------------------------------------------------------
+
+
+def left_foot_to_com_and_right_foot(joints, angles):
+    """Centre of mass and right ankle, seen from the left foot, m; other joints as motions begin."""
+    whole = list(posture(MODEL, "StandInit"))
+    for joint, angle in zip(joints, angles):
+        whole[MODEL.joint_index[joint]] = angle
+    poses = link_transforms(MODEL, whole)
+    foot = np.linalg.inv(poses["LAnkleRoll"])
+    center = foot @ np.append(center_of_links(MODEL, MODEL.links, whole), 1.0)
+    return center[:3], (foot @ poses["RAnkleRoll"])[:3, 3]
+
+
+@pytest.mark.parametrize(
+    "table, weight, lifted",
+    [
+        ({"com_y": [(0.0, 0.0), (1.0, 0.04)]}, (0.0, 0.04), 0.0),
+        ({"pitch": [(0.0, 0.1), (1.0, 0.7)], "height": [(0.0, 0.31), (1.0, 0.3)]}, (0.0, 0.0), 0.0),
+        ({"com_y": [(0.0, 0.03), (1.0, 0.04)], "right_z": [(0.0, 0.0), (1.0, 0.04)]}, (0.0, 0.01), 0.04),
+    ],
+)
+def test_weight_and_feet_of_a_motion_go_where_the_table_has_them(tools, table, weight, lifted):
+    """With the torso shifted and pitched a foot turns a little, and what is seen from it turns with it."""
+    joints, samples = tools.choreography.Choreographer(MODEL).samples(table)
+    (before, foot), (after, foot_after) = (
+        left_foot_to_com_and_right_foot(joints, s) for _, s in (samples[0], samples[-1])
+    )
+    assert (after - before)[:2] == pytest.approx(weight, abs=4e-3)
+    assert foot_after - foot == pytest.approx([0.0, 0.0, lifted], abs=4e-3)
+
+
+def test_nothing_but_the_named_joints_moves_and_what_cannot_be_is_refused(tools):
+    choreographer = tools.choreography.Choreographer(MODEL)
+    joints, samples = choreographer.samples({"HeadYaw": [(0.0, 0.0), (0.35, 0.5)]})
+    assert joints == ["HeadYaw"] and samples[-1][1] == pytest.approx([0.5])
+    assert [time for time, _ in samples] == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.35])
+    for channel, line, text in [
+        ("Nose", [(0.0, 0.0), (1.0, 1.0)], "Nose is no joint"),
+        ("HeadYaw", [(0.5, 0.0), (1.0, 1.0)], "not at 0"),
+        ("HeadYaw", [(0.0, 0.0), (1.0, 3.0)], "HeadYaw would be at"),
+        ("com_y", [(0.0, 0.0), (1.0, 0.2)], "Roll would be at"),
+    ]:
+        with pytest.raises(ValueError, match=text):
+            choreographer.samples({channel: line})
