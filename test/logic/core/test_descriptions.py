@@ -1,5 +1,7 @@
 """The descriptions of all servers, against the servers themselves."""
 
+from __future__ import annotations
+
 import importlib
 import inspect
 import json
@@ -17,29 +19,21 @@ from nao_library_modules.errors import BadGoal, FunctionFailed
 from nao_library_modules.nao_basic import NaoBasic
 
 SERVERS = {server.name: server for server in offline_servers()}
-NAMES = sorted(SERVERS)
 UNITS = {"s", "rad", "m", "deg", "%", "Hz", "kg", "rad/s", "m/s", "pixels", "frames a second", "samples a second"}
 
 
-def described(name):
-    server = SERVERS[name]
-    return Description(server.module, server.action)
-
-
 @lru_cache(maxsize=None)
-def functions(name):
-    return {function.name: function for function in described(name).functions()}
+def described(name):
+    description = Description(SERVERS[name].module, SERVERS[name].action)
+    return description, {function.name: function for function in description.functions()}
 
 
 def argument(server, function, field):
-    return next(a for a in functions(server)[function].arguments if a.name == field)
+    return next(a for a in described(server)[1][function].arguments if a.name == field)
 
 
-def test_the_servers_of_the_library_are_found():
+def test_every_module_that_serves_an_action_is_described():
     assert {"NaoLights", "NaoMotion", "nao_audio_out", "nao_audio_in", "NaoVision", "NaoBehavior"} <= set(SERVERS)
-
-
-def test_every_module_that_serves_an_action_is_among_the_servers():
     found = set()
     for package in (nao_library_modules, nao_library_modules.behaviors):
         for file in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
@@ -49,18 +43,14 @@ def test_every_module_that_serves_an_action_is_among_the_servers():
     assert modules == {type(server.module) for server in SERVERS.values()}
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_every_function_of_the_table_has_help_and_tells_what_it_answers(name):
-    found = functions(name)
-    assert list(found) == list(SERVERS[name].module.function_table)
-    for function in found.values():
-        assert function.help.endswith((".", "...")), function.name
-        assert function.answers, function.name
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_every_argument_has_type_help_and_a_unit_where_it_is_a_number(name):
-    for function in functions(name).values():
+@pytest.mark.parametrize("name", sorted(SERVERS))
+def test_functions_have_help_and_answers_and_arguments_types_help_and_units(name):
+    description, functions = described(name)
+    common = [a.name for a in description.common()]
+    assert common == list(COMMON) and list(functions) == list(SERVERS[name].module.function_table)
+    for function in functions.values():
+        assert function.help.endswith((".", "...")) and function.answers, function.name
+        assert not set(common) & {a.name for a in function.arguments}, "those of all functions are told once"
         for taken in function.arguments:
             where = (function.name, taken.name)
             assert taken.type and taken.help, where
@@ -71,17 +61,8 @@ def test_every_argument_has_type_help_and_a_unit_where_it_is_a_number(name):
                 json.loads(taken.default)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_fields_of_all_functions_are_told_once(name):
-    common = [a.name for a in described(name).common()]
-    assert common == list(COMMON)
-    for function in functions(name).values():
-        assert not set(common) & {a.name for a in function.arguments}, function.name
-
-
-@pytest.mark.parametrize(
-    "server, function, field, unit, low, high",
-    [
+def test_units_limits_and_choices_are_those_that_people_know():
+    for server, function, field, unit, low, high in (
         ("NaoLights", "fade", "duration", "s", 0.0, math.nan),
         ("NaoLights", "earLedsSetAngle", "angle", "deg", 0.0, 360.0),
         ("NaoLights", "setIntensity", "i_values", NO_UNIT, math.nan, math.nan),
@@ -98,15 +79,10 @@ def test_the_fields_of_all_functions_are_told_once(name):
         ("nao_audio_in", "listen", "timeout", "s", 0.0, 3600.0),
         ("NaoVision", "detectBall", "size", "m", 0.0, 100.0),
         ("NaoVision", "takePicture", "width", "pixels", 0.0, 8192.0),
-    ],
-)
-def test_units_and_limits_are_those_that_people_know(server, function, field, unit, low, high):
-    taken = argument(server, function, field)
-    assert taken.unit == unit
-    assert (taken.minimum, taken.maximum) == pytest.approx((low, high), nan_ok=True)
-
-
-def test_words_that_checks_list_are_choices():
+    ):
+        taken = argument(server, function, field)
+        assert taken.unit == unit, (function, field)
+        assert (taken.minimum, taken.maximum) == pytest.approx((low, high), nan_ok=True), (function, field)
     assert "green" in argument("NaoLights", "setColor", "str_param").choices
     assert argument("NaoMotion", "getMoveConfig", "str_param").choices == ("Default", "Min", "Max")
 
@@ -114,27 +90,8 @@ def test_words_that_checks_list_are_choices():
 # What a message needs besides the field in question, so that the check gets as far as that.
 FILLED = {
     "str_param": {"nao_audio_out": "x.wav", "nao_audio_in": "x.wav", "NaoVision": "", "NaoBehavior": "x"},
-    "id": {"NaoVision": "x"},
-    "vocabulary": {"nao_audio_in": ["yes"]},
-    "file_name": {"nao_audio_out": "x.wav"},
-}
-
-
-def beyond(server):
-    """Messages with a number beyond the greatest that is allowed, and what is in the others as it should be."""
-    found = SERVERS[server]
-    kind = message_class(found.action().action_goal.goal)
-    for function in functions(server).values():
-        for taken in function.arguments:
-            if math.isnan(taken.maximum):
-                continue
-            number = taken.maximum + 1
-            number = int(number) if taken.type.startswith(("int", "uint")) else number
-            message = kind(function=function.name, **{taken.name: [number] if taken.type.endswith("]") else number})
-            for field, values in FILLED.items():
-                if server in values and field in kind.__slots__:
-                    setattr(message, field, values[server])
-            yield taken, message
+    "id": {"NaoVision": "x"}, "vocabulary": {"nao_audio_in": ["yes"]}, "file_name": {"nao_audio_out": "x.wav"},
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -142,8 +99,15 @@ def beyond(server):
     [("NaoLights", 1), ("nao_audio_out", 25), ("nao_audio_in", 8), ("NaoVision", 35), ("NaoBehavior", 1)],
 )
 def test_what_is_beyond_the_limits_is_refused(server, at_least):
-    refused = 0
-    for taken, message in beyond(server):
+    kind, refused = message_class(SERVERS[server].action().action_goal.goal), 0
+    taken_by = [(f.name, a) for f in described(server)[1].values() for a in f.arguments if not math.isnan(a.maximum)]
+    for function, taken in taken_by:
+        number = taken.maximum + 1
+        number = int(number) if taken.type.startswith(("int", "uint")) else number
+        message = kind(function=function, **{taken.name: [number] if taken.type.endswith("]") else number})
+        for field, values in FILLED.items():
+            if server in values and field in kind.__slots__:
+                setattr(message, field, values[server])
         with pytest.raises(FunctionFailed) as caught:
             SERVERS[server].module.chain.read([message])
         cause = caught.value.cause
@@ -154,20 +118,15 @@ def test_what_is_beyond_the_limits_is_refused(server, at_least):
     assert refused >= at_least
 
 
-@pytest.mark.parametrize(
-    "annotation, text",
-    [
-        (None, "nothing"),
-        (float, "number"),
-        ("list[str]", "list of text"),
-        ("list[list[float]]", "list of list of number"),
-        ("str | None", "text or nothing"),
+def test_answers_are_told_in_words():
+    for annotation, text in (
+        (None, "nothing"), (float, "number"), ("list[str]", "list of text"),
+        ("list[list[float]]", "list of list of number"), ("str | None", "text or nothing"),
         ("tuple[int, ...]", "list of whole number"),
-    ],
-)
-def test_answers_are_told_in_words(annotation, text):
-    def function():
-        pass
+    ):  # fmt: skip
 
-    function.__annotations__["return"] = annotation
-    assert answers(function) == text
+        def function():
+            pass
+
+        function.__annotations__["return"] = annotation
+        assert answers(function) == text

@@ -12,8 +12,9 @@ import pytest
 from nao_library_modules.process_tree import descendants, identify, kill_survivors
 from nao_library_modules.supervisor import State, Supervisor, Timing
 
-LIMIT = 10.0
+LIMIT = 15.0
 QUICK = Timing(first_delay=0.01, longest_delay=0.04, interrupt=LIMIT, terminate=0.2, kill=LIMIT)
+SAY = "import os, sys; pipe = open(sys.argv[1], 'w', buffering=1); say = lambda *a: print(*a, file=pipe); "
 FOREVER = "import signal, threading; threading.Event().wait()"
 
 
@@ -40,105 +41,86 @@ def pipe(tmp_path):
 
 
 @pytest.fixture
-def supervise():
-    """Makes supervisors of Python programs; stops them at the end."""
+def supervise(pipe):
+    """Makes supervisors of Python programs that write to the pipe; stops them at the end."""
     made = []
 
     def make(program, *args, timing=QUICK, environment=None):
-        command = [sys.executable, "-c", program, *args]
-        supervisor = Supervisor(command, "the program", environment, timing)
-        made.append(supervisor)
-        supervisor.start()
-        return supervisor
+        made.append(Supervisor([sys.executable, "-c", program, pipe.path, *args], "the program", environment, timing))
+        made[-1].start()
+        return made[-1]
 
     yield make
     for supervisor in made:
         supervisor.stop()
 
 
-SAY = "import os, sys; pipe = open(sys.argv[1], 'w', buffering=1); say = lambda *a: print(*a, file=pipe); "
-
-
-def test_it_runs_with_its_environment_until_stopped(supervise, pipe):
+def test_it_runs_with_its_environment_until_stopped_and_again(supervise, pipe):
     program = SAY + "say(os.getpid(), os.environ['ROS_NAMESPACE']); " + FOREVER
-    supervisor = supervise(program, pipe.path, environment={"ROS_NAMESPACE": "/robot1/"})
+    supervisor = supervise(program, environment={"ROS_NAMESPACE": "/robot1/"})
     pid, namespace = pipe.line().split()
     assert namespace == "/robot1/"
-    assert supervisor.status.state is State.RUNNING
-    assert supervisor.status.pid == int(pid)
+    assert (supervisor.status.state, supervisor.status.pid) == (State.RUNNING, int(pid))
     supervisor.stop()
-    assert identify(int(pid)) is None
-    assert supervisor.status.state is State.STOPPED
+    assert identify(int(pid)) is None and supervisor.status.state is State.STOPPED
+    supervisor.start()
+    assert pipe.line().split()[0] != pid
+    Supervisor(["true"], "the program").stop()  # what never started
 
 
 def test_a_program_that_dies_is_started_again_and_the_log_says_how_it_ended(supervise, pipe, caplog):
     caplog.set_level(logging.INFO)
-    supervisor = supervise(SAY + "say(os.getpid()); sys.exit(3)", pipe.path)
-    assert len({pipe.line() for _ in range(3)}) == 3, "three processes"
+    supervisor = supervise(SAY + "say(os.getpid()); sys.exit(3)")
+    assert len({pipe.line() for _ in range(6)}) == 6, "a process each time"
     supervisor.stop()
-    assert supervisor.status.restarts >= 2
+    assert supervisor.status.restarts >= 5
     assert "the program ended by itself with exit status 3; it is started again in 0.01 s" in caplog.text
-
-
-def test_the_delay_doubles_up_to_its_limit(supervise, pipe, caplog):
-    supervisor = supervise(SAY + "say('up')", pipe.path)
-    for _ in range(6):
-        pipe.line()
-    supervisor.stop()
     delays = [record.args[2] for record in caplog.records if "started again" in record.msg]
-    assert delays[:5] == [0.01, 0.02, 0.04, 0.04, 0.04]
+    assert delays[:5] == [0.01, 0.02, 0.04, 0.04, 0.04], "the delay doubles up to its limit"
 
 
 def test_a_program_killed_by_a_signal_is_reported_by_its_name(supervise, pipe, caplog):
-    supervise(SAY + "say('up'); os.kill(os.getpid(), 9)", pipe.path)
+    supervise(SAY + "say('up'); os.kill(os.getpid(), 9)")
     pipe.line()
     pipe.line()
     assert "was ended by SIGKILL" in caplog.text
 
 
-def test_a_program_that_cannot_be_started_is_reported(caplog):
-    supervisor = Supervisor(["/nonexistent/program"], "the program", timing=QUICK)
-    tried = threading.Event()
+def test_a_program_that_cannot_be_started_is_reported():
+    supervisor, tried = Supervisor(["/nonexistent/program"], "the program", timing=QUICK), threading.Event()
 
     class Watch(logging.Handler):
         def emit(self, record):
             if "cannot be started" in record.getMessage():
                 tried.set()
 
-    logging.getLogger("nao_library_modules.supervisor").addHandler(watch := Watch())
+    log, watch = logging.getLogger("nao_library_modules.supervisor"), Watch()
+    log.addHandler(watch)
     try:
         supervisor.start()
         assert tried.wait(LIMIT)
     finally:
         supervisor.stop()
-        logging.getLogger("nao_library_modules.supervisor").removeHandler(watch)
+        log.removeHandler(watch)
     assert supervisor.status.state is State.STOPPED
 
 
 def test_a_program_that_ignores_polite_signals_is_killed(supervise, pipe, caplog):
     deaf = SAY + "import signal; [signal.signal(s, signal.SIG_IGN) for s in (2, 15)]; say(os.getpid()); " + FOREVER
-    supervisor = supervise(deaf, pipe.path, timing=Timing(interrupt=0.05, terminate=0.05, kill=LIMIT))
+    supervisor = supervise(deaf, timing=Timing(interrupt=0.05, terminate=0.05, kill=LIMIT))
     pid = int(pipe.line())
     supervisor.stop()
-    assert identify(pid) is None
-    assert "did not end within 0.05 s of SIGTERM" in caplog.text
+    assert identify(pid) is None and "did not end within 0.05 s of SIGTERM" in caplog.text
 
 
 def test_nothing_it_started_is_left_behind_not_even_in_a_session_of_its_own(supervise, pipe, tmp_path):
     held_open = tmp_path / "held_open"
     os.mkfifo(held_open)
     end_of_grandchild = os.open(held_open, os.O_RDONLY | os.O_NONBLOCK)
-    grandchild = (
-        "import os, sys; held = open(sys.argv[2], 'w'); pipe = open(sys.argv[1], 'w', buffering=1); "
-        "print(os.getpid(), file=pipe); " + FOREVER
-    )
-    program = (
-        "import subprocess, sys; subprocess.Popen([sys.executable, '-c', sys.argv[3], *sys.argv[1:3]], "
-        "start_new_session=True); " + FOREVER
-    )
-    supervisor = supervise(program, pipe.path, str(held_open), grandchild)
-    pid = int(pipe.line())
-    assert identify(pid) in descendants(os.getpid())
+    grandchild = SAY + "held = open(sys.argv[2], 'w'); say(os.getpid()); " + FOREVER
+    child = "subprocess.Popen([sys.executable, '-c', sys.argv[3], *sys.argv[1:3]], start_new_session=True); "
+    supervisor = supervise("import subprocess, sys; " + child + FOREVER, str(held_open), grandchild)
+    assert identify(int(pipe.line())) in descendants(os.getpid())
     supervisor.stop()
     # Its end of the pipe closes with it: reading comes to the end instead of waiting.
     os.set_blocking(end_of_grandchild, True)
@@ -146,28 +128,12 @@ def test_nothing_it_started_is_left_behind_not_even_in_a_session_of_its_own(supe
 
 
 def test_stopping_during_the_delay_does_not_start_it_again(supervise, pipe):
-    slow = Timing(first_delay=60.0, interrupt=LIMIT, kill=LIMIT)
-    supervisor = supervise(SAY + "say('up')", pipe.path, timing=slow)
+    supervisor = supervise(SAY + "say('up')", timing=Timing(first_delay=60.0, interrupt=LIMIT, kill=LIMIT))
     pipe.line()
     supervisor.stop()
-    assert supervisor.status.state is State.STOPPED
-    assert supervisor.status.restarts == 0
-
-
-def test_it_can_be_started_again_after_a_stop(supervise, pipe):
-    supervisor = supervise(SAY + "say('up'); " + FOREVER, pipe.path)
-    pipe.line()
-    supervisor.stop()
-    supervisor.start()
-    assert pipe.line() == "up"
-
-
-def test_stopping_what_never_started_is_fine():
-    Supervisor(["true"], "the program").stop()
+    assert (supervisor.status.state, supervisor.status.restarts) == (State.STOPPED, 0)
 
 
 def test_another_process_with_the_same_number_is_left_alone():
     me = identify(os.getpid())
-    assert me is not None
-    earlier = type(me)(me.pid, me.started - 1)
-    assert kill_survivors([earlier]) == []
+    assert kill_survivors([type(me)(me.pid, me.started - 1)]) == []

@@ -49,6 +49,7 @@ def program(run, robot):
 def test_a_robot_walks_its_bow_and_rests(program, robot):
     output = program("naoqi_walk", "--length", "0.1")
     assert float(re.search(r"walked (\S+) m", output).group(1)) == pytest.approx(0.112, abs=0.03)
+    robot.advance(0.2)
     x, y, z = robot.now.torso.position
     assert (x, y) == pytest.approx((0.1, 0.05), abs=0.06) and z == pytest.approx(0.228, abs=0.02)
     assert max(robot.now.stiffnesses) == 0.0
