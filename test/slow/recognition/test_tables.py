@@ -95,7 +95,13 @@ def test_azimuths_are_right_within_3_degrees_mostly_and_10_always(kind, noise_db
 
 @pytest.mark.parametrize(
     "kind, level_db, together",
-    [("white", 60.0, False), ("pink", 30.0, False), ("brown", 60.0, False), ("pink", 55.0, True), ("brown", 55.0, True)],
+    [
+        ("white", 60.0, False),
+        ("pink", 30.0, False),
+        ("brown", 60.0, False),
+        ("pink", 55.0, True),
+        ("brown", 55.0, True),
+    ],
 )
 def test_a_minute_of_steady_noise_is_no_sound(kind, level_db, together):
     """Of the microphones alone, or from one place."""

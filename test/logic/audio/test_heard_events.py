@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from nao_library_modules.audio_in_events import Bearing, begun_sounds, located_sound, recognised, turned
 
@@ -15,44 +17,38 @@ def located(azimuth, elevation, head=LEVEL, confidence=0.5, energy=0.2):
     return [[12, 340000], [azimuth, elevation, confidence, energy], LEVEL, list(head)]
 
 
-@pytest.mark.parametrize(
-    "bearing, vector",
-    [
-        ((0.0, 0.0), (1, 0, 0)),
-        ((math.pi / 2, 0.0), (0, 1, 0)),
-        ((0.0, math.pi / 2), (0, 0, 1)),
-        ((-math.pi, 0), (-1, 0, 0)),
-    ],
-)
-def test_left_and_up_are_positive(bearing, vector):
-    assert Bearing(*bearing).vector == pytest.approx(vector, abs=1e-12)
+def test_left_and_up_are_positive():
+    vectors = {
+        (0.0, 0.0): (1, 0, 0),
+        (math.pi / 2, 0.0): (0, 1, 0),
+        (0.0, math.pi / 2): (0, 0, 1),
+        (-math.pi, 0): (-1, 0, 0),
+    }
+    for bearing, vector in vectors.items():
+        assert Bearing(*bearing).vector == pytest.approx(vector, abs=1e-12)
 
 
-def test_directions_and_vectors_are_two_ways_to_say_it():
-    for azimuth in (-3.0, -1.0, 0.0, 0.4, 2.9):
-        for elevation in (-1.2, 0.0, 0.7):
-            back = Bearing.of(tuple(3.0 * part for part in Bearing(azimuth, elevation).vector))
-            assert (back.azimuth, back.elevation) == pytest.approx((azimuth, elevation))
+ANGLES = st.floats(-3.1, 3.1), st.floats(-1.5, 1.5)
 
 
-@pytest.mark.parametrize(
-    "angles, turned_x",
-    [((0, 0, math.pi / 2), (0, 1, 0)), ((0, math.pi / 2, 0), (0, 0, -1)), ((math.pi / 2, 0, 0), (1, 0, 0))],
-)
-def test_turns_are_right_handed(angles, turned_x):
-    assert turned((1.0, 0.0, 0.0), angles) == pytest.approx(turned_x, abs=1e-12)
+@given(*ANGLES, st.floats(0.1, 10.0))
+def test_directions_and_vectors_are_two_ways_to_say_it(azimuth, elevation, length):
+    back = Bearing.of(tuple(length * part for part in Bearing(azimuth, elevation).vector))
+    assert (back.azimuth, back.elevation) == pytest.approx((azimuth, elevation), abs=1e-9)
 
 
-def test_the_turn_about_z_comes_last():
-    # Pitched down by 90 degrees, ahead is below; then a turn to the left leaves it there.
-    assert turned((1.0, 0.0, 0.0), (0.0, math.pi / 2, 1.0)) == pytest.approx((0, 0, -1), abs=1e-12)
+def test_turns_are_right_handed_and_the_one_about_z_comes_last():
+    down = (0.0, math.pi / 2, 1.0)  # pitched down, ahead is below; then a turn to the left leaves it there
+    for angles, x in [((0, 0, math.pi / 2), (0, 1, 0)), (down, (0, 0, -1)), ((math.pi / 2, 0, 0), (1, 0, 0))]:
+        assert turned((1.0, 0.0, 0.0), angles) == pytest.approx(x, abs=1e-12)
+    assert turned((0.0, 1.0, 0.0), (math.pi / 2, 0, 0)) == pytest.approx((0, 0, 1), abs=1e-12)
 
 
-@pytest.mark.parametrize("yaw", [-2.0, 0.0, 1.5])
-def test_a_head_that_is_turned_hears_the_same_place_elsewhere(yaw):
-    sound = located_sound(located(0.3, 0.0, head=[0.0, 0.1, 0.45, 0.0, 0.0, yaw]))
-    assert sound.in_head == Bearing(0.3, 0.0)
-    assert (sound.in_base.azimuth, sound.in_base.elevation) == pytest.approx((0.3 + yaw, 0.0))
+@given(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5))
+def test_a_head_that_is_turned_hears_the_same_place_elsewhere(yaw, azimuth):
+    sound = located_sound(located(azimuth, 0.0, head=[0.0, 0.1, 0.45, 0.0, 0.0, yaw]))
+    assert sound.in_head == Bearing(azimuth, 0.0)
+    assert (sound.in_base.azimuth, sound.in_base.elevation) == pytest.approx((azimuth + yaw, 0.0), abs=1e-9)
     assert (sound.head, sound.confidence, sound.energy) == ((0.0, 0.1, 0.45), 0.5, 0.2)
 
 
