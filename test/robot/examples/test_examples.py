@@ -313,6 +313,54 @@ def test_the_way_ends_before_the_ball_and_looks_at_it(find_ball, place):
     assert find_ball.way_to(0.1, 0.0) == (0.0, 0.0, 0.0), "it never goes back"
 
 
+class Plane:
+    """A robot on the plane that sees a ball within some metres and 115 degrees to each side, and slips on its ways."""
+
+    slip = 0.85
+
+    def __init__(self, ball):
+        self.ball, self.at, self.ways = ball, (0.0, 0.0, 0.0), []
+
+    def seen(self):
+        dx, dy, turn = self.ball[0] - self.at[0], self.ball[1] - self.at[1], self.at[2]
+        return dx * math.cos(turn) + dy * math.sin(turn), dy * math.cos(turn) - dx * math.sin(turn)
+
+    def client(self, name, action):
+        """A client of a server on this plane."""
+        client = Client(name, action)
+        client.send_goal_and_wait = lambda goal, limit: setattr(client, "result", self.play(*goal.functions))
+        client.get_result = lambda: client.result
+        return client
+
+    def play(self, function):
+        if function.function == "moveTo":
+            self.ways.append(tuple(function.values))
+            x, y, turn = (self.slip * value for value in function.values)
+            c, s = math.cos(self.at[2]), math.sin(self.at[2])
+            self.at = self.at[0] + x * c - y * s, self.at[1] + x * s + y * c, self.at[2] + turn
+        if function.function != "lookFor":
+            return None
+        assert (function.str_param, function.size) == ("ball", 0.03)
+        x, y = self.seen()
+        far = math.hypot(x, y) > (0.75 if function.camera == "bottom" else 3.0)
+        near = function.camera == "top" and math.hypot(x, y) < 0.3
+        if far or near or abs(math.atan2(y, x)) > math.radians(115):
+            return SimpleNamespace(objects=[])
+        return SimpleNamespace(objects=[SeenObject(camera=function.camera, position=Point(x, y, 0.03))])
+
+
+@pytest.mark.parametrize("place", [(1.2, 0.3), (0.25, 0.0), (-0.8, 0.3), (-1.5, -0.5), (2.5, 0.0), (9.0, 0.0)])
+def test_the_ball_is_in_front_of_the_feet_in_the_end_or_given_up_after_one_turn_around(find_ball, monkeypatch, place):
+    plane = Plane(place)
+    monkeypatch.setattr(find_ball, "SimpleActionClient", plane.client)
+    ball = find_ball.Finder(0.03).find()
+    if place == (9.0, 0.0):
+        assert ball is None and plane.ways == [(0.0, 0.0, find_ball.TURN)] * 3
+        return
+    assert ball.camera == "bottom" and math.hypot(*plane.seen()) <= find_ball.NEAR
+    assert (ball.position.x, ball.position.y) == pytest.approx(plane.seen())
+
+
 class Guest:
     """A host whose robot sees one person, or nobody."""
 
