@@ -10,6 +10,7 @@ import pytest
 
 from nao_library_modules.body_devices import SONARS as SONAR_KEYS
 from nao_library_modules.driver import demand
+from nao_library_modules.driver.audio_directions import SoundDirections
 from nao_library_modules.driver.autonomous_life import ABILITIES, AutonomousLife
 from nao_library_modules.driver.behaviors import Behaviors
 from nao_library_modules.driver.blinking import Blinks, blink, fade
@@ -25,6 +26,7 @@ from nao_library_modules.driver.touch_sensors import BUMPER, FEET, HAND, HEAD, T
 from nao_library_modules.errors import BadGoal, Preempted
 from nao_library_modules.interrupt import Interrupt
 from nao_library_modules.joint_trajectory import H25_BODY
+from naoqi.errors import UnknownModule
 
 CHARGE = "Device/SubDeviceList/Battery/Charge/Sensor/Value"
 FRONT = "FrontTactilTouched"
@@ -114,6 +116,17 @@ def test_a_trajectory_ends_at_its_last_point_counted_from_the_command_and_tells_
     until(lambda: yaws.append(angles(robot, "HeadYaw")[0]) or follow.done(), limit=4.0, step=0.02)
     assert max(yaws) == pytest.approx(0.5, abs=0.06)
     assert follow.result().values == pytest.approx([0.3, -0.1], abs=0.03)
+
+
+def test_a_bezier_curve_begins_at_the_command_and_not_where_a_loaded_joint_sags(joints, robot, until, begin):
+    robot.ALMotion.setStiffnesses("LShoulderPitch", 0.1)
+    joints.set_angles(["LShoulderPitch"], [0.2], 1.0, relative=False)
+    robot.advance(2.0)
+    assert angles(robot, "LShoulderPitch")[0] - 0.2 > 0.03
+    frames = joints.trajectory(trajectory(["LShoulderPitch"], (0.5, [0.1], (0.0,))), relative=True)
+    follow = begin(joints.follow, frames, Interrupt())
+    until(follow.done, limit=2.0)
+    assert robot.ALMotion.getAngles("LShoulderPitch", False) == pytest.approx([0.3], abs=0.005)
 
 
 def test_an_interrupt_ends_a_motion_and_tells_where_the_joints_are(joints, robot, until, begin):
@@ -467,3 +480,38 @@ def test_states_and_abilities_of_life_are_told_and_set(robot, driver_robot, clos
     assert not life.is_enabled(awareness) and life.is_enabled(background)
     driver_robot.lose()
     soon(lambda: told.count("solitary") == 2)
+
+
+def without(driver_robot, *modules):
+    """The robot as one that does not have some modules."""
+    names = {name: f"{name}OfOtherRobots" for name in modules}
+    return SimpleNamespace(
+        connection=driver_robot.connection, proxy=lambda name: driver_robot.proxy(names.get(name, name))
+    )
+
+
+def test_a_robot_that_lacks_a_module_is_told_or_has_an_older_one(robot, driver_robot, clock, closing, soon, until):
+    told = []
+    sonars = closing(Sonars(without(driver_robot, "ALSonar"), "ros_nao_sonar", 20.0, clock, told.append))
+    sonars.want(True)
+    until(lambda: "no module 'ALSonar" in sonars.report().message)
+    directions = [
+        closing(SoundDirections(without(driver_robot, *modules), "ros_nao_audio", 0.8, told.append))
+        for modules in (["ALSoundLocalization"], ["ALSoundLocalization", "ALAudioSourceLocalization"])
+    ]
+    for each in directions:
+        each.want(True)
+    soon(lambda: directions[0].report().message == "sounds are located")
+    assert directions[0].report().values["module"] == "ALAudioSourceLocalization"
+    soon(lambda: "no module 'ALSoundLocalization" in directions[1].report().message)
+    assert told == []
+    lifeless = closing(AutonomousLife(without(driver_robot, "ALAutonomousLife", ABILITIES[0].module), told.append))
+    soon(lambda: lifeless.report().message == "unknown" and lifeless.report().level == 0)
+    for ask in (lambda: lifeless.set_state("solitary"), lambda: lifeless.is_enabled(ABILITIES[0])):
+        with pytest.raises(UnknownModule, match="ALAutonomousLife"):
+            ask()
+    life = closing(AutonomousLife(without(driver_robot, ABILITIES[0].module), told.append))
+    for enabled in (True, False):
+        life.set_enabled(ABILITIES[0], enabled)
+        assert life.is_enabled(ABILITIES[0]) is enabled
+        assert robot.ALAutonomousLife.getAutonomousAbilityEnabled("BackgroundMovement") is enabled

@@ -278,7 +278,7 @@ class HandClock:
     """Time that the test turns; waits end when it does."""
 
     def __init__(self):
-        self.time, self._turned = 0.0, threading.Condition()
+        self.time, self.waits, self._turned = 0.0, 0, threading.Condition()
 
     def now(self):
         return self.time
@@ -290,6 +290,7 @@ class HandClock:
 
     def wait(self, duration, interrupt):
         with interrupt.waking(self.turn), self._turned:
+            self.waits += 1
             end = self.time + duration
             self._turned.wait_for(lambda: self.time >= end or interrupt.is_set())
 
@@ -301,7 +302,9 @@ def test_a_robot_that_says_nothing_for_two_minutes_is_given_up(robot, driver_rob
     soon(lambda: speech.report().message == "speaks" and robot.ALTextToSpeech.getLanguage())
     clock.turn(0.9 * QUIET_LIMIT)
     soon(lambda: started or robot.ALMemory.raiseEvent("ALTextToSpeech/TextStarted", True))  # a sign of life
+    waits = clock.waits
     clock.turn(1.8 * QUIET_LIMIT)
+    soon(lambda: clock.waits > waits or text.ended.is_set())
     assert not text.ended.is_set() and started == [0.9 * QUIET_LIMIT]
     soon(lambda: text.ended.is_set() or clock.turn(clock.time + QUIET_LIMIT))
     assert isinstance(text.error, NothingSaid)
