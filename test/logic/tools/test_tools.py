@@ -50,9 +50,6 @@ def test_options_are_explained_and_wrong_ones_refused(run, name, options, status
     assert text in run(name, *options)[1]
 
 
-# --- bounds -----------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("good, mark, status", [(True, "  ok", 0), (None, "", 0), (np.bool_(False), "  MISSED", 1)])
 def test_a_figure_that_misses_its_bound_is_told_and_makes_the_status(tools, capsys, good, mark, status):
     class Checks(tools.measurement.StageChecks):
@@ -112,9 +109,6 @@ def test_the_table_of_postures_has_a_cell_for_each_change(tools):
     lines = tool.table({("Stand", "Crouch"): one, ("Crouch", "Stand"): other}).splitlines()
     cells = [["from", "\\", "to", "Crouch", "Stand"], ["Stand", "1.2", "-"], ["Crouch", "-", "FELL"]]
     assert [line.split() for line in lines] == cells
-
-
-# --- searches and moves -----------------------------------------------------------------------------------------------
 
 
 def test_a_search_finds_the_bottom_of_a_valley_and_goes_on_where_it_was_stored(tools):
@@ -180,9 +174,6 @@ def test_only_a_better_move_is_written(tools, monkeypatch, reached, impact, kept
     monkeypatch.setattr(tool, "put", lambda model, *arguments: written.append(arguments))
     assert tool.settle(before, after, tool.parse(["search", "Sit", "LyingBack", "--write"])) == 1 - kept
     assert written == [(after, 20, 20)] * kept
-
-
-# --- motions ----------------------------------------------------------------------------------------------------------
 
 
 def left_foot_to_com_and_right_foot(joints, angles):

@@ -25,9 +25,6 @@ def refuses(module, table):
             module.call(method, *arguments)
 
 
-# --- photos -----------------------------------------------------------------------------------------------------------
-
-
 @pytest.fixture
 def photos(robot):
     photos = robot.ALPhotoCapture
@@ -149,9 +146,6 @@ def test_what_photos_cannot_be_is_refused_with_what_they_can(photos, folder):
             ("takePicture", ("no_folder", "a"), "no_folder"),
         ],
     )
-
-
-# --- films ------------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture

@@ -19,8 +19,6 @@ HFOV, VFOV = math.radians(56.3), math.radians(43.7)
 RGB, BGR, YUV422, GREY = vd.kRGBColorSpace, vd.kBGRColorSpace, vd.kYUV422ColorSpace, vd.kYuvColorSpace
 AUTO = (vd.kCameraAutoExpositionID, vd.kCameraAutoWhiteBalanceID)
 
-# --- pictures ---------------------------------------------------------------------------------------------------------
-
 
 @pytest.mark.parametrize(
     "camera, resolution, space, size, layers",
@@ -110,9 +108,6 @@ def test_raw_pictures_are_what_the_cameras_give(video, image):
             call(rgb)
 
 
-# --- subscribers ------------------------------------------------------------------------------------------------------
-
-
 def test_handles_of_one_name(video):
     handles = [video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15) for _ in range(6)]
     assert handles == [f"looker_{number}" for number in range(6)]
@@ -170,9 +165,6 @@ def test_what_a_subscriber_sees_can_be_changed_and_the_active_camera_is_that_of_
     assert (video.getVIMResolution(), video.getVIMColorSpace(), video.getVIMFrameRate()) == (0, 9, 30)
     video.setParam(vd.kCameraSelectID, TOP)
     assert video.getParam(vd.kCameraSelectID) == TOP == video.getActiveCamera()
-
-
-# --- parameters and cameras -------------------------------------------------------------------------------------------
 
 
 def test_parameters_change_the_picture_and_go_back(robot, video, pixels):
@@ -295,9 +287,6 @@ def test_angles_and_places(video):
     assert video.getImgInfoFromAngInfoWithRes(info, vd.kVGA) == pytest.approx(in_pixels, rel=1e-5)
     assert video.resolutionToSizes(vd.kVGA) == [640, 480]
     assert video.sizesToResolution(320, 240) == vd.kQVGA and video.sizesToResolution(3, 4) == -1
-
-
-# --- files and refusals -----------------------------------------------------------------------------------------------
 
 
 def test_raw_pictures_go_to_a_file(robot, video):

@@ -19,8 +19,6 @@ CAMERA = [0.0, 0.0, 0.5, 0.0, 0.0, 0.0]
 METRE = 2.0 * math.atan(0.05)
 """Angle under which 0.1 m are seen a metre away, rad."""
 
-# --- what events say --------------------------------------------------------------------------------------------------
-
 
 def read(target, value, *parameters):
     return TARGETS[target].read(value, Parameters(*parameters))
@@ -68,9 +66,6 @@ def test_two_known_marks_tell_where_the_robot_is():
     seen, known = [(1.0, 0.5, 0.4), (2.0, -0.5, 0.3)], [(0.5, 3.0, 0.4), (1.5, 4.0, 0.3)]
     assert robot_position(seen, known) == pytest.approx([1.0, 2.0, math.pi / 2.0])
     assert robot_position(seen[:1], known[:1]) == []
-
-
-# --- following --------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -186,9 +181,6 @@ def test_looking_and_pointing_end_when_the_robot_does(tracker, stiff_robot):
     stiff_robot.ALMotion.setStiffnesses("Body", 0.0)
     with pytest.raises(RuntimeError, match="HeadYaw, HeadPitch is limp"):
         stiff_robot.ALTracker.lookAt([1.0, 0.0, 0.4], ROBOT, 0.5, False)
-
-
-# --- settings ---------------------------------------------------------------------------------------------------------
 
 
 def test_targets_are_registered_tracked_and_unregistered(tracker):

@@ -11,8 +11,6 @@ DETECTED, NONE, INFO = (f"MovementDetection/{name}" for name in ("MovementDetect
 SOON = 0.7
 """Long enough for several pictures, s."""
 
-# --- faces ------------------------------------------------------------------------------------------------------------
-
 
 @pytest.fixture
 def faces(robot):
@@ -144,9 +142,6 @@ def test_what_faces_and_movement_cannot_be_is_refused_with_what_they_can(robot):
     ]:
         with pytest.raises(RuntimeError, match=f"AL{module}Detection::{method} .*{text}"):
             getattr(robot, f"AL{module}Detection").call(method, argument)
-
-
-# --- movement ---------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture

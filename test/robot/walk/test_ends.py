@@ -112,9 +112,6 @@ def test_a_reset_ends_a_walk_and_the_new_robot_walks(walker):
     assert again.stands
 
 
-# --- it does not begin ------------------------------------------------------------------------------------------------
-
-
 def refused(walker):
     """The text with which a move was refused."""
     with pytest.raises(MoveRefused) as error:
@@ -155,9 +152,6 @@ def test_who_does_not_stand_does_not_walk(walker_in, posture, family):
     walker = walker_in(posture)
     walker.run(0.5)
     assert f"is {family}, it walks only from standing or crouching" in refused(walker)
-
-
-# --- it ends before its time ------------------------------------------------------------------------------------------
 
 
 def walk_fails(walker, task):
@@ -222,9 +216,6 @@ def test_an_obstacle_ahead_ends_the_walk_on_two_feet(walker_in):
     ((cause, started, place),) = walker.failures
     assert started and "obstacle" in cause
     assert place[0] - walker.now.odometry.position[0] == pytest.approx(0.32, abs=0.04)
-
-
-# --- it goes on -------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("force", [(10.0, -10.0, 0.0), (-10.0, 10.0, 0.0)])

@@ -17,9 +17,6 @@ KNEE = MODEL.joint_index["LKneePitch"]
 LEGS = [f"{side}{joint}" for side in "LR" for joint in ("HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")]
 
 
-# --- where it gets to -------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("goal", [(0.2, 0.0, 0.0), (-0.12, 0.0, 0.0), (0.0, -0.1, 0.0), (0.1, 0.06, -0.6)])
 def test_it_gets_where_it_was_told_to_go(walker, goal):
     start, believed = walker.place(), walker.locomotion.position(use_sensors=True)
@@ -125,9 +122,6 @@ def test_told_to_walk_while_it_takes_its_stance_it_goes_straight_from_there(walk
     assert walker.place().seen_from(begun)[:2] == pytest.approx((0.08, 0.0), abs=0.007)
 
 
-# --- footprints -------------------------------------------------------------------------------------------------------
-
-
 def test_planned_steps_are_told_before_they_are_made_and_leave_exactly_these_footprints(walker):
     plan = [
         Placement(LEFT, FootPose(0.04, 0.1, 0.0), 0.5),
@@ -170,9 +164,6 @@ def test_steps_can_be_added_and_taken_back_on_the_way(walker):
     walker.locomotion.set_steps([step(RIGHT, 0.0)], walker.GAIT, clear=True)
     assert walker.until(first) is True
     assert walker.place().seen_from(start).x == pytest.approx(0.03, abs=0.004)
-
-
-# --- what else moves --------------------------------------------------------------------------------------------------
 
 
 def swing_of(now):

@@ -26,8 +26,6 @@ EXPOSURE, ALGORITHM, SHARPNESS, WHITE, BACKLIGHT, AUTO_FOCUS, FOCUS = 17, 22, 24
 MANUAL = {11: 0, AUTO_WHITE: 0}
 SHOT = Shot("V6", 0, (0, 0, 0), (0, 0, 0, 1), 0.98, 0.76, 320, 240, 11, {}, 7)
 
-# --- the sensor -------------------------------------------------------------------------------------------------------
-
 
 def flat(*color, size=(320, 240)):
     return np.full((size[1], size[0], 3), color, np.uint8)
@@ -98,9 +96,11 @@ def test_brightness_is_added_with_v6_and_what_auto_exposure_aims_at_with_v5():
     assert means == pytest.approx([65, 135, 205], abs=3)
 
 
-def test_contrast_spreads_and_narrows(scene):
-    narrow, normal, wide = (taken(scene, {**MANUAL, CONTRAST: value})[1].std() for value in (16, 32, 64))
-    assert narrow == pytest.approx(normal / 2, rel=0.05) and wide > 1.3 * normal
+def test_contrast_spreads_and_narrows_and_flips_mirror(scene):
+    narrow, normal, wide = (taken(scene, {**MANUAL, CONTRAST: value})[1] for value in (16, 32, 64))
+    assert narrow.std() == pytest.approx(normal.std() / 2, rel=0.05) and wide.std() > 1.3 * normal.std()
+    for h, v, mirrored in ((1, 0, normal[:, ::-1]), (0, 1, normal[::-1]), (1, 1, normal[::-1, ::-1])):
+        assert np.array_equal(taken(scene, {**MANUAL, H_FLIP: h, V_FLIP: v})[1], mirrored)
 
 
 def test_saturation_takes_colors_out_and_makes_them_stronger():
@@ -117,13 +117,6 @@ def test_hue_turns_colors_and_leaves_grey_and_v5_has_none():
     assert taken(red, {**MANUAL, HUE: 180})[0] == pytest.approx([80, 129, 131], abs=4)
     assert taken(red, {**MANUAL, HUE: 90})[0][2] == pytest.approx(159, abs=2)
     assert taken(red, {**MANUAL, HUE: 90}, "V5")[0] == pytest.approx([150, 100, 100], abs=1)
-
-
-def test_flips(scene):
-    plain = taken(scene, MANUAL)[1]
-    assert np.array_equal(taken(scene, {**MANUAL, H_FLIP: 1})[1], plain[:, ::-1])
-    assert np.array_equal(taken(scene, {**MANUAL, V_FLIP: 1})[1], plain[::-1])
-    assert np.array_equal(taken(scene, {**MANUAL, H_FLIP: 1, V_FLIP: 1})[1], plain[::-1, ::-1])
 
 
 def sharpness_of(picture):
@@ -173,8 +166,6 @@ def test_a_photograph_brings_what_was_chosen_with_it(scene):
     assert np.array_equal(np.frombuffer(photo.data, np.uint8).reshape(240, 320), cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY))
 
 
-# --- colour spaces ----------------------------------------------------------------------------------------------------
-
 RED, GREEN, BLUE, WHITEST, GREY, DARK = (255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255), (90, 90, 90), (1, 2, 3)
 
 
@@ -223,9 +214,6 @@ def test_what_needs_a_depth_camera_is_refused(space):
         encode(np.zeros((2, 2, 3), np.uint8), space)
 
 
-# --- angles -----------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("version, h_deg, v_deg", [("V6", 56.3, 43.7), ("V5", 60.9, 47.6)])
 def test_each_version_has_its_field_of_view(version, h_deg, v_deg):
     for index in (0, 1):
@@ -256,9 +244,6 @@ def test_a_ray_goes_where_the_angles_say_and_what_is_behind_is_in_no_picture():
     assert (math.atan2(ray[1], ray[0]), math.atan2(-ray[2], ray[0])) == pytest.approx(optics.angles(0.2, 0.7))
     assert optics.project(3.0 * ray) == pytest.approx((0.2, 0.7))
     assert optics.project(np.array((-1.0, 0.0, 0.0))) is None
-
-
-# --- tables -----------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("version", ["V6", "V5"])

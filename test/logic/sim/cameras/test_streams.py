@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import queue
-import threading
 from fractions import Fraction
 
 import numpy as np
@@ -11,11 +10,10 @@ import pytest
 
 from nao_sim_bridge.sim.cameras import stream as streams
 from nao_sim_bridge.sim.cameras.places import CameraPlaces
-from nao_sim_bridge.sim.cameras.rate import Share, Shutter, exact_rate
+from nao_sim_bridge.sim.cameras.rate import Shutter, exact_rate
 from nao_sim_bridge.sim.cameras.stream import CameraClosed
 from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.frames import frame_of
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.sim.kinematics import quaternion_matrix
 from nao_sim_bridge.sim.render import RenderError
 
 TOP, BOTTOM = 0, 1
@@ -34,9 +32,6 @@ def ticks_of(head, ticks, stream=None, **options):
             found.append(round(120 * head.take(stream).time))
         except CameraClosed:
             return found
-
-
-# --- rates ------------------------------------------------------------------------------------------------------------
 
 
 def next_ticks(shutter, count):
@@ -78,14 +73,6 @@ def test_a_camera_begins_at_the_next_tick_and_another_rate_goes_on_from_the_last
     assert shutter.next_tick == 161, "ticks that nobody looked at are left out"
 
 
-def test_a_stream_gets_its_share_of_the_frames():
-    fast, slow, odd = (Share(Fraction(rate), TICKS) for rate in (30, 5, 20))
-    times = [Fraction(7 + 4 * index) for index in range(30)]
-    assert all(fast.takes(time) for time in times)
-    assert [time for time in times if slow.takes(time)] == [7, 31, 55, 79, 103]
-    assert [time for time in times if odd.takes(time)][:5] == [7, 15, 19, 27, 31]
-
-
 def test_frames_fall_due_in_simulated_time_and_slower_streams_get_those_of_the_faster_ones(head):
     assert ticks_of(head, 20) == [1, 5, 9, 13, 17]
     slow = head.open(fps=5, every=True, keep=9)
@@ -98,9 +85,6 @@ def test_frames_fall_due_in_simulated_time_and_slower_streams_get_those_of_the_f
     slow_ticks = ticks_of(head, 0, slow)
     assert head.cameras.rate(TOP) == 0.0
     assert slow_ticks == [21, 45, 69, 93, 117] and set(slow_ticks[1:]) < set(fast_ticks)
-
-
-# --- frames -----------------------------------------------------------------------------------------------------------
 
 
 def test_a_frame_says_what_it_is(head):
@@ -210,9 +194,6 @@ def test_the_noise_of_a_frame_is_always_the_same(head_of):
     assert len(set(data[0].values())) == 7
 
 
-# --- changes while it runs --------------------------------------------------------------------------------------------
-
-
 def test_everything_about_a_stream_can_be_changed(head):
     stream = head.open(fps=30, every=True, keep=9)
     stream.resolution, stream.color_space, stream.fps = 0, 0, 10
@@ -224,8 +205,9 @@ def test_everything_about_a_stream_can_be_changed(head):
     assert [round(120 * head.take(stream).time) for _ in range(2)] == [13, 25]
     stream.camera = BOTTOM
     head.run()
-    assert head.take(stream).camera == BOTTOM
-    assert head.cameras.rate(TOP) == 0.0
+    assert head.take(stream).camera == BOTTOM and head.cameras.rate(TOP) == 0.0
+    stream.look(TOP, 4)
+    assert head.cameras.rate(TOP) == 1.0, "the largest pictures come at their own rate"
 
 
 @pytest.mark.parametrize(
@@ -249,26 +231,6 @@ def test_what_the_cameras_cannot_do_changes_nothing(head, field, value, text):
     assert head.cameras.streams == (stream,)
 
 
-def test_the_largest_pictures_come_at_their_own_rate(head):
-    stream = head.open(resolution=4, fps=30)
-    assert head.cameras.rate(TOP) == 1.0
-    stream.resolution = 3
-    assert head.cameras.rate(TOP) == 30.0
-
-
-def test_a_camera_that_is_stopped_takes_no_pictures(head):
-    stream = head.open()
-    head.run(5)
-    head.take(stream)
-    head.cameras.set_stopped(TOP, True)
-    head.run(40)
-    with pytest.raises(TimeoutError):
-        stream.take(0.01)
-    head.cameras.set_stopped(TOP, False)
-    head.run()
-    assert head.take(stream).time == pytest.approx(46 / 120)
-
-
 def test_who_waits_at_the_end_is_told(head):
     stream, other, answers = head.open(), head.open(), queue.Queue()
     stream.ask(answers.put)
@@ -282,9 +244,6 @@ def test_who_waits_at_the_end_is_told(head):
         head.take(other)
     with pytest.raises(CameraClosed, match="the simulation has ended"):
         head.open()
-
-
-# --- time that runs fast ----------------------------------------------------------------------------------------------
 
 
 def test_fast_time_waits_for_those_who_want_every_frame_until_they_ask_for_the_next(head, monkeypatch):
@@ -311,36 +270,6 @@ def test_fast_time_waits_for_those_who_want_every_frame_until_they_ask_for_the_n
     head.take(newest)
     head.run(10)
     assert not head.cameras.holds()
-
-
-def test_many_threads_at_once(head):
-    """Opening, changing and closing while frames fall due and are taken."""
-    failures = queue.Queue()
-
-    def use(seed):
-        try:
-            for round_ in range(15):
-                stream = head.open(camera=(seed + round_) % 2, fps=1 + (7 * seed + round_) % 30)
-                stream.resolution = (0, 1, 7)[round_ % 3]
-                try:
-                    assert stream.take(0.02).camera == stream.camera
-                except TimeoutError:
-                    pass
-                stream.camera = BOTTOM
-                stream.close()
-        except Exception as error:
-            failures.put(error)
-
-    users = [threading.Thread(target=use, args=(seed,)) for seed in range(4)]
-    for user in users:
-        user.start()
-    while any(user.is_alive() for user in users):
-        head.run()
-    assert failures.empty(), failures.get()
-    assert head.cameras.streams == () and head.cameras.rate(TOP) == head.cameras.rate(BOTTOM) == 0.0
-
-
-# --- settings ---------------------------------------------------------------------------------------------------------
 
 
 def test_parameters_are_those_of_the_frame_at_its_time(head):
@@ -371,43 +300,6 @@ def test_automatics_tell_what_they_chose_and_leave_it_behind(head):
     assert head.cameras.parameter(TOP, AUTO_EXPOSURE) == 1 and head.cameras.parameter(TOP, LUMINANCE) == 0
 
 
-@pytest.mark.parametrize(
-    "number, value, text",
-    [
-        (0, 256, "kCameraBrightnessID is 256, allowed is -255 to 255"),
-        (0, True, "kCameraBrightnessID is True"),
-        (0, 1.5, "kCameraBrightnessID is 1.5"),
-        (EXPOSURE, 10, "kCameraExposureID is 10, allowed is no value while kCameraAutoExpositionID is 1"),
-        (LUMINANCE, 10, "kCameraAverageLuminanceID is 10, allowed is no value: it can only be read"),
-        (WHITE, 3000, "parameter is 33"),
-    ],
-)
-def test_what_a_parameter_cannot_be_is_told(head, number, value, text):
-    with pytest.raises(BadValue, match=text):
-        head.cameras.set_parameter(TOP, number, value)
-
-
-def test_pictures_from_outside_take_the_place_of_the_world_and_a_camera_can_be_kept_alive(head):
-    picture = np.zeros((480, 640, 3), np.uint8)
-    picture[:, 320:] = 255
-    head.cameras.show(TOP, picture)
-    head.manual()
-    stream, other = head.open(resolution=1), head.open(camera=BOTTOM)
-    head.run()
-    seen = head.take(stream).array()
-    assert seen.shape == (240, 320, 3)
-    assert seen[:, :150].mean() < 3 and seen[:, 170:].mean() > 250
-    head.take(other)
-    assert [shot.camera for shot in head.pictures.shots] == [BOTTOM]
-    head.cameras.show(TOP, None)
-    head.run(4)
-    head.take(stream)
-    assert len(head.pictures.shots) == 2
-    assert not head.cameras.kept_alive(TOP)
-    head.cameras.set_parameter(TOP, KEEP_ALIVE, 1)
-    assert head.cameras.kept_alive(TOP) and not head.cameras.kept_alive(BOTTOM)
-
-
 def test_the_cameras_of_an_older_robot(head_of):
     head = head_of(version="V5")
     head.pictures.paint = lambda _, shape: np.full(shape, (130, 122, 116), np.uint8)
@@ -427,9 +319,6 @@ def test_the_cameras_of_an_older_robot(head_of):
         head.cameras.parameter(TOP, 40)
 
 
-# --- where they are ---------------------------------------------------------------------------------------------------
-
-
 def test_the_cameras_are_where_the_tables_say(head):
     """Upright, with the head straight: only the cameras' own pitch is left."""
     places = CameraPlaces(head.model)
@@ -439,14 +328,3 @@ def test_the_cameras_are_where_the_tables_say(head):
         position, orientation = places.in_world(state, camera)
         assert place is None or position == pytest.approx(place)
         assert quaternion_matrix(orientation)[:, 0] == pytest.approx((np.cos(pitch), 0.0, -np.sin(pitch)))
-
-
-def test_the_true_place_follows_head_and_torso(head):
-    turned = (0.5, -0.3, *head.positions[2:])
-    state = head.look(head.snapshot())
-    state = type(state)((1.0, 2.0, 0.3), (0.0, 0.0, np.sin(0.4), np.cos(0.4)), turned, state.led_values)
-    position, orientation = CameraPlaces(head.model).in_world(state, TOP)
-    frame = frame_of(head.model, "CameraTop")
-    torso = transform(quaternion_matrix(state.base_orientation), state.base_position)
-    expected = torso @ link_transforms(head.model, turned)["HeadPitch"] @ frame.offset
-    assert transform(quaternion_matrix(orientation), position) == pytest.approx(expected)

@@ -10,7 +10,7 @@ import pytest
 from seen_cards import GREY, OPTICS, card, mark, sphere
 
 from nao_sim_bridge.sim.landmarks import load_landmarks
-from nao_sim_bridge.sim.vision.ball import BallDetector, red_parts
+from nao_sim_bridge.sim.vision.ball import BallDetector
 from nao_sim_bridge.sim.vision.barcodes import BarcodeDetector
 from nao_sim_bridge.sim.vision.landmarks import LandmarkDetector
 from nao_sim_bridge.sim.vision.movement import MovementDetector, MovementSettings
@@ -33,15 +33,6 @@ balls, marks, codes = of(BallDetector), of(LandmarkDetector), of(BarcodeDetector
 @pytest.mark.parametrize("find", [balls, marks, codes], ids=["balls", "marks", "codes"])
 def test_noise_is_nothing(find):
     assert find(NOISE) == [] and find(SOFT) == []
-
-
-# --- balls ------------------------------------------------------------------------------------------------------------
-
-
-def test_redness_is_the_same_in_light_and_shadow():
-    light, shadow = np.uint8([[[20, 30, 200]]]), np.uint8([[[10, 15, 100]]])
-    assert red_parts(light, 40.0)[1] == pytest.approx(red_parts(shadow, 40.0)[1])
-    assert red_parts(light, 40.0)[0] == pytest.approx(170.0)
 
 
 @pytest.mark.parametrize("radius, distance", [(0.03, 0.3), (0.03, 2.0), (0.05, 1.0)])
@@ -124,9 +115,6 @@ def test_what_is_not_round_and_red_is_no_ball():
     assert balls(np.full((240, 320, 3), (20, 25, 215), np.uint8)) == []
 
 
-# --- landmarks --------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("number", NUMBERS)
 def test_every_number_is_read_from_far_and_slanted(number):
     roll = 0.35 * (number % 17) - 3.0
@@ -200,8 +188,6 @@ def test_other_wheels_codes_and_marks_that_are_cut_or_wrong_are_no_marks():
         assert marks(card(WorldPicture(kind, content), 0.15, 0.6)) == []
 
 
-# --- codes ------------------------------------------------------------------------------------------------------------
-
 QR, VGA = WorldPicture("qr", "hello world"), (640, 480)
 
 
@@ -255,8 +241,6 @@ def test_two_codes_come_from_left_to_right_and_stripes_are_none():
     stripes[:, ::7] = stripes[:, 1::7] = 20
     assert codes(stripes) == []
 
-
-# --- movement ---------------------------------------------------------------------------------------------------------
 
 POSE = (0.05, 0.0, 0.5, 0.0, 0.1, 0.0)
 

@@ -33,9 +33,6 @@ def pixel(angles):
     return np.array((640.0 * x - 0.5, 480.0 * y - 0.5))
 
 
-# --- finding ----------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("name", PEOPLE)
 def test_a_face_is_found_with_its_eyes_nose_and_mouth(name, detector):
     for distance, yaw, light in [(0.5, 0.0, 1.0), (1.0, 0.25, 0.6), (1.5, -0.25, 1.2), (2.0, 0.0, 0.8)]:
@@ -97,9 +94,6 @@ def test_without_tracking_every_picture_stands_alone_and_descriptions_are_made_w
     assert [find(detector, picture, 0.1 * k, track=False)[0].number for k in range(3)] == [1, 2, 3]
     assert find(detector, picture, 0.0, describe=False)[0].description is None
     assert np.linalg.norm(find(detector, picture, 0.1)[0].description) == pytest.approx(1.0, abs=1e-3)
-
-
-# --- memory -----------------------------------------------------------------------------------------------------------
 
 
 def describe(*arguments, **options):
@@ -189,9 +183,6 @@ def test_who_cannot_be_kept_is_not_known(tmp_path):
     with pytest.raises((FaceFileError, OSError, ValueError)):
         people.learn("ben", direction(1))
     assert people.names == ["anna"]
-
-
-# --- news -------------------------------------------------------------------------------------------------------------
 
 
 def face(name="", number=1):

@@ -1,18 +1,15 @@
-"""What looks through a camera for an extractor, and the process in which detectors work."""
+"""What looks through a camera for an extractor; settings of the detectors, and cones through what they see."""
 
 from __future__ import annotations
 
 import logging
-import os
 import queue
-import signal
 import threading
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from plain_cameras import Head
-from seen_cards import OPTICS, mark, sphere
 
 from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.services.errors import NaoqiError
@@ -23,19 +20,12 @@ from nao_sim_bridge.services.vision.sight import Sight
 from nao_sim_bridge.services.vision.vision_extractor import VisionExtractor
 from nao_sim_bridge.services.vision.watching import Watching
 from nao_sim_bridge.sim.config import read_json
-from nao_sim_bridge.sim.errors import BadValue, ConfigError, SimulationError, UnknownName
+from nao_sim_bridge.sim.errors import BadValue, ConfigError, SimulationError
 from nao_sim_bridge.sim.render import RenderError
-from nao_sim_bridge.sim.vision import client
-from nao_sim_bridge.sim.vision.ball import BallDetector
-from nao_sim_bridge.sim.vision.client import VisionClosed, VisionError, VisionProcess, VisionRefused
 from nao_sim_bridge.sim.vision.cone import fit_cone
-from nao_sim_bridge.sim.vision.detector import DETECTORS, make_detector
-from nao_sim_bridge.sim.vision.ellipse import Ellipse, distance_from, ellipse_of
 from nao_sim_bridge.sim.vision.settings import FILE, load_vision, parse_vision
 
 PATIENCE = 15.0
-
-# --- watching ---------------------------------------------------------------------------------------------------------
 
 
 class Eyes(Head):
@@ -236,127 +226,6 @@ def test_calls_that_learn_a_face_are_counted_and_end_with_the_cameras():
             task.result(PATIENCE)
 
 
-# --- the vision process -----------------------------------------------------------------------------------------------
-
-DYING = """
-import os, sys, threading
-from nao_sim_bridge.sim.child_process import pipe_to_parent
-pipe = pipe_to_parent(sys.argv[1])
-pipe.send(("ready", None))
-while True:
-    kind, content = pipe.recv()
-    if kind == "call" and content[1] == "detect":
-        END
-    pipe.send((kind, content))
-"""
-BALL = sphere(0.8, 0.05, 0.1, 0.05)
-
-
-@pytest.fixture(scope="module")
-def process():
-    process = VisionProcess()
-    assert process.detector("ball") and process.pid is None, "there is no process before there is work"
-    yield process
-    process.close()
-
-
-@pytest.fixture
-def ending(tmp_path, monkeypatch):
-    """Makes a process that does something else when it is to detect."""
-    made = []
-
-    def make(end):
-        (tmp_path / "ending_vision.py").write_text(DYING.replace("END", end))
-        monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-        monkeypatch.setattr(client, "MODULE", "ending_vision")
-        made.append(VisionProcess())
-        return made[-1]
-
-    yield make
-    for process in made:
-        process.close()
-
-
-def warnings(caplog):
-    return [record.getMessage() for record in caplog.records if record.levelno >= logging.WARNING]
-
-
-def test_several_detectors_share_one_process_and_one_that_fails_says_where(process):
-    ball, marks, codes = (process.detector(name) for name in ("ball", "landmarks", "barcodes"))
-    assert ball.detect(BALL, OPTICS) == BallDetector().detect(BALL, OPTICS)
-    pid = process.pid
-    assert [seen.number for seen in marks.detect(mark(85, 0.7), OPTICS)] == [85]
-    assert codes.detect(mark(85, 0.7), OPTICS) == []
-    with pytest.raises(VisionRefused, match="^ball: Traceback"):
-        ball.detect(np.zeros((2, 2), np.uint8), OPTICS)
-    with pytest.raises(VisionRefused, match="unknown detector 'bal': did you mean 'ball'"):
-        process.detector("bal").detect(BALL, OPTICS)
-    assert len(ball.detect(BALL, OPTICS)) == 1 and process.pid == pid
-    with pytest.raises(UnknownName):
-        make_detector("bal")
-    assert type(make_detector("ball")).__name__ == DETECTORS["ball"].rpartition(".")[2]
-
-
-def test_a_dead_process_is_started_again_with_one_warning_and_nothing_is_lost(process, caplog):
-    asked = []
-    ball, marks = process.detector("ball", lambda: asked.append(len(asked)) or ()), process.detector("landmarks")
-    before = ball.detect(BALL, OPTICS)
-    marks.detect(BALL, OPTICS)
-    ball.detect(BALL, OPTICS)
-    assert asked == [0]
-    dead = process.pid
-    os.kill(dead, signal.SIGKILL)
-    assert ball.detect(BALL, OPTICS) == before and asked == [0, 1], "it gets its arguments again"
-    assert [seen.number for seen in marks.detect(mark(85, 0.7), OPTICS)] == [85]
-    assert process.pid != dead
-    assert warnings(caplog) == ["ball: the vision process ended with status -9; it is started again"]
-    ball.close()
-    ball.detect(BALL, OPTICS)
-    assert asked == [0, 1, 2]
-
-
-def test_work_that_ends_the_process_is_given_up(ending, caplog):
-    dying = ending("os._exit(3)")
-    ball = dying.detector("ball")
-    with pytest.raises(VisionError, match="^ball: the vision process ended with status 3$"):
-        ball.detect(BALL, OPTICS)
-    assert len(warnings(caplog)) == 1
-    with pytest.raises(VisionError, match="ended with status 3"):
-        ball.detect(BALL, OPTICS)
-    with pytest.raises(VisionError, match="^ball: ended the vision process 4 times$"):
-        ball.detect(BALL, OPTICS)
-    assert dying.pid is None
-    assert dying.detector("landmarks").call("other") == (2, "other", ())  # another one is not to blame
-
-
-def test_who_waits_for_a_process_that_hangs_hears_of_the_end_and_afterwards_it_answers_nothing(ending, monkeypatch):
-    monkeypatch.setattr(client, "CLOSING", 0.05)
-    process, errors = ending("threading.Event().wait()"), queue.Queue()
-
-    def work():
-        try:
-            process.detector("ball").detect(BALL, OPTICS)
-        except VisionClosed as error:
-            errors.put(error)
-
-    waiting = threading.Thread(target=work)
-    waiting.start()
-    while process.pid is None and waiting.is_alive():
-        waiting.join(0.01)
-    pid = process.pid
-    process.close()
-    waiting.join(PATIENCE)
-    assert errors.qsize() == 1
-    with pytest.raises(VisionClosed, match="^ball: the vision process is closed$"):
-        process.detector("ball").detect(BALL, OPTICS)
-    process.detector("ball").close()
-    with pytest.raises(ProcessLookupError):
-        os.kill(pid, 0)
-
-
-# --- settings and maths -----------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     "spoil, problem",
     [
@@ -396,24 +265,3 @@ def test_a_rim_or_a_third_of_it_gives_its_cone_and_the_residual_how_far_it_is_of
     cone = fit_cone(rim(axis, 0.1 + 0.004 * np.where(np.arange(60) % 2 == 0, 1.0, -1.0), TURNS))
     assert (cone.angle, cone.residual) == (pytest.approx(0.1, abs=1e-4), pytest.approx(0.004, rel=0.01))
     assert fit_cone(rim(axis, np.array(0.1), TURNS[:4])) is None and fit_cone(np.tile(axis, (9, 1))) is None
-
-
-@pytest.mark.parametrize("turn", [0.0, 0.4, 1.5, -0.8])
-def test_an_outline_gives_its_ellipse(turn):
-    c, s = np.cos(turn), np.sin(turn)
-    around = np.stack([20.0 * np.cos(TURNS), 12.0 * np.sin(TURNS)], axis=1)
-    points = (60.0, 40.0) + around @ np.array(((c, s), (-s, c)))
-    ellipse = ellipse_of(points.astype(np.float32))
-    assert ellipse.center == pytest.approx((60.0, 40.0), abs=1e-3)
-    assert ellipse.radii == pytest.approx((20.0, 12.0), abs=0.01)
-    assert ellipse.half_extent == pytest.approx(np.ptp(points, axis=0) / 2.0, rel=0.02)
-    assert np.abs(distance_from(ellipse, points)).max() < 0.01
-    assert ellipse_of(np.float32([[0, 0], [1, 0], [0, 1]])) is None
-
-
-def test_distances_are_positive_outside_and_angles_run_clockwise_from_the_top():
-    ellipse = Ellipse(np.zeros(2), np.diag((20.0, 10.0)))
-    assert distance_from(ellipse, np.array(((23.0, 0.0), (0.0, 8.0)))) == pytest.approx((3.0, -2.0))
-    circle = Ellipse(np.array((10.0, 10.0)), np.diag((5.0, 5.0)))
-    top, right = circle.points(np.array((0.0, np.pi / 2.0)), np.array((1.0,)))[:, 0]
-    assert (*top, *right) == pytest.approx((10.0, 5.0, 15.0, 10.0))

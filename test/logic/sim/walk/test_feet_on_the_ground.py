@@ -21,8 +21,6 @@ poses = st.builds(FootPose, st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.float
 placements = st.builds(FootPose, st.floats(-0.2, 0.2), st.floats(-0.3, 0.3), st.floats(-1.5, 1.5))
 """Anywhere around the other foot, most of them out of reach."""
 
-# --- poses ------------------------------------------------------------------------------------------------------------
-
 
 def test_a_move_is_in_the_own_frame():
     assert FootPose(1.0, 2.0, math.pi / 2).moved(0.5, 0.1, 0.2) == pytest.approx((0.9, 2.5, math.pi / 2 + 0.2))
@@ -46,9 +44,6 @@ def test_a_frame_has_things_where_they_were_seen_and_is_found_again_by_what_stan
     for one, other in ((back, there), (again, frame)):
         assert one[:2] == pytest.approx(other[:2], abs=ROUNDING)
         assert math.cos(one.yaw - other.yaw) == pytest.approx(1.0)
-
-
-# --- what legs can step -----------------------------------------------------------------------------------------------
 
 
 @given(placements, sides)
@@ -105,8 +100,6 @@ def test_two_steps_share_the_way_to_the_side(aside, outer, inner, side):
     assert sidestep(side * aside, True, 0.012) == pytest.approx(side * outer)
     assert sidestep(side * aside, False, 0.012) == pytest.approx(side * inner)
 
-
-# --- in the air -------------------------------------------------------------------------------------------------------
 
 START, END, LIFT = FootPose(0.0, 0.1, 3.0), FootPose(0.08, 0.12, -3.0), 0.025
 

@@ -18,8 +18,6 @@ from nao_sim_bridge.sim.walk.settings import load_walk_settings
 
 LOADERS = (walk_file, parameters, load_walk_settings, step_limits)
 
-# --- gait -------------------------------------------------------------------------------------------------------------
-
 
 def test_nothing_asked_for_is_the_default_and_what_can_be_set_has_a_field():
     assert feet_gait({}) == FeetGait()
@@ -71,9 +69,6 @@ def test_steps_are_between_the_longest_and_the_shortest_period_for_each_foot():
     assert Gait(max_step_frequency=0.5).period(0.5) == pytest.approx(0.6 - 0.25 * 0.18)
     made = feet_gait({"LeftMaxStepFrequency": 0.0, "Frequency": 0.5})
     assert (made.period(LEFT), made.period(RIGHT)) == pytest.approx((0.6, 0.51))
-
-
-# --- the file ---------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture

@@ -190,9 +190,6 @@ def test_the_longer_a_step_the_longer_it_stands_on_both_feet():
         assert sum(0.0 < now.swing_share < 1.0 for now in seen) * DT == pytest.approx(3 * in_air, abs=6 * DT)
 
 
-# --- body and feet ----------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("course, end_after", COURSES)
 def test_nothing_jumps_one_foot_is_in_the_air_and_it_ends_at_rest_over_both_feet(course, end_after):
     plan, seen = whole_walk(course(), end_after, FINE)
@@ -263,9 +260,6 @@ def test_a_foot_that_lands_is_not_waited_for_any_longer():
     assert plan.support == RIGHT
     ticks(plan, 2 * DT)
     assert plan.support == LEFT
-
-
-# --- what it tells ----------------------------------------------------------------------------------------------------
 
 
 def test_it_tells_where_the_robot_is_after_this_step_and_which_steps_follow():

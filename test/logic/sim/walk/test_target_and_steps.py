@@ -24,8 +24,6 @@ LIMITS = step_limits()
 ROUNDING = 1e-9
 places = st.builds(FootPose, st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-3.1, 3.1))
 
-# --- to a place -------------------------------------------------------------------------------------------------------
-
 
 def course(*goals, gait=GAIT, steps=1, rate=STANDSTILL, start=None):
     one = TargetCourse(SETTINGS, gait, [FootPose(*goal) for goal in goals], steps, rate)
@@ -171,9 +169,6 @@ def test_braking_comes_to_rest_just_at_the_end(change, distance):
             assert braking(left - rate, change) >= rate - 1.13 * change - 1e-6, "it cannot slow down that fast"
         left -= rate
     assert left == pytest.approx(0.0, abs=1e-6)
-
-
-# --- planned steps ----------------------------------------------------------------------------------------------------
 
 
 def step(side, x=0.04, y=None, yaw=0.0, period=0.5):

@@ -32,9 +32,6 @@ def course(rate=(0.04, 0.0, 0.0), gait=GAIT, at=STANDSTILL):
     return VelocityCourse(SETTINGS, gait, rate, at)
 
 
-# --- what is asked for ------------------------------------------------------------------------------------------------
-
-
 def test_the_largest_rates_are_those_of_the_gait():
     assert AHEAD == pytest.approx((0.04, 0.026, 0.349))
     assert BACK[0] == pytest.approx(0.04)
@@ -53,9 +50,6 @@ def test_together_the_parts_of_a_rate_stay_in_the_ellipsoid(rate):
 def test_each_part_alone_may_be_as_large_as_its_limit():
     for rate in [(AHEAD[0], 0.0, 0.0), (-BACK[0], 0.0, 0.0), (0.0, -AHEAD[1], 0.0), (0.0, 0.0, AHEAD[2])]:
         assert course(rate).wanted == pytest.approx(rate)
-
-
-# --- the steps --------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("rate", STRAIGHT + TURNING)
@@ -138,9 +132,6 @@ def test_a_body_that_is_off_its_plan_may_use_a_share_of_the_speed(walked):
     assert one.rate == pytest.approx((0.01, 0.0, 0.0))
 
 
-# --- the end ----------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("rate", STRAIGHT + TURNING)
 def test_told_to_end_it_closes_the_feet_and_is_over(walked, rate):
     for count in range(7):
@@ -178,9 +169,6 @@ def test_at_long_steps_it_slows_down_first(walked):
 
 def test_it_goes_on_for_ever_unless_told_to_end(walked):
     assert len(walked(course(), 300)) == 300
-
-
-# --- what it makes up for ---------------------------------------------------------------------------------------------
 
 
 def turned_by(one, walked, turn, steps):

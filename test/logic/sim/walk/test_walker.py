@@ -92,9 +92,6 @@ def velocity(*rate, gait=None):
     return VelocityCourse(SETTINGS, gait or FeetGait(), rate)
 
 
-# --- legs -------------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("name", ["StandInit", "Stand", "StandZero", "Crouch"])
 def test_the_stance_of_walks_is_the_same_from_everywhere_and_taken_without_a_jerk(name):
     robot = Ideal(name)
@@ -149,9 +146,6 @@ def test_a_step_ends_when_the_foot_feels_the_ground(felt, waits):
         robot.tick()
         ticks += 1
     assert ticks * DT - 0.5 == pytest.approx(SETTINGS.latest if waits else 0.0, abs=2.5 * DT)
-
-
-# --- feedback ---------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("leaning, axis, sign", [((0, 0.05), 0, 1.0), ((0, -0.05), 0, -1.0), ((0.05, 0), 1, -1.0)])
@@ -232,8 +226,6 @@ def test_a_walk_slows_down_as_the_body_comes_off_and_stops_when_it_is_far_off():
         assert walker.haste == pytest.approx(haste)
 
 
-# --- arms -------------------------------------------------------------------------------------------------------------
-
 HOME = posture(MODEL, "StandInit")
 LEFT_ARM, RIGHT_ARM = (MODEL.joint_index[f"{side}ShoulderPitch"] for side in "LR")
 ARM = {
@@ -311,9 +303,6 @@ def test_what_else_moves_idle_joints_goes_on_beneath():
     assert wanted[head] == 0.3 and wanted[LEFT_ARM] == pytest.approx(HOME[LEFT_ARM]), "the swing comes first"
     arms.stride = None
     assert arms.after(DT) == {head: 0.3, LEFT_ARM: 0.0}
-
-
-# --- who waits --------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("reached", [True, False])
