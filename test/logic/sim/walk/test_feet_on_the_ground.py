@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nao_sim_bridge.sim.walk.clipping import clip_step, feet_overlap, sidestep, spread, step_limits
+from nao_sim_bridge.sim.walk.clipping import clip_step, feet_overlap, step_limits
 from nao_sim_bridge.sim.walk.footsteps import FootPose, middle
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.sim.walk.swing import swing
@@ -66,10 +66,6 @@ def test_what_legs_can_step_is_not_clipped(x, y, turn, side):
     assert clip_step(FootPose(x, side * y, side * turn), side, LIMITS) == pytest.approx((x, side * y, side * turn))
 
 
-def test_a_foot_does_not_cross_the_other_one():
-    assert clip_step(FootPose(0.0, -0.1, 0.0), LEFT, LIMITS).y == pytest.approx(LIMITS.min_y)
-
-
 def test_a_long_step_ahead_and_aside_keeps_its_proportions():
     x, y, _ = clip_step(FootPose(0.08, 0.16, 0.0), LEFT, LIMITS)
     assert x / LIMITS.max_x == pytest.approx(math.sqrt(0.5))
@@ -87,18 +83,6 @@ def test_toes_are_turned_back_only_as_far_as_the_other_foot_demands(side):
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
 def test_feet_overlap_where_one_stands_on_the_other(x, y, yaw, over, side):
     assert feet_overlap(FootPose(x, side * y, yaw), side, LIMITS) == bool(over)
-
-
-@pytest.mark.parametrize("share", [0.5, 0.8, 1.0])
-def test_two_steps_share_a_turn(share):
-    assert (spread(0.2, True, share), spread(0.2, False, share)) == pytest.approx((0.4 * share, 0.4 * (1.0 - share)))
-
-
-@pytest.mark.parametrize("aside, outer, inner", [(0.026, 0.04, 0.012), (0.004, 0.004, 0.004), (0.0, 0.0, 0.0)])
-@pytest.mark.parametrize("side", [LEFT, RIGHT])
-def test_two_steps_share_the_way_to_the_side(aside, outer, inner, side):
-    assert sidestep(side * aside, True, 0.012) == pytest.approx(side * outer)
-    assert sidestep(side * aside, False, 0.012) == pytest.approx(side * inner)
 
 
 START, END, LIFT = FootPose(0.0, 0.1, 3.0), FootPose(0.08, 0.12, -3.0), 0.025

@@ -17,7 +17,7 @@ from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
 from nao_sim_bridge.sim.stance import StanceReader
 from nao_sim_bridge.sim.walk.body import WalkingBody
 from nao_sim_bridge.sim.walk.footsteps import middle
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT, SIDES, Sole, hip_rotation
+from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT, SIDES, Sole
 from nao_sim_bridge.sim.walk.matrices import IDENTITY, about_z
 from nao_sim_bridge.sim.walk.whereabouts import foot_on_ground, robot_on_ground
 
@@ -113,10 +113,3 @@ def test_a_sole_out_of_reach_stretches_the_leg():
     soles = (Sole((0.0, 0.05, 0.0), IDENTITY), Sole((0.0, -0.05, 0.0), IDENTITY))
     _, left, _ = LEGS.solve((0.0, 0.0, 0.5), IDENTITY, *soles, 0.0)
     assert left[2] == pytest.approx(0.0, abs=0.1)
-
-
-def test_the_hips_turn_as_mirror_images():
-    mirror = np.diag([1.0, -1.0, 1.0])
-    left, right = (np.array(hip_rotation(side, 0.4)).reshape(3, 3) for side in (LEFT, RIGHT))
-    assert mirror @ left @ mirror == pytest.approx(right)
-    assert left @ left.T == pytest.approx(np.eye(3))

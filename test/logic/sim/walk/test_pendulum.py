@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import random
 
 import pytest
 
@@ -20,16 +19,6 @@ PLAN = [
     Segment(0.33, (0.06, 0.05), (0.06, 0.05)),
     Segment(0.3, (0.06, 0.05), END),
 ]
-
-
-def test_at_rest_it_stays_where_it_is():
-    assert divergent_component([Segment(1.0, END, END)], END, OMEGA) == pytest.approx(END)
-    assert divergent_component([], END, OMEGA) == END
-
-
-def test_a_point_that_stands_pushes_it_away_exponentially():
-    x, y = divergent_component([Segment(0.4, (0.0, 0.0), (0.0, 0.0))], (0.05, -0.02), OMEGA)
-    assert (x, y) == pytest.approx((0.05 * math.exp(-OMEGA * 0.4), -0.02 * math.exp(-OMEGA * 0.4)))
 
 
 def test_followed_through_the_plan_it_comes_to_rest_at_the_end():
@@ -87,22 +76,3 @@ def test_wrong_at_the_start_the_observer_finds_the_body(observer, place, speed):
     true_place, true_speed = truth[-1]
     assert observer.place == pytest.approx(true_place, abs=2e-3)
     assert observer.divergent == pytest.approx(true_place + true_speed / OMEGA, abs=6e-3)
-
-
-def test_the_observer_is_quieter_than_what_is_measured(observer):
-    r = random.Random(1)
-    errors, plain, before = [], [], 0.0
-    for _ in range(2000):
-        measured = r.gauss(0.0, 0.001)
-        observer.update(measured, observer.place, DT)
-        errors.append(observer.divergent)
-        plain.append(measured + (measured - before) / DT / OMEGA)
-        before = measured
-    deviation, of_plain = (math.sqrt(sum(e * e for e in es) / len(es)) for es in (errors[50:], plain[50:]))
-    assert deviation < 0.25 * of_plain
-
-
-def test_a_push_shows_within_a_few_ticks(observer):
-    for place, _ in body(0.0, 0.3, 10):
-        observer.update(place, 0.0, DT)
-    assert observer.divergent > 0.5 * 0.3 / OMEGA

@@ -153,28 +153,14 @@ def test_a_walk_goes_through_its_phases_in_order():
     assert plan.com == pytest.approx(plan.rest()) and plan.feet == feet
     assert max(math.dist(a.com, b.com) for a, b in zip(begun, begun[1:])) < 0.001
     plan.begin(steps(3))
-    order = [now.phase for now in until(plan, Phase.STAND)]
+    seen = until(plan, Phase.STAND)
+    order = [now.phase for now in seen]
     first = [phase for i, phase in enumerate(order) if i == 0 or order[i - 1] is not phase]
     assert first == [Phase.START, Phase.STEP, Phase.SETTLE, Phase.STAND]
+    assert [now.support for now in seen if now.phase is Phase.STEP][10 :: round(0.42 / DT)] == [RIGHT, LEFT, RIGHT]
     lasted = [order.count(phase) * DT for phase in first[:3]]
     start, settle = SETTINGS.push_time + SETTINGS.shift_time, SETTINGS.settle_time + SETTINGS.stand_time
     assert lasted == pytest.approx([start, 3 * 0.42, settle], abs=2 * DT)
-
-
-def test_steps_take_turns():
-    _, seen = whole_walk(velocity(), end_after=3.0)
-    supports = [now.support for now in seen if now.phase is Phase.STEP]
-    lasted = [i for i, side in enumerate(supports) if i == 0 or supports[i - 1] != side]
-    assert supports[0] == RIGHT and len(lasted) > 6
-    assert [b - a for a, b in zip(lasted, lasted[1:])] == pytest.approx([0.42 / DT] * (len(lasted) - 1), abs=1)
-
-
-def test_a_walk_can_be_begun_again_from_where_it_ended():
-    plan, _ = whole_walk(steps(3, 0.04))
-    assert (plan.feet[LEFT].x, plan.feet[RIGHT].x) == pytest.approx((0.12, 0.08))
-    plan.begin(velocity(0.03))
-    ticks(plan, 2.0)
-    assert plan.robot.x > 0.12
 
 
 @pytest.mark.parametrize("placement", [FootPose(0.04, -0.1, 0.0), FootPose(0.0, -0.12, -0.3)])
@@ -251,15 +237,12 @@ def test_a_foot_that_does_not_feel_the_ground_goes_down_and_is_waited_for():
     assert len(heights) * DT == pytest.approx(SETTINGS.latest, abs=2 * DT)
     assert min(heights) == pytest.approx(-SETTINGS.sink, abs=2e-3)
     assert plan.waited == 0.0
-
-
-def test_a_foot_that_lands_is_not_waited_for_any_longer():
     plan = late()
     for _ in range(3):
         tick(plan, landed=False)
     assert plan.support == RIGHT
     ticks(plan, 2 * DT)
-    assert plan.support == LEFT
+    assert plan.support == LEFT, "it has landed"
 
 
 def test_it_tells_where_the_robot_is_after_this_step_and_which_steps_follow():
@@ -276,16 +259,3 @@ def test_it_tells_where_the_robot_is_after_this_step_and_which_steps_follow():
         if plan.phase is Phase.STEP and plan.support != before:
             made.append(plan.step)
     assert made == expected
-
-
-def test_a_plan_lies_wherever_the_feet_stand():
-    """The same walk elsewhere and turned is the same walk."""
-    place = FootPose(1.0, -2.0, 2.3)
-    here = standing(com=(0.02, 0.0))
-    there = standing(com=place.moved(0.02, 0.0)[:2], feet={s: place.moved(0.0, s * 0.05) for s in SIDES})
-    for plan in (here, there):
-        plan.begin(velocity(0.03, 0.01, 0.1))
-    for _ in range(250):
-        one, other = tick(here), tick(there)
-        for a, b in [(one.com, other.com), (one.divergent, other.divergent), (one.pressure, other.pressure)]:
-            assert place.moved(*a)[:2] == pytest.approx(b, abs=1e-9)
