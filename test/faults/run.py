@@ -25,6 +25,7 @@ import time
 from collections import Counter, defaultdict
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -42,7 +43,7 @@ HANGS = 150.0
 MOST_TESTS = 300
 FIRST_FILES = 4
 # s that a test takes which must notice a fault twice.
-DOUBTFUL = 1.0
+DOUBTFUL = 0.03
 
 
 class DoesNotApply(Exception):
@@ -145,8 +146,8 @@ def load_reach(suite, renew=False):
     folder = SCRATCH / suite / "reach"
     kept = folder / "reach.pickle"
     if renew or not kept.exists():
-        kept.write_bytes(pickle.dumps(Reach(folder)))
-    return pickle.loads(kept.read_bytes())
+        kept.write_bytes(pickle.dumps(vars(Reach(folder))))
+    return SimpleNamespace(**pickle.loads(kept.read_bytes()))
 
 
 # --- faults -----------------------------------------------------------------------------------------------------------
@@ -306,7 +307,7 @@ def measured(fault, before, tree, reach, levels, seconds):
     for files_of in (first, {test.split("::")[0] for test in order} - first):
         tests = [test for test in order if test.split("::")[0] in files_of]
         while tests:
-            facts = ended(tree, tests, seconds * len(levels))
+            facts = ended(tree, tests, seconds * len(levels), before)
             if "ran" in facts:
                 ran += facts["ran"]
                 break
@@ -318,7 +319,7 @@ def measured(fault, before, tree, reach, levels, seconds):
     return {"survived": f"{ran} of {len(found)} tests that reach it"}
 
 
-def ended(tree, tests, seconds):
+def ended(tree, tests, seconds, changed=()):
     """How a run of these tests in a changed tree ended: with an error, a failing test, or `ran` as many as passed."""
     picks, result, log = (tree / ".ws" / name for name in ("picks.json", "result.json", "pytest.log"))
     result.unlink(missing_ok=True)
@@ -327,7 +328,10 @@ def ended(tree, tests, seconds):
     files = list(dict.fromkeys(test.split("::")[0] for test in tests))
     in_time = run_pytest(tree, ["-p", "no:cacheprovider", *files], log, limit + HANGS, FAULTS_PICKS=str(picks))
     if not result.exists():
-        return {"error": "the tests did not begin: " + "".join(log.read_text().splitlines(True)[-3:])}
+        said = log.read_text()
+        if any(file in said for file in changed):
+            return {"level": files[0].split("/")[1], "test": files[0], "why": "it cannot be imported"}
+        return {"error": "the tests did not begin: " + "".join(said.splitlines(True)[-3:])}
     facts = json.loads(result.read_text())
     killer = facts.get("killed") or facts.get("running")
     if not killer:
