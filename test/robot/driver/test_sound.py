@@ -299,7 +299,8 @@ def test_a_robot_that_says_nothing_for_two_minutes_is_given_up(robot, driver_rob
     clock, started = HandClock(), []
     speech = closing(Speech(driver_robot, clock, SpeechSettings))
     text = speech.say("a long story", on_start=lambda: started.append(clock.time))
-    soon(lambda: speech.report().message == "speaks" and robot.ALTextToSpeech.getLanguage())
+    soon(lambda: clock.waits)
+    assert speech.report().message == "speaks"
     clock.turn(0.9 * QUIET_LIMIT)
     soon(lambda: started or robot.ALMemory.raiseEvent("ALTextToSpeech/TextStarted", True))  # a sign of life
     waits = clock.waits
