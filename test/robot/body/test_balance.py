@@ -319,6 +319,13 @@ def test_changing_posture_is_no_fall(watched):
         assert states(one, 1.3) == [WATCHING]
 
 
+@pytest.mark.parametrize("side", SIDES)
+def test_one_that_is_knocked_off_its_feet_has_fallen_when_it_lies(watched, side):
+    one, (x, y) = watched("StandInit"), SIDES[side]
+    one.push((60.0 * x, 60.0 * y, 0.0), 0.15)
+    assert states(one, 3.0) == [WATCHING, FALLING, FALLEN]
+
+
 def test_one_that_gets_up_does_not_fall(watched):
     one = watched()
     one.robot.getting_up = True

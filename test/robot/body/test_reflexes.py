@@ -127,7 +127,7 @@ def test_a_breathing_robot_stays_on_its_feet_and_a_target_interrupts_the_breath_
     one.run(0.3)
     one.robot.reflexes.idle.set_breath(10.0, 0.8)
     one.robot.reflexes.idle.set_mode("Body", Mode.BREATH)
-    seen = one.watch(7.0)
+    seen = one.watch(6.5)
     elbows = [snapshot.positions[INDEX["LElbowRoll"]] for snapshot in seen]
     assert max(elbows) - min(elbows) > FIVE_DEGREES
     assert max(abs(angle) for snapshot in seen for angle in snapshot.imu.angles[:2]) < 0.02
@@ -135,7 +135,7 @@ def test_a_breathing_robot_stays_on_its_feet_and_a_target_interrupts_the_breath_
     one.aim(HeadYaw=0.5)
     one.run(0.55)
     assert one.joint("HeadYaw") == pytest.approx(0.5, abs=0.02)
-    one.run(4.0)
+    one.run(3.0)
     assert one.joint("HeadYaw") == pytest.approx(posture(one.model, "Stand")[INDEX["HeadYaw"]], abs=0.01)
 
 

@@ -143,6 +143,8 @@ def test_a_process_that_is_killed_or_hangs_is_started_again(caplog):
         assert np.array_equal(own.render(STATE, FRONT), before), "after a first picture nobody notices"
         assert warnings_of(caplog) == ["picture: the picture process ended with status -9; it is started again"]
         assert len({first, second, own.pid}) == 3
+        os.kill(own.pid, signal.SIGINT)  # Ctrl-C in the terminal goes to all processes in it
+        assert np.array_equal(own.render(STATE, FRONT), before) and len(warnings_of(caplog)) == 1
         os.kill(own.pid, signal.SIGSTOP)
         with pytest.raises(RenderError, match="no answer .* within 0.2 s"):
             own.render(STATE, FRONT, timeout=0.2)

@@ -9,6 +9,7 @@ import pytest
 
 from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim import balance, errors, fall_manager, settings
+from nao_sim_bridge.sim.child_process import error_text
 from nao_sim_bridge.sim.errors import BadValue, ConfigError, UnknownName
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.places import CIRCLE, NEAREST, ORIGIN, RobotPlace, checked_places, on_circle, parse_places
@@ -40,6 +41,14 @@ def test_errors_keep_their_facts_and_say_them():
     error = ConfigError("physics.json: motor", "missing 'gain'")
     assert (error.where, error.problem) == ("physics.json: motor", "missing 'gain'")
     assert str(error) == "physics.json: motor: missing 'gain'"
+
+
+def test_errors_of_ours_are_their_text_for_other_processes_and_others_tell_where_they_come_from():
+    assert error_text(errors.SimulationError("not this")) == "not this"
+    try:
+        raise ValueError("a slip")
+    except ValueError as error:
+        assert "Traceback" in error_text(error) and "a slip" in error_text(error)
 
 
 def test_values_of_megabytes_are_shortened():

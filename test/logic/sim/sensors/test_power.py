@@ -58,7 +58,7 @@ def test_lifting_draws_more_than_holding_lowering_and_limp_motors_nothing(motors
 
 def test_hot_motors_have_a_status_and_less_torque():
     assert [heat_status(celsius) for celsius in (20.0, 67.9, 68.0, 74.0, 80.0, 200.0)] == [0, 0, 1, 2, 3, 3]
-    assert heat_shares([30.0, HOT[0] + 1.0]) == ()
+    assert heat_shares([30.0, HOT[1] - 0.1]) == () != heat_shares([30.0, HOT[1]])
     *cold, very_hot, critical = heat_shares([30.0, *HOT])
     assert cold == [1.0, 1.0] and 0.0 < very_hot < 0.7 and critical == 0.0
 
@@ -76,6 +76,7 @@ def test_the_worst_devices_decide_on_the_status():
     assert found.status == (2, ("LKneePitch", "RKneePitch"))
     assert (found.severity, found.chains) == (1, ("LLeg", "RLeg"))
     assert [hot(RElbowRoll=celsius).severity for celsius in (68.0, 74.0, 80.0)] == [0, 1, 2]
+    assert hot(RElbowRoll=67.9) is NOTHING_HOT and hot(RElbowRoll=68.0).devices == {"RElbowRoll": 1}
     heads = [hot(head=celsius) for celsius in (94.9, 95.0, 105.0)]
     assert [found.status[0] for found in heads] == [0, 1, 3]
     assert all(found.chains == found.joints == () for found in heads), "no failure of a chain"
