@@ -7,6 +7,7 @@ import json
 import pytest
 
 from nao_library_modules.event_relay import EventRelay
+from nao_library_modules.memory_functions import parse_assignment
 from nao_library_msgs.msg import LedFunction
 from naoqi.errors import RobotError
 
@@ -83,6 +84,15 @@ def test_bad_arguments_stop_the_chain_before_it_begins(robot, lights):
         refusal = lights.refused(f("insertData", "Test/Key=1"), f(function, argument))
         assert refusal.startswith(f"function 2 ({function}): ") and text in refusal
     assert robot.ALMemory.getDataList("Test/Key") == []
+
+
+def test_assignments_hold_json_or_plain_text():
+    for text, key, value in (
+        ("Level=0.5", "Level", 0.5), ("Angles=[1, 2.5]", "Angles", [1, 2.5]), ("On=true", "On", True),
+        ("Word=hello there", "Word", "hello there"), ('Word="7"', "Word", "7"), ("Empty=", "Empty", ""),
+        ("Sum = a=b", "Sum", " a=b"),
+    ):  # fmt: skip
+        assert parse_assignment(text) == (key, value)
 
 
 class OneEvent:

@@ -75,11 +75,12 @@ def test_fades_take_their_time_all_lights_together(robot, lights, eyes):
     assert robot.led(BRAIN0) - before[0] == pytest.approx(0.04) and robot.led(BRAIN1) - before[1] == pytest.approx(0.2)
     (done,) = goal.finish().result.results
     assert done.elapsed.to_sec() == pytest.approx(1.0, abs=SLACK)
-    assert (robot.led(BRAIN0), robot.led(BRAIN1)) == pytest.approx((0.2, 1.0))
+    assert (robot.led(BRAIN0), robot.led(BRAIN1)) == pytest.approx((0.2, 1.0), abs=0.01)
     goal = lights.send(f("fadeRGB", lights=BOTH_EYES, i_values=[0, 0, 1, 0, 0, 0.5], duration=0.5))
     robot.advance(0.25)
     assert 0.0 < robot.led("Face/Led/Blue/Left/0Deg") < 0.6
     assert goal.finish().result.results[0].elapsed.to_sec() == pytest.approx(0.5, abs=SLACK)
+    robot.advance(0.05)
     assert eyes() == {(0, 0, 1), (0, 0, 0.5)}
     lights.succeed(f("fade", lights=["Brain0"], i_values=[0.9]), f("fadeRGB", lights=["FaceLeds"], str_param="#FF0000"))
     assert robot.led(BRAIN0) == pytest.approx(0.9) and eyes() == {(1, 0, 0)}, "without a duration at once"
@@ -94,6 +95,7 @@ def test_a_fade_through_colours_reaches_each_at_its_time(robot, lights, eyes):
     (later,) = eyes()
     assert later == pytest.approx((colour[0] - 0.25, colour[1] + 0.25, 0.0), abs=1e-3)
     goal.finish()
+    robot.advance(0.05)
     assert (goal.state, eyes()) == ("succeeded", {(0, 0, 1)})
     assert goal.result.results[0].elapsed.to_sec() == pytest.approx(4.0, abs=SLACK)
 

@@ -85,14 +85,12 @@ def test_a_walk_goes_anywhere_turns_and_answers_how_far_it_got(robot, motion, wa
 
 def test_places_on_the_way_a_gait_and_a_time(robot, motion, walked):
     gait = {"gait": ["MaxStepX", "StepHeight"], "gait_values": [0.02, 0.025]}
-    slow = motion.succeed(f("moveTo", values=[0.15, 0.0, 0.0, 0.25, 0.05, 0.5], **gait))
-    walked(0.25, 0.05, 0.5)
-    long = motion.succeed(walk(0.1, duration=9.0))
-    quick = motion.succeed(walk(0.1))
+    slow = motion.succeed(f("moveTo", values=[0.1, 0.0, 0.0, 0.2, 0.05, 0.4], **gait))
+    walked(0.2, 0.05, 0.4)
+    long = motion.succeed(walk(0.05, duration=6.0, gait=["StepHeight"], gait_values=[0.02]))
+    quick = motion.succeed(walk(0.05))
     times = [result.results[0].elapsed.to_sec() for result in (slow, long, quick)]
-    assert 8.5 < times[1] < 11.0 and times[2] < 6.0 and times[0] > 8.0
-    with_both = motion.succeed(walk(0.05, duration=6.0, gait=["MaxStepX"], gait_values=[0.02]))
-    assert with_both.results[0].elapsed.to_sec() > 5.5
+    assert times[0] > 6.5 and 5.5 < times[1] < 8.0 and times[2] < 5.0
 
 
 def test_targets_in_the_world_and_in_frames_of_tf(robot, motion, walked):
@@ -159,7 +157,7 @@ def test_head_and_arms_move_while_it_walks(robot, motion, way, angle, lights):
         f("getRobotVelocity"), f("stopMove"),
     )  # fmt: skip
     lights.succeed(LedFunction(function="fade", lights=["Brain0"], i_values=[0.0], duration=1.0))
-    assert goal.active and robot.led("Head/Led/Front/Right/1") == 0.0
+    assert goal.active and robot.led("Head/Led/Front/Right/1") < 0.02
     goal.finish()
     assert goal.state == "succeeded" and float(goal.result.results[4].values[0]) > 0.05 and way()[0] > 0.15
     assert angle("HeadYaw") == pytest.approx(0.3, abs=0.05) and angle("LShoulderPitch") == pytest.approx(0.5, abs=0.1)
