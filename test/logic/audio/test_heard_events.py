@@ -57,51 +57,27 @@ def test_a_head_that_looks_down_hears_what_is_level_above_itself():
     assert (sound.in_base.azimuth, sound.in_base.elevation) == pytest.approx((0.0, 0.0))
 
 
-def test_old_robots_tell_no_energy():
+def test_old_robots_tell_no_energy_and_what_is_no_located_sound_is_told():
     assert located_sound([[1, 2], [0.1, 0.2, 0.3], LEVEL, LEVEL]).energy == 0.0
+    for value in (None, [], [[1, 2], [0.1], LEVEL, LEVEL], [[1, 2], [0.1, 0.2, 0.3], LEVEL], "sound"):
+        with pytest.raises(ValueError, match="no sound that was located"):
+            located_sound(value)
 
 
-@pytest.mark.parametrize("value", [None, [], [[1, 2], [0.1], LEVEL, LEVEL], [[1, 2], [0.1, 0.2, 0.3], LEVEL], "sound"])
-def test_what_is_no_located_sound_is_told(value):
-    with pytest.raises(ValueError, match="no sound that was located"):
-        located_sound(value)
-
-
-@pytest.mark.parametrize(
-    "value, confidences",
-    [
-        ([[12, 1, 0.8, 5]], [0.8]),
-        ([[12, 0, 0.8, 5]], []),
-        ([[12, 0, 0.8, 5], [90, 1, 0.4, 9]], [0.4]),
-        ([12, 1, 0.7, 5], [0.7]),
-        ([], []),
-    ],
-)
-def test_only_the_begin_of_a_sound_counts(value, confidences):
-    assert begun_sounds(value) == confidences
-
-
-def test_what_are_no_detected_sounds_is_told():
+def test_only_the_begin_of_a_sound_counts():
+    two = [[12, 0, 0.8, 5], [90, 1, 0.4, 9]]
+    rows = [([[12, 1, 0.8, 5]], [0.8]), ([[12, 0, 0.8, 5]], []), (two, [0.4]), ([12, 1, 0.7, 5], [0.7]), ([], [])]
+    for value, confidences in rows:
+        assert begun_sounds(value) == confidences
     with pytest.raises(ValueError, match="no sounds that were detected"):
         begun_sounds([[1]])
 
 
-@pytest.mark.parametrize(
-    "value, words",
-    [
-        (["yes", 0.6, "no", 0.2], [("yes", 0.6), ("no", 0.2)]),
-        (["<...> stand up <...>", 0.5], [("stand up", 0.5)]),
-        ([], []),
-        (None, []),
-        (["", -3.0], []),
-        (["<...>", 0.0], []),
-    ],
-)
-def test_words_are_bare_and_a_reset_is_none(value, words):
-    assert recognised(value) == words
-
-
-@pytest.mark.parametrize("value", [["yes"], ["yes", "loud"], [3, 0.5], 7])
-def test_what_are_no_words_is_told(value):
-    with pytest.raises(ValueError, match="no words that were recognised"):
-        recognised(value)
+def test_words_are_bare_and_a_reset_is_none():
+    assert recognised(["yes", 0.6, "no", 0.2]) == [("yes", 0.6), ("no", 0.2)]
+    assert recognised(["<...> stand up <...>", 0.5]) == [("stand up", 0.5)]
+    for nothing in ([], None, ["", -3.0], ["<...>", 0.0]):
+        assert recognised(nothing) == []
+    for wrong in (["yes"], ["yes", "loud"], [3, 0.5], 7):
+        with pytest.raises(ValueError, match="no words that were recognised"):
+            recognised(wrong)

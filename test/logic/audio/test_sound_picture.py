@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
-import os
-import subprocess
 import sys
 from pathlib import Path
 
@@ -13,17 +12,7 @@ import pytest
 import soundfile
 from PIL import Image
 
-from nao_library_modules.dialogue_record import (
-    DOES,
-    HEARS,
-    PERSON,
-    ROBOT,
-    SAYS,
-    DialogueRecordError,
-    Turn,
-    load,
-    save,
-)
+from nao_library_modules.dialogue_record import DOES, HEARS, PERSON, ROBOT, SAYS, DialogueRecordError, Turn, load, save
 from nao_library_modules.sound_picture import (
     FILLS,
     GAP,
@@ -116,85 +105,62 @@ def test_words_stand_below_the_time_at_which_they_were_said():
     columns, _ = colored(picture, FILLS[ROBOT])
     edges = [(x - LEFT) / PANEL * 4.0 for x in (columns.min(), columns.max())]
     assert edges == pytest.approx([0.5, 3.5], abs=0.02)
+    late = draw(sound, RATE, [Turn(PERSON, SAYS, "Yes!", 4.5, 5.0)])  # after the recording
+    assert len(colored(late, FILLS[PERSON])[0]) == 0
 
 
-def test_words_from_after_the_recording_are_left_out():
-    late = [Turn(PERSON, SAYS, "Yes!", 4.5, 5.0)]
-    columns, _ = colored(draw(tone(500.0, 0.0, 4.0), RATE, late), FILLS[PERSON])
-    assert len(columns) == 0
+def test_silence_and_clicks_are_drawn_and_what_cannot_be_is_refused():
+    for frames in (1, 7, 300):
+        assert draw(np.zeros(frames), RATE).size == draw(np.ones(frames), RATE).size
+    for shape in ((0,), (0, 2), (100, 5), (100, 0)):
+        with pytest.raises(ValueError, match="1 to 4 channels"):
+            draw(np.zeros(shape), RATE)
 
 
-@pytest.mark.parametrize("shape", [(0,), (0, 2), (100, 5), (100, 0)])
-def test_what_cannot_be_drawn_is_refused(shape):
-    with pytest.raises(ValueError, match="1 to 4 channels"):
-        draw(np.zeros(shape), RATE)
-
-
-@pytest.mark.parametrize("frames", [1, 7, 300])
-def test_silence_and_clicks_are_drawn(frames):
-    assert draw(np.zeros(frames), RATE).size == draw(np.ones(frames), RATE).size
-
-
-def test_a_record_comes_back_as_it_was(tmp_path):
-    save(TURNS, tmp_path / "a.json")
-    assert load(tmp_path / "a.json") == TURNS
-
-
-@pytest.mark.parametrize(
-    "change, told",
-    [
+def test_a_record_comes_back_as_it_was_and_one_that_is_wrong_is_refused(tmp_path):
+    path = tmp_path / "a.json"
+    save(TURNS, path)
+    assert load(path) == TURNS
+    good = json.loads(path.read_text())
+    for change, told in [
         ({"who": "cat"}, "'cat' 'says'"),
         ({"what": "thinks"}, "'robot' 'thinks'"),
         ({"ended": 0.0}, "from 0.5 s to 0.0 s"),
         ({"began": float("nan")}, "from nan s"),
         ({"began": "soon"}, "soon"),
-    ],
-)
-def test_a_turn_that_cannot_be_is_refused(tmp_path, change, told):
-    path = tmp_path / "a.json"
-    save(TURNS, path)
-    content = json.loads(path.read_text())
-    content["turns"][0].update(change)
-    path.write_text(json.dumps(content))
-    with pytest.raises(DialogueRecordError, match=f"a.json: has a turn that is wrong: .*{told}"):
-        load(path)
+    ]:
+        first, *rest = good["turns"]
+        path.write_text(json.dumps({**good, "turns": [{**first, **change}, *rest]}))
+        with pytest.raises(DialogueRecordError, match=f"a.json: has a turn that is wrong: .*{told}"):
+            load(path)
+    for text, told in [("{", "cannot be read"), ("[]", "is no record"), ('{"format": "x"}', "is no")]:
+        path.write_text(text)
+        with pytest.raises(DialogueRecordError, match=f"a.json: {told}"):
+            load(path)
 
 
-@pytest.mark.parametrize("text, told", [("{", "cannot be read"), ("[]", "is no record"), ('{"format": "x"}', "is no")])
-def test_a_file_that_is_no_record_is_refused(tmp_path, text, told):
-    path = tmp_path / "a.json"
-    path.write_text(text)
-    with pytest.raises(DialogueRecordError, match=f"a.json: {told}"):
-        load(path)
-
-
-def run(*options):
-    command = [sys.executable, str(PACKAGE / "examples" / "plot_sound.py"), *map(str, options)]
-    environment = {**os.environ, "PYTHONPATH": str(PACKAGE / "src")}
-    return subprocess.run(command, env=environment, timeout=60.0, capture_output=True, text=True)
-
-
-def test_the_example_draws_a_file_with_words(tmp_path):
+def test_the_example_draws_a_file_with_words_or_tells_what_is_wrong(tmp_path, monkeypatch, capsys):
+    spec = importlib.util.spec_from_file_location("plot_sound", PACKAGE / "examples" / "plot_sound.py")
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
     sound, words, output = (tmp_path / name for name in ("a.wav", "a.json", "a.png"))
     soundfile.write(str(sound), np.stack([tone(500.0, 1.0, 2.0)] * 4, axis=1), RATE)
     save(TURNS, words)
-    done = run(sound, "--words", words, "--output", output)
-    assert done.returncode == 0, done.stdout + done.stderr
-    with Image.open(output) as picture:
-        assert picture.size[0] == WIDTH
-    assert output.stat().st_size < 150_000
-
-
-def test_the_example_tells_what_is_wrong(tmp_path):
-    sound, output = tmp_path / "a.wav", tmp_path / "a.png"
-    soundfile.write(str(sound), np.zeros((100, 1)), RATE)
     (tmp_path / "no.wav").write_text("nothing")
-    missing = tmp_path / "missing.json"
-    for options, told in (
+
+    def run(*options):
+        monkeypatch.setattr(sys, "argv", ["plot_sound.py", *map(str, options), "--output", str(output)])
+        return example.main(), capsys.readouterr().out
+
+    missing = [sound, "--words", tmp_path / "missing.json"]
+    for options, told in [
         ([tmp_path / "none.wav"], "none.wav"),
         ([tmp_path / "no.wav"], "no.wav"),
-        ([sound, "--words", missing], "missing.json: cannot be read"),
-    ):
-        done = run(*options, "--output", output)
-        assert (done.returncode, done.stderr) == (1, "") and told in done.stdout
-    assert not output.exists()
+        (missing, "cannot be read"),
+    ]:
+        status, printed = run(*options)
+        assert status == 1 and told in printed and not output.exists()
+    status, printed = run(sound, "--words", words)
+    assert status == 0 and "see " in printed and output.stat().st_size < 150_000
+    with Image.open(output) as picture:
+        assert picture.size[0] == WIDTH

@@ -51,14 +51,7 @@ def restored(robot, subscribers):
 
 
 @pytest.fixture(autouse=True)
-def nothing_is_left(robot, subscribers):
-    service = robot.ALSpeechRecognition
-    service.setAudioExpression(False)  # its bips would be heard
-    robot.ALSoundLocalization.setParameter("EnergyComputation", False)
-    yield
-    service.pause(False)
-    service.setAudioExpression(True)
-    for module in EXTRACTORS:
-        getattr(robot, module).setParameter("Sensitivity", 0.9)
-    robot.ALAudioDevice.setFileAsInput("")
-    robot.ALAudioDevice.disableEnergyComputation()
+def silent_listener(robot):
+    """The bips of a robot that listens would be heard; and its recogniser has been started."""
+    robot.ALSpeechRecognition.setAudioExpression(False)
+    robot.ALSpeechRecognition.setVocabulary(["theirs"], False)

@@ -46,9 +46,7 @@ class Motion:
 
 @pytest.fixture
 def speech(stiff_robot):
-    stiff_robot.ALAnimatedSpeech.setBodyLanguageModeFromStr("contextual")
-    yield stiff_robot.ALAnimatedSpeech
-    stiff_robot.ALTextToSpeech.stopAll()
+    return stiff_robot.ALAnimatedSpeech
 
 
 @pytest.fixture

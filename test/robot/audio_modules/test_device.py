@@ -22,13 +22,7 @@ BLOCK = 0.17
 @pytest.fixture
 def device(robot):
     robot.ALAudioDevice.setParameter("outputSampleRate", 48000)
-    yield robot.ALAudioDevice
-    robot.ALAudioDevice.openAudioOutputs()
-    robot.ALAudioDevice.openAudioInputs()
-    robot.ALAudioDevice.muteAudioOut(False)
-    robot.ALAudioDevice.setParameter("inputBufferSize", 8192)
-    robot.ALAudioDevice.disableEnergyComputation()
-    robot.ALAudioDevice.setFileAsInput("")
+    return robot.ALAudioDevice
 
 
 # --- loudspeakers -----------------------------------------------------------------------------------------------------

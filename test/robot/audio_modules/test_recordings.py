@@ -15,12 +15,7 @@ ALL, FRONT = [1, 1, 1, 1], [0, 0, 1, 0]
 
 @pytest.fixture
 def recorder(robot):
-    yield robot.ALAudioRecorder
-    try:
-        robot.ALAudioRecorder.stopMicrophonesRecording()
-    except RuntimeError:
-        pass  # it could not be completed, and the test has seen that
-    robot.ALAudioDevice.stopMicrophonesRecording()
+    return robot.ALAudioRecorder
 
 
 @pytest.mark.parametrize(

@@ -11,16 +11,8 @@ from nao_library_modules.audio_out import NaoAudioOutput
 
 
 @pytest.fixture(autouse=True)
-def as_at_the_start(robot):
+def full_volume(robot):
     robot.ALAudioDevice.setOutputVolume(100)
-    yield
-    robot.ALTextToSpeech.stopAll()
-    robot.ALTextToSpeech.setLanguage("English")
-    robot.ALTextToSpeech.reset()
-    robot.ALAudioPlayer.unloadAllFiles()
-    robot.ALAudioPlayer.setMasterVolume(1.0)
-    robot.ALAudioDevice.muteAudioOut(False)
-    robot.ALAnimatedSpeech.setBodyLanguageModeFromStr("contextual")
 
 
 @pytest.fixture

@@ -93,27 +93,6 @@ def test_a_text_ends_with_its_sound_and_words_are_told_when_they_sound(mouth, ca
     assert "says: One two." in caplog.text
 
 
-def test_texts_wait_for_their_turn(mouth):
-    tasks = [mouth.say(text) for text in ("One.", "Two.", "Three.")]
-    ends = [mouth.until(task) for task in tasks]
-    assert mouth.times("started")[1:] == pytest.approx(ends[:2], abs=0.02)
-    assert [clip.text for clip in mouth.values("sentence")] == ["One.", "Two.", "Three."]
-
-
-def test_a_kill_is_silence_at_once_and_the_next_text_begins(mouth):
-    first, second = mouth.say(LONG), mouth.say("Two.")
-    mouth.run(1.0)
-    killed = mouth.simulation.time
-    first.kill()
-    assert first.finished and first.killed
-    mouth.run(0.02)
-    assert mouth.times("stopped") == [killed]
-    assert mouth.times("started")[1] - killed < 0.02
-    mouth.until(second)
-    assert level(mouth.played(killed - 0.3, killed)) > 0.05
-    assert mouth.kinds()[-1] == "done"
-
-
 @pytest.mark.parametrize("way", ["stop_all", "reset"])
 def test_everything_can_be_stopped_those_that_wait_too(mouth, way):
     tasks = [mouth.say(text) for text in (LONG, "Two.", "Three.")]
@@ -126,12 +105,6 @@ def test_everything_can_be_stopped_those_that_wait_too(mouth, way):
     assert len(mouth.times("started")) == 1
     mouth.until(mouth.say("Three."))
     assert mouth.kinds()[-1] == "done"
-
-
-@pytest.mark.parametrize("text", ["", "   ", "..."])
-def test_nothing_to_say_takes_no_time(mouth, text):
-    assert mouth.until(mouth.say(text)) - mouth.simulation.time < 0.05
-    assert mouth.kinds()[0] == "enqueued" and mouth.kinds()[-1] == "done"
 
 
 def test_what_cannot_be_said_is_an_error_and_the_next_text_is_said(mouth, caplog):
@@ -167,14 +140,6 @@ def test_a_long_text_begins_at_once_and_is_made_a_little_ahead_only(bench, count
     said = mouth.kinds().count("sentence")
     assert 2 <= said <= 4 and said < counting.asked <= said + 2
     task.kill()
-
-
-def test_volume_is_that_of_the_loudspeakers(mouth):
-    levels = []
-    for volume in (1.0, 0.25):
-        began = mouth.simulation.time
-        levels.append(level(mouth.played(began, mouth.until(mouth.say("Away.", Style(NAO.voice, volume=volume))))))
-    assert levels[1] == pytest.approx(0.25 * levels[0], rel=0.01)
 
 
 def test_two_runs_are_equal_sample_by_sample(bench, engines):
