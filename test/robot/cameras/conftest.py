@@ -8,14 +8,7 @@ import pytest
 
 @pytest.fixture
 def video(robot):
-    device = robot.ALVideoDevice
-    yield device
-    for handle in device.getSubscribers():
-        device.unsubscribe(handle)
-    for camera in (0, 1):
-        device.resetCamera(camera)
-    device.setActiveCamera(0)
-    device.setSimCamInputSize(640, 480)
+    return robot.ALVideoDevice
 
 
 @pytest.fixture

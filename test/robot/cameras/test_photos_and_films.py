@@ -32,11 +32,7 @@ def photos(robot):
     assert found == [0, 2, 13, "jpg"]
     assert (photos.getCaptureInterval(), photos.isHalfPressed(), photos.isHalfPressEnabled()) == (200, False, False)
     photos.setResolution(0)  # quick to draw
-    yield photos
-    photos.setHalfPressEnabled(False)
-    for method, value in [("Resolution", 2), ("ColorSpace", 13), ("PictureFormat", "jpg"), ("CaptureInterval", 200)]:
-        photos.call(f"set{method}", value)
-    photos.setCameraID(0)
+    return photos
 
 
 @pytest.fixture
@@ -154,10 +150,7 @@ def films(robot):
     found = [films.getCameraID(), films.getResolution(), films.getColorSpace(), films.getFrameRate()]
     assert found == [0, 1, 13, 15] and films.getVideoFormat() == "MJPG" and not films.isRecording()
     films.setResolution(0)
-    yield films
-    films.stopRecording()
-    for method, value in [("ColorSpace", 13), ("VideoFormat", "MJPG"), ("FrameRate", 15), ("Resolution", 1)]:
-        films.call(f"set{method}", value)
+    return films
 
 
 def read(path):

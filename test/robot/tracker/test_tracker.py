@@ -70,10 +70,7 @@ def test_two_known_marks_tell_where_the_robot_is():
 
 @pytest.fixture
 def tracker(stiff_robot):
-    stiff_robot.ALTracker.initialize()
-    yield stiff_robot.ALTracker
-    stiff_robot.ALTracker.stopTracker()
-    stiff_robot.settled()
+    return stiff_robot.ALTracker
 
 
 def off(robot, place):

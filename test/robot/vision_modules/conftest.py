@@ -6,21 +6,12 @@ import json
 
 import pytest
 
-MODULES = ("RedBallDetection", "LandMarkDetection", "BarcodeReader", "FaceDetection", "MovementDetection")
 FACING = 3.14159
 
 
 @pytest.fixture
 def robot(stiff_robot):
-    yield stiff_robot
-    for module in MODULES:
-        service = getattr(stiff_robot, f"AL{module}")
-        for name, *_ in service.getSubscribersInfo():
-            service.unsubscribe(name)
-        if module != "RedBallDetection":
-            service.pause(False)
-    stiff_robot.ALLandMarkDetection.setActiveCamera(0)
-    stiff_robot.ALVideoDevice.setActiveCamera(0)
+    return stiff_robot
 
 
 @pytest.fixture

@@ -15,12 +15,8 @@ SOON = 0.7
 @pytest.fixture
 def faces(robot):
     faces = robot.ALFaceDetection
-    faces.clearDatabase()
     faces.subscribe("test")
-    yield faces
-    faces.clearDatabase()
-    faces.setRecognitionConfidenceThreshold(0.4)
-    faces.setRecognitionEnabled(True)
+    return faces
 
 
 @pytest.fixture
@@ -148,8 +144,7 @@ def test_what_faces_and_movement_cannot_be_is_refused_with_what_they_can(robot):
 def movement(robot):
     movement = robot.ALMovementDetection
     movement.subscribe("test")
-    yield movement
-    movement.setColorSensitivity(0.8)
+    return movement
 
 
 @pytest.fixture
