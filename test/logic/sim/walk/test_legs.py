@@ -14,7 +14,6 @@ from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, rp
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
-from nao_sim_bridge.sim.stance import StanceReader
 from nao_sim_bridge.sim.walk.body import WalkingBody
 from nao_sim_bridge.sim.walk.footsteps import middle
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT, SIDES, Sole
@@ -55,21 +54,6 @@ def test_a_leg_is_where_the_whole_robot_has_it_and_finds_back_to_its_angles(angl
     assert moment == pytest.approx(expected, abs=1e-6)
     found, off = LEGS.leg(side, hip, ankle, foot)
     assert found == pytest.approx(leg, abs=1e-6) and off == pytest.approx(0.0, abs=1e-6)
-
-
-@given(bodies())
-@settings(max_examples=20)
-def test_the_walking_body_has_centre_of_mass_feet_and_weight_of_the_robot(angles):
-    links = link_transforms(MODEL, angles)
-    com, legs = BODY.center_of_mass(BODY.upper_moment(angles), BODY.leg_pose(angles))
-    assert com == pytest.approx(StanceReader(MODEL).read(angles, 0.0, 0.0).com, abs=1e-6)
-    for side, (ankle, foot) in zip("LR", legs):
-        pose = links[f"{side}AnkleRoll"]
-        assert ankle == pytest.approx(pose[:3, 3], abs=1e-6) and foot == pytest.approx(pose[:3, :3].ravel(), abs=1e-6)
-    assert BODY.mass == pytest.approx(MODEL.total_mass)
-    lifted = list(angles)
-    lifted[MODEL.joint_index["LKneePitch"]] = 0.0
-    assert BODY.upper_moment(lifted) == BODY.upper_moment(angles), "legs are no part of what is above them"
 
 
 @given(bodies(), st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(-3.0, 3.0))

@@ -163,13 +163,6 @@ def test_a_walk_goes_through_its_phases_in_order():
     assert lasted == pytest.approx([start, 3 * 0.42, settle], abs=2 * DT)
 
 
-@pytest.mark.parametrize("placement", [FootPose(0.04, -0.1, 0.0), FootPose(0.0, -0.12, -0.3)])
-def test_feet_are_put_exactly_where_the_course_says(placement):
-    plan, _ = whole_walk(StepsCourse(SETTINGS, FeetGait(), [Placement(RIGHT, placement, 0.5)]))
-    assert plan.feet[RIGHT].seen_from(plan.feet[LEFT]) == pytest.approx(placement)
-    assert plan.feet[LEFT] == (0.0, 0.05, 0.0)
-
-
 def test_the_longer_a_step_the_longer_it_stands_on_both_feet():
     for period, in_air in [(0.42, 0.42 * (1.0 - SETTINGS.double_support_share)), (1.0, LONGEST_SWING)]:
         _, seen = whole_walk(steps(3, period=period))

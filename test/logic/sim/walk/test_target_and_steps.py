@@ -74,37 +74,6 @@ def test_it_takes_hardly_longer_than_it_must(walked, goal):
     assert least_steps(goal) <= len(walked(course(goal))) + 1 <= least_steps(goal) + 7
 
 
-@pytest.mark.parametrize("steps", [20, 40])
-def test_it_takes_its_time_when_it_has_time(walked, steps):
-    assert steps <= len(walked(course((0.2, 0.05, 0.3), steps=steps))) <= steps + 4
-
-
-def test_it_has_reached_its_goal_with_its_last_step_and_not_before(walked):
-    total = len(walked(course((0.2, 0.0, 0.0))))
-    one = course((0.2, 0.0, 0.0))
-    made = walked(one, total - 1)
-    assert not one.reached
-    walked(one, after=made[-1])
-    assert one.reached
-    there = course((0.0, 0.0, 0.0))
-    assert len(walked(there)) == 1 and there.reached, "where it is already it makes one step"
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_it_goes_through_the_points_before_the_last_one(walked, seed):
-    r = random.Random(seed)
-    points, here = [], FootPose(0.0, 0.0, 0.0)
-    for _ in range(3):
-        here = here.moved(r.uniform(-0.3, 0.3), r.uniform(-0.3, 0.3), r.uniform(-1.0, 1.0))
-        points.append(here)
-    robots = [m.robot for m in walked(course(*points))]
-    # Two steps before a point it may begin to go to the next one.
-    near = [[i for i, robot in enumerate(robots) if off(p, robot)[0] < 0.06 and off(p, robot)[1] < 0.7] for p in points]
-    assert all(near)
-    assert near[0][0] <= near[1][0]
-    assert off(points[-1], robots[-1])[0] < ARRIVED
-
-
 A, B, O = (0.1, 0.0, 0.0), (0.1, 0.1, 0.5), (0.0, 0.0, 0.0)  # noqa: E741
 
 
@@ -120,14 +89,6 @@ def test_no_point_on_the_way_is_the_end(walked, points):
         one.frame = FootPose(r.uniform(-0.003, 0.003), r.uniform(-0.003, 0.003), r.uniform(-0.005, 0.005))
     assert one.reached
     assert off(points[-1], made.robot)[0] < 2.0 * ARRIVED
-
-
-@pytest.mark.parametrize("rate", [(0.04, 0.0, 0.0), (-0.03, 0.0, 0.1), (0.0, 0.02, -0.2)])
-def test_a_walking_robot_turns_to_a_goal_without_a_jerk(walked, rate):
-    one = course((-0.1, -0.1, 0.0), rate=rate)
-    made = walked(one, 1)
-    assert all(abs(b - a) <= most + ROUNDING for a, b, most in zip(rate, one.rate, SETTINGS.change))
-    assert off((-0.1, -0.1, 0.0), walked(one, after=made[-1])[-1].robot)[0] < ARRIVED
 
 
 @pytest.mark.parametrize("goal, side", [((1.0, 0.0, 0.0), LEFT), ((1.0, -0.1, 0.0), RIGHT), ((0.0, 0.0, -1.0), RIGHT)])

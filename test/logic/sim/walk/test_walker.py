@@ -169,6 +169,21 @@ def test_a_body_that_leans_is_shifted_back_until_that_is_a_habit_and_far_off_it_
     assert -sign * feedback.shift[axis] == pytest.approx(SETTINGS.shift_limit, rel=0.01)
 
 
+def test_errors_are_ahead_and_aside_of_the_foot_that_carries_however_the_robot_stands():
+    turned, still = (Ideal(course=velocity(0.0, 0.0, 0.3)) for _ in range(2))
+    for one in (turned, still):
+        one.ticks(400)
+    turned.leaning = (0.0, 0.05)
+    for one in (turned, still):
+        one.ticks(20)
+    off = [a - b for a, b in zip(turned.walker.feedback.error, still.walker.feedback.error)]
+    shift = [a - b for a, b in zip(turned.walker.feedback.shift, still.walker.feedback.shift)]
+    heading = turned.plan.feet[turned.plan.support].yaw
+    assert off == pytest.approx((0.014, 0.0), abs=0.002)
+    back = -SETTINGS.shift_gain * off[0]
+    assert shift == pytest.approx((back * math.cos(heading), back * math.sin(heading)), abs=5e-4)
+
+
 def test_a_body_that_turns_is_held_by_the_ankles_that_carry():
     robot, still = Ideal(course=velocity(0.03, 0.0, 0.0)), Ideal(course=velocity(0.03, 0.0, 0.0))
     for one in (robot, still):
