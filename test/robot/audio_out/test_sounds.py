@@ -24,6 +24,7 @@ def f(function, text="", **fields):
 def files(robot):
     write(robot, "tone.wav", tone(440.0, LENGTH))
     write(robot, "short.wav", tone(440.0, 0.3))
+    write(robot, "long.wav", tone(440.0, 4.0))
 
 
 @pytest.fixture
@@ -124,13 +125,13 @@ def test_a_chain_that_fails_silences_what_it_left_in_the_background_and_nothing_
 
 def test_a_goal_that_is_cancelled_silences_its_sounds_of_the_background_as_well(robot, audio):
     begun = robot.now.time
-    goal = audio.send(
-        f("playFileInLoop", "short.wav", volume=0.5), f("playFile", "tone.wav"), f("playFile", "short.wav")
-    )
+    chain = f("playFileInLoop", "short.wav", volume=0.5), f("playFile", "long.wav"), f("playFile", "short.wav")
+    goal = audio.send(*chain)
+    robot.advance_until(lambda: goal.feedback and goal.feedback[-1].index == 1, 5.0)
     robot.advance(0.4)
     goal.cancel()
     assert (goal.state, goal.text) == ("preempted", "preempted in function 2 (playFile)")
-    assert goal.result.files == ["short.wav", "tone.wav"] and 0.15 < goal.result.durations[1] < 0.9
+    assert goal.result.files == ["short.wav", "long.wav"] and 0.3 < goal.result.durations[1] < 3.0
     assert loudness(played(robot, begun + 0.1)) > 0.1 and silent_after(robot, robot.now.time)
 
 
@@ -154,9 +155,10 @@ def test_only_files_that_were_played_are_in_the_result_and_one_that_is_not_there
 def test_waiting_for_silence_lasts_as_long_as_the_background_and_tells_of_a_sound_that_failed(
     robot, audio, monkeypatch
 ):
+    begun = robot.now.time
     result = audio.succeed(f("playFile", "tone.wav", background=True), f("waitUntilSilent"), f("waitUntilSilent"))
-    assert [each.elapsed.to_sec() for each in result.results] == pytest.approx([0.0, 1.0, 0.0], abs=0.15)
-    assert result.durations == [0.0]
+    assert robot.now.time - begun == pytest.approx(LENGTH, abs=0.1) and result.durations == [0.0]
+    assert result.results[2].elapsed.to_sec() < 0.05
     monkeypatch.setenv("no_proxy", "127.0.0.1")
     with socket.create_server(("127.0.0.1", 0)) as radio:
         address = f"http://127.0.0.1:{radio.getsockname()[1]}/a.ogg"
@@ -168,26 +170,29 @@ def test_waiting_for_silence_lasts_as_long_as_the_background_and_tells_of_a_soun
 
 
 def test_a_loaded_sound_is_played_paused_and_moved(audio):
-    third = Duration.from_sec(0.3)
+    wait = Duration.from_sec(0.3)
     result = audio.succeed(
-        f("loadFile", "tone.wav"),
-        f("getFileLength", "tone.wav"),
-        f("goTo", "tone.wav", position=0.6),
-        f("getCurrentPosition", "tone.wav"),
-        f("play", "tone.wav", volume=0.5),
-        f("play", "tone.wav", background=True, time=third),
-        f("pause", "tone.wav", time=third),
-        f("play", "tone.wav"),
-        f("playInLoop", "tone.wav", duration=1.5),
+        f("loadFile", "long.wav"),
+        f("getFileLength", "long.wav"),
+        f("goTo", "long.wav", position=3.6),
+        f("getCurrentPosition", "long.wav"),
+        f("play", "long.wav", volume=0.5),
+        f("play", "long.wav", background=True, time=wait),
+        f("pause", "long.wav", time=wait),
+        f("getCurrentPosition", "long.wav", time=wait),
+        f("getCurrentPosition", "long.wav"),
+        f("play", "long.wav", duration=0.2),
+        f("playInLoop", "long.wav", duration=4.5),
         f("getLoadedFilesNames"),
-        f("unloadFile", "tone.wav"),
+        f("unloadFile", "long.wav"),
         f("getLoadedFilesIds"),
     )
-    number, length, position, *names = result.memList
-    assert int(number) > 0 and (float(length), float(position), names) == (1.0, 0.6, ["tone.wav"])
+    number, length, position, paused, still, *names = result.memList
+    assert int(number) > 0 and (float(length), float(position), names) == (4.0, 3.6, ["long.wav"])
+    assert 0.3 <= float(paused) < 4.0 and paused == still
     elapsed = [each.elapsed.to_sec() for each in result.results]
-    assert (elapsed[4], elapsed[8]) == pytest.approx((0.4, 1.5), abs=0.06) and 0.5 < elapsed[7] < 0.75
-    assert result.files == ["tone.wav"] * 4
+    assert (elapsed[4], elapsed[9], elapsed[10]) == pytest.approx((0.4, 0.2, 4.5), abs=0.06)
+    assert result.files == ["long.wav"] * 4
 
 
 def test_loaded_sounds_go_by_name_by_id_or_by_being_the_last(robot, audio):
