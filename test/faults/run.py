@@ -137,8 +137,13 @@ def record_reach(suite, source, levels, jobs):
     for level in levels:
         several = ["-n", str(jobs), "--dist", "loadfile"] if jobs > 1 and level != "ros" else []
         print(f"running {level} once to see what each test reaches...", flush=True)
-        run_pytest(tree, [f"test/{level}", *several], folder / f"{level}.log", FAULTS_REACH=str(folder))
+        patient = ["-o", "timeout=600"] if "timeout =" in (tree / "pyproject.toml").read_text() else []
+        run_pytest(tree, [f"test/{level}", *several, *patient], folder / f"{level}.log", FAULTS_REACH=str(folder))
         print("  " + (folder / f"{level}.log").read_text().strip().splitlines()[-1])
+    for path in folder.glob("tests-*.txt"):
+        for line in path.read_text().splitlines():
+            if line.split("\t")[1] == "failed":
+                print(f"  failed, and is left out: {line.split(chr(9))[0]}")
     return load_reach(suite, renew=True)
 
 
