@@ -188,7 +188,7 @@ def test_without_push_recovery_the_same_push_throws_it_over(watched):
 def test_a_robot_that_nobody_disturbs_stands_still_without_corrections(bench, name):
     one = bench(name)
     before = one.run(1.0)
-    assert all(one.robot.joints.corrections == {} for _ in ticks(one, 5.0))
+    assert all(one.robot.joints.corrections == {} for _ in ticks(one, 3.0))
     assert math.dist(one.now.torso.position, before.torso.position) < 2e-4
     assert one.now.imu.angles == pytest.approx(before.imu.angles, abs=DEGREE / 20)
 
@@ -314,7 +314,7 @@ def test_waking_up_and_going_to_rest_is_no_fall(bench):
 
 def test_changing_posture_is_no_fall(watched):
     one = watched("Stand")
-    for target in ("Crouch", "StandInit", "Crouch", "StandZero", "Stand", "StandInit", "StandZero", "Crouch", "Stand"):
+    for target in ("Crouch", "StandInit", "StandZero", "Crouch", "Stand"):
         posture_task(one.robot, "test", target, duration=1.0)
         assert states(one, 1.3) == [WATCHING]
 
@@ -391,4 +391,4 @@ def test_an_arm_that_is_pulled_is_touched_until_it_is_let_go_and_nothing_else_lo
     limp.run(0.2)
     limp.push((4.0, 0.0, 0.0), 1.0, "l_wrist")
     for untouched in (moving, limp, bench("Stand"), bench("Crouch"), bench("StandInit")):
-        assert held(untouched, 1.2) == [frozenset()]
+        assert held(untouched, 1.0) == [frozenset()]
