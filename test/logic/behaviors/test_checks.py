@@ -55,12 +55,9 @@ def test_boxes_are_unfolded_with_their_own_values_and_rounds_have_numbers(progra
 @pytest.mark.parametrize(
     "step, told",
     [
-        ("{NaoLight.on: {}}", "did you mean 'NaoLights'"),
-        ("{NaoBehavior.runBehavior: {}}", "would end itself"),
-        ("{NaoLights.on: {light: []}}", "did you mean 'lights'"),
-        ("{NaoLights.on: {time: -1}}", "0 s or more"),
-        ("{NaoLights.onn: {}}", "did you mean 'on'"),
-        ("{NaoLights.on: {on_error: mabye}}", "on_error"),
+        ("{NaoLight.on: {}}", "did you mean 'NaoLights'"), ("{NaoBehavior.runBehavior: {}}", "would end itself"),
+        ("{NaoLights.on: {light: []}}", "did you mean 'lights'"), ("{NaoLights.on: {time: -1}}", "0 s or more"),
+        ("{NaoLights.onn: {}}", "did you mean 'on'"), ("{NaoLights.on: {on_error: mabye}}", "on_error"),
         ("{nao_audio_out.say: {}}", "the text to say"),
         ("{chain: {NaoLights: [{function: listLEDs}, {function: onn}]}}", "function 2 (onn)"),
         ("{chain: {NaoLights: [{function: listLEDs}, {function: 'on', light: a}]}}", "function 2.light"),
@@ -68,14 +65,13 @@ def test_boxes_are_unfolded_with_their_own_values_and_rounds_have_numbers(progra
         ("{behavior: bow, parameters: {deepth: 1}}", "did you mean 'depth'"),
         ("{behavior: bow, parameters: {depth: 2}}", "0 to 1"),
         ("{behavior: bow, parameters: {depth: deep}}", "is no number"),
-        ("{repeat: 1.5, do: [{wait: 1}]}", "whole number"),
-        ("{repeat: 100000, do: [{wait: 1}]}", "whole number"),
+        ("{repeat: 1.5, do: [{wait: 1}]}", "whole number"), ("{repeat: 100000, do: [{wait: 1}]}", "whole number"),
         ("{repeat: 3, as: i, do: [{wait: '${2 - i}'}]}", "${2 - i} is -1"),
         ("{repeat: 2000, do: [{repeat: 2000, do: [{nothing.x: {}}]}]}", "there is no server 'nothing'"),
         ("{parallel: [{NaoLights.on: {lights: [A]}}, [{wait: 1}, {NaoLights.off: {lights: [A]}}]]}", "both need"),
         ("{parallel: [{behavior: bow}, {behavior: bow}]}", "1.1 and 1.2 both need NaoMotion"),
     ],
-)
+)  # fmt: skip
 def test_what_cannot_run_is_refused(step, told, library, tables):
     with pytest.raises(BehaviorError) as caught:
         check(read(f"help: x\ndo: [{step}]\n", "test"), library, None, tables)
@@ -111,27 +107,22 @@ def test_steps_of_all_servers_are_checked_without_a_master(monkeypatch, name):
     assert "getData" in FunctionTables().functions(server_of(name))
 
 
-# --- what is told before a run ----------------------------------------------------------------------------------------
-
 CHAIN = ", ".join(f"{{wait: 0.5, at: s{i}.end, label: s{i + 1}}}" for i in range(1000))
 
 
 @pytest.mark.parametrize(
     "steps, seconds",
     [
-        ("- {wait: 1}\n- {wait: 0.5}", 1.5),
-        ("- {NaoLights.on: {lights: [FaceLeds], time: 2}}\n- {wait: 0.5}", 2.5),
-        ("- parallel: [{wait: 1}, [{wait: 1}, {wait: 2}]]", 3.0),
-        ("- {repeat: 4, do: [{wait: 0.5}]}", 2.0),
-        ("- {repeat: 0, do: [{wait: 0.5}]}", 0.0),
-        ("- {wait: 10, for: 3}", 3.0),
+        ("- {wait: 1}\n- {wait: 0.5}", 1.5), ("- {NaoLights.on: {lights: [FaceLeds], time: 2}}\n- {wait: 0.5}", 2.5),
+        ("- parallel: [{wait: 1}, [{wait: 1}, {wait: 2}]]", 3.0), ("- {repeat: 4, do: [{wait: 0.5}]}", 2.0),
+        ("- {repeat: 0, do: [{wait: 0.5}]}", 0.0), ("- {wait: 10, for: 3}", 3.0),
         ("- timeline: [{wait: 1, at: 0.5, label: a}, {wait: 1, at: a.end + 0.25}, {wait: 0.5, at: a}]", 2.75),
         ("- timeline: [{wait: 1, at: b}, {wait: 2, at: 3, label: b}]", 5.0),
         ("- timeline: [{wait: 1, at: 2}, {barrier: all}, {wait: 0.5, at: all + 1}]", 4.5),
         (f"- timeline: [{{wait: 1, at: 0, label: s0}}, {CHAIN}]", 501.0),
     ],
     ids=lambda value: str(value)[:40],
-)
+)  # fmt: skip
 def test_how_long_the_waits_are(program, steps, seconds):
     assert waits_of(program(steps)) == pytest.approx(seconds)
 

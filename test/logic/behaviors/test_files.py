@@ -87,9 +87,6 @@ def told_of(text):
     return caught.value.problems
 
 
-# --- read -------------------------------------------------------------------------------------------------------------
-
-
 def test_everything_that_a_file_may_hold_is_read():
     behavior = read(EVERYTHING, "hello")
     assert (behavior.name, behavior.help, behavior.tags) == ("hello", "Waves and says hello.", ("greeting",))
@@ -110,16 +107,11 @@ def test_everything_that_a_file_may_hold_is_read():
 
 
 HEADS = [
-    ("", "no mapping"),
-    ("- a", "no mapping"),
-    ("help: a\nhelp: b", "'help' comes twice"),
-    ("help: [a", "no YAML"),
-    ("help: x\nsteps: []", "unknown key 'steps'"),
-    ("do: [{wait: 1}]", "help: a line is needed"),
-    ("help: x", "do: a list of steps"),
-    ("help: x\ndo: []", "at least one"),
+    ("", "no mapping"), ("- a", "no mapping"), ("help: a\nhelp: b", "'help' comes twice"), ("help: [a", "no YAML"),
+    ("help: x\nsteps: []", "unknown key 'steps'"), ("do: [{wait: 1}]", "help: a line is needed"),
+    ("help: x", "do: a list of steps"), ("help: x\ndo: []", "at least one"),
     ("help: x\ntags: a\ndo: [{wait: 1}]", "tags"),
-]
+]  # fmt: skip
 PARAMETERS = [
     ("a: 1", "{default: ..., help: ...}"),
     ("a: {default: 1}", "field help"),
@@ -138,45 +130,31 @@ PARAMETERS = [
     ("a: {default: b, help: x, choices: [c]}", "'b' is not allowed"),
 ]  # fmt: skip
 STEPS = [
-    ("{wait: -1}", "0 or more"),
-    ("{wait: .nan}", "0 or more"),
-    ("{wait: true}", "0 or more"),
-    ("{wait: '${n}'}", "no parameter 'n'"),
-    ("{wait: 1, at: 2}", "for entries of a timeline"),
-    ("{wait: 1, on_eror: skip}", "did you mean 'on_error'"),
-    ("{wait: 1, on_error: maybe}", "field on_error"),
-    ("{wait: 1, NaoLights.on: {}}", "several things at once"),
-    ("{label: x}", "does not say what to do"),
-    ("{paralel: []}", "did you mean 'parallel'"),
-    ("4", "a mapping with one of"),
-    ("[]", "the sequence is empty"),
-    ("{parallel: []}", "at least one"),
-    ("{A.b.c: {}}", "SERVER.FUNCTION"),
-    ("{NaoLights.on: [1]}", "{FIELD: VALUE, ...}"),
-    ("{NaoLights.on: {function: off}}", "the key names it already"),
-    ("{chain: {A: [], B: []}}", "field chain"),
-    ("{chain: {A: [{lights: []}]}}", "function 1 has no name"),
-    ("{behavior: 3}", "name of a behavior"),
-    ("{behavior: bow, parameters: [1]}", "{NAME: VALUE, ...}"),
+    ("{wait: -1}", "0 or more"), ("{wait: .nan}", "0 or more"), ("{wait: true}", "0 or more"),
+    ("{wait: '${n}'}", "no parameter 'n'"), ("{wait: 1, at: 2}", "for entries of a timeline"),
+    ("{wait: 1, on_eror: skip}", "did you mean 'on_error'"), ("{wait: 1, on_error: maybe}", "field on_error"),
+    ("{wait: 1, NaoLights.on: {}}", "several things at once"), ("{label: x}", "does not say what to do"),
+    ("{paralel: []}", "did you mean 'parallel'"), ("4", "a mapping with one of"), ("[]", "the sequence is empty"),
+    ("{parallel: []}", "at least one"), ("{A.b.c: {}}", "SERVER.FUNCTION"),
+    ("{NaoLights.on: [1]}", "{FIELD: VALUE, ...}"), ("{NaoLights.on: {function: off}}", "the key names it already"),
+    ("{chain: {A: [], B: []}}", "field chain"), ("{chain: {A: [{lights: []}]}}", "function 1 has no name"),
+    ("{behavior: 3}", "name of a behavior"), ("{behavior: bow, parameters: [1]}", "{NAME: VALUE, ...}"),
     ("{repeat: 3}", "field do"),
     ("{repeat: 2, as: i, do: [{repeat: 2, as: i, do: [{wait: 1}]}]}", "there is a 'i' already"),
     ("{repeat: 2, as: i, do: [{wait: 1}]}, {wait: '${i}'}", "no parameter 'i'"),
-    ("{repeat: 2, as: [], do: [{wait: 1}]}", "field as"),
-    ("{repeat: 2, as: 0, do: [{wait: 1}]}", "field as"),
+    ("{repeat: 2, as: [], do: [{wait: 1}]}", "field as"), ("{repeat: 2, as: 0, do: [{wait: 1}]}", "field as"),
     ("{repeat: 2, as: null, do: [{wait: 1}]}", "field as"),
     ("{wait: 1, label: a}, {wait: 1, label: a}", "the label 'a' is taken by step 1"),
-    ("{timeline: [{wait: 1, at: b}]}", "no label 'b'"),
-    ("{timeline: [{wait: 1, at: a - 1, label: a}]}", "field at"),
+    ("{timeline: [{wait: 1, at: b}]}", "no label 'b'"), ("{timeline: [{wait: 1, at: a - 1, label: a}]}", "field at"),
     ("{timeline: [{wait: 1, at: a, label: a}]}", "wait for each other"),
     ("{timeline: [{barrier: a}, {wait: 1}]}", "nothing is above"),
     ("{timeline: [{wait: 1, at: b}, {barrier: b}]}", "wait for each other"),
     ("{timeline: [{wait: 1}, {barrier: 1}]}", "a name: letters"),
     ("{timeline: [{wait: 1}, {barrier: b}, {barrier: b}]}", "is there already on this timeline"),
-    ("{barrier: b}", "stands on a timeline"),
-    ("{parallel: [[{barrier: b}], [{wait: 1}]]}", "only one branch"),
+    ("{barrier: b}", "stands on a timeline"), ("{parallel: [[{barrier: b}], [{wait: 1}]]}", "only one branch"),
     ("{parallel: [[{repeat: 2, do: [{barrier: b}]}], [{barrier: b}]]}", "in no repetition"),
     ("{parallel: [[{barrier: a}, {barrier: b}], [{barrier: b}, {barrier: a}]]}", "in circles"),
-]
+]  # fmt: skip
 WRONG = [
     *HEADS,
     *((f"help: x\nparameters: {{{each}}}\ndo: [{{wait: 1}}]", told) for each, told in PARAMETERS),
@@ -199,8 +177,6 @@ def test_a_few_lines_cannot_stand_for_endless_values():
     assert "values" in str(told_of("a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n" + "".join(doubled))[0])
     assert "levels" in str(told_of("[" * 60 + "]" * 60)[0])
 
-
-# --- values and messages ----------------------------------------------------------------------------------------------
 
 MOMENTS = {"time": genpy.Time, "duration": genpy.Duration}
 VALUES = {"n": 3, "x": 0.5, "text": "hi", "flag": True, "names": ["a", "b"]}
@@ -296,9 +272,6 @@ def test_messages_come_back_through_a_file(server):
     comes_back()
 
 
-# --- kept -------------------------------------------------------------------------------------------------------------
-
-
 @pytest.fixture
 def store(tmp_path):
     shipped = tmp_path / "shipped"
@@ -362,8 +335,6 @@ def test_broken_files_are_told_and_do_not_hide_the_others(store, tmp_path):
         BehaviorStore(tmp_path / "file", tmp_path).save("a", WAITS)
 
 
-# --- recorded ---------------------------------------------------------------------------------------------------------
-
 RED = NaoLedGoal([LedFunction(function="setColor", lights=["FaceLeds"], str_param="${red}")])
 ODD = NaoLedGoal([LedFunction(function="no name")])
 MOVE = NaoMotionGoal(
@@ -417,9 +388,6 @@ def test_what_cannot_be_stored_is_left_out_and_other_servers_do_not_count():
     assert len(entries) == 1 and "NaoMotion at 0.500 s" in left and "setAngles" in left
     with pytest.raises(BadGoal, match="nothing was sent"):
         recorded(("NaoLights", RED, 1.0), servers=["NaoMotion"])
-
-
-# --- shown, shipped, damaged ------------------------------------------------------------------------------------------
 
 
 def test_what_the_guide_shows_and_what_comes_with_the_library_can_be_run(tmp_path, tables):

@@ -19,8 +19,6 @@ from nao_library_modules.errors import RobotLost
 from nao_library_modules.interrupt import Interrupt
 from nao_library_modules.process_modules.failures import ActionlibActionTimedOut, PlanFailure
 
-# --- order and times --------------------------------------------------------------------------------------------------
-
 
 def test_a_list_is_a_sequence_and_what_happens_is_told_in_order(start, clients):
     run = start("- {label: eyes, NaoLights.x: {str_param: hold 1}}\n- NaoMotion.x: {str_param: b}\n- [{wait: 0}]")
@@ -128,9 +126,6 @@ def test_rounds_are_told_apart(start, clients):
     assert list(run.ended()) == ["1", "1#1.1", "1#2.1", "2"] and clients.texts() == ["round 1", "round 2"]
 
 
-# --- failures and limits ----------------------------------------------------------------------------------------------
-
-
 def test_a_failure_ends_the_others_and_the_behaviour(start, clients):
     branches = "[{NaoLights.x: {str_param: hold a}}, [{NaoMotion.x: {str_param: hold b}}, {wait: 1}]]"
     run = start(f"- parallel: {branches}\n- {{wait: 1}}")
@@ -189,9 +184,6 @@ def test_a_limit_ends_a_step_as_if_it_were_done(start, clients, clock):
     assert (run.error, records["1"].ended, records["2"].ended) == (None, 2.0, 3.0) and not clients.running()
 
 
-# --- ends -------------------------------------------------------------------------------------------------------------
-
-
 def test_an_interrupt_ends_all_goals_and_one_that_came_before_lets_nothing_begin(start, clients, program):
     goals = ", ".join(f"{{{server}.x: {{str_param: hold}}}}" for server in NAMES[:3])
     run = start(f"- parallel: [{goals}]\n- {{wait: 1}}")
@@ -232,9 +224,6 @@ def test_what_a_server_tells_meanwhile_is_passed_on(start, clients):
     run.ended()
     told = [event.text for event in run.events if event.state == "told"]
     assert told == ["waits for the robot at 10.0.0.7:9559", "function 2 of 2: on"]
-
-
-# --- rounds that did not run ------------------------------------------------------------------------------------------
 
 
 def test_rounds_behind_an_end_and_a_failure_are_not_run(start, clients, texts):
@@ -293,9 +282,6 @@ def test_rounds_of_what_was_skipped_are_listed_where_the_behaviour_goes_on(start
         "1": "skipped", "1#1.1": "failed", "1#2.1": "not run", "1#3.1": "not run", "2": "ended", "2.1": "skipped",
         "2.1.1": "failed", "2.1.2": "not run", "2.1.2#1.1": "not run",
     }  # fmt: skip
-
-
-# --- random behaviours ------------------------------------------------------------------------------------------------
 
 
 @st.composite

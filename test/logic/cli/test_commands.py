@@ -88,9 +88,6 @@ def test_several_functions_are_one_goal(run, graph, sent):
     assert [message.function for message in sent.goals[0][1]] == ["on", "off", "listGroups"]
 
 
-# --- exit status and JSON ---------------------------------------------------------------------------------------------
-
-
 def test_a_goal_that_fails_is_status_1_and_3_where_the_robot_is_gone(run, graph, sent):
     there = graph()
     sent.end = (ABORTED, "function 1 (setColor): no such light")
@@ -98,7 +95,8 @@ def test_a_goal_that_fails_is_status_1_and_3_where_the_robot_is_gone(run, graph,
     assert (result.exit_code, result.stderr) == (1, "Error: function 1 (setColor): no such light\n")
     document = json.loads(run("--json", "say", "hello").stdout)
     assert (document["server"], document["state"], document["text"]) == ("nao_audio_out", "aborted", sent.end[1])
-    there.connected, sent.end = False, (ABORTED, "NAOqi at 10.0.0.7:9559: not reached")
+    sent.end = (ABORTED, "NAOqi at 10.0.0.7:9559: not reached")
+    sent.fill = lambda result: setattr(there, "connected", False)  # it goes away meanwhile
     result = run("leds", "Brain0", "green", "--json")
     assert result.exit_code == 3 and json.loads(result.stdout)["state"] == "aborted", "one document"
     del there.servers["/NaoMotion"]
@@ -172,9 +170,6 @@ def test_mistakes_in_the_command_are_status_2(run, graph, sent, line, complaint)
     assert result.exit_code == 2 and complaint in result.stderr and result.stdout == "" and not sent.goals
 
 
-# --- asking -----------------------------------------------------------------------------------------------------------
-
-
 def test_servers_and_functions_are_listed_and_explained(run, graph):
     graph()
     assert "NaoLights " in run("list").stdout
@@ -215,9 +210,6 @@ def test_the_robot_is_the_only_one_or_the_one_that_is_chosen(run, graph, sent, m
     assert run("say", "hello", "-n", "nao3").exit_code == 3
     monkeypatch.setenv("ROS_NAMESPACE", "nao1")
     assert run("say", "hello").exit_code == 0 and sent.goals[-1][0] == "/nao1/nao_audio_out"
-
-
-# --- behaviours -------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -280,9 +272,6 @@ def test_a_check_with_values_or_of_a_file_tells_what_would_be_done_or_fails(run,
     assert "cannot be read" in run("check", str(tmp_path / "none.yaml")).stderr
 
 
-# --- chains as they are typed -----------------------------------------------------------------------------------------
-
-
 def test_functions_have_fields_and_a_comma_or_then_between_them():
     (function,) = read_chain(["setColor", "lights:=FaceLeds,EarLeds", "str_param:=a:=b"])
     assert (function.name, function.fields) == ("setColor", {"lights": "FaceLeds,EarLeds", "str_param": "a:=b"})
@@ -339,9 +328,6 @@ def test_values_of_another_type_are_refused(kind, text, complaint):
         read_value(kind, text)
 
 
-# --- what is printed --------------------------------------------------------------------------------------------------
-
-
 def test_messages_become_plain_values_and_words(capsys):
     value = plain(LedFunction(function="on", lights=["a"], time=rospy.Duration(1.5)))
     assert (value["function"], value["lights"], value["time"]) == ("on", ["a"], 1.5)
@@ -377,9 +363,6 @@ def test_progress_is_a_line_a_function_or_a_step_where_there_is_no_terminal(caps
             progress.feedback(NaoBehaviorFeedback(state="failed", text="no voice", **step))
         told = "1/2 on\n2/2 off\n2.1 nao_audio_out.say began\n2.1 nao_audio_out.say failed no voice\n"
         assert capsys.readouterr().err == (told if shown else "")
-
-
-# --- completion -------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture

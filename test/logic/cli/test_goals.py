@@ -141,9 +141,6 @@ def test_ctrl_c_while_the_program_loads_ends_it_quietly(tmp_path):
     assert (done.returncode, done.stderr, done.stdout) == (130, "", "")
 
 
-# --- the master and services ------------------------------------------------------------------------------------------
-
-
 class Service:
     """One ROS service: notes the headers that come, answers what it is given; never, if that is None."""
 

@@ -24,9 +24,6 @@ def bug():
     return {}["missing"]
 
 
-# --- one after the other, and at once ---------------------------------------------------------------------------------
-
-
 def test_seq_goes_in_order_answers_the_last_and_ends_with_the_first_failure():
     done = []
     assert p.top_level(lambda: p.seq(p.do(done.append, 1), p.do(done.append, 2), lambda: "last")) == "last"
@@ -156,9 +153,6 @@ def test_a_bug_in_a_branch_is_raised_as_it_is(stays):
     assert stays.ended == ["a", "b"]
 
 
-# --- a partial order --------------------------------------------------------------------------------------------------
-
-
 def test_partial_order_keeps_the_order_that_is_asked_for():
     done, names = [], ["serve", "cook", "shop", "lay the table"]
     order = [("shop", "cook", "serve"), ("lay the table", "serve")]
@@ -182,9 +176,6 @@ def test_an_order_that_cannot_be_is_an_error(order, told):
     fails(p.PlanError, told, lambda: p.partial_order({"a": no_ball, "b": no_ball}, order))
 
 
-# --- mistakes ---------------------------------------------------------------------------------------------------------
-
-
 def test_what_is_no_branch_is_an_error_and_nothing_to_do_is_done():
     fails(p.PlanError, "'walk' is no branch: give a function", lambda: p.seq("walk"))
     fails(p.PlanError, "pursue needs a branch", p.pursue)
@@ -198,9 +189,6 @@ def test_plans_begin_with_top_level_once_in_each_thread():
         p.current_task()
     fails(p.PlanError, "top_level inside of a plan", lambda: p.top_level(no_ball))
     assert p.top_level(lambda: at_once(lambda: p.top_level(lambda: p.seq(lambda: "elsewhere")))) == ["elsewhere"]
-
-
-# --- branches that somebody ends --------------------------------------------------------------------------------------
 
 
 def test_a_branch_that_somebody_ends_is_a_failure_of_its_construct(stays):
@@ -242,9 +230,6 @@ def test_a_plan_that_is_ended_before_its_branches_begin_begins_none():
 
     fails(TaskEvaporatedFailure, "at once", body)
     assert done == []
-
-
-# --- the tree and its trace -------------------------------------------------------------------------------------------
 
 
 def test_the_tree_tells_what_came_of_everything(run_plan):

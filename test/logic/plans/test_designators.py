@@ -56,9 +56,6 @@ def a_place_where(**description):
     return p.a(p.location, **description)
 
 
-# --- solutions --------------------------------------------------------------------------------------------------------
-
-
 def test_it_keeps_to_its_first_solution_and_the_next_are_newer_designators_of_the_same_thing():
     made = []
     first = counting(100, made)
@@ -122,9 +119,6 @@ def test_equated_designators_are_one_chain():
     assert len({id(p.current_desig(each)) for each in others}) == 1 and p.current_desig(one) in others
 
 
-# --- descriptions -----------------------------------------------------------------------------------------------------
-
-
 def test_copies_and_merges():
     ball = p.the(p.object_, type="ball", colour="red")
     assert ball.copy(colour=None, size=0.05).description == {"type": "ball", "size": 0.05}
@@ -167,9 +161,6 @@ def test_what_has_no_keys_is_an_error(given):
         p.designator(given)
     with pytest.raises(p.PlanError, match="of kind 'thing': action, motion, location, object"):
         p.a("thing")
-
-
-# --- rules ------------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -272,17 +263,14 @@ def test_a_rule_fails_with_its_own_failure_and_mistakes_in_rules_are_told(rules)
 @pytest.mark.parametrize(
     "pattern, good, bad",
     [
-        (text(), "a", [" ", 3]),
-        (number(0.0, 1.0, "rad"), 0.5, [True, -0.1, 1.1, math.nan]),
-        (number(), 3, [math.inf, "x"]),
-        (numbers(2), (1, 2), [(1, 2, 3), 4]),
-        (described(p.object_), p.the(p.object_), [p.a(p.location)]),
-        (one_of("to open", 3), "To_Open", ["open"]),
+        (text(), "a", [" ", 3]), (number(0.0, 1.0, "rad"), 0.5, [True, -0.1, 1.1, math.nan]),
+        (number(), 3, [math.inf, "x"]), (numbers(2), (1, 2), [(1, 2, 3), 4]),
+        (described(p.object_), p.the(p.object_), [p.a(p.location)]), (one_of("to open", 3), "To_Open", ["open"]),
         (a_point(), [1, 2, 3], ["near", [1, 2], [1, 2, math.nan], [1, None, 3], [1, 2, 3, "odom", 5], 7]),
         (a_position(), [2, 3], [["a", "b"], [1, math.inf], [1], "door", [1, 2, "c"]]),
         (a_place(), [1, 2], [["a", 2], [1, math.nan], [1, 2, 3, 4], {"x": "a", "y": 2}, [1, "odom"], {"x": 1}, "door"]),
     ],
-)
+)  # fmt: skip
 def test_patterns(pattern, good, bad):
     pattern.take(good)
     for each in bad:
@@ -327,19 +315,14 @@ def test_all_forms_of_actions_are_understood(given, module, name, arguments):
 @pytest.mark.parametrize(
     "given, told",
     [
-        ({"type": "opening", "gripper": "middle"}, "gripper"),
-        ({"type": "opening"}, "gripper"),
-        ({"type": "going"}, "target"),
-        ({"type": "going", "target": "there"}, "target"),
+        ({"type": "opening", "gripper": "middle"}, "gripper"), ({"type": "opening"}, "gripper"),
+        ({"type": "going"}, "target"), ({"type": "going", "target": "there"}, "target"),
         ({"type": "moving-gripper-joint", "gripper": "left", "joint_angle": 2}, "joint_angle"),
     ],
-)
+)  # fmt: skip
 def test_what_is_wrong_with_an_action_is_told_with_the_key(given, told):
     with pytest.raises(DesignatorError, match=told):
         p.an(p.action, **given).reference()
-
-
-# --- known objects ----------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -369,9 +352,6 @@ def test_a_thing_that_is_seen_again_has_moved():
     assert p.BELIEFS.saw("face", "anna", p.Point3(3.0, 0.0, 1.0, "odom"), 2.0).name == "anna"
     p.BELIEFS.forget("anna")
     assert not p.BELIEFS.fitting(p.a(p.object_, name="anna"))
-
-
-# --- locations --------------------------------------------------------------------------------------------------------
 
 
 def test_a_pose_is_the_place_unless_something_is_in_the_way(table):

@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 import pytest
-from plan_tools import Beside, Heard, at_once, fails, seen
+from plan_tools import Heard, at_once, fails, seen
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.fluents import AnyFluent
@@ -128,9 +128,6 @@ def test_whenever_leaves_pulses_out_at_which_it_is_not_true():
     assert values == [5]
 
 
-# --- nobody is left listening -----------------------------------------------------------------------------------------
-
-
 def test_nobody_listens_when_waits_have_ended_however_they_ended():
     a, b = Heard("a", 0), Heard("b", 0)
     both = p.fl_and(a, b)
@@ -161,35 +158,6 @@ def test_a_timeout_and_a_change_at_the_same_moment_agree():
         assert fluent.listeners == []
 
 
-def test_fluents_change_while_plans_are_suspended_and_ended():
-    fluent, stop = Heard("a", 0), threading.Event()
-
-    def hammer():
-        while not stop.is_set():
-            fluent.update(lambda value: value + 1)
-
-    def waits():
-        while True:
-            now = fluent.value
-            p.wait_until(lambda now=now: fluent.value > now, [fluent])
-            p.checkpoint()
-
-    def plans():
-        for _ in range(3):
-            plan = Beside(lambda: p.par(waits, waits))
-            plan.root.suspend()
-            plan.root.wake_up()
-            plan.root.evaporate("over")
-            plan.fails(p.PlanFailure, "over")
-        stop.set()
-
-    assert at_once(hammer, plans) == [None, None]
-    assert fluent.listeners == []
-
-
-# --- many threads -----------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("missed, most", [("always", THREADS * ROUNDS), ("once", 1)])
 def test_updates_and_pulses_of_many_threads_are_all_counted(missed, most):
     fluent = p.Fluent("a", 0)
@@ -211,24 +179,6 @@ def test_a_pulse_is_taken_by_one_of_many_who_take():
 
     takers = at_once(take, take, count(fluent), count(fluent))[:2]
     assert sum(takers) == 2 * ROUNDS
-
-
-def test_whenever_with_always_runs_once_for_each_pulse_of_another_thread():
-    fluent, runs, listening = p.Fluent("a", 1), p.Fluent("runs", 0), threading.Event()
-
-    def body():
-        listening.set()
-        runs.update(lambda number: number + 1)
-
-    def hammer():
-        listening.wait(10.0)
-        for _ in range(ROUNDS):
-            fluent.pulse()
-
-    # Once at the beginning, for it is true; then once for each pulse.
-    enough = p.do(p.wait_for, runs >= ROUNDS + 1, 30.0)
-    beside(hammer, lambda: p.pursue(p.do(p.whenever, fluent, body, "always"), enough))
-    assert runs.value == ROUNDS + 1
 
 
 def test_whenever_with_once_sees_the_last_value():
@@ -263,21 +213,3 @@ def test_a_value_is_handed_on_in_a_ring():
 
     p.top_level(lambda: p.par(*(p.do(player, number) for number in range(players))))
     assert seen(token) == players * rounds
-
-
-def test_two_counters_chase_each_other():
-    ping, pong, players = p.Fluent("ping", 0), p.Fluent("pong", 0), 4
-
-    def player():
-        for _ in range(ROUNDS):
-            mine = ping.update(lambda number: number + 1)
-            p.wait_for(pong >= mine)
-
-    def echo():
-        last = 0
-        while last < ROUNDS * players:
-            last = p.wait_for(p.fl_funcall(lambda number, last=last: number if number > last else 0, ping))
-            pong.value = last
-
-    p.top_level(lambda: p.par(echo, *[player] * players))
-    assert ping.value == pong.value == ROUNDS * players

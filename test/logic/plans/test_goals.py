@@ -18,8 +18,6 @@ from nao_library_modules.process_modules.failures import (
 )
 from nao_library_modules.process_modules.modules.vision import SeenThing
 
-# --- goals ------------------------------------------------------------------------------------------------------------
-
 
 @pytest.fixture
 def grippers():
@@ -140,9 +138,6 @@ def test_plans_are_tasks_wherever_they_are_called_and_top_level_plans_begin_a_tr
     assert count(3) == 3 and p.top_level(lambda: count(4)) == 4
 
 
-# --- perceiving -------------------------------------------------------------------------------------------------------
-
-
 class Eyes(p.ProcessModule):
     """Sees what the test says."""
 
@@ -205,9 +200,6 @@ def test_what_is_not_seen_fails_and_can_be_looked_for_elsewhere(eyes):
     fails(PerceptionObjectNotFound, "was seen, but not where it is", lambda: p.perceive(a_ball()))
     fails(p.PlanError, "is no object with a type", lambda: p.perceive(p.a(p.object_, name="Anna")))
     fails(p.PlanError, "perceive 'some': a, all, the", lambda: p.perceive(a_ball(), "some"))
-
-
-# --- places -----------------------------------------------------------------------------------------------------------
 
 
 class Walker(p.ProcessModule):

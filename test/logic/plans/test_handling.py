@@ -54,9 +54,6 @@ def counted(name, **options):
     return {p.PlanFailure: lambda failure: p.do_retry(name, **options)}
 
 
-# --- handlers ---------------------------------------------------------------------------------------------------------
-
-
 def test_a_body_is_tried_again_as_often_as_it_fails():
     body = Stumbling(2)
     assert handle(body, {NavigationLowLevelFailure: lambda failure: p.retry()}) == "there" and body.tries == 3
@@ -128,9 +125,6 @@ def test_failures_carry_facts():
         p.fail(3)
 
 
-# --- retry counters ---------------------------------------------------------------------------------------------------
-
-
 def test_counters_say_how_often_and_what_is_done_before():
     told = []
 
@@ -185,9 +179,6 @@ def test_counters_of_branches_count_apart_and_one_from_outside_counts_in_all():
 
     assert p.top_level(lambda: p.par(*(p.do(tries, number) for number in range(4)))) == [1, 2, 3, 4]
     assert p.top_level(outside) == (5, 0, 3)
-
-
-# --- policies ---------------------------------------------------------------------------------------------------------
 
 
 def limited(limit, body):

@@ -36,29 +36,36 @@ def perform(*arguments, **options):
     return p.top_level(performing(*arguments, **options))
 
 
-def asked(module, count):
-    """From a test: wait until a module was given so many commands."""
+@pytest.fixture
+def begun(log):
+    """A plan whose command has begun: it waits until the log lets its word."""
+
+    def begin(word, module="one", how="wait", **arguments):
+        plan = Beside(performing(how, word, module, **arguments))
+        log.wait("begun", word)
+        return plan
+
+    return begin
+
+
+def in_line(module, word, **arguments):
+    """A plan whose command waits for its turn."""
+    count = module.asked.value + 1
+    plan = Beside(performing("wait", word, module.name, **arguments))
     seen(module.asked >= count)
-
-
-def taken_back(request):
-    seen(request.over)
-
-
-# --- carried out ------------------------------------------------------------------------------------------------------
+    return plan
 
 
 def test_a_designator_is_carried_out_by_its_module_and_answered(one):
-    desig = to("quick", "a")
-    for body in (p.pm_execute, p.pm_execute_matching, p.perform):
-        arguments = (one, desig) if body is p.pm_execute else (desig,)
-        assert p.top_level(p.do(body, *arguments)) == "a"
-    assert p.top_level(lambda: p.pm_execute("one", desig)) == "a"
-    assert p.top_level(lambda: p.perform(p.Command("one", "quick", {"word": "b"}))) == "b"
-    assert p.matching_process_module(desig) == "one"
+    desig, command = to("quick", "a"), p.Command("one", "quick", {"word": "a"})
+    ways = [p.do(p.pm_execute, one, desig), p.do(p.pm_execute, "one", desig), p.do(p.pm_execute_matching, desig)]
+    ways += [p.do(p.perform, desig), p.do(p.perform, command), p.do(p.pm_execute, one, command)]
+    assert [p.top_level(way) for way in ways] == ["a"] * 6 and p.matching_process_module(desig) == "one"
+    twice = p.Designator(p.action, {}, resolve=lambda _: [lambda: [p.perform(to("quick", word)) for word in "ab"]])
+    assert p.top_level(p.do(p.perform, twice)) == ["a", "b"], "an action may be a plan of other actions"
 
 
-def test_what_goes_wrong_in_a_module_goes_wrong_in_the_plan(one, log):
+def test_what_goes_wrong_in_a_module_goes_wrong_in_the_plan_and_can_be_tried_otherwise(one, log):
     log.let("far")
     assert fails(NavigationGoalNotReached, "far is far", performing("stumble", "far")).word == "far"
     assert p.pm_status(one) is ModuleState.FAILED
@@ -66,60 +73,19 @@ def test_what_goes_wrong_in_a_module_goes_wrong_in_the_plan(one, log):
     fails(KeyError, "", performing("bug"))
     assert perform("quick", "b") == "b"
     state_of(one, ModuleState.WAITING)
-
-
-def test_one_thing_at_a_time_also_for_many_plans(one, log):
-    plan = lambda: p.top_level(lambda: p.seq(*[performing("quick", "a")] * 5))  # noqa: E731
-    assert at_once(*[plan] * 4) == ["a"] * 4
-    assert [what for what, _ in log.events.value] == ["begun", "over"] * 20
-
-
-def test_an_asynchronous_module_does_all_at_once(many, log):
-    words = [str(number) for number in range(10)]
-    let = lambda: (p.wait_until(lambda: len(log.words("begun")) == 10, [log.events]), log.let(*words))  # noqa: E731
-    assert p.top_level(lambda: p.par(let, *(performing("wait", word, "many") for word in words)))[1:] == words
-
-
-def test_commands_that_need_the_same_take_turns_in_their_order(many, log):
-    plans = [Beside(performing("wait", "a", "many", needs=["left"]))]
-    log.wait("begun", "a")
-    for count, (word, needs) in enumerate((("b", ["left", "right"]), ("c", ["right"]), ("d", ["head"])), start=2):
-        plans.append(Beside(performing("wait", word, "many", needs=needs)))
-        asked(many, count)
-    log.wait("begun", "d")
-    assert log.words("begun") == ["a", "d"], "who needs the same overtakes nobody"
-    log.let("a", "b", "c", "d")
-    assert [plan.ended() for plan in plans] == ["a", "b", "c", "d"]
-    events = log.events.value
-    assert events.index(("over", "a")) < events.index(("begun", "b")) < events.index(("over", "b"))
-    assert events.index(("over", "b")) < events.index(("begun", "c"))
-
-
-def test_the_next_solution_is_tried_when_one_fails(one, log):
-    log.let("far")
-    commands = [p.Command("one", "stumble", {"word": "far"}), p.Command("one", "quick", {"word": "near"})]
-    desig = p.Designator(p.action, {"type": "either"}, resolve=lambda _: commands)
-    assert (
-        p.top_level(lambda: p.try_in_order(p.do(p.perform, desig), lambda: p.perform(desig.next_solution()))) == "near"
-    )
-
-
-def test_a_failed_command_is_tried_again(one, log):
-    log.let("far")
     tries = []
 
     def again(failure):
         tries.append(failure.word)
         p.retry() if len(tries) < 3 else p.give("gave up")
 
-    plan = lambda: p.with_failure_handling(performing("stumble", "far"), {NavigationGoalNotReached: again})  # noqa: E731
-    assert p.top_level(plan) == "gave up" and log.words("begun") == tries == ["far"] * 3
-
-
-def test_an_action_may_be_a_plan_of_other_actions(one):
-    twice = lambda: [p.perform(to("quick", word)) for word in "ab"]  # noqa: E731
-    desig = p.Designator(p.action, {"type": "fetching"}, resolve=lambda desig: [twice])
-    assert p.top_level(p.do(p.perform, desig)) == ["a", "b"]
+    handlers = {NavigationGoalNotReached: again}
+    assert p.top_level(lambda: p.with_failure_handling(performing("stumble", "far"), handlers)) == "gave up"
+    assert log.words("begun")[3:] == tries == ["far"] * 3
+    commands = [p.Command("one", "stumble", {"word": "far"}), p.Command("one", "quick", {"word": "near"})]
+    desig = p.Designator(p.action, {"type": "either"}, resolve=lambda _: commands)
+    other = lambda: p.perform(desig.next_solution())  # noqa: E731
+    assert p.top_level(lambda: p.try_in_order(p.do(p.perform, desig), other)) == "near"
 
 
 def test_a_goal_of_an_action_holds_before_or_afterwards(one, log):
@@ -135,82 +101,80 @@ def test_a_goal_of_an_action_holds_before_or_afterwards(one, log):
     assert p.top_level(p.do(p.perform, going)) is None and len(log.words("begun")) == 1
 
 
-# --- cancelled in each state ------------------------------------------------------------------------------------------
+def test_one_thing_at_a_time_or_all_at_once(one, many, log):
+    plan = lambda: p.top_level(lambda: p.seq(*[performing("quick", "a")] * 5))  # noqa: E731
+    assert at_once(*[plan] * 4) == ["a"] * 4
+    assert [what for what, _ in log.events.value] == ["begun", "over"] * 20
+    words = [str(number) for number in range(10)]
+    let = lambda: (p.wait_until(lambda: len(log.words("begun")) == 30, [log.events]), log.let(*words))  # noqa: E731
+    assert p.top_level(lambda: p.par(let, *(performing("wait", word, "many") for word in words)))[1:] == words
 
 
-def test_cancelling_a_module_that_does_nothing_does_nothing(one, log):
+def test_commands_that_need_the_same_take_turns_in_their_order(many, log, begun):
+    plans = [begun("a", "many", needs=["left"]), in_line(many, "b", needs=["left", "right"])]
+    plans += [in_line(many, "c", needs=["right"]), begun("d", "many", needs=["head"])]
+    assert log.words("begun") == ["a", "d"], "who needs the same overtakes nobody"
+    log.let("a", "b", "c", "d")
+    assert [plan.ended() for plan in plans] == ["a", "b", "c", "d"]
+    at = log.events.value.index
+    assert at(("over", "a")) < at(("begun", "b")) < at(("over", "b")) < at(("begun", "c"))
+
+
+def test_cancelling_a_module_ends_what_it_does_and_what_waits(one, log, begun):
     p.pm_cancel(one)
-    assert p.pm_status(one) is ModuleState.WAITING and perform("quick", "a") == "a"
-    offline = One(log, "another")
-    p.pm_cancel(offline)
-    assert p.pm_status(offline) is ModuleState.OFFLINE
-
-
-def test_cancelling_a_module_ends_what_it_does_and_what_waits(one, log):
-    plans = [Beside(performing("wait", "a"))]
-    log.wait("begun", "a")
-    plans += [Beside(performing("wait", word)) for word in "bc"]
-    asked(one, 3)
+    assert p.pm_status(one) is ModuleState.WAITING
+    plans = [begun("a"), in_line(one, "b"), in_line(one, "c")]
     p.pm_cancel(one)
     for plan in plans:
         plan.fails(TaskEvaporatedFailure, "cancelled")
     assert log.events.value == (("begun", "a"), ("over", "a"))
     state_of(one, ModuleState.WAITING)
+    offline = One(log, "another")
+    p.pm_cancel(offline)
+    assert p.pm_status(offline) is ModuleState.OFFLINE
 
 
-@pytest.mark.parametrize("module", ["one", "many"])
-def test_who_waits_for_a_turn_and_is_ended_takes_the_place_back(module, request, log):
-    there = request.getfixturevalue(module)
-    plans = [Beside(performing("wait", "a", module, needs=["left"]))]
-    log.wait("begun", "a")
-    for count, word in enumerate("bc", start=2):
-        plans.append(Beside(performing("wait", word, module, needs=["left"])))
-        asked(there, count)
-    plans[1].root.evaporate("changed my mind")
-    plans[1].fails(TaskEvaporatedFailure, "changed my mind")
+@pytest.mark.parametrize("name", ["one", "many"])
+def test_who_waits_for_a_turn_and_is_ended_takes_the_place_back(name, request, log, begun):
+    module = request.getfixturevalue(name)
+    first = begun("a", name, needs=["left"])
+    second, third = (in_line(module, word, needs=["left"]) for word in "bc")
+    second.root.evaporate("changed my mind")
+    second.fails(TaskEvaporatedFailure, "changed my mind")
     log.let("a", "b", "c")
-    assert (plans[0].ended(), plans[2].ended()) == ("a", "c") and log.words("begun") == ["a", "c"]
+    assert (first.ended(), third.ended()) == ("a", "c") and log.words("begun") == ["a", "c"]
 
 
 def test_a_plan_that_ends_cancels_what_it_asked_for_and_sees_it_end(one, log):
-    assert (
-        p.top_level(lambda: p.pursue(performing("wait", "a"), lambda: (log.happened("begun", "a"), "left")[1]))
-        == "left"
-    )
+    leave = lambda: (log.happened("begun", "a"), "left")[1]  # noqa: E731
+    assert p.top_level(lambda: p.pursue(performing("wait", "a"), leave)) == "left"
     assert log.events.value == (("begun", "a"), ("over", "a")) and p.pm_status(one) is ModuleState.WAITING
-    slow = lambda: p.with_policy(p.timeout_policy(0.02), performing("wait", "b"))  # noqa: E731
-    fails(p.PlanFailure, "at most 0.02 s", slow)
+    fails(p.PlanFailure, "at most 0.02 s", lambda: p.with_policy(p.timeout_policy(0.02), performing("wait", "b")))
     assert log.words("over") == ["a", "b"]
 
 
-def test_one_of_several_commands_is_ended_and_the_others_go_on(many, log):
+def test_one_of_several_commands_is_ended_and_the_others_go_on(many, log, begun):
     plan = Beside(lambda: p.try_in_order(p.do(p.perform, to("wait", "a", "many"), name="a"), lambda: "second way"))
-    other = Beside(performing("wait", "b", "many"))
+    other = begun("b", "many")
     log.wait("begun", "a")
-    log.wait("begun", "b")
     plan.root.find("a").evaporate("not this")
     assert plan.ended() == "second way"
     log.let("b")
     assert other.ended() == "b"
 
 
-def test_a_failure_ends_what_runs_beside_it_in_another_module(one, many, log):
+def test_a_failure_ends_what_runs_beside_it_also_where_that_fails_while_it_is_ended(one, many, log):
     log.let("far")
     stumble = lambda: (log.happened("begun", "walk"), p.perform(to("stumble", "far", "many")))  # noqa: E731
     fails(NavigationGoalNotReached, "far", lambda: p.par(performing("wait", "walk"), stumble))
     assert log.words("over") == ["far", "walk"]
     assert (one.state, many.state) == (ModuleState.WAITING, ModuleState.FAILED)
-
-
-def test_a_command_that_fails_while_it_is_ended_does_not_hide_why_the_plan_failed(one, log):
     second = lambda: (log.happened("begun", "a"), p.fail(NavigationGoalNotReached, "first"))  # noqa: E731
     fails(NavigationGoalNotReached, "first", lambda: p.par(performing("stumble at the end", "a"), second))
-    assert log.words("over") == ["a"]
 
 
-def test_a_plan_waits_for_commands_that_put_things_right(one, log):
-    plan = Beside(performing("protected", "a"))
-    log.wait("begun", "a")
+def test_a_plan_waits_for_commands_that_put_things_right(one, log, begun):
+    plan = begun("a", how="protected")
     plan.root.evaporate("over")
     assert plan.root.join(SHORT) is False
     log.let("a")
@@ -218,10 +182,7 @@ def test_a_plan_waits_for_commands_that_put_things_right(one, log):
     assert log.words("over") == ["a"]
 
 
-# --- suspended --------------------------------------------------------------------------------------------------------
-
-
-def test_a_suspension_takes_commands_back_and_sends_them_again(one, many, log):
+def test_a_suspension_takes_commands_back_and_sends_them_again(one, many, log, begun):
     handlers = {p.PlanFailure: lambda failure: p.give(p.perform(to("wait", "b", "many")))}
     in_handler = lambda: p.with_failure_handling(p.do(p.fail, "no"), handlers)  # noqa: E731
     plan = Beside(lambda: p.par(performing("wait", "a"), in_handler))
@@ -232,24 +193,26 @@ def test_a_suspension_takes_commands_back_and_sends_them_again(one, many, log):
     log.wait("over", "b")
     log.let("a", "b")
     plan.root.wake_up()
-    assert plan.ended() == ["a", "b"]
-    assert sorted(log.words("begun")) == ["a", "a", "b", "b"]
+    assert plan.ended() == ["a", "b"] and sorted(log.words("begun")) == ["a", "a", "b", "b"]
+    ended = begun("c")
+    ended.root.suspend()
+    log.wait("over", "c")
+    ended.root.evaporate("over")
+    ended.fails(TaskEvaporatedFailure, "over")
+    assert log.words("begun").count("c") == 1
 
 
-def test_a_suspended_plan_that_waits_for_its_turn_asks_again(one, log):
-    first = Beside(performing("wait", "a"))
-    log.wait("begun", "a")
-    second = Beside(performing("wait", "b"))
-    asked(one, 2)
+def test_a_suspended_plan_that_waits_for_its_turn_asks_again(one, log, begun):
+    first, second = begun("a"), in_line(one, "b")
     second.root.suspend()
-    taken_back(one.requests[1])
+    seen(one.requests[1].over)
     log.let("a", "b")
     assert first.ended() == "a" and log.words("begun") == ["a"]
     second.root.wake_up()
     assert second.ended() == "b"
 
 
-def test_what_was_done_when_the_suspension_came_is_not_done_again(log):
+def test_what_was_done_when_the_suspension_came_is_not_done_again(log, begun):
     module, suspended = One(log), []
 
     def suspend_at_the_end(task):
@@ -259,40 +222,24 @@ def test_what_was_done_when_the_suspension_came_is_not_done_again(log):
 
     module.observers.append(suspend_at_the_end)
     with p.with_process_modules_running(module):
-        plan = Beside(performing("wait", "a"))
-        log.wait("begun", "a")
+        plan = begun("a")
         log.let("a")
         state_of(module, ModuleState.WAITING)
         assert plan.root.join(SHORT) is False and plan.root.state is p.TaskState.SUSPENDED
         plan.root.wake_up()
-        assert plan.ended() == "a"
-    assert log.words("begun") == ["a"]
-
-
-def test_a_suspended_command_is_ended(one, log):
-    plan = Beside(performing("wait", "a"))
-    log.wait("begun", "a")
-    plan.root.suspend()
-    log.wait("over", "a")
-    plan.root.evaporate("over")
-    plan.fails(TaskEvaporatedFailure, "over")
-    assert log.words("begun") == ["a"]
-
-
-# --- begin and end ----------------------------------------------------------------------------------------------------
+        assert plan.ended() == "a" and log.words("begun") == ["a"]
 
 
 def test_plans_wait_for_an_offline_module_with_a_warning_and_go_on_when_it_starts(log):
     module, warnings = One(log), p.Fluent("warnings", ())
-    handler = logging.Handler()
+    handler, logger = logging.Handler(), logging.getLogger("nao_library_modules")
     handler.emit = lambda record: warnings.update(lambda told: (*told, record.getMessage()))
-    logging.getLogger("nao_library_modules").addHandler(handler)
+    logger.addHandler(handler)
     try:
-        quick = [p.do(p.pm_execute, module, p.Command("one", "quick", {"word": word})) for word in "abc"]
-        plans = [Beside(each) for each in quick]
+        plans = [Beside(p.do(p.pm_execute, module, p.Command("one", "quick", {"word": word}))) for word in "abc"]
         seen(p.fl_funcall(lambda told: len(told) == 3, warnings))
     finally:
-        logging.getLogger("nao_library_modules").removeHandler(handler)
+        logger.removeHandler(handler)
     assert "the process module one is offline: one: quick(word='a') waits for it" in warnings.value
     plans[0].root.evaporate("too late")
     plans[0].fails(TaskEvaporatedFailure, "too late")
@@ -303,13 +250,10 @@ def test_plans_wait_for_an_offline_module_with_a_warning_and_go_on_when_it_start
         assert plans[1].ended() == "b"
 
 
-def test_stopping_ends_what_runs_and_what_waits(log):
+def test_stopping_ends_what_runs_and_what_waits(log, begun):
     module = One(log)
     start_process_modules(module)
-    plans = [Beside(performing("wait", "a"))]
-    log.wait("begun", "a")
-    plans.append(Beside(performing("wait", "b")))
-    asked(module, 2)
+    plans = [begun("a"), in_line(module, "b")]
     stop_process_modules()
     for plan in plans:
         plan.fails((TaskEvaporatedFailure, ProcessModuleNotRunning))
@@ -335,27 +279,18 @@ def test_modules_run_once_and_those_started_beside_one_that_cannot_are_stopped_a
 
 def test_a_module_may_run_in_a_thread_of_ones_own_until_it_is_stopped(log):
     module, left, go_on = One(log), threading.Event(), threading.Event()
-
-    def mine():
-        p.pm_run(module)
-        left.set()
-        go_on.wait(LIMIT)
-
-    thread = threading.Thread(target=mine)
+    thread = threading.Thread(target=lambda: (p.pm_run(module), left.set(), go_on.wait(LIMIT)))
     thread.start()
     state_of(module, ModuleState.WAITING)
     assert p.top_level(lambda: p.pm_execute(module, to("quick", "a"))) == "a"
     with pytest.raises(ProcessModuleRunning):
         p.pm_run(module)
-    assert at_once(module.stop) == [None]  # it does not wait for a thread that has left pm_run
+    assert at_once(module.stop) == [None], "it does not wait for a thread that has left pm_run"
     assert left.wait(LIMIT) and module.state is ModuleState.OFFLINE
     go_on.set()
     thread.join()
     with p.with_process_modules_running(module):
         assert module.state is ModuleState.WAITING
-
-
-# --- names ------------------------------------------------------------------------------------------------------------
 
 
 def test_aliases_last_as_long_as_their_block_and_hide_others(one, many):
@@ -392,19 +327,13 @@ def test_what_cannot_be_performed_is_told(one):
     assert p.top_level(lambda: wait_for_process_module_running("one", timeout=5.0))
     fails(NoMatchingProcessModule, "is for the process module foot, which does not run", performing("kick", "", "foot"))
     fails(p.PlanError, "'open' is no designator", lambda: p.perform("open"))
-    place = p.a(p.location, pose=[0, 0, 0])
+    place, three = p.a(p.location, pose=[0, 0, 0]), p.Designator(p.action, {}, resolve=lambda desig: [3])
     fails(p.PlanError, "no designator of an action or a motion", lambda: p.perform(place))
-    three = p.Designator(p.action, {}, resolve=lambda desig: [3])
-    fails(
-        DesignatorError, "its solution 3 is nothing that a process module carries out", lambda: p.pm_execute(one, three)
-    )
+    fails(DesignatorError, "its solution 3 is nothing that a process module", lambda: p.pm_execute(one, three))
     fails(DesignatorError, "", lambda: p.perform(p.an(p.action, type="juggling with knives")))
     for base in (p.ProcessModule, p.AsynchronousProcessModule):
         with pytest.raises(TypeError, match="abstract.*execute"):
             type("Idle", (base,), {"name": "idle"})()
-
-
-# --- watched ----------------------------------------------------------------------------------------------------------
 
 
 def watched(module):

@@ -30,9 +30,6 @@ strikes = st.lists(
 )
 
 
-# --- the model --------------------------------------------------------------------------------------------------------
-
-
 def in_order(outcomes):
     return {next((each for each in outcomes if each != OK), OK)}
 
@@ -73,9 +70,6 @@ def possible(tree):
     if kind == "policy":
         return branches[0] - {NEVER} | {TIME}
     return set().union(*(MODEL[kind](combination) for combination in product(*branches)))
-
-
-# --- the plans --------------------------------------------------------------------------------------------------------
 
 
 class Work:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from plan_tools import LIMIT, Beside, at_once, fails, forever, seen, stays_false
+from plan_tools import LIMIT, Beside, at_once, forever, seen, stays_false
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import TaskEvaporatedFailure
-
-# --- ended ------------------------------------------------------------------------------------------------------------
 
 
 def test_a_plan_is_ended_where_it_waits_and_puts_things_right(stays):
@@ -87,27 +85,6 @@ def test_ending_many_times_is_ending_once_and_the_first_reason_stays(stays):
     assert stays.ended == ["a"] and plan.root.reason == "why it ended"
 
 
-def test_a_plan_that_computes_can_be_ended_at_its_checkpoints():
-    turns = p.Fluent("turns", 0)
-
-    def compute():
-        while True:
-            turns.update(lambda count: count + 1)
-            p.checkpoint()
-
-    plan = Beside(compute)
-    seen(turns >= 3)
-    plan.root.evaporate()
-    plan.fails(TaskEvaporatedFailure)
-
-
-def test_a_task_may_end_itself():
-    fails(TaskEvaporatedFailure, "had enough", lambda: (p.current_task().evaporate("had enough"), p.sleep(1000.0)))
-
-
-# --- asked for --------------------------------------------------------------------------------------------------------
-
-
 def test_a_result_is_asked_for_when_it_is_there(stays):
     plan = Beside(stays("a").call)
     seen(stays.there)
@@ -128,9 +105,6 @@ def test_a_task_waits_for_another_one_of_its_tree():
         return task.value()
 
     assert p.top_level(lambda: p.par(p.do(lambda: (p.sleep(0.001), 7)[1], name="seven"), waits)) == [7, 7]
-
-
-# --- suspended --------------------------------------------------------------------------------------------------------
 
 
 def handler_waits(wait):
@@ -212,13 +186,15 @@ def test_a_plan_is_suspended_wherever_it_waits_and_goes_on_when_it_is_woken(wher
     assert all(task.state.over for task in plan.root)
 
 
+@pytest.mark.parametrize("suspended", [True, False])
 @pytest.mark.parametrize("where", WAITS)
-def test_a_plan_is_ended_while_it_is_suspended_wherever_it_waits(where):
+def test_a_plan_is_ended_wherever_it_waits_also_while_it_is_suspended(where, suspended):
     reached, go = p.Fluent("reached", 0), p.Fluent("go", False)
-    plan = Beside(p.do(WAITS[where], lambda: (reached.update(lambda count: count + 1), p.wait_for(go))))
+    plan = Beside(p.do(WAITS[where], lambda: (reached.update(lambda count: count + 1), KINDS["compute"](go))))
     seen(reached)
-    plan.root.suspend()
-    go.value = True
+    if suspended:
+        plan.root.suspend()
+        go.value = True
     plan.root.evaporate("enough")
     plan.fails(TaskEvaporatedFailure, "enough")
     assert all(task.state.over or task.state is p.TaskState.CREATED for task in plan.root)

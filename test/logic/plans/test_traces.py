@@ -77,9 +77,6 @@ def test_a_program_of_a_plan_runs_with_another_master(trace, tmp_path):
         run_program(program, ["bad"], "http://127.0.0.1:1", tmp_path)
 
 
-# --- chains of joints -------------------------------------------------------------------------------------------------
-
-
 @pytest.fixture(scope="module", params=["left", "right"])
 def arm(request):
     chain = Chain(URDF, "torso", f"{request.param[0]}_gripper")
@@ -144,9 +141,6 @@ def test_numbers_that_are_wrong_are_told(tmp_path):
         file.write_text(content)
         with pytest.raises(NaoError, match=f"numbers.yaml: .*{told}"):
             load_settings(file)
-
-
-# --- goals and topics of plans ----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("late", [False, True])

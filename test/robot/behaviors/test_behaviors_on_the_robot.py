@@ -132,9 +132,6 @@ def head(robot):
     return robot.ALMotion.getAngles("HeadYaw", True)[0]
 
 
-# --- run --------------------------------------------------------------------------------------------------------------
-
-
 def test_a_behaviour_runs_with_its_parameters_and_tells_its_steps(behaviors, robot):
     goal = behaviors.play(f("runBehavior", "lights", parameters=["n=2", "light=Brain0"]))
     assert (goal.state, goal.text, value(robot, BRAIN)) == ("succeeded", "", 0.25)
@@ -196,8 +193,7 @@ def test_a_cancel_ends_all_servers_and_stop_tells_what_was_ended(behaviors, robo
 
 
 REFUSED = [
-    ([f("runBehavior", "light")], "did you mean 'lights'"),
-    ([f("runBehavior", "")], "no name for a behavior"),
+    ([f("runBehavior", "light")], "did you mean 'lights'"), ([f("runBehavior", "")], "no name for a behavior"),
     ([f("runBehavior", "lights", parameters=["n"])], "has no '='"),
     ([f("runBehavior", "lights", parameters=["n=4"])], "1 to 3 times"),
     ([f("runBehavior", "lights", parameters=["n=x"])], "is no number"),
@@ -214,14 +210,11 @@ REFUSED = [
     ([f("copyBehavior", "nothing", new_name="b")], "there is no behavior 'nothing'"),
     ([f("deleteBehavior", "lights"), f("runBehavior", "lights")], "function 3 (runBehavior): there is no"),
     ([f("deleteBehavior", "lights"), f("deleteBehavior", "lights")], "there is no behavior 'lights'; there are"),
-    ([f("stopRecording")], "nothing is recorded"),
-    ([f("recordBehavior", "x"), f("recordBehavior", "y")], "goes on"),
+    ([f("stopRecording")], "nothing is recorded"), ([f("recordBehavior", "x"), f("recordBehavior", "y")], "goes on"),
     ([f("recordBehavior", "x", servers=["NaoSmell"])], "NaoSmell"),
-    ([f("recordBehavior", "x", duration=-1.0)], "field duration"),
-    ([f("recordBehavior", "lights")], "already"),
-    ([f("checkBehavior")], "either a name"),
-    ([f("describeBehavior", "nothing")], "there is no behavior"),
-]
+    ([f("recordBehavior", "x", duration=-1.0)], "field duration"), ([f("recordBehavior", "lights")], "already"),
+    ([f("checkBehavior")], "either a name"), ([f("describeBehavior", "nothing")], "there is no behavior"),
+]  # fmt: skip
 
 
 def test_what_cannot_be_done_is_refused_before_anything_happens(behaviors, robot):
@@ -232,9 +225,6 @@ def test_what_cannot_be_done_is_refused_before_anything_happens(behaviors, robot
         assert behaviors.module.recording is None
     assert value(robot, BRAIN) == 1.0 and {name: store.text(name) for name in store.names()} == before
     assert "got no goal so far" in behaviors.refused(f("storeBehavior", "x", server="NaoLights"))
-
-
-# --- kept and shown ---------------------------------------------------------------------------------------------------
 
 
 def test_a_chain_may_use_what_it_stores(behaviors):
@@ -284,9 +274,6 @@ def test_a_check_tells_problems_what_would_be_done_and_what_only_the_robot_knows
     step = "1#1.1 NaoLights.setIntensity: lights [Brain1], i_values [0.25]"
     assert (list(lights.steps), list(lights.unchecked)) == (["1 repeat 1 times", step], [step])
     assert "and 5 more" in wrong.problem and not (wrong.steps or wrong.shipped)
-
-
-# --- recorded ---------------------------------------------------------------------------------------------------------
 
 
 def test_the_last_goal_of_a_server_is_stored_and_runs(behaviors, to_lights, robot):
