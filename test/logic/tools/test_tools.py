@@ -103,14 +103,6 @@ def test_words_that_are_not_in_the_vocabulary_have_a_bound_only_where_the_confid
     assert "slt, clean: b -> yes 0.39" in capsys.readouterr().out
 
 
-def test_the_table_of_postures_has_a_cell_for_each_change(tools):
-    tool = tools.check_posture_graph
-    one, other = tool.Outcome(True, 1.25, 0, "1.2", ""), tool.Outcome(False, 9.0, 1, "FELL", "it fell on the way")
-    lines = tool.table({("Stand", "Crouch"): one, ("Crouch", "Stand"): other}).splitlines()
-    cells = [["from", "\\", "to", "Crouch", "Stand"], ["Stand", "1.2", "-"], ["Crouch", "-", "FELL"]]
-    assert [line.split() for line in lines] == cells
-
-
 def test_a_search_finds_the_bottom_of_a_valley_and_goes_on_where_it_was_stored(tools):
     strategy_of = tools.sep_cma_es.SepCmaEs
 

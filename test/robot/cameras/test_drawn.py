@@ -9,8 +9,7 @@ import pytest
 
 from nao_sim_bridge.sim.cameras.places import CameraPlaces
 from nao_sim_bridge.sim.cameras.stream import CameraClosed
-from nao_sim_bridge.sim.frames import frame_of
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
+from nao_sim_bridge.sim.kinematics import quaternion_matrix
 from nao_sim_bridge.sim.runner import FASTEST, SimulationRunner
 from nao_sim_bridge.sim.simulation import Scene, Simulation
 
@@ -34,21 +33,6 @@ def test_a_ball_is_where_projection_says(bench, world_file, camera, place, yaw):
     position, orientation = places.in_world(made.simulation.render_state(made.now), camera)
     x, y = places.optics[camera].project(quaternion_matrix(orientation).T @ (np.array(place) - position))
     assert (columns.mean() + 0.5, rows.mean() + 0.5) == pytest.approx((x * 640, y * 480), abs=2.0)
-
-
-def test_the_robot_believes_what_its_sensors_say(bench):
-    """As ALMotion.getPosition with sensors; the frame of the robot is on the floor between the feet."""
-    made = bench(sensor_noise=1.0)
-    made.aim(HeadYaw=0.4, HeadPitch=0.2)
-    made.run(1.0)
-    places, snapshot = CameraPlaces(made.model), made.now
-    in_torso, in_robot = places.measured(snapshot, 0)
-    expected = link_transforms(made.model, snapshot.positions)["HeadPitch"] @ frame_of(made.model, "CameraTop").offset
-    assert transform(rpy_matrix(in_torso[3:]), in_torso[:3]) == pytest.approx(expected)
-    assert snapshot.positions != made.robot.true_positions
-    truth = places.in_world(made.simulation.render_state(snapshot), 0)[0]
-    assert in_robot[2] == pytest.approx(truth[2], abs=0.02)
-    assert in_robot[5] == pytest.approx(0.4, abs=0.06) and np.hypot(*in_robot[:2]) < 0.15
 
 
 def frames_of_a_fast_run(seconds):

@@ -176,21 +176,6 @@ def test_each_picture_is_of_its_moment_and_no_series_is_faster_than_the_camera(t
     assert head.cameras.streams[0].fps == 30.0
 
 
-def test_a_series_of_a_held_camera_begins_with_what_it_sees_now(tmp_path, head, photographer):
-    photographer.hold(GREY)
-    head.advance(0.2)  # frames at ticks 1, 5, ... 21
-    paths = [tmp_path / f"{number}.png" for number in range(3)]
-    task = photographer.take(paths, PhotoSettings(0, 2, 13, 1.0))
-    head.advance(0.6)
-    task.result(head.patience)
-    first, *others = shades(paths)
-    assert first == pytest.approx(42, abs=1)
-    assert np.diff(others) == pytest.approx([60], abs=5), "at the frames of a camera that somebody has run faster"
-    assert [stream.resolution for stream in head.cameras.streams] == [0]
-    photographer.release()
-    assert head.cameras.streams == ()
-
-
 @pytest.mark.parametrize("end", ["simulator", "cameras"])
 def test_the_end_of_simulator_or_camera_ends_a_series_with_an_error(tmp_path, head, photographer, end):
     task = photographer.take([tmp_path / f"{number}.png" for number in range(9)], GREY)
@@ -309,22 +294,6 @@ def test_every_frame_is_in_the_film_in_order_and_a_lost_one_is_the_one_before_it
     head.advance(0.2)
     assert recorder.stop().result(head.patience) == [8, str(path)]
     assert film_shades(path) == pytest.approx([2, 26, 50, 74, 74, 122, 146, 170], abs=3)
-
-
-def test_a_recording_looks_no_longer_than_it_lasts_and_cameras_that_end_complete_it(tmp_path, head, recorder):
-    recorder.start(tmp_path / "a.avi", FILM)
-    head.advance(1 / 120)
-    task = recorder.stop()
-    head.advance(0.5)
-    assert task.result(head.patience)[0] == 1
-    recorder.start(tmp_path / "b.avi", FILM)
-    head.advance(0.12)
-    head.cameras.streams[0].finish()
-    assert recorder.records and recorder.stop().result(head.patience)[0] == 2
-    recorder.start(tmp_path / "c.avi", FILM)
-    head.advance(0.42)
-    recorder.close()
-    assert len(film_shades(tmp_path / "c.avi")) == 5, "the end of the simulator completes it, too"
 
 
 def noisy(time, shape):

@@ -292,16 +292,6 @@ def test_a_ball_that_rolls_by_is_found_where_it_is(room, pixels):
         assert 0.0 < cluster.share_of_picture < 0.03 < cluster.share_of_rectangle <= 1.0
 
 
-def test_two_things_that_move_are_two_the_larger_first(room):
-    def both(step):
-        picture = room(ball=(60 + 4 * step, 60))
-        cv2.rectangle(picture, (220, 120 + 8 * step), (270, 145 + 8 * step), (250, 250, 250), -1)
-        return picture
-
-    first, second = watch([both(step) for step in range(4)])[-1]
-    assert first.alpha < 0.0 < second.alpha and first.share_of_picture > second.share_of_picture
-
-
 def test_the_lower_the_sensitivity_the_more_it_takes_and_slow_pictures_are_compared_with_the_one_before(room):
     def faint(step):
         picture = room(noise=2.0).astype(np.int16)
