@@ -41,7 +41,7 @@ class RosStack:
 
     def __init__(self, folder, **arguments):
         self.folder = folder
-        self._arguments = {"speed": SPEED, **arguments}
+        self._arguments = {"speed": SPEED, "world": "empty", **arguments}
         self.broken = False
         self._starts = 0
         self._nodes = {}
@@ -71,9 +71,10 @@ class RosStack:
         os.environ["NAO_PORT"] = str(self.stack.nao_port)
         self.stack.wait_for_robot(LIMIT)
 
-    def ensure(self):
-        """Start the stack again if a case has broken it."""
-        if self.broken:
+    def ensure(self, world="empty"):
+        """Start the stack again if a case has broken it or another world is wanted."""
+        if self.broken or world != self._arguments["world"]:
+            self._arguments["world"] = world
             self.stack.stop()
             self.start()
             self.robot = SimulatedRobot(limit=LIMIT)

@@ -15,15 +15,15 @@ def stack(tmp_path_factory):
 
 
 @pytest.fixture(scope="class", autouse=True)
-def running(stack):
-    """The stack runs before the class of a suite looks for it."""
-    stack.ensure()
+def running(request, stack):
+    """The stack runs before the class of a suite looks for it, in the `world` of the class."""
+    stack.ensure(getattr(request.cls, "world", "empty"))
 
 
 @pytest.fixture(autouse=True)
-def intact(stack):
+def intact(request, stack):
     """Names the case that ends a node, and starts the stack again for the next."""
-    stack.ensure()
+    stack.ensure(getattr(request.cls, "world", "empty"))
     yield
     dead = stack.deaths()
     if dead:

@@ -16,6 +16,8 @@ WALL_X = 0.96
 
 
 class DriverObstacle(WalkingTest):
+    world = "obstacles"
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

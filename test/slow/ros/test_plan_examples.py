@@ -16,6 +16,7 @@ FRAME_ROBOT = 2
 
 
 class PlanExamples(PlanExampleTest):
+    world = "lab"
     servers = {"NaoVision": NaoVisionAction}
 
     def test_the_abstract_plan(self):

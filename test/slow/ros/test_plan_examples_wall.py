@@ -9,6 +9,8 @@ NEAR = 0.15
 
 
 class PlanExamplesAtTheWall(PlanExampleTest):
+    world = "wall"
+
     def test_the_robot_gets_around_the_wall(self):
         output, trace = self.run_plan("detour_plan.py", *map(str, GOAL))
         place = self.robot.true_pose().position

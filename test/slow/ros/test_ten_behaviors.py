@@ -2,12 +2,10 @@
 
 import unittest
 
-import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoBehaviorAction, NaoBehaviorGoal, NaoMotionAction, NaoMotionGoal
 from nao_library_msgs.msg import BehaviorFunction, MotionFunction
-from nao_library_msgs.srv import CaptionFilm, StartFilm, StopFilm
 from nao_sim_bridge.testing import SimulatedRobot, send
 
 # Behaviour -> where the robot is before it, and parameters that keep it short.
@@ -77,22 +75,3 @@ class TenBehaviors(unittest.TestCase):
             )
             if not holds
         ]
-
-    def test_a_film_of_it_can_be_taken(self):
-        start, caption, stop = (
-            rospy.ServiceProxy(f"nao_sim/film/{name}", kind)
-            for name, kind in (("start", StartFilm), ("caption", CaptionFilm), ("stop", StopFilm))
-        )
-        self.assertIn("nothing is being filmed", stop().message)
-        self.assertIn("unknown view", start("", "sideways", 0, 0, 0.0).message)
-        self.assertIn("even numbers", start("", "", 101, 100, 0.0).message)
-        answer = start("behaviors/nod.mp4", "front", 96, 96, 5.0)
-        self.assertTrue(answer.success, answer.message)
-        self.assertIn("end it first", start("other.mp4", "", 96, 96, 5.0).message)
-        self.assertTrue(caption("nod").success)
-        run = self.play("nod", ["times=1"])
-        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
-        film = stop()
-        self.assertTrue(film.success, film.message)
-        self.assertGreater(film.length.to_sec(), run.ended - run.sent - 0.5)
-        self.assertAlmostEqual(film.frames, film.length.to_sec() * 5.0, delta=1.5)

@@ -19,6 +19,8 @@ NEAR = 0.30
 
 
 class VisionExamples(ExampleTest):
+    world = "lab"
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

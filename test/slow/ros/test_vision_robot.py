@@ -38,6 +38,8 @@ def likeness(one, other):
 
 
 class VisionRobot(unittest.TestCase):
+    world = "lab"
+
     @classmethod
     def setUpClass(cls):
         cls.robot = SimulatedRobot()

@@ -16,7 +16,7 @@ LIMIT = 60.0
 
 
 class RobotTestCase(unittest.TestCase):
-    """Cases that each find the simulated robot as it starts, with goals to one action server.
+    """Cases that each find robot and world at their start, with goals to one action server.
 
     Attributes:
         server: Name and type of the action server, None for a suite that sends no goals.
@@ -36,7 +36,7 @@ class RobotTestCase(unittest.TestCase):
             cls.client = cls.robot.action_client(*cls.server)
 
     def setUp(self) -> None:
-        """Put the simulator into the state of a fresh one."""
+        """Put robot and world to where they started."""
         self.robot.reset()
 
     def send(self, *functions: Any, **fields: Any) -> GoalRun:
