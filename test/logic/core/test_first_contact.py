@@ -133,7 +133,7 @@ def test_preemption_ends_the_wait(absent):
     assert end().end == "preempted"
 
 
-@pytest.mark.parametrize("state", ["lost", "closed"])
+@pytest.mark.parametrize("state", ["lost", "closed", "connecting"])
 def test_nobody_waits_for_a_robot_that_went_away(state):
     assert Module(Connection(state, 1), patience=60.0).play("look").end == "aborted"
 

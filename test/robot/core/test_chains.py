@@ -51,7 +51,7 @@ class ChainModule(NaoBasic):
     def nested(self):
         self.borrow("outer")
         self.run("borrow", ["inner"], 0.0)
-        self.done.append("nested done")
+        self.borrow("late")
 
 
 def f(function, str_param="", time=0.0, **fields):
@@ -250,7 +250,7 @@ def test_what_was_borrowed_is_returned_when_the_function_fails(goals, done):
 
 def test_a_function_may_run_another_one_each_with_its_own_clean_up(goals, done):
     goals.succeed(f("nested"))
-    assert done == ["borrow outer", "borrow inner", "return inner", "nested done", "return outer"]
+    assert done == ["borrow outer", "borrow inner", "return inner", "borrow late", "return late", "return outer"]
 
 
 def test_clean_up_that_fails_aborts_a_goal_that_went_well_but_hides_no_error(goals, done, caplog):
