@@ -17,8 +17,8 @@ RESULTS = HERE.parent / ".ws" / "test_results"
 DURATIONS = RESULTS / "durations.json"
 """How long each file took when it last ran, in s: what takes longest starts first."""
 SLOWEST = 20
-STACK_LIMIT = 300
-"""s that a case of the running stack may take: the first one's time has the start of the stack in it."""
+LIMITS = {"ros": 300, "slow": 900}
+"""s that a case of a level may take, where not as pyproject.toml says; the first one starts the stack."""
 
 # Whoever starts the tests in the background of a shell has them ignore Ctrl-C, and so would the programs that they
 # start and interrupt.
@@ -49,10 +49,11 @@ def pytest_collection_modifyitems(config, items):
     if seed:
         random.Random(seed).shuffle(items)
     for item in items:
-        if "stack" in item.fixturenames and item.get_closest_marker("timeout") is None:
-            item.add_marker(pytest.mark.timeout(STACK_LIMIT))
         # The cases of the running stack share it, and those of a file what takes long to start.
         file = item.path.relative_to(HERE).as_posix()
+        limit = LIMITS.get(file.split("/")[0])
+        if limit and item.get_closest_marker("timeout") is None:
+            item.add_marker(pytest.mark.timeout(limit))
         if item.get_closest_marker("xdist_group") is None:
             item.add_marker(pytest.mark.xdist_group("ros" if "stack" in item.fixturenames else file))
 

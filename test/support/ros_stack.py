@@ -14,7 +14,7 @@ import rospy
 from nao_library_modules.own_stack import OwnStack, can_connect, free_port
 from nao_sim_bridge.testing import SimulatedRobot
 
-SPEED = 4
+SPEED = 2
 PR_SET_PDEATHSIG = 1
 LIMIT = 60.0
 
