@@ -79,6 +79,8 @@ def test_a_lost_robot_ends_goals_and_one_that_comes_back_listens_again_and_has_l
     put(robot, (1.0, 0.0, 0.5), words.samples[:, 0])
     robot.advance(words.duration + 1.5)
     comes(lambda: [value[0] for _, value in ears.edge.events if value[0]] == ["yes"])
+    ears.succeed(In(function="stopRecognition"))
+    assert recognition.getSubscribersInfo() == []
     text = mouth.refused(Out(function="play", str_param="one.wav"))
     assert "'one.wav' is not loaded: loadFile comes first" in text
     goal = mouth.send(Out(function="say", str_param="Hello again to everybody."))

@@ -45,12 +45,12 @@ def test_a_recording_takes_its_time_and_has_what_is_heard(robot, ears, fields, r
         channels,
         kind,
     )
-    assert recorded.duration == pytest.approx(1.5, abs=0.05) and result.memList == []
+    assert recorded.duration == pytest.approx(1.5, abs=0.2) and result.memList == []
     assert result.results[0].values[0] == fields["str_param"]
     assert float(result.results[0].values[1]) == pytest.approx(recorded.duration)
     samples, found = read(robot, fields["str_param"].replace("/home/nao/", ""))
     assert (found, samples.shape[1]) == (rate, len(channels))
-    assert len(samples) / rate == pytest.approx(1.5, abs=0.12)
+    assert len(samples) / rate == pytest.approx(recorded.duration, abs=0.15)
     middle = samples[rate // 2 : rate]
     assert frequency(middle[:, 0], rate) == pytest.approx(500.0, abs=2.1)
     expected = [0.5 * 0.1 * (1 + ALL.index(name)) / math.sqrt(2.0) for name in channels]
@@ -79,9 +79,9 @@ def test_a_recording_that_is_cancelled_is_closed_and_in_the_result(robot, ears):
     goal.cancel()
     assert goal.state == "preempted"
     (file,) = goal.result.files
-    assert file.path == "cut.ogg" and file.duration == pytest.approx(1.5, abs=0.1)
+    assert file.path == "cut.ogg" and file.duration == pytest.approx(1.5, abs=0.2)
     samples, rate = read(robot, "cut.ogg")
-    assert len(samples) / rate == pytest.approx(1.5, abs=0.1)
+    assert len(samples) / rate == pytest.approx(file.duration, abs=0.15)
 
 
 def test_a_recording_outlives_its_goal_until_it_is_stopped(robot, ears):
@@ -94,7 +94,7 @@ def test_a_recording_outlives_its_goal_until_it_is_stopped(robot, ears):
     result = ears.succeed(f("stopRecording"))
     (file,) = result.files
     assert file.path == "long.wav" and len(file.channels) == 4 and file.duration == pytest.approx(2.0, abs=0.1)
-    assert len(read(robot, "long.wav")[0]) / RATE == pytest.approx(file.duration, abs=0.05)
+    assert len(read(robot, "long.wav")[0]) / RATE == pytest.approx(file.duration, abs=0.15)
     ears.succeed(start, f("stopRecording"), record)
 
 
@@ -216,7 +216,9 @@ def test_energies_are_the_mean_over_a_while(robot, ears):
     put(robot, (1.0, 0.0, 0.5), half, 80.0, loop=True)
     ears.succeed(f("enableEnergyComputation"))
     robot.advance(0.5)
+    began = robot.now.time
     (mean,) = ears.succeed(f("getFrontMicEnergy", duration=3.4)).energies
+    assert robot.now.time - began == pytest.approx(3.3, abs=0.3)
     readings = []
     for _ in range(20):
         robot.advance(0.17)

@@ -281,6 +281,8 @@ def test_a_word_is_recognised_in_simulated_time_and_other_speech_is_none(robot, 
     assert phrase == "Good morning" and 0.5 < confidence <= 1.0
     assert robot.ALMemory.getData("WordRecognizedAndGrammar") == [phrase, confidence, "modifiable_grammar"]
     assert robot.ALMemory.getData("LastWordRecognized") == [phrase, confidence]
+    history = robot.server.memory.history("ALSpeechRecognition/Status")
+    assert [value for value, at in history if at > begun] == ["SpeechDetected", "EndOfProcess", "ListenOn"]
     seconds, microseconds = robot.ALMemory.getTimestamp("WordRecognized")[1:3]
     assert 0.5 < seconds + 1e-6 * microseconds - begun < 2.5
     person_says(robot, "the weather in the mountains is nice today")

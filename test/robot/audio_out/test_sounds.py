@@ -163,7 +163,7 @@ def test_waiting_for_silence_lasts_as_long_as_the_background_and_tells_of_a_soun
     with socket.create_server(("127.0.0.1", 0)) as radio:
         address = f"http://127.0.0.1:{radio.getsockname()[1]}/a.ogg"
         goal = audio.send(f("playWebStream", address, background=True), f("waitUntilSilent"))
-        robot.advance(0.3)
+        robot.advance_until(lambda: goal.feedback and goal.feedback[-1].index == 1, 500.0)
         radio.accept()[0].close()
     goal.finish()
     assert goal.state == "aborted" and "function 2 (waitUntilSilent)" in goal.text and "nothing can be" in goal.text

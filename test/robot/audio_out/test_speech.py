@@ -118,6 +118,7 @@ def test_how_a_text_is_spoken_is_for_this_text_only(robot, audio):
 
     before = settings()
     chains = [{}, {"speed": 200.0}, {"volume": 0.25}, {"voice": "rms"}, {"pitch": 150.0}, {}]
+    chains.append({"voice": "rms", "language": "French"})  # the voice says in which language
     spans = [sounding(robot, audio, f("say", "The lazy dog runs away.", **fields))[:2] for fields in chains]
     sounding(robot, audio, f("say", "Bonjour.", language="French"))
     sounding(robot, audio, f("say", "Bonjour.", language="French", voice="naofrf", volume=0.5))
@@ -126,6 +127,7 @@ def test_how_a_text_is_spoken_is_for_this_text_only(robot, audio):
     assert lengths[1] / lengths[0] == pytest.approx(0.5, abs=0.12)
     assert heard[2] / heard[0] == pytest.approx(0.25, abs=0.02)
     assert abs(lengths[3] / lengths[0] - 1.0) > 0.02
+    assert lengths[6] == pytest.approx(lengths[3], abs=0.02)
     assert lengths[4] == pytest.approx(lengths[0], abs=0.05) and abs(heard[4] / heard[0] - 1.0) > 0.001
     assert lengths[5] == pytest.approx(lengths[0], abs=0.02) and heard[5] == pytest.approx(heard[0], rel=0.02)
 
