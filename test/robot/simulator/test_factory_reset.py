@@ -6,7 +6,6 @@ import os
 import queue
 import re
 import threading
-from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ from simulator import PATIENCE, Simulator
 
 import naoqi
 from nao_sim_bridge.services.api import module_methods
-from nao_sim_bridge.sim.sound.files import read_sound, write_sound
+from nao_sim_bridge.sim.sound.files import write_sound
 from nao_sim_bridge.sim.sound.samples import RATE, Sound
 
 READS = re.compile(
@@ -294,24 +293,6 @@ def test_a_film_is_completed_and_stays_what_modules_wrote_goes(robot):
     robot.server.factory_reset()
     assert sorted(path.name for path in folder.iterdir()) == ["film.mp4", "mine.txt"]
     assert (folder / "film.mp4").stat().st_size > 1000
-
-
-def test_the_sound_file_goes_on_and_modules_that_were_taken_off_are_back(tmp_path):
-    robot = Simulator(tmp_path, speed=float("inf"), sound_file="all.wav")
-    try:
-        robot.advance(0.5)
-        with suppress(RuntimeError):  # there is nobody left to answer
-            robot.ALSonar.exit()
-        robot.server.factory_reset()
-        assert robot.session.service("ALSonar").ping()
-        robot.post("ALAudioPlayer", "playSine", 800, 50, 0, 0.2)
-        robot.handed_over("ALAudioPlayer")
-        robot.advance(0.5)
-    finally:
-        robot.close()
-    sound = read_sound(tmp_path / "all.wav").samples
-    assert len(sound) == pytest.approx(RATE, abs=RATE // 50)
-    assert not sound[: RATE // 2].any() and sound[RATE // 2 :].any()
 
 
 def test_many_resets_leave_nothing_behind(robot):

@@ -1,0 +1,310 @@
+"""What modules share: subscribers with periods and precisions, switches, failures of walks, a clock, names of LEDs."""
+
+from __future__ import annotations
+
+import logging
+import time
+from datetime import timedelta
+from types import SimpleNamespace
+
+import pytest
+
+from nao_sim_bridge.services import live_keys, sonar, time_zone
+from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.services.extractor import Extractor, Subscription
+from nao_sim_bridge.services.led_names import LedNames
+from nao_sim_bridge.services.memory_store import EVENT, MemoryStore
+from nao_sim_bridge.services.switch import Switch
+from nao_sim_bridge.services.time_zone import TimeZone
+from nao_sim_bridge.services.walk_events import FAILED, MoveFailures
+from nao_sim_bridge.sim.errors import BadValue, ConfigError, SimulationError, SimulationStopped, UnknownName
+from nao_sim_bridge.sim.leds_layout import load_leds
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.tasks import TaskIds, stopped_error
+
+LEDS = load_leds()
+
+
+@pytest.fixture
+def memory():
+    return MemoryStore(lambda: 0.0)
+
+
+# --- extractors -------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def done():
+    """What the extractor was told to do, and of which changes."""
+    return []
+
+
+@pytest.fixture
+def extractor(memory, done):
+    start, stop = (lambda word=word: done.append(word) for word in ("start", "stop"))
+    return Extractor("ALTest", memory, start, stop, ["Heard", "Seen"], ["Key"], Subscription(170, 0.25), done.append)
+
+
+def test_it_works_from_the_first_subscriber_to_the_last_and_is_told_of_every_change(extractor, done):
+    extractor.subscribe("one")
+    extractor.subscribe("two", 100, 0.5)
+    extractor.subscribe("two", 200, 0.75)
+    assert extractor.getSubscribersInfo() == [["one", 170, 0.25], ["two", 200, 0.75]]
+    extractor.updatePeriod("one", 50)
+    extractor.updatePrecision("one", 1.0)
+    extractor.unsubscribe("one")
+    extractor.unsubscribe("two")
+    extractor.subscribe("three")
+    one, two = Subscription(170, 0.25), Subscription(200, 0.75)
+    assert done == [
+        "start",
+        {"one": one},
+        {"one": one, "two": Subscription(100, 0.5)},
+        {"one": one, "two": two},
+        {"one": Subscription(50, 0.25), "two": two},
+        {"one": Subscription(50, 1.0), "two": two},
+        {"two": two},
+        {},
+        "stop",
+        "start",
+        {"three": one},
+    ]
+
+
+def test_the_shortest_period_and_the_highest_precision_count(extractor, memory):
+    assert (extractor.getCurrentPeriod(), extractor.getCurrentPrecision()) == (170, 0.25)
+    extractor.subscribe("slow", 500, 0.1)
+    extractor.subscribe("quick", 50, 0.0)
+    assert (extractor.getCurrentPeriod(), extractor.getCurrentPrecision()) == (50, 0.1)
+    extractor.updatePeriod("quick", 600)
+    extractor.updatePrecision("quick", 1.0)
+    assert (extractor.getCurrentPeriod(), extractor.getCurrentPrecision()) == (500, 1.0)
+    assert (extractor.getMyPeriod("quick"), extractor.getMyPrecision("quick")) == (600, 1.0)
+    assert memory.events_of("ALTest") == extractor.getEventList() == ["Heard", "Seen"]
+    assert extractor.getMemoryKeyList() == ["Key"] and extractor.getOutputNames() == ["Heard", "Seen", "Key"]
+
+
+def test_who_is_a_stranger_nameless_or_asks_for_what_cannot_be_is_refused(extractor, done):
+    for period, precision in ((-1, 0.5), (100, -0.1), (100, 1.1), (100, float("nan"))):
+        with pytest.raises(BadValue):
+            extractor.subscribe("one", period, precision)
+    with pytest.raises(BadValue, match="name is ''"):
+        extractor.subscribe("")
+    assert done == [] and extractor.getSubscribersInfo() == []
+    strangers = [("unsubscribe",), ("getMyPeriod",), ("getMyPrecision",), ("updatePeriod", 1), ("updatePrecision", 1.0)]
+    for known in ("nobody", "'friend'"):
+        for name, *more in strangers:
+            with pytest.raises(RuntimeError, match=f"'stranger' is not subscribed; subscribed is {known}"):
+                getattr(extractor, name)("stranger", *more)
+        extractor.subscribe("friend")
+
+
+def test_those_who_subscribe_before_the_start_is_done_wait_for_it_and_hear_when_it_fails(memory):
+    ids, tasks = TaskIds(), []
+    extractor = Extractor("ALTest", memory, lambda: tasks.append(ids.make("start")) or tasks[-1], lambda: None)
+    assert [extractor.subscribe(name) for name in ("one", "two")] == [tasks[0], tasks[0]]
+    tasks[0].finish()
+    assert extractor.subscribe("late") is None
+    for name in ("one", "two", "late"):
+        extractor.unsubscribe(name)
+    waiting = [extractor.subscribe(name) for name in ("one", "two")]
+    assert waiting[0] is tasks[1] is not tasks[0]
+    tasks[1].finish(error=SimulationError("no ears"))
+    for task in waiting:
+        with pytest.raises(SimulationError, match="no ears"):
+            task.result(0.0)
+    assert extractor.subscribe("late") is None
+    assert [name for name, _, _ in extractor.getSubscribersInfo()] == ["one", "two", "late"]
+
+
+def test_who_cannot_be_served_is_not_subscribed(memory):
+    def start():
+        raise SimulationError("no ears")
+
+    extractor = Extractor("ALTest", memory, start, lambda: None)
+    with pytest.raises(SimulationError, match="no ears"):
+        extractor.subscribe("one")
+    assert extractor.getSubscribersInfo() == []
+
+
+def test_a_switch_works_while_it_is_wanted_and_not_paused():
+    class Lamp(Switch):
+        shone = ()
+
+        def _update(self):
+            self.shone += (self._works,)
+
+    lamp = Lamp()
+    lamp.start()
+    lamp.pause(True)
+    assert lamp.paused
+    lamp.pause(False)
+    lamp.stop()
+    assert lamp.shone == (True, False, True, False)
+    with pytest.raises(TypeError, match="abstract.*_update"):
+        Switch()
+
+
+# --- sonars, keys, walks ----------------------------------------------------------------------------------------------
+
+
+def test_a_simulation_that_has_stopped_has_no_subscribers_and_before_the_first_shot_nothing_is_known(memory):
+    class Stopped:
+        def execute(self, command, name):
+            raise stopped_error()
+
+    simulation = SimpleNamespace(robot=SimpleNamespace(locomotion=SimpleNamespace(active=False)))
+    silent = sonar.Sonar(simulation, Stopped(), memory)
+    keys = sonar.sonar_keys(SimpleNamespace(firing=False, echoes=lambda side: ()))
+    assert len(keys) == 22 and {reader() for reader in keys.values()} == {0.0}
+    with pytest.raises(SimulationStopped):
+        silent.start()
+    silent(SimpleNamespace(time=0.0, sonars=(1.0, 1.0), echoes=((1.0,), (1.0,))))
+    assert not silent.firing
+    silent.stop()
+
+
+@pytest.mark.parametrize("module", [sonar, live_keys])
+def test_a_key_that_nothing_can_read_is_an_error(monkeypatch, module):
+    key = "US/Nose/Sensor/Value"
+    tables, group = module.read_json(module.config_file(live_keys.FILE)), "sonar" if module is sonar else "smell"
+    monkeypatch.setattr(module, "read_json", lambda path: {**tables, "devices": {group: {"keys": [key]}}})
+    with pytest.raises(ConfigError, match=f"nothing in the simulation can read '{key}'"):
+        sonar.sonar_keys(None) if module is sonar else live_keys.live_keys(None, load_model(), LEDS, tuple)
+
+
+def test_every_led_has_its_key_the_status_of_a_motor_follows_its_warmth_and_versions_differ():
+    for version in ("V6", "V5"):
+        leds = load_leds(version)
+        numbers = tuple(range(len(leds.devices)))
+        keys = live_keys.live_keys(None, load_model(version), leds, lambda numbers=numbers: numbers)
+        for index, device in enumerate(leds.devices):
+            assert keys[f"Device/SubDeviceList/{device}"]() == index
+    steps = [(27.0, 0), (67.9, 0), (68.0, 1), (73.9, 1), (74.0, 2), (79.9, 2), (80.0, 3), (120.0, 3)]
+    for warmth, status in steps:
+        runner = SimpleNamespace(snapshot=SimpleNamespace(temperatures=(warmth,) * 26))
+        keys = live_keys.live_keys(runner, load_model(), LEDS, tuple)
+        assert keys["Device/SubDeviceList/HeadYaw/Temperature/Sensor/Status"]() == status
+    v5 = live_keys.constants("V5")
+    assert (v5["RobotConfig/Body/Version"], v5["RobotConfig/Head/Type"]) == ("5.0.0", "Nao")
+    assert set(live_keys.constants("V6")) <= set(v5)
+
+
+@pytest.mark.parametrize(
+    "started, obstacle, told",
+    [(False, None, [0, None]), (True, None, [1, None]), (True, (0.5, 0.1, 0.2), [1, [0.5, 0.1, 0.2]])],
+)
+def test_a_move_that_fails_tells_cause_status_and_obstacle_once(memory, started, obstacle, told):
+    heard, locomotion, failures = [], SimpleNamespace(failures=[]), MoveFailures(memory)
+    assert FAILED in memory.names(EVENT)
+    memory.subscribe(FAILED, "test", lambda name, value, message: heard.append(value))
+    for _ in range(3):
+        failures.watch(locomotion)
+    for tell in locomotion.failures:
+        tell("something is wrong", started, obstacle)
+    assert heard == [["something is wrong", *told]] and memory.get(FAILED) == heard[0]
+
+
+# --- the clock --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def computer(monkeypatch, tmp_path):
+    """Puts the computer into a zone, and a link to it where its name stands."""
+    monkeypatch.setattr(time_zone, "LOCAL", tmp_path / "localtime")
+
+    def be_in(zone, link=""):
+        monkeypatch.setenv("TZ", zone)
+        time.tzset()
+        monkeypatch.delenv("TZ")
+        if link:
+            time_zone.LOCAL.symlink_to(link)
+
+    yield be_in
+    monkeypatch.undo()
+    time.tzset()
+
+
+@pytest.mark.parametrize(
+    "link, name",
+    [
+        ("/usr/share/zoneinfo/Asia/Tokyo", "Asia/Tokyo"),
+        ("../usr/share/zoneinfo/Asia/Tokyo", "Asia/Tokyo"),
+        ("", "UTC"),
+        ("/somewhere/else", "UTC"),
+    ],
+)
+def test_without_tz_it_is_the_zone_of_the_computer_and_its_name_if_a_link_tells_it(computer, link, name):
+    computer("JST-9", link)
+    zone = TimeZone()
+    assert (zone.name, zone.now().utcoffset()) == (name, timedelta(hours=9))
+
+
+@pytest.mark.parametrize(
+    "told, name, hours, warned",
+    [
+        ("Asia/Tokyo", "Asia/Tokyo", 9, False),
+        (":Asia/Tokyo", "Asia/Tokyo", 9, False),
+        ("", "UTC", 0, False),
+        ("Mars/Olympus", "UTC", 0, True),
+        ("/etc/passwd", "UTC", 0, True),
+        ("x" * 300, "UTC", 0, True),
+    ],
+)
+def test_what_tz_says_goes_first_and_what_nobody_knows_is_utc(computer, monkeypatch, caplog, told, name, hours, warned):
+    computer("JST-9")
+    monkeypatch.setenv("TZ", told)
+    with caplog.at_level(logging.WARNING, "nao_sim.time_zone"):
+        zone = TimeZone()
+    assert (zone.name, zone.now().utcoffset()) == (name, timedelta(hours=hours))
+    assert (f"TZ is {told!r}, which this machine does not know" in caplog.text) is warned
+    for wrong in ("x" * 256, "Europe/" + "x" * 300, "x/" * 3000, "Europe\0Paris", "\udc80", "Europe", "../x", ""):
+        assert zone.change(wrong) is False and zone.name == name
+    assert zone.change("Europe/Paris") is True and zone.name == "Europe/Paris"
+
+
+# --- names of LEDs ----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def names():
+    return LedNames(LEDS)
+
+
+def test_groups_mean_their_members_each_once_may_hold_groups_and_be_made_anew(names):
+    for name in ("FaceLeds", "LeftFaceLed1", "Brain0", "ChestBoard/Led/Blue/Actuator/Value"):
+        assert names.devices(name) == LEDS.devices_of(name)
+    names.make_group("mine", ["LeftFaceLed1", "LeftFaceLed1", "FaceLedLeft0", "Brain3"])
+    assert names.members("mine") == ["LeftFaceLed1", "LeftFaceLed1", "FaceLedLeft0", "Brain3"]
+    assert set(names.devices("mine")) == {*LEDS.devices_of("FaceLedLeft0"), *LEDS.devices_of("Brain3")}
+    assert len(names.devices("mine")) == 4 and len(names.groups()) == 71 and len(names.short_names()) == 57
+    names.make_group("all", ["mine", "Brain0"])
+    assert set(names.devices("all")) == {*names.devices("mine"), *LEDS.devices_of("Brain0")}
+    names.make_group("mine", ["Brain0"])
+    assert names.devices("mine") == LEDS.devices_of("Brain0") and names.members("FaceLedLeft0") == ["LeftFaceLed1"]
+    assert names.device_names("LeftFaceLed1")[0].startswith("Face/Led/Red/Left/")
+
+
+def test_impossible_groups_and_unknown_names_are_refused(names):
+    for name, members, message in (
+        ("FaceLeds", ["Brain0"], "'FaceLeds' is taken by the robot's own LEDs"),
+        ("Brain0", ["Brain1"], "'Brain0' is taken"),
+        ("", ["Brain0"], "'' is taken"),
+        ("mine", [], "'mine' has no members"),
+    ):
+        with pytest.raises(NaoqiError, match=message):
+            names.make_group(name, members)
+    for call, message in (
+        (lambda: names.make_group("mine", ["Brian0"]), "unknown LED or group 'Brian0'.*'Brain0'"),
+        (lambda: names.members("FaceLed"), "unknown group 'FaceLed'.*'FaceLeds'"),
+        (lambda: names.device_names("FaceLeds"), "unknown LED 'FaceLeds'"),
+        (lambda: names.devices("Brian0"), "unknown LED or group 'Brian0'.*'Brain0'"),
+    ):
+        with pytest.raises(UnknownName, match=message):
+            call()
+    names.make_group("group0", ["Brain0"])
+    for length in range(4):  # no group can hold itself, however long the way
+        with pytest.raises(NaoqiError, match="'group0' would hold itself"):
+            names.make_group("group0", [f"group{length}"])
+        names.make_group(f"group{length + 1}", [f"group{length}"])
+    assert "mine" not in names.groups() and names.devices("group4") == LEDS.devices_of("Brain0")

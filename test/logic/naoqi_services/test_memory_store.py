@@ -1,0 +1,198 @@
+"""Keys, events and their subscribers, without a network."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.services.memory_store import HISTORY_LENGTH, KEY_ADDED, KEY_REMOVED, MemoryStore
+from nao_sim_bridge.sim.errors import UnknownName
+
+
+class Clock:
+    now = 100.0
+
+    def __call__(self):
+        return self.now
+
+
+@pytest.fixture
+def clock():
+    return Clock()
+
+
+@pytest.fixture
+def store(clock):
+    return MemoryStore(clock)
+
+
+@pytest.fixture
+def heard():
+    """Module, event, value and message of every call of a subscriber."""
+    return []
+
+
+def subscribe(store, heard, name="Happened", module="Listener", message="", kind="Event"):
+    store.subscribe(name, module, lambda *call: heard.append((module, *call)), message, kind)
+
+
+def test_data_is_read_in_the_order_asked_for_with_its_time_and_removed_with_its_description(store, clock):
+    for key in ("b/Sensor", "a/Sensor", "c/Actuator"):
+        store.insert(key, key)
+    assert store.get_many(["c/Actuator", "x", "a/Sensor"]) == ["c/Actuator", None, "a/Sensor"]
+    assert store.names() == ["a/Sensor", "b/Sensor", "c/Actuator"]
+    assert store.names(containing="Sensor") == ["a/Sensor", "b/Sensor"]
+    clock.now = 105.5
+    assert store.timestamp("a/Sensor") == ("a/Sensor", 100.0)
+    store.insert("a/Sensor", 2)
+    assert store.timestamp("a/Sensor") == (2, 105.5)
+    store.set_description("a/Sensor", "a number")
+    assert store.describe(["a/Sensor"]) == [["a/Sensor", "Data", "a number"]]
+    with pytest.raises(UnknownName, match="unknown Event 'a/Sensor'"):
+        store.remove("a/Sensor", "Event")
+    store.remove("a/Sensor")
+    store.insert("a/Sensor", 3)
+    assert store.describe([])[0] == ["a/Sensor", "Data", ""]
+    for call in (lambda: store.set_description("no", "x"), lambda: store.kind("no"), lambda: store.get("no")):
+        with pytest.raises(UnknownName, match="unknown key 'no'"):
+            call()
+
+
+def test_an_event_without_a_value_cannot_be_read_yet_and_a_reset_one_tells_nobody(store, heard, clock):
+    store.declare_event("Happened", "Extractor")
+    store.declare_event("Happened")
+    store.declare_event("Other", "Another")
+    assert store.events_of("Extractor") == ["Happened"] and store.get_many(["Happened", "nothing"]) == [None, None]
+    with pytest.raises(UnknownName):
+        store.get("Happened")
+    subscribe(store, heard)
+    store.reset_event("Happened", 1)
+    store.put_quietly("Happened", 0)
+    assert (store.get("Happened"), store.kind("Happened"), heard) == (0, "Event", [])
+    store.raise_event("Happened", 2)
+    assert heard == [("Listener", "Happened", 2, "")]
+
+
+def test_a_live_key_is_computed_when_it_is_read_and_written_by_its_writer_only(store, clock, heard):
+    values = iter(range(10))
+    store.add_live({"sensor": lambda: next(values), "led": lambda: 0.0}, {"led": heard.append})
+    assert [store.get("sensor"), store.get_many(["sensor"]), store.get("sensor")] == [0, [1], 2]
+    assert store.kind("sensor") == "Data" and "sensor" in store.names()
+    clock.now = 107.0
+    assert store.timestamp("sensor") == (3, 107.0)
+    with pytest.raises(NaoqiError, match="sensor is a sensor of the robot and cannot be written"):
+        store.insert("sensor", 2.0)
+    with pytest.raises(NaoqiError, match="cannot be removed"):
+        store.remove("led")
+    store.insert("led", 0.5)
+    assert heard == [0.5]
+
+
+def test_who_waits_for_a_change_hears_of_the_next_one_only(store, heard):
+    store.on_next_change("key", heard.append)
+    store.insert("other", 5)
+    store.insert("key", 2)
+    store.insert("key", 3)
+    assert heard == [2]
+
+
+def test_all_subscribers_hear_until_they_leave_also_when_one_fails(store, heard):
+    store.subscribe("Happened", "Deaf", lambda *_: 1 / 0)
+    subscribe(store, heard, message="old")
+    subscribe(store, heard, message="new")
+    store.raise_event("Happened", 1)
+    assert heard == [("Listener", "Happened", 1, "new")] and store.subscribers("Happened") == ["Deaf", "Listener"]
+    subscribe(store, heard, "Other")
+    store.forget_module("Listener")
+    assert store.subscribers("Happened") == ["Deaf"] and store.subscribers("Other") == []
+    with pytest.raises(NaoqiError, match="'Listener' is not subscribed to 'Happened'; subscribed is Deaf"):
+        store.unsubscribe("Happened", "Listener")
+    store.unsubscribe("Happened", "Deaf")
+    with pytest.raises(NaoqiError, match="subscribed is nobody"):
+        store.unsubscribe("Happened", "Deaf")
+
+
+def test_plain_data_notifies_nobody_until_it_becomes_an_event_and_a_removed_one_takes_its_listeners_along(store, heard):
+    store.insert("key", 1)
+    listener = heard.append
+    for _ in range(2):  # one listener, however often it is named
+        store.listen("key", listener)
+    store.insert("key", 2)
+    assert heard == []
+    store.raise_event("key", 3)
+    assert heard == [3]
+    store.remove("key", "Event")
+    store.raise_event("key", 4)
+    assert heard == [3]
+
+
+def test_a_listener_may_come_before_its_event_is_known_and_all_are_gone_in_the_end(store, heard):
+    store.listen("Later", heard.append, declare=False)
+    assert store.names() == []
+    store.raise_event("Later", 1)
+    subscribe(store, heard, "Later")
+    store.close()
+    store.raise_event("Later", 2)
+    assert heard == [1]
+
+
+def test_micro_events_are_a_kind_of_their_own(store, heard):
+    subscribe(store, heard, "Light", kind="MicroEvent")
+    store.raise_micro_event("Light", 1)
+    assert (store.names("MicroEvent"), store.names("Event"), len(heard)) == (["Light"], [], 1)
+
+
+def test_the_history_keeps_the_last_values_with_their_times(store, clock):
+    for n in range(HISTORY_LENGTH + 3):
+        clock.now = float(n)
+        store.raise_event("Happened", n)
+    history = store.history("Happened")
+    assert len(history) == HISTORY_LENGTH
+    assert (history[0], history[-1]) == ((3, 3.0), (HISTORY_LENGTH + 2, HISTORY_LENGTH + 2.0))
+    with pytest.raises(UnknownName, match="unknown event"):
+        store.history("nothing")
+
+
+def test_who_wants_to_know_is_told_of_keys_that_come_and_go_and_of_subscribers(store, heard):
+    seen = []
+    store.watch_subscribers("Watched", lambda name, modules: seen.append((name, modules)))
+    subscribe(store, heard, "Watched")
+    store.unsubscribe("Watched", "Listener")
+    subscribe(store, heard, "Watched")
+    store.forget_module("Listener")
+    assert seen == [("Watched", ["Listener"]), ("Watched", [])] * 2
+    for event in (KEY_ADDED, KEY_REMOVED):
+        subscribe(store, heard, event)
+    store.insert("key", 1)
+    store.insert("key", 2)
+    store.remove("key")
+    assert [entry[1:3] for entry in heard] == [(KEY_ADDED, "key"), (KEY_REMOVED, "key")]
+
+
+def test_a_subscriber_may_use_the_memory(store, heard):
+    def pass_on(_name, value, _message):
+        store.raise_event("Second", value + 1)
+        store.unsubscribe("First", "Relay")
+
+    store.subscribe("First", "Relay", pass_on)
+    subscribe(store, heard, "Second")
+    store.raise_event("First", 1)
+    store.raise_event("First", 5)
+    assert [entry[2] for entry in heard] == [2]
+
+
+def test_no_event_is_lost_when_many_threads_raise(store, heard):
+    def raise_many(number):
+        for n in range(200):
+            store.raise_event("Happened", (number, n))
+
+    subscribe(store, heard)
+    threads = [threading.Thread(target=raise_many, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(15.0)
+    values = [entry[2] for entry in heard]
+    assert all([n for of, n in values if of == number] == list(range(200)) for number in range(4))

@@ -1,0 +1,239 @@
+"""How the simulator is started, which files clients may use, and what its ROS services tell and are documented as."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import math
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+import rospy
+from std_srvs.srv import SetBool, SetBoolRequest, SetBoolResponse
+
+from nao_sim_bridge.cli import parse, server_options
+from nao_sim_bridge.record_dir import ClientFiles, NoSuchFile, OutsideRecordDir, UnusableName, inside, unused
+from nao_sim_bridge.ros_success import success_service
+from nao_sim_bridge.server import ServerOptions
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.simulation import Scene
+from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.task_success import success_of
+
+ROOT = Path(__file__).parents[3]
+DOCUMENT = (ROOT / "docs" / "simulator.md").read_text(encoding="utf-8")
+ROW = re.compile(r"^\| `(?:nao_sim/)?(?P<name>[a-z_/]+)` \| (?:\[)?`(?P<package>\w+)/(?P<type>\w+)`", re.MULTILINE)
+DOCUMENTED = {match["name"]: (match["package"], match["type"]) for match in ROW.finditer(DOCUMENT)}
+
+
+# --- command line -----------------------------------------------------------------------------------------------------
+
+
+def options(*arguments):
+    return server_options(parse("nao_sim", arguments))
+
+
+def test_the_defaults_are_a_robot_on_the_loopback_in_real_time():
+    default = options()
+    assert default == ServerOptions(Scene("empty", "V6", "Crouch", 0), "127.0.0.1", 9559, 1.0, False, False)
+    assert default.record_dir == Path("~/.ros/nao_recordings") and default.renderer == "auto"
+    assert (default.sound_file, default.sound_card, default.robots, default.places) == ("", False, 1, ())
+
+
+def test_every_option_reaches_the_server():
+    network, scene = "--port 0 --listen 0.0.0.0", "--world my.yaml --seed 7 --robot V5 --posture Stand"
+    trouble = "--friction 0.4 --payload 0.5 --sensor-noise 1 --sensor-delay 0.03 --charger"
+    chosen = options(*f"{network} {scene} {trouble} --speed 2.5 --gui --paused --record-dir my/files".split())
+    far_from_ideal = dict(friction=0.4, payload=0.5, sensor_noise=1.0, sensor_delay=0.03)
+    expected = Scene("my.yaml", "V5", "Stand", 7, charger=True, **far_from_ideal)
+    assert chosen == ServerOptions(expected, "0.0.0.0", 0, 2.5, True, True, Path("my/files"))
+    chosen = options("--sound-file", "all.wav", "--sound-card", "--renderer", "builtin")
+    assert (chosen.sound_file, chosen.sound_card, chosen.renderer) == ("all.wav", True, "builtin")
+    chosen = options("--robots", "3", "--places=-1,0,0; 1,0,180; 0,1,-90")
+    assert chosen.robots == 3 and [place.x for place in chosen.places] == [-1.0, 1.0, 0.0]
+    assert options("--places", "").places == () and options("--friction", "world").scene == options().scene
+    assert {options("--speed", text).speed for text in ("max", "0", "0.0", "inf")} == {math.inf}
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ("--speed -1", "'-1' is not a speed: a number above 0, or max"),
+    ("--speed fast", "'fast' is not a speed"),
+    ("--speed nan", "'nan' is not a speed"),
+    ("--port 65536", "'65536' is not a port: 0 to 65535"),
+    ("--port -1", "'-1' is not a port"),
+    ("--port naoqi", "'naoqi' is not a port"),
+    ("--robot V3", "invalid choice: 'V3' (choose from"),
+    ("--posture Standing", "invalid choice: 'Standing' (choose from"),
+    ("--friction ice", "'ice' is not an amount: a number of 0 or more"),
+    ("--payload -1", "'-1' is not an amount"),
+    ("--sensor-noise inf", "'inf' is not an amount"),
+    ("--sensor-delay nan", "'nan' is not an amount"),
+    ("--robots 0", "'0' is not a number of robots: 1 to 8"),
+    ("--robots 2.5", "'2.5' is not a number of robots"),
+    ("--places here", "is 'here'"),
+    ("--renderer vulkan", "invalid choice: 'vulkan' (choose from"),
+    ("--seed x", "invalid int value: 'x'"),
+    ("--wrold empty", "unrecognized arguments: --wrold"),
+])  # fmt: skip
+def test_wrong_arguments_end_the_program_with_what_is_allowed(capsys, arguments, message):
+    with pytest.raises(SystemExit) as ended:
+        options(*arguments.split())
+    assert ended.value.code == 2 and message in capsys.readouterr().err
+
+
+def test_help_names_every_option_and_its_default(capsys):
+    with pytest.raises(SystemExit) as ended:
+        parse("nao_sim", ["--help"])
+    text = capsys.readouterr().out
+    scene = "world seed robot posture friction payload sensor-noise sensor-delay charger"
+    missing = [o for o in f"port listen speed gui {scene} record-dir paused verbose".split() if f"--{o}" not in text]
+    assert (ended.value.code, missing) == (0, []) and "(default: 9559)" in text and "empty" in text
+
+
+# --- files of clients -------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    """Recordings with two files, and a folder that is shipped with two."""
+    for name in ("records/day/one.wav", "shipped/chime.wav", "records/both.wav", "shipped/both.wav"):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(name)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    return ClientFiles("~/records", [tmp_path / "shipped"])
+
+
+def test_files_are_read_from_the_recordings_or_from_what_is_shipped(files, tmp_path):
+    assert files.folder == tmp_path / "records"
+    for name, found in (
+        ("day/one.wav", "records/day/one.wav"),
+        ("chime.wav", "shipped/chime.wav"),
+        ("both.wav", "records/both.wav"),
+        ("/home/nao/day/one.wav", "records/day/one.wav"),
+        ("/home//nao/day/../both.wav", "records/both.wav"),
+    ):
+        assert files.to_read(name).read_text() == found
+    for name, told in (
+        ("two.wav", "no file 'two.wav' in .*records"),
+        ("day", "'day' is a folder, not a file"),
+        ("new/a.wav", "no file 'new/a.wav'"),
+    ):
+        with pytest.raises(NoSuchFile, match=told):
+            files.to_read(name)
+    assert not (tmp_path / "records/new").exists()
+
+
+def test_nothing_is_read_or_written_outside_or_by_a_name_that_no_file_can_have(files, tmp_path):
+    outside = ["", ".", "..", "../x.wav", "day/../../a.wav", "day/..", "/etc/passwd", "/home/nao/../x", "/home/naomi/x"]
+    (tmp_path / "records/out").symlink_to(tmp_path)
+    for name in (*outside, "a\0b", str(tmp_path / "records/a.wav"), "out/a.wav"):
+        for way in (files.to_write, files.to_keep, *([] if name == "out/a.wav" else [files.to_read])):
+            with pytest.raises(OutsideRecordDir, match="is not inside .*records; give a relative name"):
+                way(name)
+    for name in ("n" * 300 + ".wav", "day/" + "é" * 200 + "/a.wav", "abc/" * 2000 + "a.wav"):
+        for way in (files.to_read, files.to_write):
+            with pytest.raises(UnusableName, match="too long a name") as refused:
+                way(name)
+            assert len(str(refused.value)) < 200
+
+
+def test_only_files_of_the_recordings_are_written_to(files, tmp_path):
+    for name in ("a.wav", "new/one/a.wav", "day/../a.wav", "..a.wav", "chime.wav", "/home/nao/new/b.wav"):
+        path = files.to_write(name)
+        assert path == (tmp_path / "records" / name.replace("/home/nao/", "")).resolve() and path.parent.is_dir()
+    os.mkfifo(tmp_path / "records/pipe.wav")  # opened for writing it would block
+    for name, told in (
+        ("day", "'day' cannot be written: Is a directory"),
+        ("both.wav/a.wav", "folder of 'both.wav/a.wav' cannot be made"),
+        ("pipe.wav", "'pipe.wav' cannot be written: it is no file"),
+    ):
+        with pytest.raises(UnusableName, match=told):
+            files.to_write(name)
+    (tmp_path / "link").symlink_to(tmp_path / "shipped")
+    assert inside(tmp_path / "link", "a.wav") == tmp_path / "shipped" / "a.wav"  # a folder that is a link itself
+    for number in (1, 2, 3):
+        free = unused(tmp_path / "free.wav")
+        assert free.name == ("free.wav" if number == 1 else f"free-{number}.wav")
+        free.touch()
+
+
+def test_what_modules_have_made_can_be_forgotten_and_nothing_else(files, tmp_path):
+    for name in ("made/a.wav", "day/two.wav", "both.wav", "gone.wav"):
+        files.to_write(name).touch()
+    files.to_keep("made/film.mp4").touch()
+    files.to_write("only/folder/a.wav")
+    (tmp_path / "records/gone.wav").unlink()
+    files.forget()
+    left = {path.relative_to(files.folder).as_posix() for path in files.folder.rglob("*") if path.is_file()}
+    assert left == {"day/one.wav", "both.wav", "made/film.mp4"} and not (files.folder / "only").exists()
+
+
+# --- services of ROS --------------------------------------------------------------------------------------------------
+
+
+def ended(result=None, error=None):
+    task = Task("glide", 1)
+    task.finish(result, error)
+    return task
+
+
+def test_a_task_succeeds_with_the_one_it_leads_to_and_tells_errors_and_its_early_end():
+    wrong = BadValue("mass", -1, "0 or more")
+
+    def cannot_begin():
+        raise wrong
+
+    killed = Task("glide", 1)
+    killed.kill()
+    assert success_of(lambda: ended(ended()), "stopped") == (True, "")
+    for begin in (lambda: ended(error=wrong), lambda: ended(ended(error=wrong)), cannot_begin):
+        assert success_of(begin, "stopped") == (False, str(wrong))
+    assert success_of(lambda: killed, "stopped") == (False, "stopped")
+
+
+@dataclass
+class Answer:
+    """An answer with its fields in another order, and one more."""
+
+    message: str = ""
+    count: int = 7
+    success: bool = False
+
+
+@pytest.mark.parametrize("kind", [Answer, SetBoolResponse])
+def test_the_answer_of_a_service_is_filled_by_name(monkeypatch, kind):
+    services, wrong = {}, BadValue("data", False, "true")
+    monkeypatch.setattr(rospy, "Service", lambda name, kind, handler: services.update({name: (kind, handler)}))
+    success_service("~go", SetBool, kind, lambda request: ended(None, None if request.data else wrong), "stopped")
+    offered, handle = services["~go"]
+    assert offered is SetBool and handle(SetBoolRequest(True)) == kind(success=True, message="")
+    assert handle(SetBoolRequest(False)) == kind(success=False, message=str(wrong))
+
+
+def test_every_service_stands_in_the_document_with_its_type():
+    offered = {}  # first and second argument of the calls that make services
+    for path in sorted((ROOT / "nao_sim_bridge" / "src" / "nao_sim_bridge").glob("ros_*.py")):
+        source = path.read_text(encoding="utf-8")
+        for call in ast.walk(ast.parse(source)):
+            called = isinstance(call, ast.Call) and ast.get_source_segment(source, call.func)
+            if called in ("rospy.Service", "success_service"):
+                name, kind = (ast.get_source_segment(source, argument) for argument in call.args[:2])
+                if '"' in name:  # the helper passes on a variable
+                    offered[re.sub(r'^f?"(~|\{\w+\})?|"$', "", name)] = kind
+    assert len(offered) > 15 and {name: kind for name, (_, kind) in DOCUMENTED.items()} == offered
+    for package, kind in DOCUMENTED.values():
+        assert hasattr(importlib.import_module(f"{package}.srv"), f"{kind}Request")
+
+
+def test_the_example_of_the_document_fits_the_types():
+    example = ast.parse(re.search(r"```python\n(.*?)```", DOCUMENT, re.DOTALL)[1])
+    imported = [statement for statement in example.body if isinstance(statement, ast.ImportFrom)]
+    kinds = {a.name: getattr(importlib.import_module(line.module), a.name) for line in imported for a in line.names}
+    assert {"AdvanceTime", "PushRobot", "TouchSensors"} <= set(kinds)
+    calls = [call for call in ast.walk(example) if isinstance(call, ast.Call) and isinstance(call.func, ast.Name)]
+    (fields,) = [{keyword.arg for keyword in call.keywords} for call in calls if call.func.id == "push"]
+    assert fields == set(kinds["PushRobot"]._request_class.__slots__)

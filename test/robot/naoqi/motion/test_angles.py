@@ -1,0 +1,300 @@
+"""ALMotion moves joints: targets, interpolations, curves, hands, stiffness; and lists and kills what runs."""
+
+from __future__ import annotations
+
+import pytest
+
+from nao_sim_bridge.sim.model import load_model
+
+MODEL = load_model()
+HEAD = ["HeadYaw", "HeadPitch"]
+FLAT = [[3, -0.2, 0.0], [3, 0.2, 0.0]]
+INTERPOLATION, BEZIER = "angleInterpolation", "angleInterpolationBezier"
+
+
+@pytest.fixture(autouse=True)
+def stiff(stiff_robot):
+    return stiff_robot
+
+
+@pytest.fixture
+def commands(motion):
+    return lambda names="Head": motion.getAngles(names, False)
+
+
+@pytest.fixture
+def sensed(motion):
+    return lambda names="Head": motion.getAngles(names, True)
+
+
+@pytest.fixture
+def play(robot):
+    """A motion of ALMotion that is over after so many seconds; its answer."""
+    return lambda method, *arguments, after: robot.finish("ALMotion", method, *arguments, after=after)
+
+
+def near(*values, within=1e-6):
+    return pytest.approx(list(values), abs=within)
+
+
+# --- targets ----------------------------------------------------------------------------------------------------------
+
+
+def test_a_target_is_approached_at_its_share_of_the_top_speed_and_replaced(robot, motion, commands, sensed):
+    motion.setAngles("HeadYaw", 2.0, 0.1)
+    robot.advance(1.0)
+    assert motion.getTaskList() == []
+    assert commands("HeadYaw") == near(0.1 * MODEL.joint("HeadYaw").max_velocity)
+    assert sensed("HeadYaw") == pytest.approx(commands("HeadYaw"), abs=0.01)
+    motion.setAngles("HeadYaw", 0.0, 1.0)
+    robot.advance(0.5)
+    assert commands("HeadYaw") == near(0.0)
+    pitch = commands()[1]
+    for _ in range(2):  # changes add up
+        motion.changeAngles(HEAD, [0.25, -0.1], 0.5)
+    robot.advance(1.0)
+    assert commands() == near(0.5, pitch - 0.2)
+    assert commands(["HeadPitch", "LHand", "HeadYaw"]) == near(pitch - 0.2, 0.3, 0.5) and len(sensed("Body")) == 26
+
+
+def test_targets_come_in_all_shapes_and_stay_within_limits(robot, motion, commands):
+    for names, angles, fraction, reached in (
+        ("Head", [0.5, -0.2], 0.5, [0.5, -0.2]),
+        ("Head", 0.25, 0.5, [0.25, 0.25]),
+        (HEAD, [0.1], 0.5, [0.1, 0.1]),
+        (HEAD, [0.5, -0.2], [0.5, 0.2], [0.5, -0.2]),
+        ("HeadPitch", 9.0, 1.0, [0.5, MODEL.coupled_limits["HeadPitch"].limits_at(0.5)[1]]),
+    ):
+        motion.setAngles(names, angles, fraction)
+        robot.advance(1.0)
+        assert commands() == pytest.approx(reached)
+
+
+def test_a_head_that_looks_aside_nods_less(play, commands, sensed):
+    play("angleInterpolationWithSpeed", HEAD, [1.5, 0.5], 0.5, after=2.0)
+    upper = MODEL.coupled_limits["HeadPitch"].limits_at(1.5)[1]
+    assert commands() == near(1.5, upper) and sensed() == near(1.5, upper, within=0.01)
+
+
+# --- interpolations ---------------------------------------------------------------------------------------------------
+
+
+def test_an_interpolation_answers_when_it_has_arrived(robot, begin, play, commands, sensed):
+    future = begin("ALMotion", INTERPOLATION, HEAD, [[0.5, 0.1], [-0.2]], [[1.0, 2.0], [1.0]], True, after=1.0)
+    assert commands() == near(0.5, -0.2) and future.isRunning()
+    robot.advance(1.01)
+    assert robot.answer(future) is None
+    assert commands() == near(0.1, -0.2) and sensed() == near(0.1, -0.2, within=0.01)
+    play(INTERPOLATION, "HeadYaw", [0.1, -0.2], [0.5, 1.0], False, after=1.1)  # from the start of the motion
+    assert commands("HeadYaw") == near(-0.1)
+    recorded = sensed("Body")  # the two hips share a motor, but their sensors differ in the last digits
+    recorded[MODEL.joint_index["RHipYawPitch"]] += 0.002
+    assert play(INTERPOLATION, "Body", recorded, 0.5, True, after=0.6) is None
+
+
+def test_with_speed_and_for_key_frames_too_fast_it_takes_the_time_that_is_needed(robot, motion, begin, commands):
+    top = MODEL.joint("HeadYaw").max_velocity
+    future = begin("ALMotion", "angleInterpolationWithSpeed", "HeadYaw", 1.5, 1.0 / top, after=1.4)
+    assert commands("HeadYaw") == near(1.4, within=0.01) and motion.getTaskList() != []
+    robot.advance(0.11)
+    robot.answer(future)
+    assert commands("HeadYaw") == near(1.5)
+    begun, future = robot.now.time, begin("ALMotion", INTERPOLATION, "HeadYaw", -0.5, 0.05, True)
+    robot.advance_until(lambda: not future.isRunning(), 1.0, 1 / 120)
+    assert robot.now.time - begun == pytest.approx(2.0 / top, abs=2.1 / 60) and commands("HeadYaw") == [-0.5]
+
+
+def test_motions_of_one_joint_queue_up_and_others_run_beside(robot, begin, commands):
+    one, two, three = (
+        begin("ALMotion", INTERPOLATION, name, to, 1.0, True)
+        for name, to in (("HeadYaw", 0.5), ("HeadYaw", 0.0), ("HeadPitch", 0.3))
+    )
+    robot.advance(1.01)
+    robot.answer(one), robot.answer(three)
+    assert two.isRunning() and commands() == near(0.5, 0.3, within=0.01)
+    robot.advance(1.01)
+    robot.answer(two)
+    assert commands() == near(0.0, 0.3)
+
+
+@pytest.mark.parametrize("early", [True, False])
+def test_a_cancelled_interpolation_stays_where_it_is(robot, motion, commands, early):
+    with robot.busy_simulation():
+        future = robot.post("ALMotion", INTERPOLATION, "HeadYaw", 1.0, 1.0, True)
+        motion.ping()
+        if early:
+            future.cancel()
+            motion.ping()
+    robot.handed_over("ALMotion")
+    robot.advance(0.5)
+    if not early:
+        future.cancel()
+        robot.handed_over("ALMotion")
+    robot.advance(1.0)
+    future.wait(int(1000 * robot.patience))
+    assert future.isCanceled() and commands("HeadYaw") == near(0.0 if early else 0.5, within=0.02)
+
+
+# --- curves -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_timeline_is_played_to_its_end_through_its_points(robot, begin, commands, sensed):
+    points = [[[0.4, *FLAT], [-0.2, *FLAT]], [[0.3, *FLAT]]]
+    future = begin("ALMotion", BEZIER, HEAD, [[0.6, 1.2], [0.6]], points, after=0.6)
+    assert commands() == near(0.4, 0.3, within=2e-3)
+    robot.advance(0.62)
+    assert robot.answer(future) is None
+    assert commands() == near(-0.2, 0.3) and sensed() == near(-0.2, 0.3, within=0.01)
+
+
+def test_flat_handles_are_slow_at_the_ends_linear_ones_are_not_and_shapes_vary(robot, motion, begin, play, commands):
+    reached = []
+    for handles in (FLAT, [[1, 0.0, 0.0]]):  # a tenth of the way into the time
+        future = begin("ALMotion", BEZIER, ["HeadYaw"], [[1.0]], [[[1.0, *handles]]], after=0.1)
+        reached.append(commands()[0])
+        motion.killAll()
+        robot.answer(future)
+        play(INTERPOLATION, "HeadYaw", 0.0, 0.5, True, after=0.6)
+    assert reached[0] < 0.05 < 0.09 < reached[1]
+    for angle, (names, times, points) in enumerate([
+        ("HeadYaw", [0.5], [[0.0, *FLAT]]),
+        (["HeadYaw"], [[0.5]], [[[0.1, *FLAT]]]),
+        (["HeadYaw"], [[0.5]], [[0.2]]),
+        (["HeadYaw"], [[0.5]], [[[0.3, [3, -0.1, 0.0]]]]),
+    ]):  # fmt: skip
+        play(BEZIER, names, times, points, after=0.6)
+        assert commands()[0] == pytest.approx(angle / 10)
+    play("animation", ["HeadYaw"], [[0.3, 0.6]], [[0.2, -0.1]], False, [], after=0.7)  # from where the joint is
+    assert commands()[0] == pytest.approx(0.2)
+
+
+# --- hands ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_hand_opens_and_closes_is_stiff_while_it_moves_and_limp_afterwards(robot, motion, begin, sensed):
+    motion.setStiffnesses("RHand", 0.0)
+    for hand in ("LHand", "RHand"):
+        for method, reached in (("openHand", 1.0), ("closeHand", 0.0)):
+            future = begin("ALMotion", method, hand, after=0.1)
+            assert motion.getStiffnesses(hand) == [1.0]
+            robot.advance(2.0)
+            assert robot.answer(future) is None
+            assert motion.getStiffnesses(hand) == [0.0] and sensed(hand) == near(reached, within=0.05)
+    future = begin("ALMotion", "openHand", "RHand", after=0.1)
+    motion.killAll()
+    robot.answer(future)
+    assert motion.getStiffnesses("RHand") == [0.0]
+
+
+# --- stiffness --------------------------------------------------------------------------------------------------------
+
+
+def test_stiffness_is_set_at_once_or_in_time(robot, motion, begin):
+    motion.setStiffnesses("Body", 0.0)
+    for names, stiffnesses, expected in (
+        ("Head", 0.5, [0.5, 0.5]),
+        (HEAD, [0.25, 1.0], [0.25, 1.0]),
+        ("HeadYaw", [0.5], [0.5, 1.0]),
+    ):
+        motion.setStiffnesses(names, stiffnesses)
+        assert motion.getStiffnesses("Head") == expected
+    motion.setStiffnesses("RHipYawPitch", 0.5)  # either hip stiffens both
+    assert motion.getStiffnesses(["LHipYawPitch", "RHipYawPitch"]) == [0.5, 0.5]
+    motion.setStiffnesses("Head", 0.0)
+    future = begin("ALMotion", "stiffnessInterpolation", HEAD, [[1.0, 0.0], [0.5]], [[1.0, 2.0], [1.0]], after=0.5)
+    assert motion.getStiffnesses("Head") == near(0.5, 0.25, within=0.01)
+    robot.advance(1.51)
+    assert robot.answer(future) is None and motion.getStiffnesses("Head") == [0.0, 0.5]
+    future = begin("ALMotion", "stiffnessInterpolation", "Body", 1.0, 5.0, after=0.5)
+    motion.setStiffnesses("Body", 0.25)
+    robot.answer(future)
+    robot.advance(0.5)
+    assert motion.getStiffnesses("Body") == [0.25] * 26
+
+
+def test_a_limp_joint_takes_commands_but_follows_none_and_does_not_jump(robot, motion, commands, sensed, play):
+    motion.setStiffnesses("HeadYaw", 0.0)
+    motion.setAngles("HeadYaw", 0.5, 1.0)
+    robot.advance(1.0)
+    assert commands("HeadYaw") == near(0.5) and sensed("HeadYaw") == near(0.0, within=0.01)
+    motion.setStiffnesses("HeadYaw", 1.0)
+    robot.advance(0.5)
+    assert sensed("HeadYaw") == near(0.0, within=0.01)
+    play(INTERPOLATION, "HeadYaw", 0.5, 0.5, True, after=0.6)
+    motion.setStiffnesses("HeadYaw", 0.6)  # that of a stiff joint keeps its command
+    robot.advance(0.5)
+    assert commands("HeadYaw") == near(0.5)
+
+
+# --- tasks ------------------------------------------------------------------------------------------------------------
+
+
+def test_tasks_are_listed_hold_their_joints_and_are_killed_by_number(robot, motion, begin, commands):
+    assert motion.getTaskList() == [] and motion.killTask(4711) is False
+    future, other = (begin("ALMotion", INTERPOLATION, name, 0.4, 2.0, True, after=0.5) for name in HEAD)
+    (name, number), _ = motion.getTaskList()
+    assert name == INTERPOLATION and isinstance(number, int) and number > 0
+    free = [motion.areResourcesAvailable(names) for names in (["HeadYaw"], ["Head"], ["LArm"], ["LArm", "HeadYaw"])]
+    assert free == [False, False, True, False]
+    assert motion.killTask(number) is True and robot.answer(future) is None
+    assert [motion.areResourcesAvailable([name]) for name in HEAD] == [True, False]
+    before = commands("HeadYaw")
+    robot.advance(2.0)
+    assert commands("HeadYaw") == before != [0.4]
+    robot.answer(other)
+    assert commands("HeadPitch") == near(0.4) and motion.areResourcesAvailable(["Head"]) is True
+
+
+def test_tasks_are_killed_by_what_they_move_all_or_by_the_number_of_their_post(robot, motion, begin, commands):
+    head, arm = (begin("ALMotion", INTERPOLATION, name, 1.0, 2.0, True, after=0.2) for name in HEAD[:1] + ["LElbowYaw"])
+    motion.killTasksUsingResources(["Head"])
+    robot.answer(head)
+    assert arm.isRunning() and [name for name, _ in motion.getTaskList()] == [INTERPOLATION]
+    queued = begin("ALMotion", INTERPOLATION, "LElbowYaw", 0.0, 2.0, True)
+    motion.setAngles("RShoulderPitch", 1.0, 0.1)
+    motion.killAll()
+    robot.answer(arm), robot.answer(queued)
+    before = commands("Body")
+    robot.advance(0.5)
+    assert commands("Body") == before and motion.getTaskList() == []
+    number = motion.pCall(INTERPOLATION, "HeadYaw", 1.0, 2.0, True)
+    robot.advance(0.2)
+    assert motion.isRunning(number) is True
+    motion.stop(number)
+    robot.settled()
+    assert motion.isRunning(number) is False and motion.getTaskList() == []
+
+
+def test_wrong_arguments_name_what_is_allowed_and_move_nothing(refuses):
+    refuses("ALMotion", r"""
+        getAngles('HeadYow', True) -> unknown joint or chain 'HeadYow': did you mean 'HeadYaw'
+        setAngles(['HeadYaw', 'HeadYaw'], 0.1, 0.5) -> named twice: HeadYaw
+        setAngles('Head', [0.1, 0.2, 0.3], 0.5) -> angles is .*, allowed is one number or 2, one for each joint
+        setAngles('HeadYaw', 'much', 0.5) -> angles is 'much', allowed is a finite number
+        setAngles('HeadYaw', 0.5, 1.5) -> fractionMaxSpeed is 1.5, allowed is 0 to 1
+        setAngles('HeadYaw', 0.5, 0.0) -> fractionMaxSpeed is 0, allowed is above 0 to 1
+        changeAngles([], 0.5, 0.5) -> names is .*, allowed is a joint, a chain, or a list of them
+        angleInterpolation('Head', [0.1], 1.0, True) -> angleLists is .*, allowed is 2 entries
+        angleInterpolation('HeadYaw', 0.1, 0.0, True) -> allowed is times that rise, the first above 0 s
+        angleInterpolationWithSpeed('HeadYaw', 0.1, -0.5) -> fractionMaxSpeed is -0.5, allowed is 0 to 1
+        openHand('LArm') -> unknown hand 'LArm'
+        setStiffnesses('Head', 1.5) -> stiffnesses is 1.5, allowed is 0 to 1
+        setStiffnesses('Head', [0.1, 0.2, 0.3]) -> allowed is one number or 2, one for each joint
+        setStiffnesses('Had', 1.0) -> unknown joint or chain 'Had': did you mean 'Head'
+        getStiffnesses('Had') -> unknown joint or chain 'Had'
+        stiffnessInterpolation('HeadYaw', -0.5, 1.0) -> stiffnessLists is -0.5, allowed is 0 to 1
+        stiffnessInterpolation('HeadYaw', [0.5, 1.0], 1.0) -> as many times as values for each joint: 2
+        angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5]], [[0.1], [0.1]]) -> times
+        angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5], [0.5]], [[0.1, 0.2], [0.1]]) -> as many points as t
+        angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5], [0.0]], [[0.1], [0.1]]) -> the first above 0 s
+        angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5], [0.5, 0.4]], [[0.1], [0.1, 0.1]]) -> times that rise
+        angleInterpolationBezier(['HeadYaw'], [[0.5]], [[[0.1, [7, 0.0, 0.0]]]]) -> type of a handle is 7
+        angleInterpolationBezier(['HeadYaw'], [[0.5]], [[[0.1, [3, 0.2, 0.0], [3, 0.2, 0.0]]]]) -> dTime of 0 or less
+        angleInterpolationBezier(['HeadYaw'], [[0.5]], [[[0.1, [3, 0.2]]]]) -> with the handles before and after
+        angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5], [0.5]], [['far'], [0.1]]) -> controlPoints is 'far'
+        animation(['HeadYaw'], [[0.3]], [[0.2]], True, [[0.1, 'LLeg']]) -> supportSequence
+        areResourcesAvailable(['Hed']) -> unknown joint or chain 'Hed': did you mean 'Head'
+        killTasksUsingResources(['Hed']) -> unknown joint or chain 'Hed': did you mean 'Head'
+        rest('Hed') -> unknown joint or chain 'Hed': did you mean 'Head'
+        getBodyNames('Hed') -> unknown joint or chain 'Hed': did you mean 'Head'
+    """)  # fmt: skip

@@ -1,0 +1,374 @@
+"""Walking: to places and at velocities, its end in all ways, footsteps, and what keeps a walk from beginning."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from nao_sim_bridge.services.motion.move_config import gait_list
+
+MOTION, POSTURE, WITH_SPEED = "ALMotion", "ALRobotPosture", "setFootStepsWithSpeed"
+MARCH = (["LLeg", "RLeg"] * 6, [[0.04, 0.1, 0.0], [0.04, -0.1, 0.0]] * 6)
+AHEAD = [[0.04, 0.1, 0.0], [0.04, -0.1, 0.0], [0.0, 0.1, 0.0]]
+LEGS = ["LLeg", "RLeg", "LLeg"]
+WALL = "{name: wall, box: [0.1, 2.0, 1.0], position: [1.0, 0.0, 0.5]}"
+
+
+# --- to a place -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "method, arguments, there",
+    [
+        ("moveTo", ([[0.05, 0.0, 0.0], [0.08, 0.04, 0.3]],), (0.08, 0.04, 0.3)),
+        ("walkTo", (0.08, 0.0, 0.0, [["StepHeight", 0.03]]), (0.08, 0.0, 0.0)),
+    ],
+)
+def test_a_move_answers_when_the_robot_stands_where_it_was_sent(walker, motion, method, arguments, there):
+    assert walker.walk(method, *arguments) is True
+    assert motion.getRobotPosition(True) == pytest.approx(there, abs=0.03)
+    x, y, turn = walker.truth
+    assert turn == pytest.approx(there[2], abs=0.1) and (x, y) == pytest.approx(there[:2], abs=0.05) and walker.stands
+
+
+def test_a_move_may_be_given_more_time_than_it_needs_and_a_place_replaces_the_one_before(walker):
+    begun = walker.now.time
+    assert walker.walk("moveTo", 0.04, 0.0, 0.0, 4.0, [["MaxStepX", 0.06]]) is True
+    assert walker.now.time - begun > 4.0
+    first = walker.begin("moveTo", 1.0, 0.0, 0.0)
+    second = walker.begin("moveTo", 0.05, 0.05, 0.0, after=0.1)
+    assert walker.answer(first) is False
+    walker.until_it_stands()
+    assert walker.answer(second) is True and walker.truth[0] < 0.35
+
+
+@pytest.mark.parametrize("end", ["stopMove", "cancel", "stop"])
+def test_a_move_that_is_stopped_ends_on_two_feet(walker, motion, end):
+    number = motion.pCall("moveTo", 1.0, 0.0, 0.0) if end == "stop" else 0
+    move = None if number else walker.begin("moveTo", 1.0, 0.0, 0.0, after=0.0)
+    walker.advance(2.5)
+    if number:
+        assert motion.isRunning(number) is True
+        motion.stop(number)
+        walker.settled()
+        assert motion.isRunning(number) is False
+    elif end == "cancel":
+        move.cancel()
+        with pytest.raises(RuntimeError):
+            walker.answer(move)
+        assert move.isCanceled()
+        walker.settled()
+    else:
+        stop = walker.begin("stopMove", after=0.0)
+    walker.until_it_stands()
+    if end == "stopMove":
+        assert walker.answer(stop) is True and walker.answer(move) is False
+    assert walker.stands and 0.02 < walker.truth[0] < 0.5
+
+
+# --- at a velocity ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "method, arguments, least",
+    [
+        ("move", (0.0, 0.0, 0.4, [["MaxStepTheta", 0.2], ["Frequency", 1.0]]), (None, None, 0.25)),
+        ("moveToward", (-1.0, 0.0, 0.0), (-0.03, None, None)),
+        ("moveToward", (0.0, -0.8, 0.0, [["LeftStepHeight", 0.03], ["RightStepHeight", 0.015]]), (None, -0.02, None)),
+        ("setWalkTargetVelocity", (0.8, 0.0, 0.0, 1.0), (0.03, None, None)),
+        ("setWalkTargetVelocity", (0.8, 0.0, 0.0, 0.0, [["MaxStepX", 0.06]]), (0.03, None, None)),
+        ("setWalkTargetVelocity", (1.0, 0.0, 0.0, 1.0, [["MaxStepX", 0.03]], [["MaxStepX", 0.04]]), (0.02, None, None)),
+    ],
+)
+def test_a_walk_at_a_velocity_goes_where_it_is_told_to(walker, motion, method, arguments, least):
+    assert getattr(motion, method)(*arguments) is None
+    assert motion.moveIsActive() and motion.walkIsActive()
+    walker.advance(3.0)
+    assert all(wanted is None or came / wanted > 1.0 for came, wanted in zip(walker.truth, least)), walker.truth
+
+
+def test_the_robot_knows_where_it_goes_takes_up_another_velocity_or_place_and_ends(walker, motion):
+    for position in (motion.getRobotPosition(True), motion.getRobotPosition(False), motion.getNextRobotPosition()):
+        assert position == pytest.approx([0.0, 0.0, 0.0], abs=0.01)
+    assert motion.getRobotVelocity() == [0.0, 0.0, 0.0]
+    motion.move(0.07, 0.0, 0.0)
+    walker.advance(4.0)
+    here, next_ = motion.getRobotPosition(True), motion.getNextRobotPosition()
+    assert here[0] == pytest.approx(walker.truth[0], abs=0.05) and 0.0 < next_[0] - here[0] < 0.08
+    assert motion.getRobotVelocity() == pytest.approx([0.07, 0.0, 0.0], abs=0.02)
+    motion.move(0.0, 0.0, 0.5)
+    walker.advance(2.0)
+    before = walker.truth
+    walker.advance(2.0)
+    assert walker.truth[2] - before[2] > 0.4 and math.dist(walker.truth[:2], before[:2]) < 0.06
+    assert motion.getRobotVelocity()[2] == pytest.approx(0.5, abs=0.1)
+    assert walker.walk("moveTo", 0.03, 0.0, 0.0) is True
+    motion.moveToward(1.0, 0.0, 0.0)
+    walker.advance(1.0)
+    motion.moveToward(0.0, 0.0, 0.0)
+    walker.until_it_stands()
+    assert walker.stands
+
+
+# --- the end of a walk ------------------------------------------------------------------------------------------------
+
+
+def test_waiting_ends_with_the_walk_and_who_no_longer_waits_does_not_stop_it(walker, motion):
+    move = walker.begin("moveTo", 0.08, 0.0, 0.0)
+    waits = [walker.begin(f"waitUntil{what}IsFinished", after=0.0) for what in ("Move", "Walk")]
+    assert all(wait.isRunning() for wait in waits)
+    walker.until_it_stands()
+    assert [walker.answer(wait) for wait in waits] == [None, None] and walker.answer(move) is True
+    for method in (
+        "stopMove",
+        "stopWalk",
+        "killMove",
+        "killWalk",
+        "waitUntilMoveIsFinished",
+        "waitUntilWalkIsFinished",
+    ):
+        assert walker.answer(walker.post(MOTION, method)) is (True if method.startswith("stop") else None)
+    motion.move(0.05, 0.0, 0.0)
+    wait = walker.begin("waitUntilMoveIsFinished", after=2.0)
+    wait.cancel()
+    walker.settled()
+    walker.advance(1.0)
+    assert motion.moveIsActive() and motion.getRobotVelocity()[0] > 0.03
+
+
+@pytest.mark.parametrize("method", ["killMove", "killTask", "killTasksUsingResources"])
+def test_a_killed_walk_is_over_at_once(walker, motion, method):
+    move = walker.begin("moveTo", 1.0, 0.0, 0.0, after=1.0)
+    ((name, number),) = motion.getTaskList()
+    assert name == "moveTo" and motion.areResourcesAvailable(["LLeg"]) is False
+    getattr(motion, method)(*{"killTask": (number,), "killTasksUsingResources": (["RLeg"],)}.get(method, ()))
+    assert motion.moveIsActive() is False and motion.getTaskList() == [] and walker.answer(move) is False
+    before = motion.getAngles("Legs", False)
+    walker.advance(0.3)
+    assert motion.getAngles("Legs", False) == pytest.approx(before, abs=1e-3)
+
+
+@pytest.mark.parametrize("module, method, arguments, height", [
+    (MOTION, "rest", (), 0.2),
+    (POSTURE, "applyPosture", ("StandInit", 0.5), 0.3),
+])  # fmt: skip
+def test_changes_of_the_whole_body_bring_a_walk_to_its_end(walker, motion, module, method, arguments, height):
+    move = walker.begin("moveTo", 1.0, 0.0, 0.0, after=2.3)
+    change = walker.begin(method, *arguments, module=module, after=0.0)
+    walker.advance_until(lambda: not change.isRunning(), 20.0, 0.5)
+    assert walker.answer(change) in (None, True) and walker.answer(move) is False
+    assert not motion.moveIsActive() and walker.now.torso.position[2] > height
+    assert walker.value("ALMotion/RobotIsStand") is True
+
+
+def test_arms_swing_unless_they_may_not(walker, motion):
+    def enabled():
+        return [motion.getMoveArmsEnabled(name) for name in ("LArm", "RArm", "Arms")]
+
+    assert enabled() == [True, True, True]
+    motion.setMoveArmsEnabled(True, False)
+    assert enabled() == [True, False, False] and motion.getWalkArmsEnabled() == [True, False]
+    motion.move(0.08, 0.0, 0.0)
+    walker.advance(3.0)
+    seen = []
+    for _ in range(8):
+        walker.advance(0.1)
+        seen.append([round(angle, 2) for angle in motion.getAngles(["LShoulderPitch", "RShoulderPitch"], False)])
+    left, right = map(set, zip(*seen))
+    assert len(left) > 3 and len(right) == 1
+    motion.setWalkArmsEnabled(True, True)
+    assert motion.getMoveArmsEnabled("Arms") is True
+
+
+# --- footsteps --------------------------------------------------------------------------------------------------------
+
+
+def beside(foot, other):
+    """A foot [x, y, theta] in the frame of the other one."""
+    x, y, c, s = foot[0] - other[0], foot[1] - other[1], math.cos(other[2]), math.sin(other[2])
+    return [c * x + s * y, -s * x + c * y, foot[2] - other[2]]
+
+
+@pytest.mark.parametrize("speed", [[1.0], [0.5, 1.0, 0.0]])
+def test_steps_with_a_speed_answer_when_they_are_made(walker, motion, speed):
+    (left, right), fixed, further = motion.getFootSteps()
+    assert left == pytest.approx([0.0, 0.073, 0.134], abs=0.01)  # in this posture toes point outwards
+    assert right == pytest.approx([0.0, -0.073, -0.134], abs=0.01) and fixed == further == []
+    future = walker.begin(WITH_SPEED, LEGS, AHEAD, speed, False, after=0.1)
+    assert future.isRunning()
+    walker.until_it_stands()
+    assert walker.answer(future) is None
+    (left, right), _, _ = motion.getFootSteps()
+    assert beside(left, right) == pytest.approx(AHEAD[-1], abs=0.02) and 0.05 < left[0] < 0.11
+    assert walker.now.torso.position[0] == pytest.approx((left[0] + right[0]) / 2.0, abs=0.04)
+
+
+def test_steps_at_times_return_at_once_and_are_listed(walker, motion):
+    walker.walk("moveInit")  # from other stances, a step more brings the feet side by side
+    begun, seen = walker.now.time, []
+    assert motion.setFootSteps(LEGS, AHEAD, [0.8, 1.6, 2.4], False) is None
+    assert walker.now.time == begun and motion.moveIsActive()
+
+    def look():
+        _, fixed, further = motion.getFootSteps()
+        seen.append([(leg, move) for leg, _, move in [*fixed, *further]])
+        times = [time for _, time, _ in [*fixed, *further]]
+        assert len(fixed) <= 1 and times == sorted(times)
+        assert [b - a for a, b in zip(times, times[1:])] == pytest.approx([0.8] * (len(times) - 1), abs=0.01)
+        return not motion.moveIsActive()
+
+    walker.advance_until(look, 20.0, 0.2)
+    longest = max(seen, key=len)
+    assert [leg for leg, _ in longest] == LEGS and seen[-1] == []
+    assert sum((move for _, move in longest), []) == pytest.approx(sum(AHEAD, []), abs=0.01)
+
+
+def test_a_slow_step_takes_longer_and_a_foot_that_steps_twice_waits_for_the_other_one(walker, motion):
+    walker.walk("moveInit")
+
+    def duration(fraction):
+        begun = walker.now.time
+        steps = (["LLeg", "RLeg"], [[0.03, 0.1, 0.0], [0.0, -0.1, 0.0]], [fraction], False)
+        future = walker.begin(WITH_SPEED, *steps, after=0.1)
+        walker.until_it_stands(0.05)
+        walker.answer(future)
+        return walker.now.time - begun
+
+    assert duration(0.0) - duration(1.0) == pytest.approx(2 * 0.18, abs=0.11)
+    calls = [walker.begin(WITH_SPEED, ["LLeg"], [[0.0, y, 0.0]], [1.0], False, after=0.1) for y in (0.14, 0.1)]
+    walker.until_it_stands()
+    assert [walker.answer(call) for call in calls] == [None, None]
+    (left, right), _, _ = motion.getFootSteps()
+    assert beside(left, right) == pytest.approx([0.0, 0.1, 0.0], abs=0.02)
+
+
+@pytest.mark.parametrize("replaced", [True, False])
+def test_steps_that_are_not_begun_can_be_replaced_and_stopped(walker, motion, replaced):
+    future = walker.begin(WITH_SPEED, *MARCH, [1.0], False, after=2.0)
+    if replaced:
+        steps = (["LLeg", "RLeg"], [[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]], [1.0], True)
+        end = walker.begin(WITH_SPEED, *steps, after=0.1)
+    else:
+        end = walker.begin("stopMove", after=0.0)
+    walker.until_it_stands()
+    assert walker.answer(end) is (None if replaced else True) and walker.answer(future) is None
+    assert walker.now.torso.position[0] < 0.3
+
+
+def test_steps_that_legs_cannot_make_are_clipped(walker, motion):
+    walker.walk("moveInit")
+    motion.setFootSteps(["LLeg"], [[0.3, 0.4, 2.0]], [1.0], False)
+    planned = []
+    for _ in range(10):
+        walker.advance(0.1)
+        planned += [move for _, _, move in motion.getFootSteps()[1]]
+    x, y, turn = planned[0]
+    assert 0.0 < x <= 0.08 and 0.088 <= y <= 0.16 and 0.0 < turn <= 0.524
+
+
+# --- what keeps it from walking ---------------------------------------------------------------------------------------
+
+
+def test_limp_legs_do_not_walk_and_that_is_told(walker, motion):
+    motion.setStiffnesses("Body", 0.0)
+    moves = [("moveTo", 0.1, 0.0, 0.0), ("move", 0.05, 0.0, 0.0), ("moveToward", 1.0, 0.0, 0.0), ("moveInit",)]
+    for method, *arguments in [*moves, ("setFootSteps", ["LLeg"], [[0.0, 0.1, 0.0]], [0.6], False)]:
+        before = len(walker.failures)
+        with pytest.raises(RuntimeError, match=f"ALMotion::{method} stiffness of LHipYawPitch.* wakeUp first"):
+            motion.call(method, *arguments)
+        assert motion.moveIsActive() is False
+        if not method.startswith("set"):
+            (cause, status, obstacle), count = walker.failures[-1], len(walker.failures)
+            assert count == before + 1 and "LHipYawPitch" in cause and (status, obstacle) == (0, None)
+
+
+def test_legs_that_get_soft_end_a_walk_unless_they_may(walker, motion):
+    move = walker.begin("moveTo", 1.0, 0.0, 0.0)
+    motion.setStiffnesses("LAnklePitch", 0.5)
+    walker.advance(0.1)
+    assert walker.answer(move) is False and not motion.moveIsActive()
+    ((cause, status, _),) = walker.failures
+    assert "LAnklePitch" in cause and status == 1
+    motion.setMotionConfig([["ENABLE_STIFFNESS_PROTECTION", False]])
+    motion.setStiffnesses(["LAnklePitch", "LShoulderPitch"], [0.6, 0.0])
+    motion.move(0.03, 0.0, 0.0)
+    walker.advance(1.0)
+    assert motion.moveIsActive()
+
+
+def test_a_lifted_or_fallen_robot_ends_its_walk_and_begins_none(walker, motion):
+    move = walker.begin("moveTo", 1.0, 0.0, 0.0, after=1.0)
+    walker.NaoSimulation.push([0.0, 0.0, 57.0], 2.0, "torso")
+    walker.advance(0.8)
+    assert walker.answer(move) is False and "ground" in walker.failures[-1][0]
+    with pytest.raises(RuntimeError, match="ALMotion::move the feet feel no ground"):
+        motion.move(0.05, 0.0, 0.0)
+    assert len(walker.failures) == 2
+    walker.NaoSimulation.reset()
+    motion.setStiffnesses("Body", 1.0)
+    walker.advance(0.2)
+    move = walker.begin("moveTo", 1.0, 0.0, 0.0, after=1.0)
+    walker.NaoSimulation.push([60.0, 0.0, 0.0], 0.2, "torso")
+    walker.advance(3.0)
+    assert walker.answer(move) is False
+    motion.setStiffnesses("Body", 1.0)
+    with pytest.raises(RuntimeError, match="ALMotion::moveTo .*"):
+        motion.moveTo(0.1, 0.0, 0.0)
+
+
+def test_a_reset_ends_a_walk(walker, motion):
+    move = walker.begin("moveTo", 1.0, 0.0, 0.0, after=1.0)
+    wait = walker.begin("waitUntilMoveIsFinished", after=0.1)
+    walker.NaoSimulation.reset()
+    assert walker.answer(move) is False and walker.answer(wait) is None and motion.moveIsActive() is False
+
+
+def test_an_obstacle_ends_a_walk_before_it_unless_the_protection_is_off(walker, motion):
+    walker.NaoSimulation.placeObject(WALL)
+    assert walker.walk("moveTo", 1.5, 0.0, 0.0) is False
+    ((cause, status, obstacle),) = walker.failures
+    assert "obstacle" in cause and status == 1 and obstacle[0] == pytest.approx(0.95, abs=0.1)
+    gap = 0.95 - walker.truth[0]
+    assert 0.2 < gap <= motion.getOrthogonalSecurityDistance() + 0.1 and walker.stands
+    motion.setExternalCollisionProtectionEnabled("Move", False)
+    there = walker.truth[0] + 0.1
+    assert walker.walk("moveTo", 0.1, 0.0, 0.0) is True and walker.truth[0] == pytest.approx(there, abs=0.05)
+
+
+def test_what_cannot_be_walked_is_refused_and_nothing_moves(walker, motion, refuses):
+    assert motion.getMoveConfig("Max") == [[name, pytest.approx(value)] for name, value in gait_list("Max")]
+    refuses("ALMotion", r"""
+        moveTo(math.nan, 0.0, 0.0) -> x is nan, allowed is a finite number
+        moveTo(0.1, 0.0, 0.0, -1.0) -> time is -1.0, allowed is 0 or more
+        moveTo([]) -> controlPoint is .*, allowed is a list of at least one
+        moveTo([0.1, 0.0, 0.0]) -> controlPoint is .*, allowed is a list of at least one
+        moveTo([[0.1, 0.0]]) -> controlPoint is .*, allowed is a list of at least one
+        moveTo(0.1, 0.0, 0.0, [['MaxStepX', 0.2]]) -> MaxStepX is 0.2, allowed is 0.001 to 0.08
+        move(0.1, 0.0, math.nan) -> theta is nan, allowed is a finite number
+        move(1e300, 0.0, 0.0) -> x is 1e\+300, allowed is -1e\+06 to 1e\+06
+        move(0.1, 0.0, 0.0, [['MaxStpX', 0.04]]) -> unknown gait parameter 'MaxStpX': did you mean 'MaxStepX'
+        move(0.1, 0.0, 0.0, [['MinStepX', -0.02]]) -> MinStepX is -0.02, allowed is nothing
+        move(0.1, 0.0, 0.0, ['MaxStepX', 0.04]) -> moveConfig is .*, allowed is pairs
+        moveToward(1.1, 0.0, 0.0) -> x is 1.1.*, allowed is -1 to 1
+        moveToward(0.0, 0.0, -2.0) -> theta is -2.0, allowed is -1 to 1
+        moveToward(1.0, 0.0, 0.0, [['Frequency', 1.5]]) -> Frequency is 1.5, allowed is 0 to 1
+        setWalkTargetVelocity(1.0, 0.0, 0.0, -0.5) -> frequency is -0.5, allowed is 0 to 1
+        setWalkTargetVelocity(1.0, 0.0, 0.0, 1.0, [['LeftTorsoWx', 1]], []) -> parameter of a foot 'LeftTorsoWx'
+        getMoveConfig('Mean') -> config is 'Mean', allowed is Default, Min, Max
+        getMoveArmsEnabled('Arm') -> unknown arm or group 'Arm': did you mean
+        setFootSteps([], [], [], False) -> legName is .*, allowed is a list of LLeg and RLeg, at least one
+        setFootSteps(['LArm'], [[0.0, 0.1, 0.0]], [0.6], False) -> legName is .*, allowed is a list of LLeg
+        setFootSteps(['LLeg'], [], [0.6], False) -> footSteps is .*, allowed is as many steps .* 1 here
+        setFootSteps(['LLeg'], [[0.0, 0.1]], [0.6], False) -> footSteps\[0\] is .*, allowed is x, y in m
+        setFootSteps(['LLeg'], [0.0], [0.6], False) -> footSteps\[0\] is 0.0, allowed is a list of numbers
+        setFootSteps(['LLeg'], [[0.0, math.nan, 0.0]], [0.6], False) -> footSteps\[0\]\[1\] is nan
+        setFootSteps(['LLeg', 'RLeg'], [[0, 0.1, 0], [0, -0.1, 0]], [0.6], False) -> timeList is .* as many as steps: 2
+        setFootSteps(['LLeg', 'RLeg'], [[0, 0.1, 0], [0, -0.1, 0]], [0.6, 0.6], False) -> timeList is .* times that rise
+        setFootSteps(['LLeg'], [[0, 0.1, 0]], [0.0], False) -> timeList is .*, allowed is times that rise
+        setFootSteps(['LLeg'] * 2, [[0, 0.1, 0]] * 2, [0.6, 1.2], False) -> allowed is LLeg and RLeg in turns
+        setFootStepsWithSpeed(['LLeg'], [[0, 0.1, 0]], [1.5], False) -> fractionMaxSpeed\[0\] is 1.5, allowed is 0 to 1
+        setFootStepsWithSpeed(['LLeg', 'RLeg'], [[0, 0.1, 0]] * 2, [1.0] * 3, False) -> as many as steps: 2 here
+        setFootStepsWithSpeed(['LLeg', 'RLeg'], [[0, 0.1, 0]], [1.0], False) -> footSteps is .*, allowed is as many
+    """)  # fmt: skip
+    assert motion.moveIsActive() is False

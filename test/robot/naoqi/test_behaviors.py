@@ -1,0 +1,171 @@
+"""ALBehaviorManager, ALAnimationPlayer and ALFrameManager: behaviours of the robot, of clients and of Choregraphe."""
+
+from __future__ import annotations
+
+import pytest
+from simulator import PATIENCE
+
+MANAGER = "ALBehaviorManager"
+HEY, SLEEP, BREATHE = "animations/Stand/Gestures/Hey_1", "nao_library/sleep", "nao_library/breathe"
+MINE = """
+behaviors:
+  mine/look:
+    nature: interactive
+    tags: [mine]
+    do: [{frames: [{time: 0.4, angles: {HeadYaw: 0.4}}]}]
+  mine/wait:
+    do: [{wait: 30.0}]
+"""
+TIMELINE = """<Timeline enable="1" fps="10"><ActuatorList><ActuatorCurve actuator="HeadYaw" mute="0" unit="0">
+<Key frame="5" value="20" /><Key frame="10" value="0" /></ActuatorCurve></ActuatorList></Timeline>"""
+PROJECT = f'<ChoregrapheProject><Box name="root" id="-1">{TIMELINE}</Box></ChoregrapheProject>'
+
+
+@pytest.fixture
+def manager(stiff_robot):
+    """The manager of a robot on stiff legs."""
+    (stiff_robot.server.files.folder / "mine.yaml").write_text(MINE)
+    return stiff_robot.ALBehaviorManager
+
+
+@pytest.fixture
+def installed(manager):
+    """A file of a client, installed."""
+    assert manager.installBehavior("mine.yaml")
+    return manager
+
+
+def test_what_comes_with_a_robot_is_installed_with_tags_and_natures(manager):
+    names = manager.getInstalledBehaviors()
+    assert {HEY, SLEEP, "animations/Sit/Gestures/Hey_3", "animations/Stand/Waiting/FunnyDancer_1"} <= set(names)
+    assert manager.getBehaviorNames() == names == manager.getSystemBehaviorNames()
+    assert manager.isBehaviorInstalled(HEY) and manager.isBehaviorPresent("User/" + HEY)
+    assert not manager.isBehaviorInstalled("Hey_1") and manager.resolveBehaviorName("Hey_1") == HEY
+    assert HEY in manager.getBehaviorsByTag("hello") and "hello" in manager.getBehaviorTags(HEY)
+    assert "hello" in manager.getTagList()
+    assert [manager.getBehaviorNature(name) for name in (SLEEP, HEY)] == ["solitary", "no nature"]
+
+
+def test_a_behaviour_ends_its_call_when_it_is_over_stopped_or_cancelled(manager, stiff_robot, begin):
+    future = begin(MANAGER, "runBehavior", HEY, after=2.0)
+    assert manager.getRunningBehaviors() == [HEY] == manager.getLoadedBehaviors() and future.isRunning()
+    stiff_robot.advance(1.0)
+    stiff_robot.answer(future)
+    assert not manager.isBehaviorRunning(HEY) and stiff_robot.value("BehaviorsRun") == []
+    future = begin(MANAGER, "runBehavior", BREATHE, after=0.5)
+    manager.stopBehavior(BREATHE)
+    assert stiff_robot.answer(future) is None
+    future = begin(MANAGER, "runBehavior", BREATHE)
+    future.cancel()
+    assert future.wait(int(1000 * PATIENCE)) is not None and future.isCanceled()
+    stiff_robot.settled()
+    assert manager.getRunningBehaviors() == []
+
+
+def test_several_may_run_by_name_or_by_default_and_all_are_stopped(installed, stiff_robot):
+    runs = stiff_robot.heard("BehaviorsRun")
+    for count, name in enumerate(("mine/wait", "mine/look"), 1):
+        installed.startBehavior(name)
+        assert runs.get(timeout=PATIENCE) == ["mine/wait", "mine/look"][:count]
+    with pytest.raises(RuntimeError, match="runs already"):
+        installed.startBehavior("mine/wait")
+    installed.stopAllBehaviors()
+    assert installed.getRunningBehaviors() == [] == stiff_robot.value("BehaviorsRun")
+    # Both within a moment: libqi may bring them in another order.
+    assert sorted(runs.get(timeout=PATIENCE) for _ in range(2)) == [[], ["mine/look"]]
+    for name in ("mine/look", "mine/wait"):
+        installed.addDefaultBehavior(name)
+    assert installed.getDefaultBehaviors() == ["mine/look", "mine/wait"]
+    installed.playDefaultProject()
+    assert installed.getRunningBehaviors() == ["mine/look", "mine/wait"]
+    installed.removeBehavior("mine")
+    assert installed.getDefaultBehaviors() == [] == installed.getRunningBehaviors()
+
+
+def test_what_is_installed_is_told_runs_and_goes(manager, stiff_robot, begin):
+    added, removed, several = (
+        stiff_robot.heard(f"{MANAGER}/{what}") for what in ("BehaviorAdded", "BehaviorRemoved", "BehaviorsAdded")
+    )
+    both = ["mine/look", "mine/wait"]
+    assert manager.installBehavior("mine.yaml") is True
+    assert several.get(timeout=PATIENCE) == both == manager.getUserBehaviorNames()
+    assert sorted(added.get(timeout=PATIENCE) for _ in both) == both
+    assert not manager.isBehaviorLoaded("mine/look")
+    assert manager.preloadBehavior("mine/look") and manager.isBehaviorLoaded("mine/look")
+    begin(MANAGER, "runBehavior", "mine/look", after=0.6)
+    assert stiff_robot.ALMotion.getAngles("HeadYaw", True)[0] == pytest.approx(0.4, abs=0.03)
+    assert manager.installBehavior("mine.yaml", "other", True) and manager.isBehaviorInstalled("other/look")
+    with pytest.raises(RuntimeError, match="a name that is free"):
+        manager.installBehavior("mine.yaml", "other", False)
+    manager.removeBehavior("other")
+    assert manager.removeBehavior("mine") is True and manager.getUserBehaviorNames() == []
+    assert {"mine/look", "mine/wait"} <= {removed.get(timeout=PATIENCE) for _ in range(4)}
+
+
+def test_what_is_wrong_is_told(robot, refuses):
+    refuses(MANAGER, f"""
+        runBehavior('animations/Stand/Gestures/Hei_1') -> did you mean .*Hey_1
+        runBehavior('nao_library/helo') -> did you mean 'nao_library/hello'
+        startBehavior('Gestures') -> unknown behavior
+        startBehavior('{HEY}') -> are limp, wakeUp or a stiffness comes first
+        stopBehavior('{HEY}') -> does not run; running is none
+        removeBehavior('{HEY}') -> not one of the robot
+        removeDefaultBehavior('{HEY}') -> one of the default behaviors: none
+        installBehavior('../mine.yaml') -> not inside
+        installBehavior('nothing.yaml') -> no file
+    """)  # fmt: skip
+    refuses("ALAnimationPlayer", """
+        run('animations/[posture]/Nothing_1') -> unknown behavior
+        runTag('salute') -> no animation with the tag 'salute' for the posture Stand
+    """)  # fmt: skip
+    refuses("ALFrameManager", """
+        playBehavior('7') -> unknown behavior id
+        newBehavior('text', '<Timeline') -> is no XML
+        newBehaviorFromChoregraphe() -> unknown behavior
+    """)  # fmt: skip
+
+
+def test_the_player_knows_the_posture_and_chooses_by_tag(manager, stiff_robot, begin):
+    player = stiff_robot.ALAnimationPlayer
+    future = begin("ALAnimationPlayer", "run", "animations/[posture]/Gestures/Hey_1")
+    assert manager.getRunningBehaviors() == [HEY]
+    stiff_robot.advance(3.0)
+    stiff_robot.answer(future)
+    begin("ALAnimationPlayer", "runTag", "hello")
+    assert manager.getRunningBehaviors() == [HEY]
+    manager.stopAllBehaviors()
+    player.addTagForAnimations({"salute": ["Nod_1"]})
+    begin("ALAnimationPlayer", "runTag", "Stand", "salute")
+    assert manager.getRunningBehaviors() == ["animations/Stand/Gestures/Nod_1"]
+    player.reset()
+    with pytest.raises(RuntimeError, match="no animation"):
+        player.runTag("salute")
+
+
+def test_frames_play_timelines_files_and_what_choregraphe_has_sent(stiff_robot):
+    frames, folder = stiff_robot.ALFrameManager, stiff_robot.server.files.folder / "mine"
+    folder.mkdir()
+    (folder / "behavior.xar").write_text(PROJECT)
+    number = frames.createTimeline(TIMELINE)
+    assert frames.behaviors() == [number] and frames.getMotionLength(number) == 1.0
+    frames.playTimeline(number)
+    stiff_robot.advance(0.55)
+    assert frames.isBehaviorRunning(number)
+    assert stiff_robot.ALMotion.getAngles("HeadYaw", True)[0] == pytest.approx(0.349, abs=0.03)
+    stiff_robot.advance(0.6)
+    assert not frames.isBehaviorRunning(number)
+    number = frames.createBehavior("mine", "behavior.xar", "nod")
+    assert frames.getBehaviorPath(number) == "mine/behavior.xar"
+    stiff_robot.finish("ALFrameManager", "completeBehavior", number, after=1.2)
+    assert not frames.isBehaviorRunning(number)
+    for stop in ("exitBehavior", "stopTimeline", "deleteBehavior"):
+        number = frames.newBehaviorFromFile("mine/behavior.xar", "nod")
+        frames.playBehavior(number)
+        stiff_robot.advance(0.2)
+        frames.call(stop, number)
+        stiff_robot.settled()
+        assert stiff_robot.ALBehaviorManager.getRunningBehaviors() == []
+    stiff_robot.ALBehaviorManager.installBehavior("mine/behavior.xar", ".lastUploadedChoregrapheBehavior/a", True)
+    assert frames.getMotionLength(frames.newBehaviorFromChoregraphe()) == 1.0
+    frames.cleanBehaviors()
+    assert frames.behaviors() == []

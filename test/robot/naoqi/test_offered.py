@@ -1,0 +1,222 @@
+"""Which of NAOqi's methods the robot answers: each is called with sensible arguments and with hostile ones."""
+
+from __future__ import annotations
+
+import random
+import re
+import zlib
+from pathlib import Path
+
+import pytest
+
+from nao_sim_bridge.services.api import COMMON, module_methods
+from nao_sim_bridge.services.binding import DEFECT, NATIVE, offered
+
+LONGEST = 8.0
+"""No call takes longer than this, in s of simulated time."""
+TIMELINE = """<Timeline enable="1" fps="10"><ActuatorList><ActuatorCurve actuator="HeadYaw" mute="0" unit="0">
+<Key frame="5" value="20" /></ActuatorCurve></ActuatorList></Timeline>"""
+NAMES = {
+    "HEAD": ["HeadYaw", "HeadPitch"],
+    "HAND": [0.12, 0.12, 0.0, 0.0, 0.0, 0.0],  # the left one, in the frame of the torso
+    "PLACE": [1.0, 0.0, 0.0, 0.12, 0.0, 1.0, 0.0, 0.12, 0.0, 0.0, 1.0, 0.0],
+    "UNMOVED": [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+    "CURVES": [[[0.1, [1, 0.0, 0.0], [1, 0.0, 0.0]]]] * 2,
+    "EYES": [f"Face/Led/Red/{side}/0Deg/Actuator/Value" for side in ("Left", "Right")],
+    "BIP": "nao_library/bip.ogg",
+    "HEY": "animations/Stand/Gestures/Hey_1",
+    "BREATHE": "nao_library/breathe",
+    "TIMELINE": TIMELINE,
+    "PROJECT": f'<ChoregrapheProject><Box name="a" id="1">{TIMELINE}</Box></ChoregrapheProject>',
+}
+CALL = re.compile(r"(\*?\w+)(?:\((.*)\)(?: ([=#]) (.*))?)?")
+# Answered, but not with success, or not by a robot that is still needed: tests of their own.
+ELSEWHERE = {
+    "ALAudioDevice": "sendLocalBufferToOutput",
+    "ALAudioPlayer": "playFileInLoop playInLoop playWebStream",
+    "ALMemory": "getDataOnChange getDataPtr getFloatPtr getIntPtr",
+    "ALMovementDetection": "setDepthSensitivity",
+    "ALSpeechRecognition": "activateAllRules activateRule addContext addWordListToSlot compile deactivateAllRules "
+    "deactivateRule getContextParam getRules loadContextSet loadVocabulary popContexts removeContext "
+    "removeWordListFromSlot setContextParam",
+    "ALSystem": "changePassword factoryReset setRobotIcon shutdown upgrade",
+    "DCM": "calibration special",
+    "ALVideoDevice": "getDirectRawImageLocal getDirectRawImagesLocal getImageLocal getImagesLocal",
+    "ALAnimatedSpeech": "declareAnimationsPackage",
+    "ALTextToSpeech": "loadVoicePreference",
+    "ALBehaviorManager": "installBehavior removeBehavior",
+    "ALFrameManager": "completeBehavior createBehavior deleteBehavior exitBehavior getBehaviorPath getMotionLength "
+    "isBehaviorRunning newBehaviorFromChoregraphe newBehaviorFromFile playBehavior playTimeline stopTimeline",
+}
+# What NAOqi has had no use for since 1.14, and what the robot itself calls when its modules are there.
+MISSING = {"ALFrameManager": "getTimelineFps gotoAndPlay gotoAndStop setTimelineFps", "ALAutonomousLife": "onReady"}
+
+
+def read_calls():
+    """Module -> number of its methods, and its calls: method, arguments, and how to compare with which value."""
+    found = {}
+    for line in (Path(__file__).parent / "calls.txt").read_text().splitlines():
+        if not line.startswith((" ", "#")):
+            module, *count = line.split()
+            found[module] = (int(count[0]) if count else None, [])
+        elif line.startswith(" "):
+            for method, arguments, kind, value in (
+                CALL.fullmatch(call).groups() for call in line.strip(" ;").split(" ; ")
+            ):
+                if method == "*Extractor":
+                    found[module][1].extend(found["Extractor"][1])
+                    continue
+                arguments = eval(f"({arguments},)" if arguments else "()", dict(NAMES))
+                found[module][1].append((method, arguments, kind, eval(value, dict(NAMES)) if value else None))
+    del found["Extractor"]
+    return found
+
+
+CALLS = read_calls()
+
+
+# --- sensible arguments -----------------------------------------------------------------------------------------------
+
+
+def fits(kind, value):
+    """Whether a value is of a type of NAOqi's table."""
+    name, _, inner = kind.partition("<")
+    if name == "list":
+        return isinstance(value, (list, tuple)) and all(fits(inner[:-1], entry) for entry in value)
+    simple = {"bool": bool, "int": int, "string": str, "float": (int, float), "map": dict, "tuple": (list, tuple)}
+    if name == "void":
+        return value is None
+    wrong_kind = isinstance(value, bool) and name in ("int", "float")
+    return name not in simple or (isinstance(value, simple[name]) and not wrong_kind)
+
+
+def equal(value, wanted):
+    """Whether an answer is what the table says, floats in single precision."""
+    if isinstance(wanted, (list, tuple)):
+        same = isinstance(value, (list, tuple)) and len(value) == len(wanted)
+        return same and all(map(equal, value, wanted))
+    if isinstance(wanted, float):
+        return value == pytest.approx(wanted, abs=1e-4, rel=1e-3)
+    return value == wanted and type(value) is type(wanted)
+
+
+SET_UP = {
+    "*stiff": lambda robot: robot.ALMotion.setStiffnesses("Body", 1.0),
+    "*standing": lambda robot: (robot.NaoSimulation.reset(), robot.ALMotion.setStiffnesses("Body", 1.0)),
+    "*loop": lambda robot: (robot.post("ALAudioPlayer", "playInLoop", 1), robot.handed_over("ALAudioPlayer")),
+}
+
+
+def called(robot, module, method, arguments):
+    """The answer of a call, while time passes as it needs it."""
+    future = robot.post(module, method, *arguments)
+    robot.handed_over(module)
+    robot.advance_until(lambda: not future.isRunning(), LONGEST, 0.1, f"{module}.{method} answers")
+    return robot.answer(future)
+
+
+@pytest.mark.parametrize("module", CALLS)
+def test_a_module_answers_all_its_methods_with_values_of_their_types(robot, listener, module):
+    count, calls = CALLS[module]
+    answered, missing = (
+        set(names) - set(module_methods(COMMON)) for names in offered(module, robot.server.modules()[module])
+    )
+    assert missing == set(MISSING.get(module, "").split()) and count in (None, len(answered))
+    apart = {method for method, *_ in calls if method[0] == "*"} | {"advance"} | set(ELSEWHERE.get(module, "").split())
+    assert answered == ({method for method, *_ in calls} | apart) - set(SET_UP) - {"advance"}
+    folder, wrong = str(robot.server.files.folder), []
+    for method, arguments, kind, wanted in calls:
+        if method == "advance":
+            robot.advance(*arguments)
+        elif method in SET_UP:
+            SET_UP[method](robot)
+            robot.advance(0.2)
+        else:
+            answer = called(robot, module, method, arguments)
+            found = eval(repr(answer).replace(folder, "FOLDER")) if folder in repr(answer) else answer
+            good = equal(found, wanted) if kind == "=" else kind is None or len(found) == wanted
+            if not (good and fits(module_methods(module)[method].returns, answer)):
+                wrong.append((method, arguments, answer, wanted))
+    assert wrong == []
+
+
+def test_the_common_methods_are_answered_in_every_module(robot):
+    for name in CALLS:
+        module = getattr(robot, name)
+        posted = module.pCall("ping")
+        answers = {
+            "ping": True, "version": "2.8.5", "getBrokerName": "nao_sim", "isStatsEnabled": False,
+            "isTraceEnabled": False, "clearStats": None,
+        }  # fmt: skip
+        assert {method: module.call(method) for method in answers} == answers
+        assert (module.isRunning(posted), module.stop(posted), module.wait(posted, 0)) == (False, None, False)
+        assert module.getMethodHelp("ping")[:3] == ["ping", [], "bool"] and module.getUsage("ping") == "bool ping()"
+        methods = module.getMethodList()
+        assert {"ping", "exit"} <= set(methods) and methods == sorted(methods) and name in module.getModuleHelp()[0]
+
+
+# --- hostile arguments ------------------------------------------------------------------------------------------------
+
+NAN, INF = float("nan"), float("inf")
+HOSTILE = [
+    *("", "x", "Body", "HeadYaw", "nan", "\n", "../..", "\u00e9\u4e16", "a" * 3000),
+    *(None, True, False, NAN, INF, -INF, -1.0, 1e300, 0, 1, -1, 2**31 - 1, -(2**31), 2**63 - 1),
+    *([], [[]], [[[[]]]], [""], [None], [True], [NAN], [{}], [1, "a"], ["HeadYaw", 3], ["HeadYaw", None], [1.0] * 7),
+    *([[1, 2], [3]], [[["HeadYaw"]]], [["a", {}]], [[0.1, 0.2], ["a", [None]]], ["a", "b", "c"], [0.1, 0.2, 0.3]),
+    *({}, {"a": 1}, {"a": {"b": [1]}}, {1: 2}),
+]
+ENDS = {"exit", "shutdown"}
+"""These end what is tested."""
+ROUNDS, VALID = 2, 0.3
+"""Share of arguments that are right: else nothing behind the first check would be reached."""
+SIMULATION = "NaoSimulation"
+PYTHON = re.compile(
+    r"Traceback|NoneType|object (is not|has no|does not|of type|cannot)|has no attribute|not iterable|unhashable|"
+    r"(Key|Type|Value|Index|Attribute|Overflow|Unicode\w*|Recursion)Error|(positional|keyword) argument|"
+    r"could not convert|invalid literal|not supported between|unsupported operand|to unpack|out of range|"
+    r"must be (real|str|int|a real)|math domain|indices must|not subscriptable|cannot be interpreted|codec can't|"
+    r"broadcast|inhomogeneous|\[Errno|" + DEFECT
+)
+
+
+def hostile(chance, depth=0):
+    """Something of `HOSTILE`, or a list of such things."""
+    if depth < 3 and chance.random() < 0.2:
+        return [hostile(chance, depth + 1) for _ in range(chance.randrange(4))]
+    return chance.choice(HOSTILE)
+
+
+def ways_to_call(robot, module):
+    """Method, number of parameters and valid arguments, as far as they are known, of each way to call a module."""
+    if module == SIMULATION:
+        own = {"advance", "setSpeed", "resume", "factoryReset", "reset"}  # time and world are the test's own
+        for method in robot.NaoSimulation.metaObject()["methods"].values():
+            if method["uid"] >= 100 and method["name"] not in own:
+                yield method["name"], len(re.findall(r"\[?[a-z]\]?", method["parametersSignature"])), ()
+        return
+    known = {method: arguments for method, arguments, *_ in CALLS[module][1]}
+    for name in offered(module, robot.server.modules()[module])[0]:
+        if name not in NATIVE | ENDS and (module == "ALTouch" or name not in module_methods(COMMON)):
+            for overload in module_methods(module)[name].overloads:
+                yield name, len(overload.types), known.get(name, ())
+
+
+@pytest.mark.parametrize("module", [*(module for module, (_, calls) in CALLS.items() if calls), SIMULATION])
+def test_a_module_answers_hostile_arguments_in_words_of_its_own(robot, module):
+    chance, calls = random.Random(zlib.crc32(module.encode())), []
+    for name, count, valid in list(ways_to_call(robot, module)) * ROUNDS:
+        arguments = [valid[i] if i < len(valid) and chance.random() < VALID else hostile(chance) for i in range(count)]
+        calls.append((name, arguments, robot.post(module, name, *arguments)))
+    robot.NaoSimulation.isPaused() if module == SIMULATION else robot.handed_over(module)
+    robot.settled()
+    begin = robot.now.time
+    robot.advance(0.04)
+    unfit = []
+    for name, arguments, future in calls:
+        if future.isRunning():
+            future.cancel()
+        elif future.hasError() and PYTHON.search(future.error()):
+            unfit.append((name, arguments, future.error()))
+    assert calls and unfit == []
+    assert getattr(robot, "ALTouch" if module == SIMULATION else module).ping() is True
+    assert robot.now.time > begin and robot.server.runner.running

@@ -1,0 +1,338 @@
+"""Plain classes as libqi services: signatures, errors, calls that take time, posted calls, other parts later."""
+
+from __future__ import annotations
+
+import logging
+import weakref
+
+import pytest
+from simulator import PATIENCE, connected
+
+from nao_sim_bridge.broker import Broker
+from nao_sim_bridge.services.binding import DEFECT, Service, offered
+from nao_sim_bridge.services.common import REMEMBERED
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.tasks import Task, TaskIds
+
+BOOK = "Head " * 20000
+
+
+class Motion:
+    """Some methods of ALMotion, which remember how they were called."""
+
+    def __init__(self):
+        self.calls, self.tasks, self.commands = [], [], []
+        self.ids = TaskIds()
+        self.ids.ask = Task.kill
+
+    def rest(self, *arguments):
+        self.calls.append(("rest", arguments))
+
+    def moveTo(self, *arguments):
+        self.calls.append(("moveTo", arguments))
+        return True
+
+    def setAngles(self, names, angles, fraction):
+        self.calls.append(("setAngles", (names, angles, fraction)))
+
+    def getLimits(self, name):
+        raise BadValue("name", name, "a joint")
+
+    def getMass(self, name):
+        return {}[name]
+
+    def getCOM(self, *_):
+        raise AttributeError("a defect")
+
+    def getBodyNames(self, name):
+        return [name, "b"]
+
+    def wakeUp(self):
+        """A task that somebody else ends."""
+        self.tasks.append(self.ids.make("wakeUp"))
+        return self.tasks[-1]
+
+    def moveInit(self):
+        """A command of the simulation thread, which has not run yet."""
+        self.commands.append(Task("command", 0))
+        return self.commands[-1]
+
+    def run_command(self):
+        """Run the oldest command, which leads to a further task."""
+        self.tasks.append(self.ids.make("follow"))
+        self.commands.pop(0).finish(self.tasks[-1])
+        return self.tasks[-1]
+
+    def notOfNaoqi(self):
+        raise AssertionError("published though NAOqi has no such method")
+
+    def _getRobotConfig(self):
+        raise AssertionError("published though it is private")
+
+
+@pytest.fixture(scope="module")
+def broker():
+    made = Broker("test_broker")
+    made.listen("127.0.0.1", 0)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def session(broker):
+    """A client, new for each test: it must not remember what another one served under the same name."""
+    client = connected(broker.port)
+    yield client
+    client.close()
+
+
+@pytest.fixture
+def motion():
+    return Motion()
+
+
+@pytest.fixture
+def service(broker, motion):
+    made = Service("ALMotion", [motion], broker)
+    broker.register("ALMotion", made.object)
+    yield made
+    broker.unregister("ALMotion")
+
+
+@pytest.fixture
+def proxy(service, session):
+    for _ in range(50):  # now and then libqi asks the one of that name that has just gone
+        try:
+            return session.service("ALMotion")
+        except RuntimeError as error:
+            if "could not be handled" not in str(error):
+                raise
+    return session.service("ALMotion")
+
+
+def begun(proxy, method, *arguments):
+    """The future of a call that has arrived."""
+    future = proxy.call(method, *arguments, _async=True)
+    assert proxy.ping()
+    return future
+
+
+def ended(future):
+    return future.value(int(1000 * PATIENCE))
+
+
+def flat(values):
+    """The single values of nested lists: floats travel as single precision, and pytest.approx takes no nests."""
+    return [leaf for value in values for leaf in (flat(value) if isinstance(value, (list, tuple)) else [value])]
+
+
+# --- signatures -------------------------------------------------------------------------------------------------------
+
+
+def test_every_overload_arrives_as_it_was_sent_and_others_are_refused(proxy, motion):
+    for method, *arguments in (
+        ("rest",),
+        ("rest", "Arms"),
+        ("moveTo", 0.5, 0.0, 1.0),
+        ("moveTo", 0.5, 0.0, 1.0, 3.0),
+        ("moveTo", 0.5, 0.0, 1.0, [["MaxStepX", 0.02]]),
+        ("moveTo", [[0.1, 0.0, 0.0], [0.2, 0.0, 0.0]]),
+        ("setAngles", "HeadYaw", 0.5, 0.1),
+        ("setAngles", ["HeadYaw", "HeadPitch"], [0.5, 0.1], 0.1),
+        ("setAngles", ["HeadYaw", "HeadPitch"], [0.5, 0.1], [0.1, 0.2]),
+    ):
+        getattr(proxy, method)(*arguments)
+        called, arrived = motion.calls.pop()
+        assert called == method and flat(arrived) == pytest.approx(flat(arguments))
+    for name in (0, 1.5, True, None, [], ["HeadYaw"], {"a": 1}):
+        with pytest.raises(RuntimeError, match=r"^ALMotion::getBodyNames name is .*, allowed is a text$"):
+            proxy.getBodyNames(name)
+    for arguments in ((), ("HeadYaw",), ("HeadYaw", 0.5), ("HeadYaw", 0.5, 0.1, 0.1), ("a", 1, "x")):
+        with pytest.raises(RuntimeError, match="setAngles::.*mmf"):
+            proxy.setAngles(*arguments)
+    assert motion.calls == []
+
+
+def test_what_is_published_is_naoqis_with_its_types_and_summaries(broker, proxy, motion):
+    published = {method["name"]: method for method in proxy.metaObject()["methods"].values()}
+    assert {"setAngles", "ping"} <= set(published)
+    assert not {"notOfNaoqi", "_getRobotConfig", "getRobotConfig", "calls", "killAll"} & set(published)
+    assert published["wakeUp"]["description"] == "stiffens the body and takes the start posture"
+    assert [published[name]["returnSignature"] for name in ("rest", "getBodyNames", "getLimits")] == ["v", "[s]", "m"]
+    assert proxy.getBodyNames("a") == ["a", "b"]
+    answers, missing = offered("ALMotion", [motion])
+    assert {"rest", "ping", "isStatsEnabled"} <= set(answers) and not set(answers) & set(missing)
+    assert "killAll" in missing and "notOfNaoqi" not in [*answers, *missing]
+
+
+class Walk:
+    """A second part of ALMotion."""
+
+    def __init__(self, active):
+        self.active = active
+
+    def moveIsActive(self):
+        return self.active
+
+    def rest(self):
+        raise AssertionError("the first part that has a method wins")
+
+    def take_over(self, former):
+        self.active = not former.active
+
+
+def test_several_objects_make_one_module_and_others_may_take_over_its_work(broker, service, session, proxy, motion):
+    wake, posted, other = begun(proxy, "wakeUp"), proxy.pCall("wakeUp"), Motion()
+    end = service.rebind([other])
+    proxy.rest()
+    assert (motion.calls, other.calls) == ([], [("rest", ())]) and wake.isRunning()
+    with pytest.raises(RuntimeError, match=f"no posted call has the id {posted}"):
+        proxy.isRunning(posted)
+    end()
+    assert ended(wake) is None and motion.tasks[0].killed
+    several = Service("ALRobotPose", [motion, Walk(True)], broker)
+    assert not hasattr(several.object, "moveIsActive")  # no method of that module
+    two = Service("ALMotion", [motion, Walk(True)], broker)
+    broker.unregister("ALMotion")
+    broker.register("ALMotion", two.object)
+    fresh = connected(broker.port)
+    try:
+        again = fresh.service("ALMotion")
+        again.rest()
+        assert again.moveIsActive() is True
+        two.rebind([motion, Walk(True)])
+        assert again.moveIsActive() is False  # it has taken over
+    finally:
+        fresh.close()
+
+
+# --- errors -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_an_error_arrives_as_a_short_text_with_module_and_method(proxy, motion, late):
+    for name in ("Hed", BOOK):
+        with pytest.raises(RuntimeError) as caught:
+            if late:
+                future = begun(proxy, "wakeUp")
+                motion.tasks[-1].finish(error=BadValue("name", name, "a joint"))
+                ended(future)
+            else:
+                proxy.getLimits(name)
+        text, method = str(caught.value).strip(), "wakeUp" if late else "getLimits"
+        assert text.startswith(f"ALMotion::{method} name is '{name[:3]}") and text.endswith("allowed is a joint")
+        assert len(text) < 1300
+
+
+def test_a_defect_is_logged_with_its_place_and_what_python_says_of_its_objects_is_not_answered(proxy, motion, caplog):
+    with caplog.at_level(logging.ERROR, "nao_sim.services"), pytest.raises(RuntimeError, match="getCOM a defect"):
+        proxy.getCOM("Body", 0, True)
+    assert "ALMotion::getCOM failed" in caplog.text and "AttributeError" in caplog.text
+    with pytest.raises(RuntimeError) as caught:
+        proxy.getMass("Head")
+    assert str(caught.value).strip() == f"ALMotion::getMass {DEFECT}"
+    future = begun(proxy, "wakeUp")
+    motion.tasks[0].finish(error=TypeError("unhashable type: 'list'"))
+    with pytest.raises(RuntimeError, match=f"^ALMotion::wakeUp {DEFECT}"):
+        ended(future)
+
+
+# --- calls that take time ---------------------------------------------------------------------------------------------
+
+
+def test_blocking_calls_answer_when_their_tasks_end_and_hold_up_nobody(proxy, motion):
+    futures = [proxy.wakeUp(_async=True) for _ in range(40)]
+    assert proxy.ping() is True and len(motion.tasks) == 40 and all(future.isRunning() for future in futures)
+    for number, task in enumerate(motion.tasks):  # a killed one as if it had ended
+        task.kill() if number % 2 else task.finish()
+    assert [ended(future) for future in futures] == [None] * 40
+
+
+@pytest.mark.parametrize("when", ["runs", "command has run", "command waits"])
+def test_cancelling_the_call_kills_what_it_leads_to(proxy, motion, when):
+    future = begun(proxy, "wakeUp" if when == "runs" else "moveInit")
+    if when == "command has run":
+        motion.run_command()
+    future.cancel()
+    proxy.ping()
+    if when == "command waits":
+        motion.run_command()
+    future.wait(int(1000 * PATIENCE))
+    assert motion.tasks[0].killed and future.isCanceled()
+
+
+# --- what every module has --------------------------------------------------------------------------------------------
+
+
+def test_a_module_tells_about_itself_and_leaves_when_it_is_told_to(proxy, session):
+    assert proxy.getBrokerName() == "test_broker" and proxy.version().count(".") == 2
+    methods = proxy.getMethodList()
+    assert methods == sorted(methods) and {"rest", "ping", "pCall", "wait", "exit"} <= set(methods)
+    assert "killAll" not in methods
+    name, parameters, returns, summary = proxy.getMethodHelp("getLimits")
+    assert (name, parameters, returns) == ("getLimits", [["name", "string"]], "ALValue") and summary
+    assert proxy.getUsage("getMass") == "float getMass(string pName)"
+    for method in ("getMethodHelp", "getUsage", "pCall"):
+        with pytest.raises(RuntimeError, match="unknown method 'rets': did you mean 'rest'"):
+            getattr(proxy, method)("rets")
+    assert (proxy.call("isStatsEnabled"), proxy.call("isTraceEnabled"), proxy.call("clearStats")) == (
+        False,
+        False,
+        None,
+    )
+    # Whether the answer or the news of the end comes first is up to libqi.
+    proxy.exit(_async=True).wait(int(1000 * PATIENCE))
+    with pytest.raises(RuntimeError, match="ALMotion"):
+        session.service("ALMotion")
+
+
+def test_posted_calls_are_checked_have_numbers_and_run_until_their_tasks_end(proxy, motion):
+    for call, told in (
+        ((), "method is None, allowed is the name of a method"),
+        (("getLimits", 3), "name is 3, allowed is a text"),
+        (("getLimits", "a", "b"), r"was called with 2 arguments, allowed is getLimits\(string name\)"),
+    ):
+        with pytest.raises(RuntimeError, match=f"ALMotion::pCall {told}"):
+            proxy.pCall(*call)
+    number, others = proxy.pCall("moveInit"), {proxy.pCall("rest") for _ in range(4)}
+    assert number > 0 and len(others - {number}) == 4
+    assert not any(proxy.isRunning(other) or proxy.wait(other) for other in others)
+    assert proxy.isRunning(number) is True
+    task = motion.run_command()
+    assert proxy.isRunning(number) is True and proxy.wait(number, 1) is True  # the time is up
+    task.finish()
+    assert proxy.isRunning(number) is False
+    for method in ("isRunning", "stop", "wait"):
+        with pytest.raises(RuntimeError, match="no posted call has the id 4711"):
+            getattr(proxy, method)(4711)
+
+
+@pytest.mark.parametrize("begins", ["before", "after"])
+def test_a_posted_call_can_be_stopped_and_waited_for_before_and_after_it_began(proxy, motion, begins):
+    stopped, waited = proxy.pCall("moveInit"), proxy.pCall("moveInit")
+    if begins == "before":
+        motion.run_command(), motion.run_command()
+    proxy.stop(stopped)
+    future = begun(proxy, "wait", waited, 0)
+    if begins == "after":
+        motion.run_command(), motion.run_command()
+    assert motion.tasks[0].killed and proxy.isRunning(stopped) is False
+    assert proxy.ping() and future.isRunning()
+    motion.tasks[1].finish()
+    assert ended(future) is False
+
+
+def test_calls_that_still_run_are_remembered_however_many_follow_and_what_they_gave_is_not_kept(proxy, motion):
+    class Large:
+        """A picture, for example: thousands of them would fill the memory."""
+
+    first, over, large = proxy.pCall("wakeUp"), proxy.pCall("rest"), proxy.pCall("moveInit")
+    picture = Large()
+    kept = weakref.ref(picture)
+    motion.commands.pop(0).finish(picture)
+    del picture
+    assert kept() is None and proxy.isRunning(large) is False and proxy.wait(large, 0) is False
+    numbers = [future.value() for future in [proxy.pCall("rest", _async=True) for _ in range(REMEMBERED)]]
+    assert proxy.isRunning(first) is True and proxy.isRunning(max(numbers)) is False
+    with pytest.raises(RuntimeError, match=f"no posted call has the id {over}"):
+        proxy.isRunning(over)

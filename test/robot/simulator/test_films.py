@@ -1,0 +1,202 @@
+"""Films of the simulation, and what its loudspeakers play as a file and on the sound card."""
+
+from __future__ import annotations
+
+import sys
+import threading
+
+import av
+import numpy as np
+import pytest
+from simulator import PATIENCE, Simulator
+
+from nao_sim_bridge.server import ServerOptions, SimulatorServer
+from nao_sim_bridge.sim.errors import BadValue, SimulationError
+from nao_sim_bridge.sim.sound.files import read_sound
+from nao_sim_bridge.sim.sound.samples import RATE, sine
+from nao_sim_bridge.sim.sound.wav_file import WavFile
+from nao_sim_bridge.sound_outlets import CARD_DELAY, SoundCard, SoundCardError, SoundFile
+
+SIDE, FRAME_RATE = 64, 5.0
+
+
+@pytest.fixture
+def film(robot):
+    """Begins a film that is called film.mp4."""
+    return lambda view="front": robot.NaoSimulation.startFilm("film.mp4", view, SIDE, SIDE, FRAME_RATE)
+
+
+@pytest.fixture
+def pictures(robot):
+    """The pictures of film.mp4."""
+
+    def decoded():
+        with av.open(str(robot.server.files.folder / "film.mp4")) as container:
+            return [frame.to_ndarray(format="rgb24").astype(int) for frame in container.decode(video=0)]
+
+    return decoded
+
+
+def play(robot, sound):
+    robot.server.runner.call(lambda: robot.server.simulation.sound.loudspeakers.play(sound, "tone"))
+
+
+def test_a_film_has_its_length_its_frames_its_sound_and_its_caption(robot, film, pictures):
+    simulation = robot.server.simulation
+    hooks = (len(simulation.after_tick), len(simulation.holds))
+    path = film()
+    play(robot, sine(1000.0, 0.5, 0.5))
+    robot.advance(0.9)
+    robot.NaoSimulation.captionFilm("MMMM")
+    robot.advance(0.6)
+    report = robot.NaoSimulation.stopFilm()
+    assert report["path"] == path == str(robot.server.files.folder / "film.mp4")
+    assert report["left_out"] == 0 and report["duration"] == pytest.approx(1.6, abs=0.02)
+    seen = pictures()  # one at the beginning, then one each fifth of a second
+    assert len(seen) == report["frames"] == 8 and seen[0].shape == (SIDE, SIDE, 3)
+    assert seen[0].std() > 20.0  # there is a robot in it
+    change = np.abs(seen[-1] - seen[1]).mean(axis=2)
+    assert change[SIDE - 8 :, :].max() > 60 > 6 * change[: SIDE // 4].mean()
+    with av.open(path) as container:
+        sound = np.abs(np.concatenate([frame.to_ndarray() for frame in container.decode(audio=0)], axis=1))
+    assert sound.shape[1] == pytest.approx(1.5 * RATE, abs=0.1 * RATE)
+    assert sound[:, : int(0.4 * RATE)].max() > 0.2 > 20.0 * sound[:, int(0.7 * RATE) :].max()
+    assert (len(simulation.after_tick), len(simulation.holds)) == hooks
+
+
+def test_there_is_one_film_at_a_time_and_its_process_may_die(robot, film, pictures, monkeypatch):
+    simulation = robot.NaoSimulation
+    for call in (simulation.stopFilm, lambda: simulation.captionFilm("x")):
+        with pytest.raises(RuntimeError, match="nothing is being filmed"):
+            call()
+    for wrong, words in (
+        (("film.mp4", "sideways", 0, 0, 0.0), "unknown view 'sideways'"),
+        (("film.avi", "", 0, 0, 0.0), "file is 'film.avi'"),
+        (("film.mp4", "", 33, 32, 0.0), "film size"),
+        (("film.mp4", "", 4000, 32, 0.0), "film size"),
+        (("film.mp4", "", 0, 0, 1000.0), "frame_rate is 1000.0, allowed is 1 to 60"),
+        (("film.mp4", "", 0, 0, float("nan")), "frame_rate is nan"),
+        (("../film.mp4", "", 0, 0, 0.0), "is not inside"),
+    ):
+        with pytest.raises(RuntimeError, match=f"NaoSimulation::startFilm .*{words}"):
+            simulation.startFilm(*wrong)
+    film("")
+    with pytest.raises(RuntimeError, match="film.mp4 is being filmed"):
+        simulation.startFilm("other.mp4", "", SIDE, SIDE, FRAME_RATE)
+    robot.advance(0.5)
+    robot.server.film.close()  # as at the end of the program: it is complete
+    assert len(pictures()) == 3
+
+
+# --- what is played ---------------------------------------------------------------------------------------------------
+
+
+class Card:
+    """A stand-in for the library of the sound card."""
+
+    class PortAudioError(Exception):
+        pass
+
+    def __init__(self, there=True):
+        self.there, self.written, self.dry, self.closed = there, [], False, False
+
+    def OutputStream(self, rate, channels, dtype):
+        if not self.there:
+            raise self.PortAudioError("Error querying device -1")
+        assert (rate, channels, dtype) == (RATE, 2, "int16")
+        return self
+
+    def start(self):
+        pass
+
+    def write(self, samples):
+        self.written.append(samples)
+        dry, self.dry = self.dry, False
+        return dry
+
+    def abort(self):
+        self.closed = True
+
+    def close(self):
+        assert self.closed
+
+
+@pytest.fixture
+def card(monkeypatch):
+    made = Card()
+    monkeypatch.setitem(sys.modules, "sounddevice", made)
+    return made
+
+
+@pytest.fixture
+def simulation(bench):
+    return bench().simulation
+
+
+def test_the_file_has_silence_and_sound_at_their_times_and_is_whole_while_it_grows(simulation, tmp_path, monkeypatch):
+    written, write = threading.Event(), WavFile.write
+    monkeypatch.setattr(WavFile, "write", lambda file, samples: (write(file, samples), written.set()))
+    file = SoundFile(simulation, tmp_path / "all.wav")
+    assert file.behind in simulation.holds and not file.behind()
+    simulation.run(0.5)
+    simulation.sound.loudspeakers.play(sine(1000.0, 0.5, 0.5), "say")
+    assert written.wait(PATIENCE) and read_sound(tmp_path / "all.wav").duration >= 0.5
+    simulation.run(1.5)
+    file.close()
+    kept = read_sound(tmp_path / "all.wav")
+    assert (kept.duration, kept.channels, kept.rate) == (2.0, 2, RATE)
+    loud = np.flatnonzero(np.abs(kept.samples[:, 0]) > 1e-3)
+    assert loud[0] == pytest.approx(0.5 * RATE, abs=2) and loud[-1] == pytest.approx(RATE, abs=2)
+    assert np.array_equal(kept.samples[RATE // 2 : RATE], (sine(1000.0, 0.5, 0.5).pcm16() / 32768.0).repeat(2, axis=1))
+    with pytest.raises(SimulationError, match="cannot be written"):
+        SoundFile(simulation, tmp_path / "missing" / "all.wav")
+
+
+def test_the_card_gets_what_is_played_after_a_short_silence_again_when_it_ran_dry(simulation, card, bench):
+    outlet, tone, start = SoundCard(simulation), sine(1000.0, 0.2, 0.5), round(CARD_DELAY * RATE)
+    simulation.sound.loudspeakers.play(tone, "say")
+    simulation.run(0.3)
+    outlet.follow(bench().simulation)  # what was played before is out by then
+    sent = np.concatenate(card.written)
+    assert not sent[:start].any() and np.array_equal(sent[start : start + tone.frames, 1], tone.pcm16()[:, 0])
+    assert not card.closed
+    outlet.close()
+    assert card.closed
+    dry, card.dry = SoundCard(simulation), True
+    simulation.run(0.1)
+    dry.close()
+    assert [len(samples) for samples in card.written].count(start) == 3
+
+
+def test_no_card_no_library_and_no_real_time_are_clear_errors(simulation, monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "sounddevice", Card(there=False))
+    with pytest.raises(SoundCardError, match="there is none .*device -1.*--sound-card"):
+        SoundCard(simulation)
+    monkeypatch.setitem(sys.modules, "sounddevice", None)
+    with pytest.raises(SoundCardError, match="libportaudio2"):
+        SoundCard(simulation)
+    for options, words in (
+        ({"sound_card": True, "speed": 2.0}, "1 with a sound card"),
+        ({"sound_file": "../a.wav"}, "inside"),
+    ):
+        server = SimulatorServer(ServerOptions(port=0, record_dir=tmp_path / "records", **options))
+        with pytest.raises(BadValue, match=words):
+            server.start()
+        server.simulation.close()
+    assert not (tmp_path / "a.wav").exists()
+
+
+def test_the_sound_file_goes_on_after_a_factory_reset_and_modules_that_were_taken_off_are_back(tmp_path):
+    robot = Simulator(tmp_path, speed=float("inf"), sound_file="today/all.wav")
+    try:
+        robot.advance(0.5)
+        robot.post("ALSonar", "exit").wait(int(1000 * PATIENCE))  # there is nobody left to answer
+        robot.server.factory_reset()
+        assert robot.session.service("ALSonar").ping()
+        play(robot, sine(800.0, 0.2, 0.5))
+        robot.advance(0.5)
+    finally:
+        robot.close()
+    sound = read_sound(tmp_path / "today" / "all.wav").samples
+    assert len(sound) == pytest.approx(RATE, abs=RATE // 50)
+    assert not sound[: RATE // 2].any() and sound[RATE // 2 :].any()

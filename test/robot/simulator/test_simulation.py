@@ -1,0 +1,203 @@
+"""What only a simulator has: time, resets, pushes, fingers, ground truth, pictures, things that come and go."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+
+import numpy as np
+import pytest
+from PIL import Image
+from simulator import PATIENCE
+
+BALL = "{name: b, ball: 0.03, position: [0.6, 0.2, 0.03]}"
+
+
+@pytest.fixture
+def simulation(robot):
+    return robot.NaoSimulation
+
+
+@pytest.fixture
+def refused(simulation):
+    """Checks that calls are refused: rows of method, arguments and words of the text."""
+
+    def check(*rows):
+        for method, *arguments, words in rows:
+            with pytest.raises(RuntimeError) as caught:
+                simulation.call(method, *arguments)
+            assert re.match(f"NaoSimulation::{method} .*{words}", str(caught.value), re.DOTALL), str(caught.value)
+
+    return check
+
+
+# --- time -------------------------------------------------------------------------------------------------------------
+
+
+def test_time_passes_as_it_is_asked_to(robot, simulation, refused):
+    assert simulation.isPaused() is True and simulation.time() == 0.0
+    assert simulation.advance(0.5) == pytest.approx(0.5, abs=1e-3) == simulation.time()
+    simulation.resume()
+    assert simulation.isPaused() is False
+    assert robot.server.runner.wait_for_tick(robot.server.runner.ticks, PATIENCE) is not None
+    simulation.pause()
+    robot.settled()
+    before = simulation.time()
+    robot.settled()
+    assert simulation.isPaused() is True and simulation.time() == before
+    for asked, speed in ((2.5, 2.5), (0.0, 0.0)):
+        simulation.setSpeed(asked)
+        assert simulation.speed() == speed
+    refused(
+        ("setSpeed", -1.0, "speed is -1.0, allowed is above 0"),
+        *(("advance", s, "seconds is .*, allowed is 0 or more, finite") for s in (-0.5, float("inf"), float("nan"))),
+    )
+
+
+def test_ticks_are_counted_beyond_a_factory_reset(robot):
+    runner = robot.server.runner
+    before = runner.ticks
+    robot.advance(0.1)
+    passed = runner.ticks - before
+    assert passed == robot.now.tick > 0 and runner.wait_for_tick(before, PATIENCE) is robot.now
+    robot.server.factory_reset()
+    assert robot.now.tick == 0 and runner.ticks == before + passed
+    assert runner.wait_for_tick(runner.ticks, 0.05) is None
+    robot.advance(0.1)
+    assert runner.ticks == before + 2 * passed
+
+
+# --- the robot --------------------------------------------------------------------------------------------------------
+
+
+def test_a_push_throws_it_over_and_a_reset_sets_it_up_and_ends_its_motions(stiff_robot, simulation):
+    stiff_robot.advance(0.5)
+    x, y, z, *orientation = simulation.torsoPose()
+    assert (x, y, z) == pytest.approx((0.0, 0.0, 0.331), abs=0.005)
+    assert orientation == pytest.approx([0.0, 0.0, 0.0, 1.0], abs=0.01)
+    calls = [
+        stiff_robot.post("ALMotion", "angleInterpolation", "HeadYaw", 1.0, 5.0, True),
+        stiff_robot.post("ALLeds", "fade", "FaceLeds", 0.0, 5.0),
+    ]
+    for module in ("ALMotion", "ALLeds"):
+        stiff_robot.handed_over(module)
+    simulation.push([60.0, 0.0, 0.0], 0.2, "torso")
+    stiff_robot.advance(2.0)
+    assert simulation.torsoPose()[2] < 0.12
+    before = simulation.time()
+    simulation.reset()
+    assert simulation.torsoPose()[2] == pytest.approx(0.331, abs=0.005) and simulation.time() == before
+    assert [stiff_robot.answer(call) for call in calls] == [None, None]
+    assert stiff_robot.ALMotion.getAngles("HeadYaw", False) == [0.0]
+    simulation.push([8.0, 0.0, 0.0], 0.3, "r_wrist")
+    stiff_robot.advance(0.3)
+    assert stiff_robot.ALMotion.getAngles(["RShoulderPitch"], True)[0] < 1.2
+
+
+def test_it_stands_up_by_its_own_motors_and_stays(robot, simulation):
+    robot.finish("ALMotion", "wakeUp", after=2.5)
+    before = simulation.torsoPose()
+    robot.advance(6.0)
+    assert simulation.torsoPose()[:3] == pytest.approx(before[:3], abs=0.001)
+
+
+def test_fingers_pictures_and_what_cannot_be(robot, simulation, refused):
+    for sensors in (["Head/Touch/Front"], []):
+        simulation.press(sensors)
+        robot.advance(0.01)
+        assert robot.now.touched == frozenset(sensors)
+    image = Image.open(io.BytesIO(bytes(simulation.picture("front", 64, 80))))
+    assert (image.format, image.size) == ("PNG", (64, 80)) and len(set(image.convert("RGB").getdata())) > 50
+    refused(
+        ("push", [1.0, 2.0], 0.1, "torso", r"force is .*, allowed is \[x, y, z\] in N"),
+        ("push", [1.0, 2.0, 3.0], -0.1, "torso", "duration is -0.1.*, allowed is 0 to 60"),
+        ("push", [1.0, 2.0, 3.0], 100.0, "torso", "duration is 100.0, allowed is 0 to 60"),
+        ("push", [1.0, 2.0, float("nan")], 0.1, "torso", r"force\[2\] is nan, allowed is a finite number"),
+        ("push", [1.0, 2.0, 3.0], 0.1, "torsoo", "unknown link 'torsoo': did you mean 'torso'"),
+        ("press", ["Head/Touch/Frnt"], "unknown touch sensor 'Head/Touch/Frnt': did you mean 'Head/Touch/Front'"),
+        ("picture", "front", 0, 100, r"picture size is \(0, 100\), allowed is 1 to 4096 pixels each way"),
+        ("picture", "frnt", 64, 64, "unknown view 'frnt': did you mean 'front'"),
+    )
+
+
+# --- things -----------------------------------------------------------------------------------------------------------
+
+
+def picture(simulation):
+    return np.asarray(Image.open(io.BytesIO(bytes(simulation.picture("far", 320, 240)))).convert("RGB")).astype(int)
+
+
+def blue(pixels):
+    """How many pixels are blue; some are always, by the robot's lights."""
+    return int(np.sum(pixels[..., 2] - pixels[..., 0] > 80))
+
+
+def test_things_are_placed_moved_and_removed(robot, simulation):
+    simulation.placeObject(BALL)
+    assert simulation.objects()["b"] == pytest.approx([0.6, 0.2, 0.03, 0.0, 0.0, 0.0])
+    assert simulation.objectPoses()["b"] == pytest.approx([0.6, 0.2, 0.03, 0.0, 0.0, 0.0, 1.0])
+    simulation.moveObject("b", [0.7, -0.2, 0.03], [0.0, 0.0, 1.0], 0.0)
+    assert simulation.objects()["b"] == pytest.approx([0.7, -0.2, 0.03, 0.0, 0.0, 1.0], abs=1e-6)
+    simulation.removeObject("b")
+    simulation.placeObject("{name: f, ball: 0.04, position: [0.4, 0.4, 0.5]}")
+    simulation.placeObject(json.dumps({"name": "m", "landmark": 64, "position": [0.8, 0.0, 0.5], "stand": True}))
+    simulation.placeObject("{name: p, person: anna, position: [1.5, 1.0, 0]}")
+    assert simulation.objects()["m"] == pytest.approx([0.8, 0.0, 0.5, 0.0, 0.0, 0.0], abs=1e-6)
+    move = robot.post("NaoSimulation", "moveObject", "p", [1.5, -1.0, 0.0], [], 2.0)
+    robot.settled()
+    simulation.advance(1.0)
+    assert simulation.objects()["p"][1] == pytest.approx(0.0, abs=0.02) and move.isRunning()
+    simulation.advance(1.1)
+    robot.answer(move)
+    assert simulation.objects()["p"][1] == pytest.approx(-1.0, abs=1e-3)
+    assert simulation.objectPoses()["f"][2] == pytest.approx(0.04, abs=0.005)  # it has fallen
+    assert set(simulation.objects()) == {"f", "m", "p"}
+
+
+def test_what_is_placed_is_seen_and_gone_after_a_reset_and_what_was_removed_is_back(simulation):
+    simulation.reset("lab")
+    empty, chair = picture(simulation), simulation.objects()["chair_left"]
+    simulation.placeObject("{name: wall, box: [0.1, 0.1, 0.6], position: [0.3, -0.6, 0.3], color: [0, 0, 1]}")
+    assert blue(picture(simulation)) > blue(empty) + 500
+    simulation.removeObject("table")
+    simulation.moveObject("chair_left", [0.0, 1.5, 0.0], [], 0.0)
+    assert "table" not in simulation.objects() and simulation.objects()["chair_left"] != chair
+    simulation.reset()
+    assert "wall" not in simulation.objects() and "table" in simulation.objects()
+    assert simulation.objects()["chair_left"] == pytest.approx(chair, abs=0.01)
+    assert blue(picture(simulation)) < blue(empty) + 100
+
+
+def test_an_image_comes_from_the_folder_for_recordings(robot, simulation, refused):
+    path = robot.server.files.folder / "image.png"
+    Image.new("RGB", (40, 20), (10, 200, 10)).save(path)
+    simulation.placeObject("{name: i, image: image.png, position: [1.0, 0.0, 0.5]}")
+    path.unlink()
+    assert "i" in simulation.objects() and picture(simulation).shape == (240, 320, 3)  # also without the file
+    refused(
+        ("placeObject", "{name: j, image: ../../etc/passwd, position: [1.0, 0.0, 0.5]}", "is not inside"),
+        ("placeObject", "{name: j, image: nowhere.png, position: [1.0, 0.0, 0.5]}", "no file 'nowhere.png'"),
+    )
+
+
+def test_what_cannot_be_placed_or_moved_is_refused(simulation, refused):
+    simulation.placeObject(BALL)
+    before = simulation.objects()
+    refused(
+        ("placeObject", "", "object: is None, not a mapping"),
+        ("placeObject", "{name: b", "description is .*allowed is an entry of a world file: "),
+        ("placeObject", "[1, 2]", r"object: is \[1, 2\], not a mapping"),
+        ("placeObject", "{name: c, bal: 1, position: [0, 0, 0]}", "unknown key 'bal', did you mean 'ball'"),
+        ("placeObject", "{name: c, landmark: 65, position: [0, 0, 0]}", "landmark is '65', allowed is one of 64"),
+        ("placeObject", "{name: &a c, ball: 1, position: *a}", "aliases are not allowed here"),
+        ("placeObject", "a" * 20001, "20000 characters at most"),
+        ("placeObject", "{name: floor, ball: 0.03, position: [1, 0, 0]}", "name is 'floor', allowed is"),
+        ("placeObject", "{name: b, ball: 0.03, position: [1, 0, 0]}", "name is 'b', allowed is .*taken: b, floor"),
+        ("placeObject", "{name: c, ball: 0.1, position: [0, 0, 0.3]}", "inside the robot"),
+        ("moveObject", "bal", [1.0, 0.0, 0.0], [], 0.0, r"unknown object 'bal': .* \(there are: b\)"),
+        ("moveObject", "b", [1.0, 0.0], [], 0.0, "position is"),
+        ("moveObject", "b", [1.0, 0.0, 0.0], [], -1.0, "duration is -1.0"),
+        ("removeObject", "ball", "unknown object 'ball'"),
+    )
+    assert simulation.objects() == before
