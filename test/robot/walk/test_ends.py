@@ -60,7 +60,7 @@ def test_a_walk_that_nobody_waits_for_any_more_ends_on_two_feet(walker):
     walker.run(2.3)
     task.kill()
     assert walker.locomotion.active
-    walker.until(walker.locomotion.until_finished())
+    walker.until(walker.locomotion.until_finished(), longest=2.0)
     assert walker.stands_still()
 
 
@@ -199,7 +199,7 @@ def test_an_obstacle_ahead_ends_the_walk_on_two_feet(walker_in):
     walker.move(0.09)
     walker.until(walker.locomotion.until_finished())
     ((cause, started, place),) = walker.failures
-    assert started and "obstacle" in cause
+    assert started and cause == "an obstacle 0.38 m ahead"
     assert place[0] - walker.now.odometry.position[0] == pytest.approx(0.32, abs=0.04)
 
 
