@@ -156,11 +156,13 @@ class Lockstep:
     """Lets time pass only while every goal under test waits for time or for the robot.
 
     So a goal sees the same times on a slow machine as on a fast one. A call to the robot that is not answered within
-    `QUICK` s of wall time is one that takes simulated time. A goal that waits for something else, such as an event,
+    `QUICK` s of wall time is one that takes simulated time; when something that takes time has ended on the robot, time
+    holds until a call has its answer, at most `ANSWER` s. A goal that waits for something else, such as an event,
     counts as waiting when nothing has happened for `QUIET` s.
     """
 
     QUICK = 0.004
+    ANSWER = 0.25
     QUIET = 0.1
 
     def __init__(self, simulator):
@@ -169,7 +171,7 @@ class Lockstep:
         self._goals = 0
         self._calls = 0
         self._waiters = []
-        self._changed = 0.0
+        self._changed = self._answer_due = 0.0
         self.attach()
 
     def attach(self):
@@ -177,7 +179,18 @@ class Lockstep:
         simulation = self._simulator.server.simulation
         if self._closed not in simulation.holds:
             simulation.holds.append(self._closed)
+            self._watch(simulation.task_ids)
             simulation.after_tick.append(self._tick)
+
+    def _watch(self, ids):
+        make = ids.make
+
+        def watched(*arguments, **options):
+            task = make(*arguments, **options)
+            task.add_done_callback(self._task_ended)
+            return task
+
+        ids.make = watched
 
     # --- the goals under test ----------------------------------------------------------------------------------------
 
@@ -190,7 +203,13 @@ class Lockstep:
     def call_begins(self):
         self._change(calls=1)
 
+    def _task_ended(self, _task):
+        with self._lock:
+            if self._goals and self._calls:
+                self._answer_due = time.monotonic() + self.ANSWER
+
     def call_ended(self, _call=None):
+        self._answer_due = 0.0
         self._change(calls=-1)
 
     def _change(self, goals=0, calls=0):
@@ -235,4 +254,5 @@ class Lockstep:
         with self._lock:
             if not self._goals or any(not due.is_set() for _, due in self._waiters):
                 return False
-            return time.monotonic() - self._changed < (self.QUICK if self._calls else self.QUIET)
+            now = time.monotonic()
+            return now < self._answer_due or now - self._changed < (self.QUICK if self._calls else self.QUIET)
