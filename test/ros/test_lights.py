@@ -7,7 +7,7 @@ from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoLedAction
 from nao_library_msgs.msg import LedFunction
-from nao_sim_bridge.testing import RobotTestCase
+from nao_sim_bridge.testing import RobotTestCase, wait_until
 
 RED_EYE = "Face/Led/Red/Left/0Deg"
 BRAIN = {"Brain0": "Head/Led/Front/Right/1", "Brain1": "Head/Led/Front/Right/0", "Brain2": "Head/Led/Middle/Right/0"}
@@ -27,6 +27,7 @@ class Lights(RobotTestCase):
     def test_a_chain_succeeds_with_feedback_of_each_function_and_its_results(self):
         run = self.play(intensity("Brain0", 0.25), intensity("Brain1", 0.5), LedFunction(function="ping"))
         self.ends(run, GoalStatus.SUCCEEDED)
+        wait_until(lambda: len(run.feedback) == 3, 10.0, "the feedback, which has a topic of its own")
         steps = [(feedback.index, feedback.function, feedback.count) for _, feedback in run.feedback]
         self.assertEqual(steps, [(0, "setIntensity", 3), (1, "setIntensity", 3), (2, "ping", 3)])
         self.assertEqual([result.function for result in run.result.results], ["setIntensity", "setIntensity", "ping"])

@@ -10,15 +10,16 @@ import rospkg
 
 from nao_sim_bridge.testing import SimulatedRobot
 
-PORT = os.environ.get("NAO_PORT", "9559")
-
 
 class SdkScript(unittest.TestCase):
     def test_the_greeter_runs(self):
         SimulatedRobot()
         script = Path(rospkg.RosPack().get_path("nao_library_tests")) / "scripts" / "greeter.py"
         done = subprocess.run(
-            [sys.executable, str(script), "127.0.0.1", PORT], stdout=subprocess.PIPE, timeout=50, text=True
+            [sys.executable, str(script), "127.0.0.1", os.environ["NAO_PORT"]],
+            stdout=subprocess.PIPE,
+            timeout=50,
+            text=True,
         )
         self.assertEqual(done.returncode, 0, done.stdout)
         for line in (

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """A module with `launchpath` and `autostart` starts what it needs by itself, and takes it along when it ends."""
 
 import os
@@ -18,6 +19,7 @@ from nao_sim_bridge.testing import send, wait_until
 PORT = os.environ.get("NAO_PORT", "9559")
 MODULE = """
 import rospy
+import rostest
 from nao_library_modules.lights import NaoLights
 rospy.init_node("self_starter")
 NaoLights("127.0.0.1", {port}, autostart=True, launchpath=("nao_library_tests", "simulator_only.launch"))
@@ -37,3 +39,8 @@ class Autostart(unittest.TestCase):
         module.send_signal(signal.SIGINT)
         self.assertEqual(module.wait(30.0), 0)
         wait_until(lambda: not rosnode.rosnode_ping("/nao_sim", max_count=1), 20.0, "the end of the simulator")
+
+
+if __name__ == "__main__":
+    rospy.init_node("autostart_test")
+    rostest.rosrun("nao_library_tests", "autostart", Autostart)
