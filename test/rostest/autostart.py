@@ -9,6 +9,8 @@ import unittest
 
 import actionlib
 import rosnode
+import rospy
+import rostest
 from actionlib_msgs.msg import GoalStatus
 from rospy import Duration
 
