@@ -62,13 +62,11 @@ def test_a_killed_awakening_never_finishes_and_a_reset_puts_it_to_sleep(robot, m
 # --- falls ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("awake", [True, False])
-def test_a_fall_is_told_ends_calls_and_leaves_the_robot_limp(stiff_robot, motion, begin, read, raised, awake):
-    if awake:
-        stiff_robot.finish("ALMotion", "wakeUp", after=2.5)
+def test_a_fall_is_told_ends_calls_and_leaves_the_robot_limp(stiff_robot, motion, begin, read, raised):
+    stiff_robot.finish("ALMotion", "wakeUp", after=2.5)
     stiff_robot.advance(1.0)
     future = begin("ALMotion", "angleInterpolation", "HeadYaw", 1.0, 30.0, True, after=0.1)
-    assert read(STANDS) is True and motion.robotIsWakeUp() is awake
+    assert read(STANDS) is True and motion.robotIsWakeUp() is True
     raised(FALLING, FALLEN, STANDS)
     stiff_robot.NaoSimulation.push([60.0, 0.0, 0.0], 0.1, "torso")
     stiff_robot.advance(0.5)
