@@ -70,6 +70,15 @@ class LongestFirst(LoadGroupScheduling):
         self.workqueue.move_to_end(min(self.workqueue, key=rank), last=False)
         super()._assign_work_unit(node)
 
+    def remove_node(self, node):
+        """A case that ends its worker is not run again: it would end the next one as well."""
+        units = self.assigned_work.get(node, {}).values()
+        crashed, unit = next(((case, unit) for unit in units for case in unit if not unit[case]), (None, None))
+        if crashed:
+            unit[crashed] = True
+        super().remove_node(node)
+        return crashed
+
 
 def pytest_xdist_make_scheduler(config, log):
     return LongestFirst(config, log)

@@ -31,13 +31,13 @@ class _WatchedProxy:
         self._lockstep = lockstep
 
     def call_async(self, method, *arguments):
-        self._lockstep.call_begins()
+        self._lockstep.call_begins(self._proxy)
         try:
             call = self._proxy.call_async(method, *arguments)
         except BaseException:
-            self._lockstep.call_ended()
+            self._lockstep.call_ended(self._proxy)
             raise
-        call.add_done_callback(self._lockstep.call_ended)
+        call.add_done_callback(lambda _: self._lockstep.call_ended(self._proxy))
         return call
 
     def __getattr__(self, name):
@@ -57,9 +57,15 @@ class Goal:
         self._server.end = None
         self._server.preempt_requested = False
         self._server.feedback = self.feedback = []
-        simulator.lockstep.goal_begins()
-        self._thread = threading.Thread(target=self._server.execute, args=(goal,), daemon=True)
+        self._finishing = False
+        self._thread = threading.Thread(target=self._run, args=(goal,), daemon=True)
+        simulator.lockstep.goal_begins(self._thread)
         self._thread.start()
+
+    def _run(self, goal):
+        self._server.execute(goal)
+        if self._finishing:
+            self._simulator.server.runner.pause()  # here, where time holds: no tick more than the goal needs
 
     @property
     def active(self):
@@ -67,10 +73,11 @@ class Goal:
 
     def finish(self):
         """Let time pass until the goal is over, and no longer."""
-        runner = self._simulator.server.runner
-        runner.resume()
+        self._finishing = True
+        if self.active:
+            self._simulator.server.runner.resume()
         self._thread.join(4 * PATIENCE)
-        runner.pause()
+        self._simulator.server.runner.pause()
         return self._ended()
 
     def cancel(self):
@@ -78,9 +85,13 @@ class Goal:
         self._server.preempt()
         return self.finish()
 
+    def over(self):
+        """It does not hold time any more."""
+        self._simulator.lockstep.goal_is_over(self._thread)
+
     def _ended(self):
         assert not self._thread.is_alive(), "the goal does not end"
-        self._simulator.lockstep.goal_is_over()
+        self.over()
         assert self._server.end is not None, "the goal has no end state"
         self.state, self.text, self.result = self._server.end, self._server.text, self._server.result
         return self

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 import qi
 
 import naoqi
+import naoqi.calls
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene
 
@@ -41,6 +42,7 @@ class Simulator:
         self.server.start()
         self.session = connected(self.port)
         self._services = {}
+        self._posted = []  # (module, future)
         self.lockstep = Lockstep(self)
 
     def __getattr__(self, name):
@@ -73,7 +75,11 @@ class Simulator:
 
     def advance(self, seconds):
         """Let simulated time pass, as fast as possible; returns the time after it."""
-        return self.server.runner.advance(seconds).result(4 * PATIENCE).time
+        time = self.server.runner.advance(seconds).result(4 * PATIENCE).time
+        self._posted = [(module, future) for module, future in self._posted if future.isRunning()]
+        for module in {module for module, _ in self._posted}:
+            getattr(self, module).ping()  # what has ended is answered
+        return time
 
     def advance_until(self, condition, limit, step=0.05, what="the condition"):
         """Let time pass until `condition()` holds, at most `limit` s of simulated time."""
@@ -89,13 +95,17 @@ class Simulator:
         for path in self.server.files.folder.glob("*"):
             shutil.rmtree(path) if path.is_dir() else path.unlink()
         self.server.factory_reset(world)
+        self._posted = []
         self.lockstep.attach()
 
     # --- calls that take simulated time ------------------------------------------------------------------------------
 
     def post(self, module, method, *arguments):
         """Call without waiting; the future of the answer."""
-        return getattr(self, module).call(method, *arguments, _async=True)
+        future = getattr(self, module).call(method, *arguments, _async=True)
+        if module.startswith("AL"):
+            self._posted.append((module, future))
+        return future
 
     def answer(self, future):
         """The value of a future that is due."""
@@ -155,23 +165,26 @@ class Simulator:
 class Lockstep:
     """Lets time pass only while every goal under test waits for time or for the robot.
 
-    So a goal sees the same times on a slow machine as on a fast one. A call to the robot that is not answered within
-    `QUICK` s of wall time is one that takes simulated time; when something that takes time has ended on the robot, time
-    holds until a call has its answer, at most `ANSWER` s. A goal that waits for something else, such as an event,
-    counts as waiting when nothing has happened for `QUIET` s.
+    So a goal sees the same times on a slow machine as on a fast one, because nothing here is measured in wall time.
+    Whatever happens to a goal (a call begins or ends, a wait for time is over, something on the robot has ended) holds
+    time until `ROUNDS` times in a row the robot has answered a ping of every module that has not answered a call of the
+    goal, the simulation has run a command, and the threads of the goals have been seen waiting. A module takes one call
+    at a time, so a call that is still open then is one that takes simulated time.
     """
 
-    QUICK = 0.004
-    ANSWER = 0.25
-    QUIET = 0.1
+    ROUNDS = 4
+    STUCK = 1.0
+    """s of wall time after which a thread counts as waiting that nobody sees wait."""
 
     def __init__(self, simulator):
         self._simulator = simulator
-        self._lock = threading.Lock()
-        self._goals = 0
-        self._calls = 0
+        self._news = threading.Condition()
+        self._goals = []
+        self._calls = []
         self._waiters = []
-        self._changed = self._answer_due = 0.0
+        self._change = self._quiet = 0
+        self._busy_since = None
+        threading.Thread(target=self._look, name="lockstep", daemon=True).start()
         self.attach()
 
     def attach(self):
@@ -187,37 +200,31 @@ class Lockstep:
 
         def watched(*arguments, **options):
             task = make(*arguments, **options)
-            task.add_done_callback(self._task_ended)
+            task.add_done_callback(lambda _: self._changed())
             return task
 
         ids.make = watched
 
     # --- the goals under test ----------------------------------------------------------------------------------------
 
-    def goal_begins(self):
-        self._change(goals=1)
+    def goal_begins(self, thread=None):
+        """Args: thread: That of the goal, when there is one."""
+        self._changed(lambda: self._goals.append(thread))
 
-    def goal_is_over(self):
-        self._change(goals=-1)
+    def goal_is_over(self, thread=None):
+        self._changed(lambda: self._goals.remove(thread))
 
-    def call_begins(self):
-        self._change(calls=1)
+    def call_begins(self, proxy):
+        self._changed(lambda: self._calls.append(proxy))
 
-    def _task_ended(self, _task):
-        with self._lock:
-            if self._goals and self._calls:
-                self._answer_due = time.monotonic() + self.ANSWER
+    def call_ended(self, proxy):
+        self._changed(lambda: self._calls.remove(proxy))
 
-    def call_ended(self, _call=None):
-        self._answer_due = 0.0
-        self._change(calls=-1)
-
-    def _change(self, goals=0, calls=0):
-        with self._lock:
-            self._goals += goals
-            self._calls += calls
-            self._changed = time.monotonic()
-        self._simulator.server.simulation.wake()
+    def _changed(self, change=lambda: None):
+        with self._news:
+            change()
+            self._change += 1
+            self._news.notify_all()
 
     # --- the clock of the module under test --------------------------------------------------------------------------
 
@@ -231,28 +238,57 @@ class Lockstep:
         due = threading.Event()
         waiter = (self.time() + duration, due)
         with interrupt.waking(due.set):
-            with self._lock:
-                self._waiters.append(waiter)
-            self._change()
+            self._changed(lambda: self._waiters.append(waiter))
             due.wait()
-            with self._lock:
-                if waiter in self._waiters:
-                    self._waiters.remove(waiter)
-            self._change()
+            self._changed(lambda: waiter in self._waiters and self._waiters.remove(waiter))
         return not interrupt.is_set()
 
     def _tick(self, snapshot):
         """In the simulation thread: time holds again before those wake up who waited for it."""
-        with self._lock:
-            over = [w for w in self._waiters if w[0] <= snapshot.time + 1e-9 or w[1].is_set()]
-            for waiter in over:
-                self._waiters.remove(waiter)
-        for _, due in over:
-            due.set()
+        over = [w for w in list(self._waiters) if w[0] <= snapshot.time + 1e-9 or w[1].is_set()]
+        if over:
+            self._changed(lambda: [self._waiters.remove(waiter) for waiter in over if waiter in self._waiters])
+            for _, due in over:
+                due.set()
+
+    # --- whether they wait -------------------------------------------------------------------------------------------
 
     def _closed(self):
-        with self._lock:
-            if not self._goals or any(not due.is_set() for _, due in self._waiters):
-                return False
-            now = time.monotonic()
-            return now < self._answer_due or now - self._changed < (self.QUICK if self._calls else self.QUIET)
+        """In the simulation thread."""
+        return bool(self._goals) and self._quiet != self._change
+
+    def _look(self):
+        rounds, seen = 0, 0
+        while True:
+            with self._news:
+                self._news.wait_for(lambda: self._goals and self._quiet != self._change)
+                rounds = rounds if seen == self._change else 0
+                seen, goals, calls = self._change, list(self._goals), list(self._calls)
+            self._round(calls)
+            if seen != self._change:
+                continue
+            if not all(self._waits(goal, bool(calls)) for goal in goals):
+                rounds = 0
+                time.sleep(0.001)
+                continue
+            rounds += 1
+            if rounds == self.ROUNDS:
+                self._quiet, rounds = seen, 0
+                self._simulator.server.simulation.wake()
+
+    def _round(self, calls):
+        try:
+            for proxy in calls:
+                proxy.call("ping")
+            self._simulator.settled()
+        except Exception:  # the robot is lost, which the goal sees as well
+            time.sleep(0.005)
+
+    def _waits(self, thread, called):
+        frame = thread and sys._current_frames().get(thread.ident)
+        name = frame and frame.f_code.co_filename
+        if not frame or name == threading.__file__ or (called and name == naoqi.calls.__file__):
+            self._busy_since = None
+            return True
+        self._busy_since = self._busy_since or time.monotonic()
+        return time.monotonic() > self._busy_since + self.STUCK

@@ -60,7 +60,7 @@ def test_a_lost_robot_ends_goals_and_one_that_comes_back_listens_again_and_has_l
     robot.server.stop()
     for goal in goals:
         comes(lambda goal=goal: not goal.active)
-        robot.lockstep.goal_is_over()
+        goal.over()
     for one in (ears, mouth):
         assert one.module.server.end == "aborted"
         assert "went away" in one.module.server.text or "connection broke" in one.module.server.text

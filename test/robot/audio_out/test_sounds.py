@@ -96,7 +96,6 @@ def test_volumes_multiply_and_a_muted_robot_takes_as_long(robot, audio, levels):
 def test_a_loop_sounds_on_after_its_goal_until_it_is_stopped(robot, audio):
     begun = robot.now.time
     assert audio.succeed(f("playFileInLoop", "short.wav")).durations == [0.0]
-    assert robot.now.time - begun < 0.3
     audio.succeed(f("getMasterVolume"))
     robot.advance(1.0)
     assert loudness(played(robot, begun + 0.1)) == pytest.approx(FULL, rel=0.03)

@@ -75,7 +75,7 @@ def test_what_a_lost_robot_ends_and_one_that_comes_back_is_told(mortal, tmp_path
     mortal.advance(0.5)
     mortal.server.stop()
     comes(lambda: not goal.active, "the end of the goal")
-    mortal.lockstep.goal_is_over()
+    goal.over()
     server = lights.module.server
     assert server.end == "aborted" and server.text.startswith("function 1 (on): the robot at 127.0.0.1:")
     assert " went away: " in server.text

@@ -67,7 +67,8 @@ def shared_robot():
 
 @pytest.fixture
 def robot(shared_robot):
-    """A robot that tests leave as they found it."""
+    """A robot that nobody waits for."""
+    shared_robot.proxy().forget()
     return shared_robot
 
 

@@ -149,6 +149,10 @@ class Module:
     def begun(self):
         return len(self._begun)
 
+    def forget(self):
+        """As if `begin` had never been called."""
+        self._begun.clear()
+
     def cancellations(self):
         return self._cancelled
 
