@@ -145,7 +145,7 @@ def test_wrong_arguments_name_what_is_allowed(refuses):
         fadeRGB('FaceLeds', 2.0, 0.0, 0.0, 1.0) -> colour\[0\] is 2.0, allowed is 0 to 1
         fadeListRGB('FaceLeds', [1, 2], [1.0]) -> rgbList is .* as many colours as times, 1
         fadeListRGB('FaceLeds', [], []) -> rgbList is .* at least 1
-        fadeListRGB('FaceLeds', [1, 2], [2.0, 1.0]) -> timeList is .*, allowed is rising times
+        fadeListRGB('FaceLeds', [1, 2], [1.0, 1.0]) -> timeList is .*, allowed is rising times
         fadeListRGB('FaceLeds', [1.5], [1.0]) -> colour is 1.5
         rotateEyes(0xFF, 0.0, 1.0) -> timeForRotation is 0.0, allowed is above 0
         randomEyes(-1.0) -> duration is -1.0, allowed is 0 or more

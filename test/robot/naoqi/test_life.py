@@ -210,6 +210,7 @@ def test_somebody_who_speaks_gets_a_nod_and_who_speaks_moves_its_arms(alive, rob
 
 CAMERA = [0.0, 0.0, 0.5, 0.0, 0.0, 0.0]
 FACE, SOUND, TOUCH = "FaceDetected", "ALSoundLocalization/SoundLocated", "TouchChanged"
+MOVEMENT = "MovementDetection/MovementDetected"
 
 
 def face(number, alpha):
@@ -292,12 +293,23 @@ def test_a_touch_makes_it_look_up_and_lower_on_a_table(aware, robot, tell, offse
     assert raised > up if up > 0 else raised < up
 
 
-@pytest.mark.parametrize("mode, turns", [("FullyEngaged", False), ("Unengaged", True)])
-def test_who_is_engaged_is_not_distracted(aware, tell, mode, turns):
+@pytest.mark.parametrize(
+    "mode, stimulus, turns",
+    [
+        ("FullyEngaged", SOUND, False),
+        ("Unengaged", SOUND, True),
+        ("SemiEngaged", SOUND, True),
+        ("SemiEngaged", MOVEMENT, False),
+        ("Unengaged", MOVEMENT, True),
+    ],
+)
+def test_who_is_engaged_is_not_distracted(aware, robot, tell, mode, stimulus, turns):
+    aware.setStimulusDetectionEnabled("Movement", stimulus == MOVEMENT)
     aware.setEngagementMode(mode)
     aware.setParameter("MinTimeTracking", 0.5)
     tell(FACE, face(5, 0.0), 0.8)
-    assert (tell(SOUND, sound(0.7), 0.6)[0] > 0.4) is turns
+    robot.ALMemory.insertData("MovementDetection/MovementInfo", [[1, 0], [[[0.7, 0.0]]], CAMERA, CAMERA, 0])
+    assert (tell(stimulus, sound(0.7), 0.6)[0] > 0.4) is turns
 
 
 def test_a_place_may_be_a_stimulus_the_body_turns_and_the_tracker_has_the_head_for_itself(aware, robot, tell):
@@ -314,6 +326,8 @@ def test_a_place_may_be_a_stimulus_the_body_turns_and_the_tracker_has_the_head_f
     aware.setTrackingMode("BodyRotation")
     tell(FACE, face(6, 0.9), 0.5)
     assert robot.ALMotion.moveIsActive()
+    robot.advance(2.5)
+    assert robot.ALMotion.getRobotPosition(False)[2] > 0.3
 
 
 def test_parameters_are_kept_and_reset_and_what_is_wrong_is_told(aware, refuses):

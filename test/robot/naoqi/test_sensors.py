@@ -108,8 +108,15 @@ def test_ground_under_the_feet_is_told_when_it_is_lost_and_when_it_is_won(stiff_
     assert read("leftFootTotalWeight") + read("rightFootTotalWeight") == pytest.approx(5.36, rel=0.01)
     before = raised()
     stiff_robot.ALMotion.move(0.05, 0.0, 0.0)
-    stiff_robot.advance(4.0)
+    steps = set()
+    for _ in range(40):
+        stiff_robot.advance(0.1)
+        steps.add(tuple(contacts()))
+        for foot, side in (("left", "L"), ("right", "R")):
+            weight = read(f"{side}Foot/FSR/TotalWeight/Sensor/Value")
+            assert read(f"{foot}FootTotalWeight") == pytest.approx(weight, rel=1e-3)
     assert stiff_robot.ALMotion.moveIsActive() and raised() == before  # walking keeps contact
+    assert {(1.0, 1.0, 0.0), (1.0, 0.0, 1.0)} <= steps <= {(1.0, 1.0, 0.0), (1.0, 0.0, 1.0), (1.0, 1.0, 1.0)}
     stiff_robot.ALMotion.killMove()
     stiff_robot.NaoSimulation.push([0.0, 0.0, 60.0], 0.5, "torso")
     stiff_robot.advance(0.45)

@@ -57,7 +57,7 @@ def test_bumpers_are_told_as_one_and_changes_by_part_and_by_sensor(robot, press,
             robot.advance(0.05)
 
     assert values(told("LeftBumperPressed", over_the_toes)) == [1.0, 0.0]
-    heard = told("TouchChanged", lambda: press(HEAD[1], "LHand/Touch/Back"))
+    heard = told("TouchChanged", lambda: press(HEAD[1], "LHand/Touch/Back", CHEST_BUTTON))
     parts = ["Head", "LHand", HEAD[1], "LHand/Touch/Back"]
     assert values(heard) == [[[name, True] for name in parts], [[name, False] for name in parts]]
 

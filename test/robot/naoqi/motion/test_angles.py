@@ -102,6 +102,9 @@ def test_with_speed_and_for_key_frames_too_fast_it_takes_the_time_that_is_needed
     begun, future = robot.now.time, begin("ALMotion", INTERPOLATION, "HeadYaw", -0.5, 0.05, True)
     robot.advance_until(lambda: not future.isRunning(), 1.0, 1 / 120)
     assert robot.now.time - begun == pytest.approx(2.0 / top, abs=2.1 / 60) and commands("HeadYaw") == [-0.5]
+    future = begin("ALMotion", "angleInterpolationWithSpeed", "HeadYaw", -9.0, 1.0 / top, after=1.62)
+    robot.answer(future)  # what is beyond the limit takes no time
+    assert commands("HeadYaw") == near(MODEL.joint("HeadYaw").lower)
 
 
 def test_motions_of_one_joint_queue_up_and_others_run_beside(robot, begin, commands):
