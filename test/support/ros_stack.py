@@ -80,6 +80,11 @@ class RosStack:
             self.robot = SimulatedRobot(limit=LIMIT)
             self.broken = False
 
+    def rest(self):
+        """End it until it is needed again; its master stays."""
+        self.stack.stop()
+        self.broken = True
+
     def deaths(self):
         """Names of the nodes that have ended since the stack was started."""
         self._nodes.update(_children(self.stack.pid))

@@ -16,7 +16,7 @@ from cases import case
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure import DynamicReconfigureCallbackException
 from dynamic_reconfigure.client import Client
-from sensor_msgs.msg import CameraInfo, CompressedImage
+from sensor_msgs.msg import CompressedImage
 from services import configuration
 
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
@@ -149,19 +149,6 @@ class DriverCamera(unittest.TestCase):
             self.robot.advance(1.0)
         self.assertEqual(counts[0], counts[1])
 
-    def test_a_reset_of_the_world_does_not_end_the_pictures(self):
-        with Look(FOLDERS[TOP]) as look:
-            look.now()
-            self.robot.reset()
-            for _ in range(3):
-                image, info = look.now()
-                self.assertEqual((image.width, info.width), (320, 320))
-
-    def test_camera_info_alone_comes_as_well(self):
-        info = rospy.wait_for_message(f"{FOLDERS[TOP]}camera_info", CameraInfo, LIMIT)
-        self.assertEqual(info.header.frame_id, FRAMES[TOP])
-        self.wait_for_nobody()
-
     def wait_for_report(self, name, text):
         wait_until(lambda: self.reports.get(name, ("",))[0] == text, LIMIT, f"{name}: {text}")
         return self.reports[name][1]
@@ -220,14 +207,6 @@ class DriverCamera(unittest.TestCase):
             bright = np.mean(pixels_of(look.after(self.robot.advance(0.0) + 0.2)[0]))
         self.assertGreater(bright, dark + 20.0)
         self.assertEqual(self.device.getParameter(BOTTOM, BRIGHTNESS), 0)
-
-    def test_what_others_have_set_stays_and_is_told(self):
-        self.device.setParameter(BOTTOM, CONTRAST, 60)
-        self.addCleanup(self.device.setParameter, BOTTOM, CONTRAST, 32)
-        with Look(FOLDERS[BOTTOM]) as look:
-            look.now()
-            wait_until(lambda: self.settings[BOTTOM].get_configuration()["contrast"] == 60, LIMIT, "the contrast")
-        self.assertEqual(self.device.getParameter(BOTTOM, CONTRAST), 60)
 
     def test_what_cannot_be_is_refused(self):
         before = configuration(self.settings[TOP])

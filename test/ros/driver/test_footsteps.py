@@ -74,12 +74,6 @@ class DriverFootsteps(WalkingTest):
         self.assertAlmostEqual(left.seen_from(right).y, 0.1, delta=0.01)
         self.assertAlmostEqual(left.seen_from(right).x, 0.0, delta=0.01)
 
-    def test_a_turn_of_single_steps(self):
-        before = self.truth()
-        turn = [step(LEFT, 0.0, 0.1, 0.3), step(RIGHT, 0.0, -0.1)]
-        self.play(turn * 2)
-        self.assertAlmostEqual(self.moved_since(before).yaw, 0.6, delta=0.06)
-
     def test_steps_that_are_too_long_are_made_as_the_clipping_service_tells(self):
         long = step(LEFT, 0.3, 0.3, 1.0)
         clipped = self.clip(long).step
@@ -103,13 +97,6 @@ class DriverFootsteps(WalkingTest):
         # The foot behind closes up, which is no step of the goal.
         self.assertAlmostEqual(self.moved_since(before).x, 0.04 * made, delta=0.05)
         self.assertGreater(self.robot.true_pose().position.z, 0.3)
-
-    def test_a_new_goal_ends_the_one_before(self):
-        old = send(self.client, ExecFootstepsGoal(ahead(30), 20.0))
-        wait_until(lambda: len(old.feedback) > 10, 90.0, "some steps")
-        new = send(self.client, ExecFootstepsGoal([step(LEFT, 0.0, 0.1), step(RIGHT, 0.0, -0.1)], 20.0))
-        self.assertEqual(old.wait().state, GoalStatus.PREEMPTED)
-        self.assertEqual(new.wait().state, GoalStatus.SUCCEEDED, new.text)
 
     def test_single_steps_by_service_and_topic(self):
         before = self.truth()

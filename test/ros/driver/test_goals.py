@@ -4,7 +4,6 @@ import unittest
 
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from examples_fixture import start
 from rospy import Duration
 from sensor_msgs.msg import JointState
 from services import action_client, service
@@ -108,20 +107,6 @@ class DriverGoals(unittest.TestCase):
         run = self.play(self.stiffness, trajectory(["HeadYaw", "LHand"], (0.2, [1.0, 0.5])))
         self.close(run.result.goal_position.position, [1.0, 0.5], 0.001)
 
-    def test_relative_trajectories_start_where_the_joint_is(self):
-        self.play(self.trajectories, trajectory(["HeadYaw"], (0.5, [0.4])))
-        self.play(self.trajectories, trajectory(["HeadYaw"], (0.5, [0.3]), (1.0, [-0.2]), relative=1))
-        self.assertAlmostEqual(self.commanded("HeadYaw"), 0.2, delta=0.01)
-
-    def test_velocities_shape_the_way(self):
-        # With this velocity at the first point, the way to the second, at the same angle, swings out by 0.12 rad.
-        for relative, there in ((0, 0.5), (1, 1.0)):
-            goal = trajectory(["HeadYaw"], (1.0, [0.5], [0.8]), (2.0, [0.5], [0.0]), relative=relative)
-            run = send(self.trajectories, goal)
-            wait_until(lambda a=there: self.commanded("HeadYaw") > a + 0.09, 10.0, "the swing")
-            self.assertEqual(run.wait().state, GoalStatus.SUCCEEDED, run.text)
-            self.assertAlmostEqual(self.commanded("HeadYaw"), there, delta=0.01)
-
     # --- preemption ------------------------------------------------------------------------------------------------
 
     def cancel_on_the_way(self, client, goal, value):
@@ -145,14 +130,6 @@ class DriverGoals(unittest.TestCase):
         self.assertAlmostEqual(run.result.goal_position.position[0], stopped, delta=0.05)
         stopped, _ = self.cancel_on_the_way(self.angles, angles(["HeadYaw"], [-1.5], 0.01), there)
         self.assertGreater(stopped, -1.4)
-
-    def test_clients_of_different_joints_do_not_know_of_each_other(self):
-        head = send(self.trajectories, trajectory(["HeadYaw"], (3.0, [1.0])))
-        hand = send(self.trajectories, trajectory(["LHand"], (1.0, [0.8])))
-        self.assertEqual(hand.wait().state, GoalStatus.SUCCEEDED, hand.text)
-        self.assertEqual(head.wait().state, GoalStatus.SUCCEEDED, head.text)
-        self.assertLess(head.ended - head.sent, 3.6)
-        self.close([self.sensed("HeadYaw"), self.sensed("LHand")], [1.0, 0.8], 0.05)
 
     def test_a_newer_goal_for_the_same_joint_ends_the_older_one(self):
         old = send(self.trajectories, trajectory(["Head"], (20.0, [1.0, 0.0])))
@@ -239,17 +216,3 @@ class DriverGoals(unittest.TestCase):
         self.assertLess(self.commanded("LKneePitch"), 2.0)
 
     # --- examples --------------------------------------------------------------------------------------------------
-
-    def end_of(self, example, status):
-        text, _ = example.communicate(timeout=30.0)
-        self.assertEqual(example.returncode, status, text)
-        return text
-
-    def test_examples(self):
-        state = start("robot_state.py")
-        mistyped = start("take_pose.py", "--speed", "0.5", "Crowch")
-        moves = start("joint_trajectory_client.py")
-        self.assertRegex(self.end_of(state, 0), r"torso   x -?0.0\d m, y -?0.0\d m, z 0.[23]\d m")
-        self.assertIn("did you mean 'Crouch'", self.end_of(mistyped, 1))
-        self.assertEqual(self.end_of(moves, 0).count("succeeded"), 3)
-        self.assertEqual(self.end_of(start("take_pose.py", "init"), 0).strip(), "init: succeeded")

@@ -74,12 +74,6 @@ class DriverLedsBehaviors(unittest.TestCase):
             self.robot.wait_for_leds(rgb(CHEST, RED), LIMIT)
             self.robot.wait_for_leds(rgb(CHEST, GREEN), LIMIT)
 
-    def test_a_fade_that_is_wrong_does_not_end_the_next(self):
-        self.fade.publish(FadeRGB("NoLeds", RED, Duration(0.1)))
-        self.fade.publish(FadeRGB("ChestLeds", ColorRGBA(2.0, 0.0, 0.0, 1.0), Duration(0.1)))
-        self.fade.publish(FadeRGB("ChestLeds", BLUE, Duration(0.1)))
-        self.robot.wait_for_leds(rgb(CHEST, BLUE), LIMIT)
-
     def test_eyes_blink_until_they_are_told_to_stop(self):
         run = send(self.blink, blinks())
         wait_until(lambda: len(run.feedback) >= 4 and self.manager.ping(), LIMIT, "blinks")
@@ -92,17 +86,6 @@ class DriverLedsBehaviors(unittest.TestCase):
         run.wait(LIMIT)
         self.assertEqual((run.state, run.result.still_blinking), (GoalStatus.PREEMPTED, False))
         self.robot.wait_for_leds(rgb(EYE, BLUE), LIMIT)
-
-    def test_a_newer_goal_takes_over(self):
-        first = send(self.blink, blinks())
-        wait_until(lambda: first.feedback and self.manager.ping(), LIMIT, "the first blink")
-        second = send(self.blink, blinks(colors=[BLUE], bg_color=RED))
-        first.wait(LIMIT)
-        self.assertEqual((first.state, first.result.still_blinking), (GoalStatus.PREEMPTED, True))
-        wait_until(lambda: second.feedback and self.manager.ping(), LIMIT, "the second one's blink")
-        second.cancel()
-        second.wait(LIMIT)
-        self.robot.wait_for_leds(rgb(EYE, RED), LIMIT)
 
     def test_what_cannot_be_blinked_is_aborted_and_says_why(self):
         wrong = {
@@ -137,14 +120,6 @@ class DriverLedsBehaviors(unittest.TestCase):
         run.wait(LIMIT)
         self.assertEqual(run.state, GoalStatus.PREEMPTED)
         self.assertEqual(self.manager.getRunningBehaviors(), [])
-
-    def test_a_newer_behaviour_ends_the_one_before(self):
-        self.robot.module("ALMotion").wakeUp()
-        first = send(self.run_behavior, RunBehaviorGoal(ENDLESS))
-        wait_until(lambda: self.manager.isBehaviorRunning(ENDLESS), LIMIT, ENDLESS)
-        second = send(self.run_behavior, RunBehaviorGoal(HELLO)).wait(LIMIT)
-        self.assertEqual(first.wait(LIMIT).state, GoalStatus.PREEMPTED)
-        self.assertEqual(second.state, GoalStatus.SUCCEEDED, second.text)
 
     def test_what_is_not_installed_or_cannot_run_is_told(self):
         run = send(self.run_behavior, RunBehaviorGoal("nao_library/helo")).wait(LIMIT)

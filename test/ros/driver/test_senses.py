@@ -167,17 +167,6 @@ class DriverSenses(unittest.TestCase):
 
     # --- diagnostics ----------------------------------------------------------------------------------------------
 
-    def test_every_joint_has_a_report(self):
-        report = self.wait_for_report("nao_joint: HeadYaw", lambda status: status.message.startswith("Normal: "))
-        joints = [name for name in self.reports if name.startswith("nao_joint: ")]
-        self.assertEqual(len(joints), 26)
-        values = {entry.key: entry.value for entry in report.values}
-        self.assertGreater(float(values["Temperature"]), 20.0)
-        self.assertEqual(report.hardware_id, f"{self.robot.value('Device/DeviceList/ChestBoard/BodyId')}#HeadYaw")
-        self.assertEqual(self.reports["nao_joint: RHipYawPitch"].message, "No temperature sensor")
-        other = self.wait_for_report("/other/nao_joint: HeadYaw", lambda status: status.level == DiagnosticStatus.WARN)
-        self.assertTrue(other.message.startswith("Hot: "), other.message)
-
     def test_a_hot_joint_is_told(self):
         for celsius, level, word in ((70.0, DiagnosticStatus.WARN, "Hot"), (78.0, DiagnosticStatus.ERROR, "Too hot")):
             self.simulation.setTemperature("LKneePitch", celsius)

@@ -1,8 +1,6 @@
 """Microphones as a topic; files, volume, recordings and directions of sounds as services and a topic."""
 
 import math
-import subprocess
-import sys
 import unittest
 from contextlib import contextmanager
 
@@ -153,17 +151,6 @@ class DriverSound(unittest.TestCase):
             self.robot.advance(2.0)
         self.assertEqual(counts[1], counts[2])
 
-    def test_the_example_writes_the_topic_to_a_file(self):
-        self.device.playSine(1000, 80, 0, 600.0, _async=True)
-        self.addCleanup(self.device.flushAudioOutputs)
-        path = recording("example.wav")
-        command = [sys.executable, EXAMPLE, str(path), "--seconds", "2", "--frequency", "48000"]
-        ended = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=LIMIT)
-        self.assertEqual(ended.returncode, 0, ended.stdout)
-        samples, rate = soundfile.read(str(path))
-        self.assertEqual((rate, samples.shape), (48000, (96000, 4)))
-        self.assertAlmostEqual(strongest_frequency(samples, rate), 1000.0, delta=1.0)
-
     # --- files and volume -----------------------------------------------------------------------------------------
 
     def channels(self, *sides):
@@ -195,12 +182,6 @@ class DriverSound(unittest.TestCase):
         self.assertAlmostEqual(after - before, len(samples) / rate, delta=0.2)
         first, last = self.loudspeakers.span(before - 0.1, after + 0.5)
         self.assertAlmostEqual(last - first, len(samples) / rate, delta=0.2)
-
-    def test_one_channel_as_ogg(self):
-        request = {"file_path": "driver/front", "secs": 1, "audio_type": 1, "samplerate": 16000}
-        self.record(**request, **self.channels("front"))
-        facts = soundfile.info(str(recording("driver/front.ogg")))
-        self.assertEqual((facts.samplerate, facts.channels, facts.format), (16000, 1, "OGG"))
 
     def test_what_is_wrong_is_said_and_the_services_go_on(self):
         good = {"file_path": "a.wav", "secs": 1, "audio_type": 0, "samplerate": 48000}

@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import unittest
 
 import rospkg
@@ -77,17 +76,6 @@ class DriverWalker(unittest.TestCase):
         self.addCleanup(timer.shutdown)
         return timer
 
-    def in_thread(self, call, *arguments):
-        """Call a service in a thread; the list gets the text of its error, or an empty one."""
-        ends = []
-
-        def run():
-            ends.append(answer(call, *arguments))
-
-        thread = threading.Thread(target=run, daemon=True)
-        thread.start()
-        return thread, ends
-
     def wait_for_walk(self, active=True):
         wait_until(lambda: self.motion.moveIsActive() is active, LIMIT, "a walk" if active else "the end of the walk")
 
@@ -109,18 +97,6 @@ class DriverWalker(unittest.TestCase):
         self.assertAlmostEqual(self.where()[0], x, delta=0.01)
         self.assertAlmostEqual(y, 0.0, delta=0.08)
         self.assertTrue(self.upright())
-
-    def test_every_direction_is_that_of_the_message(self):
-        for twist, part, sign in (
-            (velocity(x=-0.8), 0, -1.0),
-            (velocity(y=0.8), 1, 1.0),
-            (velocity(turn=-0.8), 2, -1.0),
-        ):
-            start = self.where()[part]
-            timer = self.publishing(twist)
-            wait_until(lambda s=start, p=part, g=sign: g * (self.where()[p] - s) > 0.08, LIMIT, str(twist))
-            timer.shutdown()
-            self.wait_for_walk(active=False)
 
     def test_bad_velocities(self):
         self.cmd_vel.publish(velocity(x=float("nan")))
@@ -157,27 +133,12 @@ class DriverWalker(unittest.TestCase):
 
     # --- targets and steps ----------------------------------------------------------------------------------------
 
-    def test_targets_of_the_topic_are_replaced_by_newer_ones(self):
-        thread, ends = self.in_thread(self.walk_to, Pose2D(3.0, 0.0, 0.0))
-        wait_until(lambda: self.forward() > 0.05, LIMIT, "5 cm of walk")
-        self.cmd_pose.publish(Pose2D(0.0, 0.0, 0.6))
-        thread.join(10.0)
-        self.assertIn("cmd_pose", ends[0])
-        wait_until(lambda: self.where()[2] > 0.3, LIMIT, "a turn")
-        self.wait_for_walk(active=False)
-        self.assertLess(self.forward(), 0.4)
-
     def test_bad_targets_move_nothing(self):
         with self.assertRaisesRegex(rospy.ServiceException, "pose.x: nan is not allowed: a finite number, in m"):
             self.walk_to(Pose2D(float("nan"), 0.0, 0.0))
         with self.assertRaisesRegex(rospy.ServiceException, "leg"):
             service("cmd_step_srv", StepTargetService)(StepTarget(Pose2D(0.0, 0.1, 0.0), 2))
         self.assertFalse(self.motion.moveIsActive())
-
-    def test_limp_legs_are_told(self):
-        self.motion.rest()
-        with self.assertRaisesRegex(rospy.ServiceException, "ALMotion.moveTo failed"):
-            self.walk_to(Pose2D(0.3, 0.0, 0.0))
 
     def test_arms_swing_as_asked(self):
         service("enable_arms_walking_srv", SetArmsEnabled)(False, True)
@@ -200,27 +161,6 @@ class DriverWalker(unittest.TestCase):
             self.walk_to(Pose2D(0.3, 0.0, 0.0))
         service("uninhibit_walk", Empty)()
         self.wait_for_walk()
-
-    def test_whoever_inhibits_walks(self):
-        inhibit, uninhibit = service("inhibit_walk", Empty), service("uninhibit_walk", Empty)
-        inhibit()
-        self.walk_to(Pose2D(0.1, 0.0, 0.0))
-        self.assertGreater(self.forward(), 0.05)
-        uninhibit()
-        with self.assertRaisesRegex(rospy.ServiceException, "not inhibited"):
-            uninhibit()
-
-    def test_the_example_walks_a_square_and_comes_back(self):
-        path = rospkg.RosPack().get_path("nao_library_modules") + "/examples/walk_square.py"
-        command = [sys.executable, path, "--side", "0.3"]
-        ended = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=3 * LIMIT)
-        self.assertEqual(ended.returncode, 0, ended.stdout)
-        print(ended.stdout)
-        self.assertEqual(ended.stdout.count("corner"), 4)
-        x, y, heading = self.where()
-        self.assertAlmostEqual(x, 0.0, delta=0.08)
-        self.assertAlmostEqual(y, 0.0, delta=0.08)
-        self.assertAlmostEqual(heading, 0.0, delta=0.2)
 
     # --- the node -------------------------------------------------------------------------------------------------
 

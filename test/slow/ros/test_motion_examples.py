@@ -59,3 +59,18 @@ class MotionExamples(ExampleTest):
         self.assertRegex(text, "fallen: (Lying|Sitting)")
         self.assertIn("got up: Stand", text)
         self.assertGreater(self.robot.true_pose().position.z, 0.28)
+
+    def test_walk_square(self):
+        text = self.run_example("walk_square.py", "--side", "0.3")
+        self.assertEqual(text.count("corner"), 4)
+        end = self.robot.true_pose().position
+        self.assertAlmostEqual(end.x, 0.0, delta=0.08)
+        self.assertAlmostEqual(end.y, 0.0, delta=0.08)
+
+    def test_state_trajectories_and_poses(self):
+        self.assertRegex(self.run_example("robot_state.py"), r"torso   x -?0.0\d m, y -?0.0\d m, z 0.[23]\d m")
+        self.assertEqual(self.run_example("joint_trajectory_client.py").count("succeeded"), 3)
+        mistyped = start("take_pose.py", "--speed", "0.5", "Crowch")
+        text, _ = mistyped.communicate(timeout=60.0)
+        self.assertEqual(mistyped.returncode, 1)
+        self.assertIn("did you mean 'Crouch'", text)
