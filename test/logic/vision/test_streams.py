@@ -3,17 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from camera_topics import (
-    CAMERA,
-    OUT,
-    compressed,
-    image,
-    number_of,
-    numbered,
-    numbered_image,
-    numbers_of,
-    wait_for,
-)  # fmt: skip
+from camera_topics import CAMERA, OUT, compressed, image, number_of, numbered, numbered_image, numbers_of, wait_for
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 from nao_library_modules.vision_camera_info import info_topic
@@ -94,13 +84,3 @@ def test_camera_info_is_beside_the_pictures():
         ("/image", "/camera_info"), ("/relay", ""), ("/a/compressed", ""),
     ):  # fmt: skip
         assert info_topic(topic) == beside
-
-
-def test_nobody_works_for_nobody(stream, topics, send, monkeypatch):
-    one = stream(width=32)
-    topics.publishers[OUT].heard = False
-    monkeypatch.setattr("nao_library_modules.vision_stream.picture_of", lambda _: pytest.fail("it was worked on"))
-    send(3)
-    one.stop()
-    assert topics.publishers[OUT].messages == []
-    assert (one.report().frames, one.report().width, one.report().error) == (3, 32, "")

@@ -5,13 +5,11 @@ from __future__ import annotations
 import threading
 
 import pytest
-from camera_topics import CAMERA, OUT, image, numbered_image, numbers_of, read_video, wait_for
+from camera_topics import CAMERA, OUT, image, numbers_of, wait_for
 
-from nao_library_modules import vision_queue, vision_recorder, vision_threads
+from nao_library_modules import vision_queue
 from nao_library_modules.errors import BadGoal
-from nao_library_modules.vision_recorder import Recording, VideoWish
 from nao_library_modules.vision_stream import Stream
-from nao_library_modules.vision_thread import FrameThread
 from nao_library_modules.vision_threads import MOST_THREADS, VisionThreads
 
 FRAME = 64 * 48 * 3
@@ -53,18 +51,6 @@ def test_a_thread_tells_how_it_is(started, topics, send, clock):
     assert topics.count(CAMERA) == 0
 
 
-def test_a_camera_with_few_frames_has_not_stalled(stream, topics, clock):
-    one = stream()
-    for number in range(3):
-        clock.time += 4.0
-        topics.send(CAMERA, numbered_image(number, clock.time))
-        wait_for(lambda n=number: one.report().frames == n + 1)
-    clock.time += 8.0
-    assert one.report().state == "running"
-    clock.time += 13.0
-    assert one.report().state == "stalled"
-
-
 def test_frames_that_cannot_be_read_are_told_once_and_the_next_one_may_be(stream, topics, send, clock, caplog):
     one = stream(width=32)
     for _ in range(3):
@@ -76,91 +62,6 @@ def test_frames_that_cannot_be_read_are_told_once_and_the_next_one_may_be(stream
     send(1)
     wait_for(lambda: one.report().frames == 1)
     assert one.report().error == ""
-
-
-def test_a_thread_can_be_started_again_but_not_twice(stream, topics, send):
-    one = stream()
-    with pytest.raises(BadGoal, match="'s' runs already"):
-        one.start()
-    send(2)
-    one.stop()
-    one.stop()
-    first = topics.publishers[OUT].messages
-    one.start()
-    send(3)
-    one.stop()
-    assert (numbers_of(first), numbers_of(topics.publishers[OUT].messages)) == ([0, 1], [2, 3, 4])
-    assert one.report().frames == 3
-
-
-def test_a_kind_of_thread_that_passes_no_frame_on_cannot_be_made(topics, clock):
-    class Deaf(FrameThread):
-        kind = "deaf"
-
-    with pytest.raises(TypeError, match="abstract"):
-        Deaf("d", CAMERA, 0.0, topics, clock)
-
-
-# The table
-
-
-@pytest.fixture
-def recordings(topics, clock, files):
-    def make(count):
-        wishes = [VideoWish(files.folder / f"{number}.mp4", "mp4", "h264") for number in range(count)]
-        return [Recording(f"r{n}", CAMERA, 0.0, topics, clock, files, wish) for n, wish in enumerate(wishes)]
-
-    return make
-
-
-def test_ten_streams_and_ten_recordings_at_once(topics, clock, files, send, recordings):
-    threads = VisionThreads()
-    made = recordings(10)
-    made += [Stream(f"s{n}", CAMERA, 0.0, topics, clock, f"/out{n}/image_raw", 32, 0) for n in range(10)]
-    for one in made:
-        threads.add(one)
-        one.start()
-    for count in range(2, 11, 2):
-        send(2)
-        wait_for(lambda c=count: all(one.report().frames == c for one in made))
-    threads.close()
-    assert [one.report().dropped for one in made] == [0] * 20
-    ten = list(range(10))
-    assert [read_video(files.folder / f"{number}.mp4") for number in ten] == [ten] * 10
-    assert [numbers_of(topics.publishers[f"/out{n}/image_raw"].messages) for n in ten] == [ten] * 10
-    assert topics.count(CAMERA) == 0
-
-
-def test_at_the_end_of_the_server_what_has_no_time_is_dropped_and_files_are_complete(
-    files, send, monkeypatch, recordings
-):
-    monkeypatch.setattr(vision_threads, "CLOSING", 0.1)
-    may_go_on, writing = threading.Event(), threading.Semaphore(0)
-    write = vision_recorder.VideoFile.write
-
-    def slow(self, picture, stamp):
-        if self.frames:
-            writing.release()
-            may_go_on.wait(30.0)
-        return write(self, picture, stamp)
-
-    monkeypatch.setattr(vision_recorder.VideoFile, "write", slow)
-    threads, made = VisionThreads(), recordings(3)
-    for one in made:
-        threads.add(one)
-        one.start()
-    send(8)
-    for _ in made:  # one is written, one is being written
-        assert writing.acquire(timeout=15.0)
-    closing = threading.Thread(target=threads.close, daemon=True)
-    closing.start()
-    wait_for(lambda: all(one.report().dropped == 6 for one in made))
-    may_go_on.set()
-    closing.join(30.0)
-    assert not closing.is_alive()
-    for number, one in enumerate(made):
-        assert (one.report().state, one.video.frames, one.video.dropped) == ("stopped", 2, 6)
-        assert read_video(files.folder / f"{number}.mp4") == [0, 1]
 
 
 def test_the_table_knows_its_threads(topics, clock):

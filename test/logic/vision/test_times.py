@@ -82,16 +82,3 @@ def test_a_clock_that_was_set_begins_anew(taken, arrived):
     clock.take(10.0, 200.0)
     assert clock.take(taken, arrived) <= arrived
     assert clock.take(taken + 0.1, arrived + 0.1) == pytest.approx(arrived + 0.1, abs=1e-4)
-
-
-def test_few_pictures_and_those_before_a_break():
-    clock = ImageClock()
-    assert clock.take(10.0, 200.5) <= 200.5 and clock.take(10.033, 200.04) <= 200.04, "a quick one"
-    clock = ImageClock()
-    times = [clock.take(float(number), 100.0 + number + late) for number, late in enumerate((0.1, 0.5, 0.3))]
-    assert times == pytest.approx([100.1, 101.1, 102.1])
-    clock = ImageClock()
-    for number in range(3):
-        clock.take(number / 10.0, 500.0 + number / 10.0 + 0.02)
-    for taken, arrived in ((0.4, 520.4), (0.5, 520.5)):  # it stood still meanwhile
-        assert clock.take(taken, arrived) == pytest.approx(arrived, abs=0.001)
