@@ -25,7 +25,6 @@ from nao_library_modules.health import Level
 from nao_library_modules.joint_trajectory import H25_BODY
 from nao_library_modules.paths import config_file
 from nao_library_msgs.msg import Bumper, HandTouch, RobotInfo, TactileTouch
-from nao_sim_bridge.paths import urdf_file
 from naoqi.errors import NaoError
 
 LIMITS = Thresholds()
@@ -48,7 +47,6 @@ def refused(words, function, *arguments, error=NaoError):
         (74.0, LIMITS, Level.ERROR, "Too hot: 74.0 C"),
         (41.0, Thresholds(warm=40.0, hot=50.0), Level.WARN, "Hot: 41.0 C"),
         (None, LIMITS, Level.OK, "No temperature sensor"),
-        (NAN, LIMITS, Level.OK, "No temperature sensor"),
     ],
 )
 def test_joints_get_hot(temperature, limits, level, message):
@@ -73,12 +71,10 @@ def test_every_part_of_the_body_has_a_report():
     "charge, bits, level, message",
     [
         (1.0, ["Full Charge Flag"], Level.OK, "Fully charged (100.0 %)"),
-        (0.4, ["Charge Flag"], Level.OK, "Charging (40.0 %)"),
         (0.31, [], Level.OK, "OK (31.0 % left)"),
         (0.3, ["Discharging flag"], Level.WARN, "Low (30.0 % left)"),
         (0.1, [], Level.ERROR, "Almost empty (10.0 % left)"),
         (0.9, ["Discharge Temperature Alarm"], Level.ERROR, "Discharge Temperature Alarm (90.0 % left)"),
-        (0.9, ["Discharge Over Current Alarm (6A)"], Level.ERROR, "Discharge Over Current Alarm (6A) (90.0 % left)"),
     ],
 )
 def test_the_battery_runs_down(charge, bits, level, message):
@@ -129,10 +125,8 @@ def test_tables_of_nao_robot_and_libraries_of_choregraphe_hold_poses():
     "entry, problem",
     [
         ({**POSE, "speed": 1}, "it has joint_names, positions, time_from_start, speed"),
-        ({"positions": [0.0]}, "it has positions;"),
         ("Head", "it has 'Head'"),
         ({**POSE, "positions": ["far"]}, "'far' is no number"),
-        ({**POSE, "positions": []}, "0 positions"),
         ({**POSE, "time_from_start": 0}, "0 s"),
     ],
 )
@@ -143,20 +137,14 @@ def test_what_is_no_pose_is_said(entry, problem):
 
 # Joints of a robot description, and what kind of robot it is
 
-SMALL = """<robot name="x">
-<joint name="fixed" type="fixed"/>
-<joint name="knee" type="revolute"><limit lower="0.1" upper="2.0"/></joint>
-<joint name="wheel" type="continuous"/>
-<joint name="finger" type="revolute"><limit lower="0" upper="1"/><mimic joint="knee"/></joint>
-</robot>"""
-
 
 def test_joints_that_are_fixed_or_follow_another_have_no_slider():
-    joints = movable_joints(SMALL)
+    limit, mimic = '<limit lower="0.1" upper="2.0"/>', '<mimic joint="knee"/>'
+    kinds = {"knee": ("revolute", limit), "wheel": ("continuous", ""), "finger": ("revolute", limit + mimic)}
+    joints = [f'<joint name="{name}" type="{kind}">{more}</joint>' for name, (kind, more) in kinds.items()]
+    joints = movable_joints(f'<robot name="x"><joint name="neck" type="fixed"/>{"".join(joints)}</robot>')
     assert joints == [UrdfJoint("knee", 0.1, 2.0), UrdfJoint("wheel", -math.pi, math.pi)]
     assert [joint.rest for joint in joints] == [0.1, 0.0]  # zero or the limit nearest to it
-    names = [joint.name for joint in movable_joints(urdf_file("nao_h25.urdf").read_text())]
-    assert {"HeadYaw", "LHand", "RAnkleRoll"} <= set(names) and not any("Finger" in name for name in names)
     for text in ("<robot", "<robot/>"):
         refused("robot description", movable_joints, text)
 
@@ -232,15 +220,11 @@ def test_what_a_robot_lacks_is_no_number_but_an_angle_and_a_place_it_has():
 
 @pytest.mark.parametrize(
     "value, range_",
-    [(0.25, 0.25), (1.7, 1.7), (2.54, 2.54), (2.55, INFINITE), (5.0, INFINITE), (0.1, -INFINITE), (1, 1.0)],
+    [(0.25, 0.25), (2.54, 2.54), (2.55, INFINITE), (0.1, -INFINITE), (1, 1.0)],
 )
-def test_distances_follow_rep_117(value, range_):
+def test_distances_follow_rep_117_and_a_sonar_that_failed_has_none(value, range_):
     assert range_of(value) == range_
-
-
-@pytest.mark.parametrize("value", [0.0, -1.0, None, "far", True, NAN])
-def test_a_sonar_that_failed_has_no_distance(value):
-    assert math.isnan(range_of(value))
+    assert all(math.isnan(range_of(failed)) for failed in (0.0, -1.0, None, "far", True, NAN))
 
 
 def test_forces_under_the_feet_are_newtons_and_a_foot_in_the_air_has_no_centre():
@@ -286,7 +270,6 @@ def test_pauses_are_cut_at_both_ends_and_a_deviation_of_nothing_is_allowed():
         (Blinks([RED], (0.0, 0.0, -1.0), 0.3, 1.0, 0.1), "bg_color"),
         (Blinks([RED], BLACK, 0.0, 1.0, 0.1), "blink_duration"),
         (Blinks([RED], BLACK, 0.3, 0.0, 0.1), "blink_rate_mean"),
-        (Blinks([RED], BLACK, 0.3, NAN, 0.1), "blink_rate_mean"),
         (Blinks([RED], BLACK, 0.3, 1.0, -0.1), "blink_rate_sd"),
     ],
 )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -23,13 +25,10 @@ KNOWN = ["Battery/Charge", "Battery/Current", "Head/Front", "Head/Rear"]
 @pytest.mark.parametrize(
     "key, pattern, same",
     [
-        ("FrontTactilTouched", "FrontTactilTouched", True),
         ("FrontTactilTouched", "*TactilTouched", True),
         ("FrontTactilTouched", "fronttactiltouched", False),
         ("Device/SubDeviceList/Battery/Charge/Sensor/Value", "Device/*/Battery/*", True),
-        ("Device/SubDeviceList/US/Left/Sensor/Value1", "*/US/*/Sensor/Value?", True),
         ("Device/SubDeviceList/US/Left/Sensor/Value", "*/US/*/Sensor/Value?", False),
-        ("a[b]", "a[b]", True),
         ("ab", "a[b]", False),
     ],
 )
@@ -47,11 +46,8 @@ def test_an_empty_pattern_lists_all():
     [
         ("Face/Led/Blue/Left/0Deg/Actuator/Value", "Face/Led/Blue/Left/0Deg/Actuator/Value"),
         ("my-key.2 of:all", "my_key_2_of_all"),
-        ("/leading//twice/", "leading/twice"),
         ("3rd", "key_3rd"),
-        ("_x", "key__x"),
         ("größe", "gr__e"),
-        ("éa", "key__a"),
         ("/", "key__"),
     ],
 )
@@ -103,7 +99,6 @@ def test_what_is_ended_leaves_nothing_behind_and_a_copy_does_not_change():
     [
         (Rule(" "), "pattern: it is empty"),
         (Rule("a", -1.0), "0 to 100 Hz"),
-        (Rule("a", float("nan")), "0 to 100 Hz"),
         (Rule("a", kind="double"), "one of bool, int"),
     ],
 )
@@ -123,11 +118,8 @@ def test_rules_are_read_from_a_parameter():
     "entries, words",
     [
         (7, r"~keys is 7"),
-        (["a", 7], r"~keys\[1\] is 7"),
-        ([{"rate": 2}], r"~keys\[0\]"),
         ([{"key": "a", "hz": 2}], r"~keys\[0\]"),
         ([{"key": "a", "rate": "fast"}], "rate 'fast'"),
-        ([{"key": "a", "rate": 1000}], r"~keys\[0\].*0 to 100 Hz"),
     ],
 )
 def test_a_wrong_parameter_is_told(entries, words):
@@ -141,19 +133,13 @@ def test_a_wrong_parameter_is_told(entries, words):
 @pytest.mark.parametrize(
     "value, type_, kind",
     [
-        (True, "bool", "bool"),
         (3, "int", "int"),
         (2**31, "int", "string"),
         (0.5, "float", "float"),
-        ("a", "string", "string"),
-        ([1, 2], "int[]", "int[]"),
         ([1, 2**40], "int[]", "string"),
         ([1, 2.5], "float[]", "float[]"),
-        (["a", "b"], "string[]", "string[]"),
         ([True, 1.0], "list", "string"),
-        ([], "list", "string"),
         ([["Head", True]], "list", "string"),
-        ({"a": 1}, "object", "string"),
         (None, "null", "string"),
     ],
 )
@@ -166,19 +152,12 @@ def test_types_of_values_and_kinds_of_messages(value, type_, kind):
     [
         (1, "float", 1.0),
         (True, "float", 1.0),
-        (True, "int", 1),
         (1.5, "int", None),
         (2**31, "int", None),
-        (1, "bool", None),
         ("a", "float", None),
-        ("a", "string", "a"),
         ([1, "b"], "string", '[1, "b"]'),
-        (None, "string", "null"),
         ([1, 2], "float[]", [1.0, 2.0]),
-        ([], "int[]", []),
         ([1, "b"], "int[]", None),
-        (["a"], "string[]", ["a"]),
-        (3, "int[]", None),
     ],
 )
 def test_values_widen_and_lose_nothing(value, kind, message):
@@ -194,19 +173,6 @@ def test_what_is_no_json_is_text():
 # The pace of one key, and its topic
 
 
-class Topic:
-    """Publishes to a list; `tell` says whether somebody listens."""
-
-    def __init__(self, kind, tell):
-        self.kind, self.tell, self.messages, self.open = kind, tell, [], True
-
-    def publish(self, value):
-        self.messages.append(value)
-
-    def close(self):
-        self.open = False
-
-
 @pytest.fixture
 def opened():
     return []
@@ -215,8 +181,11 @@ def opened():
 @pytest.fixture
 def watched(opened):
     def make_topic(name, kind, tell):
-        opened.append(Topic(kind, tell))
-        return opened[-1]
+        """Publishes to a list; `tell` says whether somebody listens."""
+        topic = SimpleNamespace(kind=kind, tell=tell, messages=[], open=True)
+        topic.publish, topic.close = topic.messages.append, lambda: setattr(topic, "open", False)
+        opened.append(topic)
+        return topic
 
     def make(rate=0.0, kind="", event=False):
         key = WatchedKey("Some/Key", "topic", Rule("Some/Key", rate, kind), make_topic)
@@ -248,20 +217,6 @@ def test_of_events_that_come_too_fast_the_newest_follows(watched):
     assert [unlimited.hold(i, 10.0) for i in range(3)] == [0.0] * 3
 
 
-def test_the_first_value_tells_the_type_unless_it_was_asked_for(watched, opened):
-    key, typed = watched(), watched(kind="float", event=True)
-    key.open(None, lambda: None)
-    assert not key.kind and not key.deliver(1.5)
-    key.open(1.5, lambda: None)
-    assert key.kind == "float" and key.deliver(2) and key.deliver(None)
-    assert opened[-1].messages == [2.0]
-    typed.open(None, lambda: None)
-    assert typed.deliver("text") and typed.deliver(1) and opened[-1].messages == [1.0]
-    empty = watched(event=True, kind="string")
-    empty.open(None, lambda: None)
-    assert empty.deliver(None) and opened[-1].messages == ["null"]
-
-
 def test_another_type_needs_another_topic_and_old_listeners_mean_nothing(watched, opened):
     key = watched()
     key.open(3, lambda: None)
@@ -273,3 +228,6 @@ def test_another_type_needs_another_topic_and_old_listeners_mean_nothing(watched
     opened[1].tell(True)
     first.tell(False)
     assert key.wanted
+    typed = watched(kind="float", event=True)
+    typed.open(None, lambda: None)
+    assert typed.deliver("text") and typed.deliver(1) and opened[-1].messages == [1.0]

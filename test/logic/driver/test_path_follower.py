@@ -10,8 +10,6 @@ import pytest
 import rospy
 import tf2_ros
 from geometry_msgs.msg import PoseStamped, TransformStamped
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from nav_msgs.msg import Path
 
 from nao_library_modules.driver import path_follower_walk, planar_frames
@@ -37,6 +35,7 @@ QUARTER = math.pi / 2
 SETTINGS = Settings()
 WAYPOINTS = [Place(0.0, 0.0, 3.0), Place(1.0, 0.0, 3.0), Place(1.0, 1.0, 0.25)]
 CORNER = WalkPath(WAYPOINTS)
+SQUARE = WalkPath([Place(x, y, 0.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))])
 
 
 def refused(words, function, *arguments, error=NaoError):
@@ -56,19 +55,13 @@ def test_length_places_and_headings_of_a_path():
     doubled = WalkPath([WAYPOINTS[0], WAYPOINTS[0], WAYPOINTS[1], WAYPOINTS[1], WAYPOINTS[2]])
     assert [doubled.index_at(along) for along in (0.0, 0.9, 1.1, 2.0)] == [3, 3, 4, 4]
     assert doubled.length == pytest.approx(2.0)
-
-
-@pytest.mark.parametrize(
-    "waypoints, words", [([], "0 pose"), (WAYPOINTS[:1], "1 pose"), ([WAYPOINTS[0]] * 3, "3 poses at one")]
-)
-def test_a_path_of_a_single_place_is_none(waypoints, words):
-    refused(words, WalkPath, waypoints, error=BadGoal)
+    refused("1 pose", WalkPath, WAYPOINTS[:1], error=BadGoal)
+    refused("3 poses at one", WalkPath, [WAYPOINTS[0]] * 3, error=BadGoal)
 
 
 @pytest.mark.parametrize(
     "robot, window, along, off",
     [
-        ((0.5, 0.1), (0.0, 1.5), 0.5, 0.1),
         ((0.5, 0.1), (0.8, 1.5), 0.8, math.hypot(0.3, 0.1)),
         ((1.2, 1.4), (0.0, 5.0), 2.0, math.hypot(0.2, 0.4)),
         ((0.95, 0.2), (0.0, 1.5), 1.2, 0.05),
@@ -82,8 +75,6 @@ def test_the_nearest_place_is_looked_for_within_a_window(robot, window, along, o
 def test_straight_is_what_keeps_near_a_line():
     assert CORNER.straight(0.1, 0.9, 0.01) and CORNER.straight(1.1, 9.0, 0.01) and CORNER.straight(0.95, 1.0, 0.05)
     assert not CORNER.straight(0.8, 1.2, 0.05)
-    wavy = WalkPath([Place(0.1 * i, 0.02 * (i % 2), 0.0) for i in range(10)])
-    assert wavy.straight(0.0, 0.6, 0.03) and not wavy.straight(0.0, 0.6, 0.01)
     back = WalkPath([Place(0.0, 0.0, 0.0), Place(1.0, 0.0, 0.0), Place(0.5, 0.0, 0.0)])
     assert not back.straight(0.6, 1.3, 0.03)
 
@@ -96,7 +87,6 @@ def test_straight_is_what_keeps_near_a_line():
     [
         ([(0.0, 0.0, 0.0)], (0.3, 0.0, 0.0)),
         ([(0.0, 0.0, 0.0), (0.3, 0.01, 0.1)], (0.6, 0.0, 0.0)),  # straight: further ahead
-        ([(0.2, 0.2, 0.0)], (0.3, 0.0, 0.0)),  # off the path
         ([(0.2, 0.0, 0.5)], (0.3, 0.0, 0.0)),  # turned away
         ([(0.2, 0, 0), (0.5, 0, 0), (0.8, 0, 0)], (0.9, 0.0, 0.0)),  # before a corner
         ([(0.2, 0, 0), (0.5, 0, 0), (0.8, 0, 0), (0.95, 0, 0)], (1.0, 0.05, QUARTER)),
@@ -120,25 +110,14 @@ def test_it_ends_at_the_last_waypoint_with_its_heading():
     assert aim.rest == pytest.approx(0.05 + 0.05 * (QUARTER - 0.25))
 
 
-def test_where_a_path_comes_back_it_does_not_jump():
-    around = WalkPath([Place(0, 0, 0), Place(1, 0, 0), Place(1, 1, 0), Place(0, 1, 0), Place(0, 0, -QUARTER)])
-    aim = PathCourse(around, SETTINGS).aim(Place(0.0, 0.02, 0.0))
-    assert not aim.final and aim.place.x == pytest.approx(0.3) and aim.rest > 3.9
-
-
-def test_a_path_that_begins_elsewhere_is_refused():
+def test_a_path_that_begins_elsewhere_is_refused_and_where_it_comes_back_it_does_not_jump():
     far = Place(-0.5, 0.0, 0.0)
     words = r"too far from start of path, 0\.50 m: at most 0\.3 m"
     refused(words, PathCourse(CORNER, SETTINGS).aim, far, error=BadGoal)
     wide = PathCourse(CORNER, dataclasses.replace(SETTINGS, path_max_start_distance=1.0))
     assert wide.aim(far).place.x == pytest.approx(0.1)
-
-
-def test_a_target_is_aimed_at_wherever_it_drifts():
-    targets = iter([Place(1.0, 0.0, 1.0), Place(1.1, 0.0, 1.0)])
-    course = TargetCourse(lambda: next(targets))
-    first, second = (course.aim(ORIGIN) for _ in range(2))
-    assert first.final and first.rest == pytest.approx(1.05) and second.place.x == 1.1
+    aim = PathCourse(SQUARE, SETTINGS).aim(Place(0.0, 0.02, 0.0))
+    assert not aim.final and aim.place.x == pytest.approx(0.3) and aim.rest > 3.9
     assert reached(Place(0.03, 0.03, 0.08), SETTINGS)
     assert not reached(Place(0.06, 0.0, 0.0), SETTINGS) and not reached(Place(0.0, 0.0, -0.1), SETTINGS)
 
@@ -156,14 +135,10 @@ def test_names_of_parameters_are_those_of_the_settings():
     "name, value",
     [
         ("controller_frequency", 0),
-        ("target_angle_threshold", -1.0),
         ("max_vel_x", 1.5),
         ("step_freq", 2.0),
-        ("stuck_time", -1.0),
         ("use_vel_ctrl", 1),
-        ("threshold_damp_xy", "far"),
         ("straight_offset", math.nan),
-        ("max_vel_y", True),
     ],
 )
 def test_settings_that_will_not_do_are_named(name, value):
@@ -180,24 +155,11 @@ LIMITED = Settings(max_vel_x=0.8, max_vel_y=0.4, max_vel_yaw=0.5)
         ((0.1, 0.0, 0.0), (0.4, 0.0, 0.0)),  # slower near the end
         ((0.0, -0.2, 0.1), (0.0, -0.4, 0.5 * 0.1 / LIMITED.threshold_damp_yaw)),  # near by: to the target's heading
         ((-1.0, 0.1, 0.0), (0.0, 0.0, 0.5)),  # far away it turns its face first
-        ((0.0, -1.0, 0.0), (0.0, 0.0, -0.5)),
         ((0.0, 0.0, -2.0), (0.0, 0.0, -0.5)),  # on the spot it only turns
     ],
 )
 def test_velocities_along_a_way(way, speeds):
     assert velocity(Place(*way), LIMITED) == pytest.approx(speeds)
-
-
-def test_the_direction_is_kept_where_one_way_is_slower():
-    x, y, _ = velocity(Place(0.2, 0.1, 0.0), LIMITED)
-    assert y / x == pytest.approx(0.5) and math.hypot(x / 0.8, y / 0.4) == pytest.approx(1.0)
-
-
-@settings(max_examples=50)
-@given(st.floats(0.0, 3.0), st.floats(-3.1, 3.1), st.floats(-3.1, 3.1))
-def test_no_command_is_faster_than_allowed(distance, angle, yaw):
-    speeds = velocity(Place(distance * math.cos(angle), distance * math.sin(angle), yaw), LIMITED)
-    assert all(abs(speed) <= limit + 1e-9 for speed, limit in zip(speeds, (0.8, 0.4, 0.5)))
 
 
 def test_a_robot_that_gets_no_nearer_is_told_how_far_it_got():
@@ -308,13 +270,16 @@ def test_by_poses_it_is_told_once_and_walks_to_the_very_place(point):
     assert point.place == pytest.approx((1.0, 0.3, 0.8))
 
 
-def test_a_target_that_drifts_is_told_again(point):
+def test_a_target_that_drifts_or_whose_walk_somebody_stopped_is_told_again(point):
     walk(point, TargetCourse(lambda: Place(1.0 + min(0.1, 0.01 * point.time), 0.0, 0.0)), BY_POSES)
     assert point.place.x == pytest.approx(1.1, abs=0.03)
     assert 3 <= len(point.commands) <= 6
+    stopped = Point()
+    stop_once = lambda place, aim: stopped.stop() if stopped.stops == 0 and stopped.time > 3.0 else None  # noqa: E731
+    walk(stopped, target(1.0, 0.0, 0.0), BY_POSES, report=stop_once)
+    assert stopped.place.x == pytest.approx(1.0) and len(stopped.commands) == 2
 
 
-SQUARE = WalkPath([Place(x, y, 0.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))])
 CURVE = WalkPath([Place(0.02 * i, 0.2 * math.sin(0.02 * i * 2 * math.pi), 0.0) for i in range(51)])
 
 
@@ -328,12 +293,6 @@ def test_a_path_is_kept_to_from_its_beginning_to_its_end(point, control, path):
     assert indices == sorted(indices) and indices[-1] == len(path.waypoints) - 1
     assert len(set(indices)) > 0.8 * len(path.waypoints) - 1
     assert point.time > 0.9 * path.length / SPEED
-
-
-def test_by_poses_the_end_of_a_path_is_told_to_the_point(point):
-    end = Place(0.405, 0.0, 0.06)  # nearly where it aimed before, but not quite
-    walk(point, PathCourse(WalkPath([ORIGIN, end]), BY_POSES), BY_POSES)
-    assert point.place == pytest.approx(end, abs=1e-6)
 
 
 @BOTH
@@ -368,15 +327,6 @@ def test_a_robot_that_stops_before_an_obstacle_is_not_sent_nearer(point, control
     assert point.place.x < 0.42
 
 
-def test_one_that_was_stopped_by_somebody_is_told_again(point):
-    def stop_once(place, aim):
-        if point.stops == 0 and point.time > 3.0:
-            point.stop()
-
-    walk(point, target(1.0, 0.0, 0.0), BY_POSES, report=stop_once)
-    assert point.place.x == pytest.approx(1.0) and len(point.commands) == 2
-
-
 def test_an_interrupt_ends_it_and_leaves_the_legs_as_they_are(point):
     interrupt = Interrupt()
 
@@ -386,12 +336,6 @@ def test_an_interrupt_ends_it_and_leaves_the_legs_as_they_are(point):
 
     refused("", walk, point, target(1.0, 0.0, 0.0), BY_POSES, interrupt, trigger, error=Preempted)
     assert point.stops == 0
-
-
-def test_a_robot_that_shuffles_near_the_target_is_stopped(point):
-    point.walking = lambda: point.stops == 0
-    walk(point, target(0.2, 0.0, 0.0), BY_POSES)
-    assert point.stops == 1 and point.time < 10.0
 
 
 # Poses, paths and frames
@@ -414,18 +358,12 @@ def path(*poses, frame="odom"):
     return message
 
 
-def test_a_place_is_the_same_there_and_back():
-    place, frame = read_place("goal", pose_stamped(Place(1.0, -2.0, 0.5), "/map", NOW))
-    assert place == pytest.approx((1.0, -2.0, 0.5)) and frame == "map"
-
-
 @pytest.mark.parametrize(
     "message, words",
     [
         (pose(1.0, 0.0, frame="", yaw=0.0), r"goal\.header\.frame_id"),
         (pose(1.0, 0.0), r"goal\.pose\.orientation.*\(0, 0, 0, 0\).*rotation"),
         (pose(math.nan, 0.0, yaw=0.0), r"goal\.pose\.position\.x.*finite"),
-        (pose(0.0, -math.inf, yaw=0.0), r"goal\.pose\.position\.y.*finite"),
     ],
 )
 def test_what_is_no_place_is_told(message, words):
@@ -434,6 +372,8 @@ def test_what_is_no_place_is_told(message, words):
 
 def test_of_a_path_the_last_heading_counts_and_without_one_that_of_the_path():
     places, frame = read_path(path(pose(0, 0), pose(1, 0), pose(1, 1, yaw=0.25)))
+    place = read_place("goal", pose_stamped(Place(1.0, -2.0, 0.5), "/map", NOW))
+    assert place[0] == pytest.approx((1.0, -2.0, 0.5)) and place[1] == "map"
     assert frame == "odom" and places[:2] == [Place(0, 0, 0), Place(1, 0, 0)]
     assert places[2] == pytest.approx((1, 1, 0.25))
     assert read_path(path(pose(0, 0), pose(1, 0), pose(1, 1), pose(1, 1)))[0][-1].yaw == pytest.approx(QUARTER)
@@ -489,15 +429,10 @@ def test_a_pose_is_turned_before_it_is_laid_flat_and_a_late_one_counts_as_of_now
     assert frames.place_in("odom", late, 0.0) == pytest.approx((1.0, 2.5, QUARTER))
 
 
-def test_before_the_first_message_there_are_no_frames():
-    frames = PlanarFrames(Buffer())
-    assert not frames.inside("base_link", "odom")
-    refused("base_link cannot be found in odom", frames.locate, "base_link", "odom", 0.0)
-
-
 def test_a_robot_that_is_not_heard_of_any_more_is_told(frames, monkeypatch):
     monkeypatch.setattr(planar_frames.rospy.Time, "now", lambda: rospy.Time(NOW.secs + 4))
     frames.locate("base_link", "odom", 0.0)  # simulated time may have run on; in real time it was just now
+    refused("base_link cannot be found in odom", PlanarFrames(Buffer()).locate, "base_link", "odom", 0.0)
     real = time.monotonic
     monkeypatch.setattr(time, "monotonic", lambda: real() + 3.0)
     words = r"base_link is in odom was told 4\.0 s ago: does nao_joint_states run"

@@ -7,7 +7,7 @@ import math
 from types import SimpleNamespace
 
 import pytest
-from geometry_msgs.msg import Transform
+from geometry_msgs.msg import Quaternion, Transform, Vector3
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rospy import Time
@@ -23,7 +23,7 @@ from nao_library_modules.driver.gait_config import read_gait_config, read_share
 from nao_library_modules.driver.joint_sensors import Reading
 from nao_library_modules.driver.odometry_offset import OdometryOffset
 from nao_library_modules.driver.odometry_services import read_transform
-from nao_library_modules.driver.rotation import about, from_roll_pitch_yaw, inverse, product, rotate, yaw_of
+from nao_library_modules.driver.rotation import from_roll_pitch_yaw, product, rotate, yaw_of
 from nao_library_modules.driver.slope import SlopeEstimator
 from nao_library_modules.driver.walk_commands import Target, Velocity
 from nao_library_modules.driver.walk_inhibition import NotInhibited, WalkInhibition
@@ -40,7 +40,6 @@ from naoqi.errors import NaoError
 NAN, INFINITE = math.nan, math.inf
 QUARTER = math.pi / 2
 FORWARD, STAND = Velocity(0.5, 0.0, 0.0), Velocity(0.0, 0.0, 0.0)
-ANGLES = st.floats(-3.1, 3.1)
 
 
 def refused(words, function, *arguments, error=NaoError):
@@ -64,25 +63,19 @@ def test_a_velocity_is_forward_left_and_turning_and_clamped_when_out_of_range():
     velocity, clamped = commands.read_velocity(twist(1.5, 0.2, -3.0))
     assert velocity == Velocity(1.0, 0.2, -1.0)
     assert clamped == "linear.x is 1.5, taken as 1, angular.z is -3, taken as -1"
-    assert Velocity(0.0009, -0.0009, 0.0).is_zero and not Velocity(0.0, 0.0, 0.0011).is_zero
-
-
-def test_targets_and_steps_are_read():
     assert commands.read_target(pose(1, -0.5, 3.1)) == Target(1.0, -0.5, 3.1)
-    for leg, name in ((0, "RLeg"), (1, "LLeg")):
-        message = SimpleNamespace(leg=leg, pose=pose(0.04, 0.1, 0.2))
-        assert commands.read_step(message) == commands.Step(name, 0.04, 0.1, 0.2)
+    step = commands.read_step(SimpleNamespace(leg=1, pose=pose(0.04, 0.1, 0.2)))
+    assert step == commands.Step("LLeg", 0.04, 0.1, 0.2)
+    assert Velocity(0.0009, -0.0009, 0.0).is_zero and not Velocity(0.0, 0.0, 0.0011).is_zero
 
 
 @pytest.mark.parametrize(
     "read, message, field, words",
     [
         (commands.read_velocity, twist(NAN, 0, 0), "linear.x", "-1 to 1"),
-        (commands.read_velocity, twist(0, INFINITE, 0), "linear.y", "-1 to 1"),
         (commands.read_velocity, twist(0, 0, -INFINITE), "angular.z", "-1 to 1"),
         (commands.read_target, pose(1.0, 0.0, NAN), "pose.theta", "nan is not allowed: a finite number, in rad"),
         (commands.read_step, SimpleNamespace(leg=2, pose=pose(0.0, 0.1, 0.0)), "leg", ""),
-        (commands.read_step, SimpleNamespace(leg=0, pose=pose(0.0, INFINITE, 0.0)), "pose.y", ""),
     ],
 )
 def test_what_is_no_command_is_refused_by_its_field(read, message, field, words):
@@ -93,43 +86,21 @@ def test_what_is_no_command_is_refused_by_its_field(read, message, field, words)
 
 # Orders, pace, watchdog, inhibition, report
 
-STEP = commands.Step("LLeg", 0.02, 0.1, 0.0)
 
-
-def put(box, *orders):
-    orders = [Order(command, f"source {n}") for n, command in enumerate(orders)]
+def test_a_stop_is_never_left_out_and_leaves_steps_out_which_queue_up():
+    box, step = OrderBox(), commands.Step("LLeg", 0.02, 0.1, 0.0)
+    wanted = (FORWARD, step, step, Stop(), STAND, FORWARD)
+    orders = [Order(command, f"source {n}") for n, command in enumerate(wanted)]
+    assert [order.halts for order in orders] == [False, False, False, True, True, False]
+    for order in orders[:3]:
+        box.put(order)
+    assert list(iter(box.take, None)) == orders[:3]
     for order in orders:
         box.put(order)
-    return orders
-
-
-def test_the_newest_order_replaces_what_waits_and_says_so():
-    box = OrderBox()
-    first, second, third = put(box, FORWARD, Target(1.0, 0.0, 0.0), STAND)
-    assert list(iter(box.take, None)) == [third]
-    for old, newer in ((first, 1), (second, 2)):
-        refused(f"source {newer} came after it", old.answer.result, 0, error=WalkEnded)
-    orders = put(box, FORWARD, STEP, STEP)
-    assert list(iter(box.take, None)) == orders  # steps queue up
-
-
-def test_a_stop_is_never_left_out_and_leaves_steps_out():
-    box = OrderBox()
-    step, stop, velocity = put(box, STEP, Stop(), FORWARD)
     assert box.halts
-    assert list(iter(box.take, None)) == [stop, velocity]
-    assert step.answer.done() and not stop.answer.done()
-    assert not box.halts and box.first is None
-    halts = [Order(command, "me").halts for command in (Stop(), STAND, FORWARD, STEP)]
-    assert halts == [True, True, False, False]
-
-
-def test_the_first_end_of_an_order_counts():
-    order = Order(Target(1.0, 0.0, 0.0), "me")
-    order.succeed()
-    order.fail(ValueError())
-    order.overtaken("late")
-    assert order.answer.result(0) is None
+    assert list(iter(box.take, None)) == [orders[3], orders[5]] and not box.halts and box.first is None
+    assert orders[1].answer.done() and not orders[3].answer.done()
+    refused("source 5 came after it", orders[4].answer.result, 0, error=WalkEnded)
 
 
 def sent_times(velocity, period, count):
@@ -151,31 +122,19 @@ def test_commands_keep_a_distance_and_lasting_ones_are_repeated_once_a_second():
     assert sent_times(FORWARD, 0.02, 160) == pytest.approx([0.0, REFRESH, 2 * REFRESH, 3 * REFRESH], abs=0.021)
     assert sent_times(STAND, 0.02, 500) == [0.0]  # an idle stick
     assert sent_times(STAND, 1.5, 3) == [0.0, 1.5, 3.0]  # after a break
+    pace.sent(FORWARD, 11.0)
+    assert pace.is_news(STAND, 11.1) and not pace.is_news(FORWARD, 11.2)
+    pace.sent(None, 11.3)
+    assert pace.is_news(FORWARD, 11.4)
 
 
-def test_changes_and_what_follows_another_command_are_news():
-    pace = WalkPace()
-    assert pace.is_news(FORWARD, 10.0)
-    pace.sent(FORWARD, 10.0)
-    assert pace.is_news(STAND, 10.1) and not pace.is_news(FORWARD, 10.2)
-    pace.sent(None, 10.3)
-    assert pace.is_news(FORWARD, 10.4)
-
-
-def test_the_watchdog_watches_from_the_first_command_on_until_it_rests():
-    watchdog, for_ever = WalkWatchdog(0.5), WalkWatchdog(0.0)
-    assert watchdog.left(7.0) is None
+def test_a_watchdog_whose_clock_is_set_back_gives_the_whole_time_again():
+    watchdog = WalkWatchdog(0.5)
     watchdog.feed(10.0)
     assert watchdog.left(10.2) == pytest.approx(0.3)
-    watchdog.feed(10.4)
-    assert (watchdog.left(10.5), watchdog.left(11.0)) == pytest.approx((0.4, -0.1))
-    watchdog.feed(1000.0)
-    assert watchdog.left(1.0) == pytest.approx(0.5)  # a clock that is set back gives the whole time again
-    assert watchdog.left(1.6) == pytest.approx(-0.1)
+    assert (watchdog.left(1.0), watchdog.left(1.6)) == pytest.approx((0.5, -0.1))
     watchdog.rest()
     assert watchdog.left(20.0) is None
-    for_ever.feed(10.0)
-    assert for_ever.left(20.0) is None
 
 
 def test_inhibition_is_counted_and_means_the_others():
@@ -234,13 +193,9 @@ def test_gaits_are_pairs_or_dictionaries():
     "value, words",
     [
         ("MaxStepX", "~gait is 'MaxStepX'"),
-        (0.03, "~gait is 0.03"),
         (["MaxStepX", 0.03], "~gait.*entry 'MaxStepX'"),
-        ([["MaxStepX"]], "~gait.*entry"),
-        ([[1, 0.03]], "~gait.*entry"),
         ([["MaxStepX", "far"]], "~gait.*MaxStepX is 'far': a number"),
         ([["MaxStepX", True]], "~gait.*MaxStepX is True"),
-        ([["MaxStepX", NAN]], "~gait.*MaxStepX is nan"),
     ],
 )
 def test_what_is_no_gait_is_told(value, words):
@@ -254,14 +209,9 @@ def test_what_is_no_gait_is_told(value, words):
 SIDES = pytest.mark.parametrize("leg, side", [("LLeg", 1.0), ("RLeg", -1.0)])
 
 
-@SIDES
-def test_a_step_is_the_same_there_and_back(leg, side):
-    step = Step(leg, Place(0.04, side * 0.1, 0.2))
-    assert read_step(step_target(step)) == step
-    assert step_target(step).leg == (StepTarget.left if leg == "LLeg" else StepTarget.right)
-
-
-def test_the_first_step_that_will_not_do_is_named():
+def test_a_step_is_the_same_there_and_back_and_the_first_that_will_not_do_is_named():
+    step = Step("RLeg", Place(0.04, -0.1, 0.2))
+    assert (read_step(step_target(step)), step_target(step).leg) == (step, StepTarget.right)
     good, bad = StepTarget(leg=1), StepTarget(leg=0)
     bad.pose.theta = NAN
     refused(r"footsteps\[1\]\.pose\.theta", read_steps, [good, bad], error=BadGoal)
@@ -277,13 +227,10 @@ def test_the_first_step_that_will_not_do_is_named():
     "step, clipped",
     [
         ((0.04, 0.1, 0.1), (0.04, 0.1, 0.1)),
-        ((-0.03, 0.1, 0.0), (-0.03, 0.1, 0.0)),
-        ((0.0, 0.16, 0.0), (0.0, 0.16, 0.0)),
         ((0.3, 0.088, 0.0), (0.08, 0.088, 0.0)),
         ((-0.3, 0.088, 0.0), (-0.04, 0.088, 0.0)),
         ((0.0, 0.5, 0.0), (0.0, 0.16, 0.0)),
         ((0.0, 0.01, 0.0), (0.0, 0.088, 0.0)),
-        ((0.0, -0.1, 0.0), (0.0, 0.088, 0.0)),  # on the wrong side
         ((0.0, 0.15, 2.0), (0.0, 0.15, 0.5)),
     ],
 )
@@ -329,15 +276,6 @@ STRAIGHT = dict.fromkeys((joint for joints in LEG_JOINTS.values() for joint in j
 )
 def test_turns_follow_the_right_hand(angles, vector, turned):
     assert rotate(from_roll_pitch_yaw(*angles), vector) == pytest.approx(turned, abs=1e-12)
-
-
-@settings(max_examples=30)
-@given(ANGLES, ANGLES, ANGLES)
-def test_rotations_are_a_group(a, b, c):
-    turn, other, vector = from_roll_pitch_yaw(a, b, c), about((0.6, 0.0, 0.8), b), (0.3, -0.2, 0.9)
-    assert product(turn, inverse(turn)) == pytest.approx((0, 0, 0, 1), abs=1e-12)
-    assert rotate(product(turn, other), vector) == pytest.approx(rotate(turn, rotate(other, vector)))
-    assert yaw_of((2.0 * math.cos(a), 2.0 * math.sin(a), 5.0)) == pytest.approx(a)
 
 
 def test_soles_of_straight_and_bent_legs_are_where_the_published_lengths_say():
@@ -417,25 +355,15 @@ def test_while_paused_it_stands_still_but_for_height_and_tilt(offset):
     assert corrected(offset, moved(TORSO, Place(9.0, 9.0, 1.0)))[:2] == pytest.approx((0.0, 0.0))
 
 
-def test_before_the_first_reading_there_is_nothing_to_change():
-    fresh, here = OdometryOffset(), Place(0, 0, 0)
-    for change in (lambda: fresh.set(here), lambda: fresh.move_by(here), fresh.pause):
-        refused("no odometry", change)
-
-
-def transform(x, y, z, *turn):
-    message = Transform()
-    message.translation.x, message.translation.y, message.translation.z = x, y, z
-    message.rotation.x, message.rotation.y, message.rotation.z, message.rotation.w = turn
-    return message
-
-
 def test_of_a_transform_what_lies_in_the_plane_of_the_floor_counts():
     turn = from_roll_pitch_yaw(0.1, 0.0, 0.8)
-    assert read_transform(transform(1.0, 2.0, 9.0, *turn)) == pytest.approx((1.0, 2.0, 0.8))
-    refused(r"offset\.rotation", read_transform, transform(0, 0, 0, 0, 0, 0, 0), error=BadGoal)
-    refused(r"offset\.translation\.x", read_transform, transform(NAN, 0, 0, 0, 0, 0, 1), error=BadGoal)
-    refused(r"offset\.translation\.y", read_transform, transform(0, INFINITE, 0, 0, 0, 0, 1), error=BadGoal)
+    message = Transform(Vector3(1.0, 2.0, 9.0), Quaternion(*turn))
+    assert read_transform(message) == pytest.approx((1.0, 2.0, 0.8))
+    message.translation.y = INFINITE
+    refused(r"offset\.translation\.y", read_transform, message, error=BadGoal)
+    refused(r"offset\.rotation", read_transform, Transform(), error=BadGoal)
+    for change in (lambda: OdometryOffset().set(Place(0, 0, 0)), OdometryOffset().pause):
+        refused("no odometry", change)  # before the first reading
 
 
 # Velocities from uneven samples
@@ -453,13 +381,6 @@ def test_even_motion_has_its_speed_whatever_the_times():
     assert slopes.add(20.1, [6.0, 5.0]) == pytest.approx([10.0, 0.0])  # two samples of one moment are one
 
 
-def test_readings_of_a_slower_cycle_do_not_upset_it():
-    slopes, cycle = SlopeEstimator(), 0.012
-    times = [100.0 + i * 0.02 for i in range(200)]
-    found = [slopes.add(time, [cycle * (time // cycle)])[0] for time in times]  # 1 rad/s, seen in steps
-    assert max(abs(each - 1.0) for each in found[5:]) < 0.15  # of two samples each: 0.4
-
-
 # Messages of the state
 
 STAMP = Time(12, 500)
@@ -472,13 +393,6 @@ READING = Reading(
     acceleration=(0.0, 0.0, 9.81),
     torso=(1.0, 2.0, 0.33, 0.0, 0.0, QUARTER),
 )
-
-
-def test_joint_state_keeps_the_order():
-    message = messages.joint_state(STAMP, ("HeadYaw", "LHand"), READING, [0.2, 0.0])
-    assert (message.header.stamp, message.effort[0]) == (STAMP, 0.1)
-    assert (message.name, message.position, message.velocity) == (["HeadYaw", "LHand"], (0.5, -0.25), [0.2, 0.0])
-    assert messages.diagonal(1.0, 2.0, 3.0) == [1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0]
 
 
 def test_pose_and_frame_of_odometry_are_the_same_and_its_velocity_is_that_of_the_torso():
@@ -501,3 +415,6 @@ def test_the_heading_of_the_inertial_unit_is_that_of_odometry_or_unknown():
     assert unknown.orientation.w == 1.0
     assert unknown.orientation_covariance[8] > 1e3 * known.orientation_covariance[8]
     assert known.linear_acceleration.z == 9.81
+    message = messages.joint_state(STAMP, ("HeadYaw", "LHand"), READING, [0.2, 0.0])
+    assert (message.header.stamp, message.effort[0]) == (STAMP, 0.1)
+    assert (message.name, message.position, message.velocity) == (["HeadYaw", "LHand"], (0.5, -0.25), [0.2, 0.0])
