@@ -65,9 +65,6 @@ def watched(bench):
     return make
 
 
-# --- the law of balance
-
-
 def index(name):
     return MODEL.joint_index[name]
 
@@ -157,9 +154,6 @@ def test_the_motion_of_the_body_is_reckoned_as_it_really_is(bench, force):
     assert tracker.follow(one.now, 0.5, dt).velocity == (0.0, 0.0)
 
 
-# --- what is survived
-
-
 @pytest.mark.parametrize(
     "name, side", [("Stand", "front"), ("StandInit", "back"), ("Stand", "left"), ("StandInit", "right")]
 )
@@ -226,9 +220,6 @@ def test_balance_keeps_out_of_motions_of_the_legs_of_soft_legs_and_of_a_walk(wat
     walking.run(0.3)
     assert not walking.robot.stability.balance.acting and walking.robot.joints.corrections == {}
     assert not falls(walking).falling
-
-
-# --- falls
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -332,9 +323,6 @@ def test_one_that_gets_up_does_not_fall(watched):
     shove(one, "front")
     assert FALLING not in states(one, 2.0)
     assert one.now.torso.position[2] < 0.15 and min(one.now.stiffnesses) == 1.0
-
-
-# --- pushes that are noticed
 
 
 @pytest.fixture

@@ -20,8 +20,6 @@ FALLEN = {"LyingBelly": (60.0, 0.0, 0.0), "LyingBack": (-60.0, 0.0, 0.0)}
 """Pushes of 0.2 s that make a standing robot lie like this, N."""
 STIFF, LIMP = (1.0,) * 26, (0.0,) * 26
 
-# --- waking up and resting
-
 
 @pytest.fixture
 def ended():
@@ -121,9 +119,6 @@ def test_postures_and_key_frames_are_reached_exactly_in_their_time(bench):
     expected = [{head: -0.2, wrist: 0.2}.get(i, angle) for i, angle in enumerate(posture(MODEL, "Crouch"))]
     assert task.finished and one.now.commands == pytest.approx(expected), "it holds the whole body"
     assert one.robot.motion.tasks() == [] and one.now.commands[other] == expected[other]
-
-
-# --- going to postures
 
 
 @pytest.fixture
@@ -273,8 +268,6 @@ def test_the_arms_of_who_sits_make_way_for_the_legs(bench, change):
         finish(one, task)
         assert task.value is True and recognise(one.model, one.now) == Recognition(goal, "Sitting")
 
-
-# --- diagnosis: hot chains go to rest and stay limp until they have cooled down
 
 VERY_HOT, CRITICAL, COLD = 79.0, 95.0, 40.0
 # Looks a few times a second, and rests: posture, then stiffness.

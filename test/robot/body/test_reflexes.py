@@ -25,8 +25,6 @@ from nao_sim_bridge.sim.tracking.follower import Mode as Tracking
 INDEX = load_model().joint_index
 OTHER = dict(zip(FEET, reversed(FEET)))
 
-# --- whole body control
-
 
 def upright(snapshot):
     return max(abs(angle) for angle in roll_pitch_yaw(snapshot.torso.orientation)[:2]) < 0.2
@@ -87,9 +85,6 @@ def test_a_leg_that_is_raised_by_its_joints_and_arms_that_move_tip_only_a_robot_
     assert not upright(alone.run(5.0))
 
 
-# --- arms
-
-
 def test_an_interpolation_into_the_chest_ends_in_time_with_the_arm_short_of_it(bench):
     one = bench()
     one.run(0.3)
@@ -117,9 +112,6 @@ def test_a_robot_before_a_wall_stretches_its_arm_slowly(bench, world_file):
         assert told[-1] == pytest.approx(0.1)
         peaks.append(max(abs(b - a) for a, b in zip(told, told[1:])))
     assert peaks[1] < 0.6 * peaks[0]
-
-
-# --- alive and still
 
 
 def test_a_breathing_robot_stays_on_its_feet_and_a_target_interrupts_the_breath_of_its_chain(bench):
@@ -157,9 +149,6 @@ def test_a_robot_that_keeps_still_stands_as_before_with_less_torque_to_give(benc
     assert max(joints.efforts) < 1.0
     for name, angle in goals.items():
         assert one.joint(name) == pytest.approx(angle, abs=0.0087), "in the air within half a degree"
-
-
-# --- following places
 
 
 class Eye:

@@ -26,7 +26,6 @@ YAW = MODEL.joint_index["HeadYaw"]
 SILENCE = (NO_ECHO, NO_ECHO)
 ALL = (*SENSORS, CHEST_BUTTON)
 
-# --- bumpers
 
 BUMPERS = {f"{side}Foot/Bumper/{half}" for side in "LR" for half in ("Left", "Right")}
 RAMP = "{name: ramp, box: [0.3, 1.0, 0.02], position: [0.27, 0, 0.018], rpy: [0, -0.2, 0], friction: 0}"
@@ -48,9 +47,6 @@ def test_bumpers_feel_a_cart_that_slides_down_against_the_toes(bench, world_file
     assert not one.run(0.05).touched and one.run(1.0).touched == pressed
     one.simulation.reset()
     assert one.now.touched == frozenset()
-
-
-# --- sonars
 
 
 def place(one, **entry):
@@ -113,9 +109,6 @@ def test_people_robots_and_things_are_heard_on_their_side_and_nothing_low_or_beh
     assert one.run(1.2).sonars == SILENCE, "nor its own arm"
 
 
-# --- noise and delay
-
-
 def test_a_robot_with_noise_feels_errors_of_its_seed_but_the_truth_stays_true(bench):
     noisy, same, other = (bench("Crouch", sensor_noise=1.0, seed=seed).run(0.4) for seed in (1, 1, 2))
     true = bench("Crouch").run(0.4)
@@ -140,9 +133,6 @@ def test_a_late_robot_feels_what_was_all_of_one_time(bench):
     for snapshot in one.watch(1.0):
         assert set(snapshot.link_poses) == {contact.link for contact in snapshot.contacts}
         assert snapshot.left_foot.total >= 0.0
-
-
-# --- heat and faults
 
 
 def test_a_motor_that_gets_critically_hot_goes_limp_and_cools_down_again(bench):
@@ -208,9 +198,6 @@ def test_broken_sensors_read_an_error_beside_others_that_work(bench):
     assert (one.robot.faults.sensors, one.robot.faults.motors) == (frozenset(), frozenset()), "a new robot is whole"
 
 
-# --- fingers
-
-
 def test_fingers_stay_until_they_are_taken_away_and_a_ball_is_felt_where_it_lies(bench, world_file):
     one = bench(world=world_file("{name: ball, sphere: 0.02, position: [0, 0, 0.55], mass: 0.05}"))
     felt = set().union(*(snapshot.touched for snapshot in one.watch(0.6)))
@@ -249,9 +236,6 @@ def test_pointing_at_a_sensor_touches_it_until_the_button_is_released(bench, wor
     one = bench(world=world_file("{name: wall, box: [0.02, 2, 2], position: [0.4, 0, 1]}"))
     one.robot.point_at(ray_at(one, CHEST_BUTTON))
     assert one.simulation.tick().touched == frozenset(), "what hides a sensor is pointed at instead"
-
-
-# --- hands
 
 
 def touch(one, sensors, duration, limit=3.0):

@@ -125,9 +125,6 @@ def test_odometry_knows_where_a_standing_robot_is_while_it_moves(bench):
     assert rpy_matrix((0.0, 0.0, matrix_rpy(offset[:3, :3])[2])) == pytest.approx(offset[:3, :3], abs=5e-3)
 
 
-# --- where it starts
-
-
 @pytest.mark.parametrize("name", FAMILY)
 def test_a_stiff_robot_stays_in_the_posture_it_starts_in_and_a_limp_one_in_its_family(bench, name):
     one = bench(name)
@@ -166,9 +163,6 @@ def test_an_unknown_posture_link_or_sensor_is_refused_with_the_closest(bench):
         with pytest.raises(UnknownName, match=message):
             call()
     assert one.simulation.tick().touched == frozenset()
-
-
-# --- motors
 
 
 @pytest.mark.parametrize("stiffness", [1.0, 0.5])

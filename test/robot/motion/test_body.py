@@ -23,9 +23,6 @@ def numbers(text):
     return [float(value) for value in text.strip("[]").split(",")]
 
 
-# Postures
-
-
 def test_the_robot_wakes_up_goes_to_a_posture_and_rests_in_one_chain(robot, motion):
     goal = motion.play(
         f("wakeUp"), f("robotIsWakeUp"), f("goToPosture", str_param="StandInit", speed=0.8), f("getPosture"),
@@ -61,9 +58,6 @@ def test_a_posture_that_is_cancelled_or_not_reached_leaves_the_robot_up(stiff_ro
     assert "the robot did not reach Stand: it is in posture" in goal.text and "of the family" in goal.text
     motion.succeed(f("applyPosture", str_param="Stand", speed=0.5))
     assert stiff_robot.ALRobotPosture.getPosture() == "Stand"
-
-
-# Effectors and gaze
 
 
 def test_effectors_go_where_they_are_told(stiff_robot, motion):
@@ -130,9 +124,6 @@ def test_the_head_looks_at_points_of_any_frame_and_tells_what_is_missing(stiff_r
     behind = motion.succeed(f("lookAt", values=[-1.0, 0.1, 0.2])).memList
     assert float(behind[0]) == pytest.approx(2.0857, abs=1e-3) and float(behind[2]) > 0.5
     assert "a point in front of the head (FRAME_TORSO)" in motion.refused(f("lookAt", values=[0.0, 0.0, 0.12]))
-
-
-# Facts and switches
 
 
 def test_facts_of_the_robot(robot, motion):

@@ -45,9 +45,6 @@ def at(angle):
     return check
 
 
-# Angles
-
-
 def test_angles_are_told_with_their_names_in_one_order(robot, motion):
     result = motion.succeed(f("getAngles", names=["RArm", "HeadYaw"]))
     assert result.name == [*ARM, "HeadYaw"]
@@ -152,8 +149,6 @@ def test_the_arm_a_little_further_as_in_the_paper(stiff_robot, motion, at):
     at(result, **dict(zip(before.name, pose)))
 
 
-# What is refused before anything moves
-
 REFUSED = [
     (f("setAngles", names=["HeadYow"], angles=[0.5]), "did you mean 'HeadYaw'"),
     (f("setAngles", names=["HeadYaw"], angles=[3.0]), "HeadYaw cannot go to 3.0000: -2.0857 to 2.0857"),
@@ -231,9 +226,6 @@ def test_a_dry_run_moves_nothing_and_tells_times_and_the_pose_at_the_end(stiff_r
     assert angle("HeadYaw") == pytest.approx(0.0, abs=NEAR)
 
 
-# Stiffness
-
-
 def test_stiffness_changes_at_once_and_along_a_time(robot, motion):
     result = motion.succeed(
         f("setStiffnesses", names=["Head"], angles=[0.2, 0.6]),
@@ -244,8 +236,6 @@ def test_stiffness_changes_at_once_and_along_a_time(robot, motion):
     assert list(map(float, result.memList)) == pytest.approx([0.2, 0.6, 0.0, 0.0], abs=1e-6)
     assert result.results[2].elapsed.to_sec() == lasted(0.4)
 
-
-# How motions end
 
 KINDS = [
     f("angleInterpolation", angles=[2.0], times=[8.0], **YAW),

@@ -70,9 +70,6 @@ def stands(robot, way):
     return check
 
 
-# Where it gets
-
-
 def test_a_walk_goes_anywhere_turns_and_answers_how_far_it_got(robot, motion, walked, stands):
     result = motion.succeed(walk(0.15, -0.1, 0.8))
     walked(0.15, -0.1, 0.8)
@@ -176,9 +173,6 @@ def test_settings_of_the_walk(robot, motion):
     assert (left[1], right[1]) == (pytest.approx(0.06, abs=0.03), pytest.approx(-0.06, abs=0.03))
     assert json.loads(values[3][0]) == ["MaxStepX", pytest.approx(0.08)]
     assert values[5] == ["True", "False"] and values[7] == ["False", "False"]
-
-
-# How it ends
 
 
 @pytest.mark.parametrize(
@@ -303,8 +297,6 @@ def test_only_a_walk_that_a_goal_left_going_ends_with_the_node(robot, motion, wh
     robot.advance_until(lambda: not ends.is_alive(), 5.0)
     assert robot.ALMotion.moveIsActive() is (whose != "a goal's")
 
-
-# What is refused before anything moves
 
 BACK = {"names": ["LLeg"], "times": [1.0]}
 REFUSED = [

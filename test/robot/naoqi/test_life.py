@@ -158,9 +158,6 @@ def test_what_is_wrong_is_told_and_only_activities_get_the_focus(life, robot, re
     assert life.getActivityContextPermissionViolations(HELLO) == ""
 
 
-# --- autonomous moves -------------------------------------------------------------------------------------------------
-
-
 def test_what_nobody_moves_goes_back_to_neutral(stiff_robot, refuses):
     moves = stiff_robot.ALAutonomousMoves
     assert moves.getBackgroundStrategy() == "none"
@@ -205,8 +202,6 @@ def test_somebody_who_speaks_gets_a_nod_and_who_speaks_moves_its_arms(alive, rob
     alive.setAutonomousAbilityEnabled("SpeakingMovement", False)
     assert way() < 0.01
 
-
-# --- awareness --------------------------------------------------------------------------------------------------------
 
 CAMERA = [0.0, 0.0, 0.5, 0.0, 0.0, 0.0]
 FACE, SOUND, TOUCH = "FaceDetected", "ALSoundLocalization/SoundLocated", "TouchChanged"

@@ -75,9 +75,6 @@ def read_calls():
 CALLS = read_calls()
 
 
-# --- sensible arguments -----------------------------------------------------------------------------------------------
-
-
 def fits(kind, value):
     """Whether a value is of a type of NAOqi's table."""
     name, _, inner = kind.partition("<")
@@ -154,8 +151,6 @@ def test_the_common_methods_are_answered_in_every_module(robot):
         methods = module.getMethodList()
         assert {"ping", "exit"} <= set(methods) and methods == sorted(methods) and name in module.getModuleHelp()[0]
 
-
-# --- hostile arguments ------------------------------------------------------------------------------------------------
 
 NAN, INF = float("nan"), float("inf")
 HOSTILE = [

@@ -41,9 +41,6 @@ def told(robot, listener):
     return listen
 
 
-# --- battery ----------------------------------------------------------------------------------------------------------
-
-
 def test_it_drains_by_itself_and_is_charged_until_it_is_full(robot, health, read):
     robot.advance(SOON)
     assert robot.ALBattery.getBatteryCharge() == 100
@@ -137,8 +134,6 @@ def test_a_charger_from_the_start_stays_and_a_v5_tells_its_plug(bench):
     assert old.run(SOON).battery.status & SUPPLY and memory.get("BatteryPowerPluggedChanged") is True
 
 
-# --- temperatures -----------------------------------------------------------------------------------------------------
-
 TEMPERATURE_EVENTS = (
     "HotDeviceDetected",
     "DeviceNoLongerHotDetected",
@@ -203,9 +198,6 @@ def test_head_and_battery_can_be_hot_and_nothing_is_told_without_notifications(r
     robot.ALBodyTemperature.setEnableNotifications(True)
     robot.advance(SOON)
     assert "HeadPitch" in since()["HotDeviceDetected"]
-
-
-# --- diagnosis --------------------------------------------------------------------------------------------------------
 
 
 def test_sensors_that_do_not_answer_are_found_at_once(robot, health):

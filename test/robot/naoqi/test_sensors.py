@@ -93,9 +93,6 @@ def test_sensors_lights_battery_and_version(robot, read):
     assert (read("RobotConfig/Body/Version"), read("RobotConfig/Head/FullHeadId")) == ("6.0.0", "SIMULATED-NAO-HEAD")
 
 
-# --- ground and pushes ------------------------------------------------------------------------------------------------
-
-
 def test_ground_under_the_feet_is_told_when_it_is_lost_and_when_it_is_won(stiff_robot, read):
     def contacts():
         return [read(f"{foot}ontact") for foot in ("footC", "leftFootC", "rightFootC")]

@@ -105,9 +105,6 @@ def test_clicks_of_the_chest_button_are_counted_and_a_reset_forgets_them(robot, 
     assert heard[3:] == [(CLICKS[0], None)]
 
 
-# --- gestures ---------------------------------------------------------------------------------------------------------
-
-
 @pytest.fixture
 def gestures(robot):
     """ALTactileGesture, and what each of its signals says: libqi brings them in threads of their own."""
@@ -143,9 +140,6 @@ def test_a_gesture_of_ones_own_is_heard_and_times_can_be_changed(robot, press, g
         setSettleTime('soon') -> a number of seconds
         createGesture(['000', '200']) -> sensor sequence is
     """)  # fmt: skip
-
-
-# --- hands ------------------------------------------------------------------------------------------------------------
 
 
 def test_a_hand_touches_and_goes_or_stays_until_it_is_released(robot, told, refuses):

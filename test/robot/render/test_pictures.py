@@ -114,9 +114,6 @@ def test_every_view_shows_the_robot_also_when_it_lies(renderer, view):
     assert int(np.sum((red > 100) & (green < 0.75 * red) & (blue < 0.45 * red))) > 20, "orange"
 
 
-# --- the process
-
-
 def test_objects_of_the_world_are_seen_where_they_are(world_file):
     entry = "{name: ball, sphere: 0.1, position: [0.3, 0.22, 0.1], mass: 0.1, color: [0, 1, 0]}"
     moved = replace(STATE, objects={"ball": Pose((0.3, -0.22, 0.1), UNTURNED)})
@@ -182,9 +179,6 @@ def test_what_cannot_start_says_why(monkeypatch):
         Viewer().start()
 
 
-# --- engines
-
-
 def test_opengl_draws_where_it_can_be_had(caplog):
     caplog.set_level(logging.INFO)
     with Renderer() as own:
@@ -222,9 +216,6 @@ def test_a_driver_that_takes_its_process_with_it_or_is_not_there_is_done_without
     drawing, complaint = open_engine("auto", load_world("empty"), "V6")
     drawing.close()
     assert drawing.name.startswith("the built-in renderer") and HELP in complaint
-
-
-# --- captures
 
 
 @pytest.fixture(scope="module")

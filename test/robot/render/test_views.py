@@ -112,9 +112,6 @@ def test_small_and_far_things_have_fewer_triangles_and_the_same_place(drawing):
     assert middles[0] == pytest.approx(middles[1], abs=0.4)
 
 
-# --- pictures on things
-
-
 @pytest.fixture(scope="module")
 def four_colors(tmp_path_factory):
     """A picture: red and green above, blue and white below."""
@@ -154,9 +151,6 @@ def test_a_picture_on_a_thing_is_upright_not_mirrored_and_on_its_front_only(draw
         assert [area(behind, channel) for channel in range(3)] == [0, 0, 0]
 
 
-# --- what comes and goes
-
-
 def test_what_was_placed_comes_moves_and_goes(drawing):
     thing = card(shape=Shape("sphere", (0.05,), HERE, HERE), color=GREEN, name="ball", position=(1.0, 0.2, 0.5))
     without = drawing.draw(AWAY, VIEW)
@@ -192,9 +186,6 @@ def test_the_same_request_gives_the_same_bytes_in_another_engine_after_other_pic
     assert np.array_equal(second.draw(moved, view), expected)
 
 
-# --- robots
-
-
 def test_the_head_is_not_in_the_way_of_its_cameras_but_a_raised_arm_is_seen(drawing):
     for camera, rows in ((0, 240), (1, 120)):  # looking down, its own shadow and feet may be there, nothing above
         view = from_head(STATE, camera)
@@ -223,9 +214,6 @@ def test_other_robots_are_seen_with_their_heads_lights_and_postures(drawing):
     alone, one, glowing, two = (drawing.draw(replace(STATE, others=others), view) for others in groups)
     assert differ(one, alone, by=20).sum() > 3000 and differ(glowing, one, by=40).sum() > 20
     assert differ(two, one)[:, :100].sum() > 1000 and np.array_equal(drawing.draw(STATE, view), alone)
-
-
-# --- shadows
 
 
 def test_a_thing_throws_a_shadow_that_goes_with_it(drawing):

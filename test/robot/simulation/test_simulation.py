@@ -97,9 +97,6 @@ def test_two_simulations_do_not_disturb_each_other(bench):
     assert seen == alone
 
 
-# --- snapshots
-
-
 def leaves(value):
     """All single values in nested tuples, mappings and dataclasses."""
     if dataclasses.is_dataclass(value):
@@ -137,9 +134,6 @@ def test_velocities_turn_with_the_torso_and_are_true(bench):
     turned = Pose((0.0, 0.0, 0.3), from_roll_pitch_yaw(0.0, 0.0, math.pi / 2))
     turned = dataclasses.replace(pushed, torso=turned, linear_velocity=(0.0, 0.5, 0.1))
     assert turned.velocity_in_torso == pytest.approx((0.5, 0.0, 0.1))
-
-
-# --- the thread
 
 
 @pytest.fixture

@@ -126,9 +126,6 @@ def flat(values):
     return [leaf for value in values for leaf in (flat(value) if isinstance(value, (list, tuple)) else [value])]
 
 
-# --- signatures -------------------------------------------------------------------------------------------------------
-
-
 def test_every_overload_arrives_as_it_was_sent_and_others_are_refused(proxy, motion):
     for method, *arguments in (
         ("rest",),
@@ -206,9 +203,6 @@ def test_several_objects_make_one_module_and_others_may_take_over_its_work(broke
         fresh.close()
 
 
-# --- errors -----------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("late", [False, True])
 def test_an_error_arrives_as_a_short_text_with_module_and_method(proxy, motion, late):
     for name in ("Hed", BOOK):
@@ -237,9 +231,6 @@ def test_a_defect_is_logged_with_its_place_and_what_python_says_of_its_objects_i
         ended(future)
 
 
-# --- calls that take time ---------------------------------------------------------------------------------------------
-
-
 def test_blocking_calls_answer_when_their_tasks_end_and_hold_up_nobody(proxy, motion):
     futures = [proxy.wakeUp(_async=True) for _ in range(40)]
     assert proxy.ping() is True and len(motion.tasks) == 40 and all(future.isRunning() for future in futures)
@@ -259,9 +250,6 @@ def test_cancelling_the_call_kills_what_it_leads_to(proxy, motion, when):
         motion.run_command()
     future.wait(int(1000 * PATIENCE))
     assert motion.tasks[0].killed and future.isCanceled()
-
-
-# --- what every module has --------------------------------------------------------------------------------------------
 
 
 def test_a_module_tells_about_itself_and_leaves_when_it_is_told_to(proxy, session):

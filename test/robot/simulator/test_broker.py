@@ -189,9 +189,6 @@ def test_threads_that_call_end_when_they_are_idle_and_with_the_broker(listening,
     assert callers() == []
 
 
-# --- the program ------------------------------------------------------------------------------------------------------
-
-
 class Program:
     """A running simulator."""
 
@@ -272,10 +269,7 @@ def test_after_a_kill_it_can_start_again_on_its_port_at_once(program, used):
 
 @pytest.mark.parametrize(
     "arguments, message",
-    [
-        (("--world", "moon"), "no world 'moon'.*empty"),
-        (("--listen", "192.0.2.1"), "cannot listen on 192.0.2.1:0"),
-    ],
+    [(("--world", "moon"), "no world 'moon'.*empty"), (("--listen", "192.0.2.1"), "cannot listen on 192.0.2.1:0")],
 )
 def test_what_keeps_it_from_starting_is_said_in_one_line(program, arguments, message):
     ended = program(*arguments)

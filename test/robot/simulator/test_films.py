@@ -88,9 +88,6 @@ def test_there_is_one_film_at_a_time_and_its_process_may_die(robot, film, pictur
     assert len(pictures()) == 3
 
 
-# --- what is played ---------------------------------------------------------------------------------------------------
-
-
 class Card:
     """A stand-in for the library of the sound card."""
 

@@ -32,9 +32,6 @@ def refused(simulation):
     return check
 
 
-# --- time -------------------------------------------------------------------------------------------------------------
-
-
 def test_time_passes_as_it_is_asked_to(robot, simulation, refused):
     assert simulation.isPaused() is True and simulation.time() == 0.0
     assert simulation.advance(0.5) == pytest.approx(0.5, abs=1e-3) == simulation.time()
@@ -66,9 +63,6 @@ def test_ticks_are_counted_beyond_a_factory_reset(robot):
     assert runner.wait_for_tick(runner.ticks, 0.05) is None
     robot.advance(0.1)
     assert runner.ticks == before + 2 * passed
-
-
-# --- the robot --------------------------------------------------------------------------------------------------------
 
 
 def test_a_push_throws_it_over_and_a_reset_sets_it_up_and_ends_its_motions(stiff_robot, simulation):
@@ -119,9 +113,6 @@ def test_fingers_pictures_and_what_cannot_be(robot, simulation, refused):
         ("picture", "front", 0, 100, r"picture size is \(0, 100\), allowed is 1 to 4096 pixels each way"),
         ("picture", "frnt", 64, 64, "unknown view 'frnt': did you mean 'front'"),
     )
-
-
-# --- things -----------------------------------------------------------------------------------------------------------
 
 
 def picture(simulation):

@@ -67,9 +67,6 @@ def resets(robots):
     return again
 
 
-# --- places and time
-
-
 def test_robots_stand_on_a_circle_look_at_its_middle_and_reckon_from_their_own_start(company):
     robots = company()
     robots[1].run(0.5)
@@ -121,9 +118,6 @@ def test_time_waits_for_each_of_them(company):
     assert shared.holds() and called == [True]
 
 
-# --- touching
-
-
 def test_they_push_each_other_with_equal_forces_until_one_falls(company):
     standing, coming, third = company("0,0,0; 0.38,0,180; -2,0,0")
 
@@ -155,9 +149,6 @@ def test_a_foot_of_another_robot_presses_a_bumper_and_sonars_hear_it(company):
     while not pressed and walls.time < 1.0:
         pressed = {name for name in walls.tick().touched if "Bumper" in name}
     assert pressed and all(name.startswith("RFoot") for name in pressed), "the other one stands to its right"
-
-
-# --- things, seeing
 
 
 def test_things_are_everybodys_and_nothing_is_placed_inside_any_robot(company):
@@ -208,9 +199,6 @@ def test_a_picture_shows_another_robot_where_it_is(company):
     assert len(columns) > 10 and columns.max() < 80, "to the left of the middle"
 
 
-# --- hearing
-
-
 def test_a_voice_arrives_with_distance_delay_and_the_direction_of_the_head(company):
     speaker, near, far, turned = company("0,0,0; 0,1,-90; 0,-3,90; 1,0,180")
     yaw = turned.model.joint_index["HeadYaw"]
@@ -241,9 +229,6 @@ def test_what_the_ears_hear_is_the_same_whenever_they_hear_it(company):
     ears.close()
     at_once, later = np.concatenate(blocks), listener.sound.microphones.heard(0.0, listener.time)
     assert np.abs(at_once / 32768.0 - later).max() < 2.0 / 32768.0 and np.abs(later).max() > 0.01
-
-
-# --- starting again
 
 
 def test_a_reset_puts_all_back_and_kills_what_runs(company):

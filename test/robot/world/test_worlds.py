@@ -159,9 +159,6 @@ def test_what_lies_still_wakes_up_when_something_meets_it(engine):
     assert engine.pose(ball)[0][0] > still[0] + 0.05
 
 
-# --- the worlds of the package
-
-
 def standing(bench, world, **scene):
     """A robot that stands by its stiffness alone."""
     one = bench(world=world, **scene)
@@ -254,8 +251,6 @@ def distance(thing, point):
     along, across = dx * math.cos(yaw) + dy * math.sin(yaw), dy * math.cos(yaw) - dx * math.sin(yaw)
     return math.hypot(max(abs(along) - shape.size[0] / 2, 0.0), max(abs(across) - shape.size[1] / 2, 0.0))
 
-
-# --- things that come, move and go
 
 BALL = {"name": "b", "ball": 0.03, "position": [0.6, 0.2, 0.03]}
 PERSON = {"name": "p", "person": "anna", "position": [1.5, 0.0, 0.0], "heading": 3.0}
@@ -424,8 +419,6 @@ def test_wrong_moves_are_refused(one):
         with pytest.raises(UnknownName, match=r"unknown object 'tabel': did you mean 'table'.*\(there are: b, ball, "):
             call()
 
-
-# --- sounds
 
 BOX = {"name": "box", "box": [0.4, 0.4, 0.4], "position": [1.0, -1.0, 0.2], "rpy": [0, 0, 1.5707963]}
 

@@ -37,9 +37,6 @@ def near(*values, within=1e-6):
     return pytest.approx(list(values), abs=within)
 
 
-# --- targets ----------------------------------------------------------------------------------------------------------
-
-
 def test_a_target_is_approached_at_its_share_of_the_top_speed_and_replaced(robot, motion, commands, sensed):
     motion.setAngles("HeadYaw", 2.0, 0.1)
     robot.advance(1.0)
@@ -74,9 +71,6 @@ def test_a_head_that_looks_aside_nods_less(play, commands, sensed):
     play("angleInterpolationWithSpeed", HEAD, [1.5, 0.5], 0.5, after=2.0)
     upper = MODEL.coupled_limits["HeadPitch"].limits_at(1.5)[1]
     assert commands() == near(1.5, upper) and sensed() == near(1.5, upper, within=0.01)
-
-
-# --- interpolations ---------------------------------------------------------------------------------------------------
 
 
 def test_an_interpolation_answers_when_it_has_arrived(robot, begin, play, commands, sensed):
@@ -138,9 +132,6 @@ def test_a_cancelled_interpolation_stays_where_it_is(robot, motion, commands, ea
     assert future.isCanceled() and commands("HeadYaw") == near(0.0 if early else 0.5, within=0.02)
 
 
-# --- curves -----------------------------------------------------------------------------------------------------------
-
-
 def test_a_timeline_is_played_to_its_end_through_its_points(robot, begin, commands, sensed):
     points = [[[0.4, *FLAT], [-0.2, *FLAT]], [[0.3, *FLAT]]]
     future = begin("ALMotion", BEZIER, HEAD, [[0.6, 1.2], [0.6]], points, after=0.6)
@@ -171,9 +162,6 @@ def test_flat_handles_are_slow_at_the_ends_linear_ones_are_not_and_shapes_vary(r
     assert commands()[0] == pytest.approx(0.2)
 
 
-# --- hands ------------------------------------------------------------------------------------------------------------
-
-
 def test_a_hand_opens_and_closes_is_stiff_while_it_moves_and_limp_afterwards(robot, motion, begin, sensed):
     motion.setStiffnesses("RHand", 0.0)
     for hand in ("LHand", "RHand"):
@@ -187,9 +175,6 @@ def test_a_hand_opens_and_closes_is_stiff_while_it_moves_and_limp_afterwards(rob
     motion.killAll()
     robot.answer(future)
     assert motion.getStiffnesses("RHand") == [0.0]
-
-
-# --- stiffness --------------------------------------------------------------------------------------------------------
 
 
 def test_stiffness_is_set_at_once_or_in_time(robot, motion, begin):
@@ -227,9 +212,6 @@ def test_a_limp_joint_takes_commands_but_follows_none_and_does_not_jump(robot, m
     motion.setStiffnesses("HeadYaw", 0.6)  # that of a stiff joint keeps its command
     robot.advance(0.5)
     assert commands("HeadYaw") == near(0.5)
-
-
-# --- tasks ------------------------------------------------------------------------------------------------------------
 
 
 def test_tasks_are_listed_hold_their_joints_and_are_killed_by_number(robot, motion, begin, commands):

@@ -16,9 +16,6 @@ CHEST = [0.8, -0.3, -0.3, -1.5]
 """The left forearm across, and into, the chest."""
 
 
-# --- what it tells ----------------------------------------------------------------------------------------------------
-
-
 def test_names_limits_cycle_and_configuration_of_the_body(robot, motion):
     for name, expected in (
         ("Head", ["HeadYaw", "HeadPitch"]),
@@ -46,9 +43,6 @@ def test_the_summary_has_a_line_for_each_joint(robot, motion):
     stiffness, command, sensor = map(float, line.split()[1:])
     assert (stiffness, command) == (0.5, 0.25) and sensor == pytest.approx(0.25, abs=0.01)
     assert all(joint.name in table for joint in MODEL.joints)
-
-
-# --- Cartesian --------------------------------------------------------------------------------------------------------
 
 
 def test_places_of_the_body_agree(robot, motion):
@@ -97,9 +91,6 @@ def test_effectors_that_are_all_out_of_reach_end_in_time(stiff_robot, begin):
     stiff_robot.answer(path)
 
 
-# --- collisions -------------------------------------------------------------------------------------------------------
-
-
 def test_an_arm_stops_short_of_the_chest_unless_its_protection_is_off(stiff_robot, motion):
     def into_the_chest():
         stiff_robot.finish("ALMotion", "angleInterpolation", ARM, [[angle] for angle in CHEST], 1.0, True, after=1.1)
@@ -134,9 +125,6 @@ def test_the_external_protection_has_parts_and_distances(robot, motion):
     assert [get() for get in distances] == pytest.approx([0.25, 0.0])
     robot.advance(0.2)
     assert motion.getChainClosestObstaclePosition("LArm", 0) == []
-
-
-# --- whole body -------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -247,9 +235,6 @@ def test_balance_out_of_reach_and_what_cannot_be(stiff_robot, motion, refuses):
         wbSetEffectorControl('Head', [0.0, 0.0]) -> wx, wy, wz in rad
         wbSetEffectorControl('Head', [0.0, 0.0, 0.0]) -> call wbEnableEffectorControl
     """)  # fmt: skip
-
-
-# --- idling -----------------------------------------------------------------------------------------------------------
 
 
 def test_a_robot_breathes_when_it_is_told_to_and_stops(stiff_robot, motion):

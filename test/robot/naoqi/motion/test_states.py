@@ -59,9 +59,6 @@ def test_a_killed_awakening_never_finishes_and_a_reset_puts_it_to_sleep(robot, m
     assert motion.robotIsWakeUp() is False and motion.getStiffnesses("Body") == [0.0] * 26
 
 
-# --- falls ------------------------------------------------------------------------------------------------------------
-
-
 def test_a_fall_is_told_ends_calls_and_leaves_the_robot_limp(stiff_robot, motion, begin, read, raised):
     stiff_robot.finish("ALMotion", "wakeUp", after=2.5)
     stiff_robot.advance(1.0)
@@ -108,9 +105,6 @@ def test_push_recovery_keeps_the_robot_on_its_feet(stiff_robot, motion, enabled)
     stiff_robot.NaoSimulation.push([-20.0, 0.0, 0.0], 0.1, "torso")
     stiff_robot.advance(3.0)
     assert (stiff_robot.now.torso.position[2] > 0.3) is enabled
-
-
-# --- switches ---------------------------------------------------------------------------------------------------------
 
 
 def test_smart_stiffness_saves_effort_and_can_be_switched_off(stiff_robot, motion):

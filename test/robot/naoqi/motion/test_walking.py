@@ -15,9 +15,6 @@ LEGS = ["LLeg", "RLeg", "LLeg"]
 WALL = "{name: wall, box: [0.1, 2.0, 1.0], position: [1.0, 0.0, 0.5]}"
 
 
-# --- to a place -------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     "method, arguments, there",
     [
@@ -67,9 +64,6 @@ def test_a_move_that_is_stopped_ends_on_two_feet(walker, motion, end):
     assert walker.stands and 0.02 < walker.truth[0] < 0.5
 
 
-# --- at a velocity ----------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     "method, arguments, least",
     [
@@ -109,9 +103,6 @@ def test_the_robot_knows_where_it_goes_takes_up_another_velocity_or_place_and_en
     motion.moveToward(0.0, 0.0, 0.0)
     walker.until_it_stands()
     assert walker.stands
-
-
-# --- the end of a walk ------------------------------------------------------------------------------------------------
 
 
 def test_waiting_ends_with_the_walk_and_who_no_longer_waits_does_not_stop_it(walker, motion):
@@ -180,9 +171,6 @@ def test_arms_swing_unless_they_may_not(walker, motion):
     assert motion.getMoveArmsEnabled("Arms") is True
 
 
-# --- footsteps --------------------------------------------------------------------------------------------------------
-
-
 def beside(foot, other):
     """A foot [x, y, theta] in the frame of the other one."""
     x, y, c, s = foot[0] - other[0], foot[1] - other[1], math.cos(other[2]), math.sin(other[2])
@@ -241,9 +229,6 @@ def test_steps_that_are_not_begun_can_be_replaced_and_stopped(walker, motion, re
     walker.until_it_stands()
     assert walker.answer(end) is (None if replaced else True) and walker.answer(future) is None
     assert walker.now.torso.position[0] < 0.3
-
-
-# --- what keeps it from walking ---------------------------------------------------------------------------------------
 
 
 def test_limp_legs_do_not_walk_and_that_is_told(walker, motion):
