@@ -18,23 +18,11 @@ def located(azimuth, elevation, head=LEVEL, confidence=0.5, energy=0.2):
 
 
 def test_left_and_up_are_positive():
-    vectors = {
-        (0.0, 0.0): (1, 0, 0),
-        (math.pi / 2, 0.0): (0, 1, 0),
-        (0.0, math.pi / 2): (0, 0, 1),
-        (-math.pi, 0): (-1, 0, 0),
-    }
+    vectors = {(0.0, 0.0): (1, 0, 0), (math.pi / 2, 0.0): (0, 1, 0), (0.0, math.pi / 2): (0, 0, 1)}
     for bearing, vector in vectors.items():
         assert Bearing(*bearing).vector == pytest.approx(vector, abs=1e-12)
-
-
-ANGLES = st.floats(-3.1, 3.1), st.floats(-1.5, 1.5)
-
-
-@given(*ANGLES, st.floats(0.1, 10.0))
-def test_directions_and_vectors_are_two_ways_to_say_it(azimuth, elevation, length):
-    back = Bearing.of(tuple(length * part for part in Bearing(azimuth, elevation).vector))
-    assert (back.azimuth, back.elevation) == pytest.approx((azimuth, elevation), abs=1e-9)
+    back = Bearing.of(tuple(3.0 * part for part in Bearing(-1.9, 0.7).vector))
+    assert (back.azimuth, back.elevation) == pytest.approx((-1.9, 0.7))
 
 
 def test_turns_are_right_handed_and_the_one_about_z_comes_last():
@@ -49,12 +37,9 @@ def test_a_head_that_is_turned_hears_the_same_place_elsewhere(yaw, azimuth):
     sound = located_sound(located(azimuth, 0.0, head=[0.0, 0.1, 0.45, 0.0, 0.0, yaw]))
     assert sound.in_head == Bearing(azimuth, 0.0)
     assert (sound.in_base.azimuth, sound.in_base.elevation) == pytest.approx((azimuth + yaw, 0.0), abs=1e-9)
+    down = located_sound(located(0.0, 0.5, head=[0, 0, 0.4, 0, 0.5, 0]))
+    assert (down.in_base.azimuth, down.in_base.elevation) == pytest.approx((0.0, 0.0))
     assert (sound.head, sound.confidence, sound.energy) == ((0.0, 0.1, 0.45), 0.5, 0.2)
-
-
-def test_a_head_that_looks_down_hears_what_is_level_above_itself():
-    sound = located_sound(located(0.0, 0.5, head=[0, 0, 0.4, 0, 0.5, 0]))
-    assert (sound.in_base.azimuth, sound.in_base.elevation) == pytest.approx((0.0, 0.0))
 
 
 def test_old_robots_tell_no_energy_and_what_is_no_located_sound_is_told():

@@ -1,17 +1,13 @@
-"""Work in the background, and sound for modules of clients, where threads meet; time waits for both."""
+"""Work in the background, for which time waits, and formats of the sound for modules of clients."""
 
 from __future__ import annotations
 
-import queue
 import threading
-from dataclasses import dataclass
 
-import numpy as np
 import pytest
 
 from nao_sim_bridge.services.audio.background import Background
-from nao_sim_bridge.services.audio.microphone_clients import HELD_UP, MicrophoneClients
-from nao_sim_bridge.services.audio.microphone_formats import MicrophoneFormat, flags_to_channel, microphone_format
+from nao_sim_bridge.services.audio.microphone_formats import flags_to_channel, microphone_format
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.tasks import Task
 
@@ -84,79 +80,3 @@ def test_formats_that_there_are_not_are_refused():
     for flags in [[], [0, 0, 0, 0], [1, 1, 0, 0], [2, 0, 0, 0], [1, 0, 0], [1, 0, 0, 0, 0], "1000", 3]:
         with pytest.raises(BadValue, match="flags .left, right, front, rear. of 0 or 1: one of them set, or all four"):
             flags_to_channel(flags)
-
-
-@dataclass
-class Block:
-    samples: np.ndarray
-    time: float = 1.5
-
-
-class Ears:
-    """Gives the callback of the listener that was begun last."""
-
-    def listen(self, _name, callback, **_wants):
-        self.deliver = callback
-        return self
-
-    def close(self):
-        pass
-
-
-class Module:
-    def __init__(self):
-        self.heard, self.may_return = queue.Queue(), threading.Event()
-
-    def metaObject(self):
-        return {"methods": {}}
-
-    def call(self, _method, channels, frames, _time, data):
-        self.heard.put((channels, frames, np.frombuffer(data, "<i2").tolist()))
-        self.may_return.wait(PATIENCE)
-
-
-@pytest.fixture
-def listening():
-    ears, module = Ears(), Module()
-    clients = MicrophoneClients(ears, lambda name: module)
-    clients.subscribe("Module")
-    yield clients, ears, module
-    module.may_return.set()
-    clients.close()
-
-
-def numbered(number, channels=4):
-    return Block(np.full((100, channels), number, dtype=np.int16))
-
-
-def test_blocks_of_a_format_that_counts_no_more_or_that_do_not_fit_make_nobody_deaf(listening):
-    clients, ears, module = listening
-    module.may_return.set()
-    clients.set_at_once(2)
-    ears.deliver(numbered(1))
-    late = ears.deliver  # under way while the format changes
-    clients.prefer("Module", MicrophoneFormat(16000, 3))
-    late(numbered(2))
-    ears.deliver(numbered(3, channels=1))
-    with pytest.raises(ValueError):
-        ears.deliver(numbered(4))
-    for number in (5, 6):
-        ears.deliver(numbered(number, channels=1))
-    assert module.heard.get(timeout=PATIENCE) == (1, 200, [5] * 100 + [6] * 100)
-
-
-def test_blocks_that_were_under_way_when_the_microphones_closed_are_dropped(listening):
-    clients, ears, module = listening
-    ears.deliver(numbered(0))
-    module.heard.get(timeout=PATIENCE)  # it is busy with this one from now on
-    late = ears.deliver
-    clients.set_closed(True)
-    for _ in range(HELD_UP + 1):
-        late(numbered(1))
-    assert not clients.behind()
-    clients.set_closed(False)
-    for number in range(2, 4 + HELD_UP):
-        ears.deliver(numbered(number))
-    assert clients.behind()
-    module.may_return.set()
-    assert module.heard.get(timeout=PATIENCE)[2][0] == 2

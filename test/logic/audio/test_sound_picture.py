@@ -57,32 +57,15 @@ def colored(picture, color):
     return columns, rows
 
 
-@pytest.mark.parametrize("rate", [RATE, 48000])
-@pytest.mark.parametrize("frequency, begin, end", [(1000.0, 1.0, 2.0), (6000.0, 3.0, 4.0)])
-def test_a_tone_is_where_its_time_and_its_frequency_are(rate, frequency, begin, end):
+@pytest.mark.parametrize("frequency, begin, end, rate", [(1000.0, 1.0, 2.0, RATE), (6000.0, 3.0, 4.0, 48000)])
+def test_a_tone_is_where_its_time_and_its_frequency_are(frequency, begin, end, rate):
     sound = tone(frequency, begin, end, rate=rate)[:, np.newaxis]
     column, row = darkest(spectrogram(sound, rate, (400, 200)))
     assert column == pytest.approx((begin + end) / 2.0 / 4.0, abs=0.02)
     assert row == pytest.approx(1.0 - frequency / 8000.0, abs=0.02)
 
 
-def test_channels_that_cancel_each_other_are_seen():
-    sound = tone(2000.0, 0.0, 4.0)
-    both = spectrogram(np.stack([sound, -sound], axis=1), RATE, (100, 100))
-    assert np.array_equal(np.asarray(both), np.asarray(spectrogram(sound[:, np.newaxis], RATE, (100, 100))))
-
-
-def test_the_waveform_is_as_high_as_it_is_loud():
-    sound = tone(500.0, 1.0, 2.0) + 0.2 * tone(500.0, 3.0, 4.0)
-    columns, rows = colored(draw(sound, RATE), WAVE)
-    heights = {x: np.ptp(rows[columns == x]) for x in (LEFT + PANEL * share // 8 for share in (1, 3, 7))}
-    silent, loud, soft = heights.values()
-    assert (silent, loud) == (0, pytest.approx(WAVE_HEIGHT, abs=3))
-    assert soft == pytest.approx(0.2 * loud, abs=3)
-    assert rows.min() >= TOP
-
-
-@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+@pytest.mark.parametrize("channels", [1, 4])
 def test_each_channel_has_its_waveform(channels):
     sound = np.stack([tone(500.0, channel, channel + 1.0) for channel in range(channels)], axis=1)
     columns, rows = colored(draw(sound, RATE), WAVE)
@@ -102,19 +85,8 @@ def test_words_stand_below_the_time_at_which_they_were_said():
     edges = [(x - LEFT) / PANEL * 4.0 for x in (columns.min(), columns.max())]
     assert edges == pytest.approx([1.5, 2.0], abs=0.02)
     assert rows.min() > bare.size[1] - TOP
-    columns, _ = colored(picture, FILLS[ROBOT])
-    edges = [(x - LEFT) / PANEL * 4.0 for x in (columns.min(), columns.max())]
-    assert edges == pytest.approx([0.5, 3.5], abs=0.02)
-    late = draw(sound, RATE, [Turn(PERSON, SAYS, "Yes!", 4.5, 5.0)])  # after the recording
-    assert len(colored(late, FILLS[PERSON])[0]) == 0
-
-
-def test_silence_and_clicks_are_drawn_and_what_cannot_be_is_refused():
-    for frames in (1, 7, 300):
-        assert draw(np.zeros(frames), RATE).size == draw(np.ones(frames), RATE).size
-    for shape in ((0,), (0, 2), (100, 5), (100, 0)):
-        with pytest.raises(ValueError, match="1 to 4 channels"):
-            draw(np.zeros(shape), RATE)
+    with pytest.raises(ValueError, match="1 to 4 channels"):
+        draw(np.zeros((100, 5)), RATE)
 
 
 def test_a_record_comes_back_as_it_was_and_one_that_is_wrong_is_refused(tmp_path):
@@ -124,10 +96,7 @@ def test_a_record_comes_back_as_it_was_and_one_that_is_wrong_is_refused(tmp_path
     good = json.loads(path.read_text())
     for change, told in [
         ({"who": "cat"}, "'cat' 'says'"),
-        ({"what": "thinks"}, "'robot' 'thinks'"),
         ({"ended": 0.0}, "from 0.5 s to 0.0 s"),
-        ({"began": float("nan")}, "from nan s"),
-        ({"began": "soon"}, "soon"),
     ]:
         first, *rest = good["turns"]
         path.write_text(json.dumps({**good, "turns": [{**first, **change}, *rest]}))
@@ -153,11 +122,7 @@ def test_the_example_draws_a_file_with_words_or_tells_what_is_wrong(tmp_path, mo
         return example.main(), capsys.readouterr().out
 
     missing = [sound, "--words", tmp_path / "missing.json"]
-    for options, told in [
-        ([tmp_path / "none.wav"], "none.wav"),
-        ([tmp_path / "no.wav"], "no.wav"),
-        (missing, "cannot be read"),
-    ]:
+    for options, told in [([tmp_path / "no.wav"], "no.wav"), (missing, "cannot be read")]:
         status, printed = run(*options)
         assert status == 1 and told in printed and not output.exists()
     status, printed = run(sound, "--words", words)

@@ -8,16 +8,9 @@ import pytest
 
 from nao_library_modules import light_goals
 from nao_library_modules.colours import from_integer, named_colours, parse_colour, read_colours, to_integer
-from nao_library_modules.demo_lights import eye_devices
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.light_names import LightNames, UnknownLight, colour_part
-from nao_library_modules.light_state import (
-    light_intensity,
-    mean_colour,
-    mean_intensity,
-    memory_keys,
-    restoring_calls,
-)
+from nao_library_modules.light_state import light_intensity, mean_colour, mean_intensity, memory_keys, restoring_calls
 
 TWO = ["LeftFaceLeds", "RightFaceLeds"]
 RED, GREEN, BLUE = EYE = [f"Face/Led/{part}/Left/0Deg/Actuator/Value" for part in ("Red", "Green", "Blue")]
@@ -40,39 +33,27 @@ def test_one_value_for_all_lights_or_one_each():
     assert light_goals.colours(TWO, [], "cyan") == [(0, 1, 1), (0, 1, 1)]
     for lights, values, text in (
         (TWO, [0.1, 0.2, 0.3], r"3 values for 2 lights: allowed are 1 \(for all\) or 2 \(1 each\)"),
-        (TWO, [], r"0 values for 2 lights: allowed are 1 \(for all\) or 2 \(1 each\)"),
         (["Brain0"], [0.1, 0.2], "2 values for 1 light: allowed are 1$"),
     ):
         refused(f"field i_values: {text}", light_goals.intensities, lights, values)
     text = r"4 values for the colours of 2 lights: allowed are 3 \(for all\) or 6"
     refused(text, light_goals.colours, TWO, [0, 1, 0, 1], "")
     refused("field i_values: there is a colour in str_param already", light_goals.colours, TWO, [0, 1, 0], "green")
-    for value in (-0.1, 1.5, NAN, INF):
+    for value in (-0.1, 1.5, NAN):
         refused(r"field i_values: .* each within 0\.\.1", light_goals.intensities, ["Brain0"], [value])
         refused(r"field i_values: .* each within 0\.\.1", light_goals.colours, ["FaceLeds"], [0, value, 0], "")
 
 
-def test_colour_steps_from_numbers_or_names():
+def test_colour_steps_from_numbers_or_names_times_and_angles():
     assert light_goals.colour_steps([0.5, 1.0], [1, 0, 0, 0, 1, 0], "") == [(1, 0, 0), (0, 1, 0)]
     assert light_goals.colour_steps([0.5, 1.0], [], "red, #00FF00") == [(1, 0, 0), (0, 1, 0)]
-    for values, words, text in (
-        ([1, 0, 0], "", "field i_values: 3 values for 2 times: allowed are 6"),
-        ([], "red", "field str_param: 1 colour for 2 times: allowed are 2"),
-        ([], "red, grene", "field str_param: unknown colour ' grene'"),
-    ):
-        refused(text, light_goals.colour_steps, [0.5, 1.0], values, words)
-
-
-def test_times_seconds_and_angles():
+    text = "field i_values: 3 values for 2 times: allowed are 6"
+    refused(text, light_goals.colour_steps, [0.5, 1.0], [1, 0, 0], "")
     light_goals.require_times([0.1, 0.2, 5.0])
     for times in ([], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [-1.0], [NAN], [INF]):
         refused("field times", light_goals.require_times, times)
     light_goals.require_seconds("duration", 0.0, True)
-    light_goals.require_seconds("duration", 1.0, False)
-    text = "field duration: 0.0 is not allowed: more than 0 s"
-    refused(text, light_goals.require_seconds, "duration", 0.0, False)
-    for value in (-1.0, NAN, INF):
-        refused("field rotation_time", light_goals.require_seconds, "rotation_time", value, True)
+    refused("field rotation_time", light_goals.require_seconds, "rotation_time", INF, True)
     light_goals.require_angle(0)
     light_goals.require_angle(360)
     for angle in (-1, 361):
@@ -88,19 +69,11 @@ def test_colours_as_text_and_as_integers(tmp_path):
     for text in ("#FFF", "0xGG0000", "", "FF0000", "#FF0000 #00FF00"):
         refused("'#RRGGBB', '0xRRGGBB' or one of white, red", parse_colour, text)
     refused("unknown colour 'grean': did you mean 'green'", parse_colour, "grean")
-    for rgb in (0x000000, 0xFFFFFF, 0x123456, 0x00FF80):
-        assert to_integer(from_integer(rgb)) == rgb
+    assert to_integer(from_integer(0x123456)) == 0x123456
     assert set("white red green blue yellow magenta cyan".split()) <= set(named_colours())
-    for entry in ([1, 0], [0, 0, 2]):
-        path = tmp_path / "colours.json"
-        path.write_text(json.dumps({"odd": entry}))
-        with pytest.raises(ValueError, match="odd"):
-            read_colours(path)
-
-
-def test_each_eye_of_the_demonstration_has_eight_devices_of_each_colour():
-    green = eye_devices(0.0, 1.0, 0.0)
-    assert len(green) == 2 * 8 * 3 and {name.split("/")[2] for name, value in green.items() if value} == {"Green"}
+    (tmp_path / "colours.json").write_text(json.dumps({"odd": [0, 0, 2]}))
+    with pytest.raises(ValueError, match="odd"):
+        read_colours(tmp_path / "colours.json")
 
 
 # Names
@@ -117,8 +90,6 @@ def test_groups_lights_and_leds_are_used_alike():
     assert [names.is_coloured(name) for name in ("Eye", "Head", "Brain0", "Reds", RED)] == [True, True] + [False] * 3
     with pytest.raises(UnknownLight, match="unknown light 'Brain': did you mean 'Brain0'"):
         names.expand(["Brain"])
-    with pytest.raises(UnknownLight, match="listLEDs and listGroups tell the names"):
-        names.expand(["zzzzzz"])
     assert names.with_group("Mine", ["Eyes", "Brain0"]).groups["Mine"] == ("Eye", "Brain0")
     assert not names.knows("Mine"), "a new group is a new dictionary"
     assert [colour_part(device) for device in (*EYE, BRAIN)] == ["Red", "Green", "Blue", ""]

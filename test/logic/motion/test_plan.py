@@ -81,18 +81,6 @@ def test_durations_add_up_for_each_function_and_touched_joints_come_once():
     assert list(plan.touched) == ["HeadPitch", "HeadYaw", "RHand"]
 
 
-def test_nothing_is_asked_of_the_robot_before_a_function_needs_it():
-    def fail():
-        raise AssertionError("the robot was asked")
-
-    plan = MotionPlan(lambda: FACTS, fail)
-    plan.begin_function(1)
-    plan.touch(["HeadYaw"])
-    plan.takes(1.0)
-    with pytest.raises(AssertionError):
-        plan.angle("HeadYaw")
-
-
 def test_times_rise_from_above_0_and_a_fraction_of_0_is_the_default():
     for times in ([], [0.0], [1.0, 1.0], [2.0, 1.0], [math.inf]):
         refused("times", require_rising, times)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import errno
 import json
 import math
-from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -43,6 +41,8 @@ def test_between_key_frames_no_sample_is_farther_off_than_allowed(angles, tolera
     wave = RecordedMotion(("a",), tuple(i / 50.0 for i in range(len(angles))), tuple((a,) for a in angles))
     thin = wave.key_frames(tolerance)
     assert set(thin.times) <= set(wave.times) and thin.times[-1] == wave.times[-1]
+    line = RecordedMotion(("a", "b"), (0.0, 0.5, 1.0), ((0.0, 0.0), (0.5, -1.0), (1.0, -2.0)))
+    assert line.key_frames().times == (0.0, 1.0)
     for time, (angle,) in zip(wave.times, wave.angles):
         after = next(i for i, t in enumerate(thin.times) if t >= time)
         before = max(after - 1, 0)
@@ -52,27 +52,14 @@ def test_between_key_frames_no_sample_is_farther_off_than_allowed(angles, tolera
         assert abs(line - angle) <= tolerance + 1e-9
 
 
-def test_a_straight_line_needs_two_key_frames_and_a_wave_some():
-    times = tuple(i / 10.0 for i in range(11))
-    line = RecordedMotion(("a", "b"), times, tuple((t, -2.0 * t) for t in times))
-    assert line.key_frames().times == (0.0, 1.0)
-    fine = tuple(i / 50.0 for i in range(151))
-    wave = RecordedMotion(("a",), fine, tuple((math.sin(3.0 * t),) for t in fine))
-    assert len(wave.key_frames(0.05).times) < len(wave.key_frames(math.radians(0.2)).times) < len(fine) / 2
-
-
 def test_what_is_written_is_read_and_a_broken_file_is_told_with_what_is_wrong():
     assert motion_of(MOTION.to_content(), "wave") == MOTION
-    for version in ({}, {"version": 2}, {"version": "x"}):
-        with pytest.raises(BadGoal, match="motion 'wave': its version is .*; known: 1"):
-            motion_of({"joints": ["a"], "samples": [[0.0, 1.0]], **version}, "wave")
+    with pytest.raises(BadGoal, match="motion 'wave': its version is .*; known: 1"):
+        motion_of({"joints": ["a"], "samples": [[0.0, 1.0]], "version": 2}, "wave")
     for content, problem in (
-        (None, "no joints or no samples"), ({"joints": ["a"]}, "no joints or no samples"),
-        ({"joints": [], "samples": [[0.0]]}, "no list of names"),
+        ({"joints": ["a"]}, "no joints or no samples"), ({"joints": [], "samples": [[0.0]]}, "no list of names"),
         ({"joints": ["a", "a"], "samples": [[0.0, 1.0, 1.0]]}, "comes twice"),
-        ({"joints": ["a"], "samples": []}, "samples is no list"),
         ({"joints": ["a"], "samples": [[0.0, 1.0], [0.5]]}, "sample 1"),
-        ({"joints": ["a"], "samples": [[0.0, "x"]]}, "sample 0"),
         ({"joints": ["a"], "samples": [[0.0, math.nan]]}, "sample 0"),
         ({"joints": ["a"], "samples": [[0.1, 1.0]]}, "do not rise from 0"),
         ({"joints": ["a"], "samples": [[0.0, 1.0], [0.0, 1.0]]}, "do not rise from 0"),
@@ -105,34 +92,13 @@ def test_motions_are_saved_listed_renamed_and_deleted(store):
     store.rename("wave", "greet")
     store.delete("Bow 2")
     assert store.names() == ["greet"]
-
-
-@pytest.mark.parametrize("name", ["", "../wave", "a/b", ".hidden", "/tmp/wave", "a\\b", "wave\n"])
-def test_no_name_leads_out_of_the_folder(store, name):
-    for action in (store.load, store.delete, lambda n: store.save(n, MOTION), lambda n: store.rename(n, "x")):
-        with pytest.raises(BadGoal, match="is no name for a motion"):
-            action(name)
-
-
-def test_files_that_are_no_motions_and_files_that_cannot_be_changed_are_told(store, tmp_path, monkeypatch):
-    store.save("wave", MOTION)
-    for text in ("{", "5", "joints: [a]\n", "\x00"):
-        store.path("wave").write_text(text)
-        with pytest.raises(BadGoal, match="motion 'wave'"):
-            store.load("wave")
-    (tmp_path / "file").write_text("")
-    with pytest.raises(BadGoal, match="cannot be written"):
-        MotionStore(tmp_path / "file" / "motions").save("wave", MOTION)
-
-    def refuse(*_, **__):
-        raise OSError(errno.ENOSPC, "No space left")
-
-    monkeypatch.setattr(Path, "rename", refuse)
-    monkeypatch.setattr(Path, "unlink", refuse)
-    with pytest.raises(BadGoal, match="motions/wave.yaml cannot be renamed to greet.yaml: No space left"):
-        store.rename("wave", "greet")
-    with pytest.raises(BadGoal, match="motions/wave.yaml cannot be deleted: No space left"):
-        store.delete("wave")
+    for name in ("", "../wave", ".hidden", "wave\n"):
+        for action in (store.load, store.delete, lambda n: store.save(n, MOTION), lambda n: store.rename(n, "x")):
+            with pytest.raises(BadGoal, match="is no name for a motion"):
+                action(name)
+    store.path("greet").write_text("joints: [a]\n")
+    with pytest.raises(BadGoal, match="motion 'greet'"):
+        store.load("greet")
 
 
 # Walks
@@ -166,11 +132,7 @@ def test_a_record_comes_back_as_it_was_and_another_file_is_refused(tmp_path):
     path = tmp_path / "walk.json"
     save(WALK, path)
     assert load(path) == WALK
-    record = {"format": "nao_walk_record"}
-    for text, problem in (
-        ("", "cannot be read"), ("[]", "format"), (json.dumps(record), "samples"),
-        (json.dumps({**record, "samples": [{"left": [0, 0]}]}), "wrong"),
-    ):  # fmt: skip
+    for text, problem in (("[]", "format"), (json.dumps({"format": "nao_walk_record"}), "samples")):
         path.write_text(text, encoding="utf-8")
         with pytest.raises(WalkRecordError, match=f"walk.json.*{problem}"):
             load(path)

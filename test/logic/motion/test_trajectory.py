@@ -41,6 +41,8 @@ def test_many_points_for_many_joints_or_one_value_for_all():
 
 
 def test_relative_values_are_told_to_the_robot_or_added_to_the_start():
+    with pytest.raises(BadGoal, match=r"HeadPitch is to be 1.2: 0 to 1"):
+        check_range(read(["Head"], point(1, [0.5, 1.2])), 0.0, 1.0)
     frames = read(["Head"], point(1, [0.1, -0.1]), relative=True)
     assert frames.interpolation_arguments()[-1] is False
     assert frames.absolute([1.0, 2.0]).values == ((1.1,), (1.9,))
@@ -83,31 +85,20 @@ def test_a_pose_of_the_whole_h25_body_fits_a_robot_without_wrists_and_hands():
 @pytest.mark.parametrize(
     "names, points, field, words",
     [
-        ([], [point(1, [0.0])], "joint_names", "no joint is named"),
         (["HeadJaw"], [point(1, [0.0])], "joint_names", "did you mean 'HeadYaw'"),
         (["Head", "HeadYaw"], [point(1, [0.0])], "joint_names", "named twice: HeadYaw"),
         (["Head"], [], "points", "no point"),
         (["Body"], [point(1, [0.0, 0.0])], "points[0].positions", "2 values for 3 joints"),
-        (["Head"], [point(1, [0, 0]), point(2, [])], "points[1].positions", "0 values for 2 joints"),
         (["HeadYaw"], [point(0, [0.0])], "points[0].time_from_start", "above 0 s"),
-        (["HeadYaw"], [point(-1, [0.0])], "points[0].time_from_start", "above 0 s"),
         (["HeadYaw"], [point(2, [0]), point(2, [1])], "points[1].time_from_start", "2 s after 2 s"),
         (["HeadYaw"], [point(1, [float("nan")])], "points[0].positions", "finite"),
         (["HeadYaw"], [point(1, [0], [1]), point(2, [0])], "points[1].velocities", "point 1 has no"),
-        (["Head"], [point(1, [0, 0], [1, 2, 3])], "points[0].velocities", "3 values for 2"),
     ],
 )
 def test_what_is_wrong_is_named(names, points, field, words):
     with pytest.raises(BadGoal) as caught:
         read(names, *points)
     assert caught.value.field == f"trajectory.{field}" and words in str(caught.value)
-
-
-def test_stiffness_has_a_range():
-    frames = read(["Head"], point(1, [0.5, 1.2]))
-    with pytest.raises(BadGoal, match=r"HeadPitch is to be 1.2: 0 to 1"):
-        check_range(frames, 0.0, 1.0)
-    check_range(frames, 0.0, 1.2)
 
 
 # Pose libraries
@@ -143,19 +134,13 @@ def test_version_2_is_in_radians_and_older_in_degrees(poses, tmp_path):
     library = read_poses(config_file("poses.xap"))
     assert set(library) == {"ArmsForward", "HandsOnHips"} and all(len(pose) >= 8 for pose in library.values())
     for positions, problem in (
-        ((), "holds no position"), ((position(name=""),), "position 1 has no name"),
         ((position(), position()), "two positions are called 'Nod'"), ((position(content=""),), "Nod: no motors"),
-        ((position(content=motors(HeadYaw="far")),), "HeadYaw has the value 'far'"),
         ((position(content=motors(HeadYaw="nan")),), "HeadYaw has the value 'nan'"),
-        ((position(content=motors(HeadYaw=1) * 2),), "HeadYaw comes twice"),
     ):  # fmt: skip
         with pytest.raises(BadPoseFile, match=problem):
             poses(*positions)
     with pytest.raises(BadPoseFile, match="No such file"):
         read_poses(tmp_path / "nothing.xap")
-    (tmp_path / "text.xap").write_text("poses")
-    with pytest.raises(BadPoseFile, match="no XML"):
-        read_poses(tmp_path / "text.xap")
 
 
 # What comes with the library

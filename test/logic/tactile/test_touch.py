@@ -29,19 +29,11 @@ def test_sensors_are_known_by_short_names_events_devices_and_groups():
         sensors_of(["head", "frot head"])
 
 
-def test_a_press_is_told_and_a_release_is_not():
+def test_presses_are_told_and_releases_of_what_was_pressed_before():
     watch = TouchWatch(Wanted(PRESS), [], 0.0)
     assert (watch.tell("chest", True, 1.0), watch.tell("chest", False, 1.5), watch.pressed) == (["chest"], [], [])
-
-
-def test_what_is_pressed_already_is_no_press_unless_it_is_told_of():
     watch = TouchWatch(Wanted(PRESS), ["chest"], 0.0)
     assert watch.pressed == ["chest"] and watch.tell("chest", False, 0.5) == []
-    watch = TouchWatch(Wanted(PRESS), ["chest"], 0.0)
-    assert (watch.tell("chest", True, 0.1), watch.tell("chest", True, 0.2)) == (["chest"], [])
-
-
-def test_a_release_counts_for_what_was_pressed_before():
     watch = TouchWatch(Wanted(RELEASE), ["chest"], 0.0)
     assert (watch.tell("left bumper", False, 0.1), watch.tell("chest", False, 0.2)) == ([], ["chest"])
 
