@@ -16,7 +16,6 @@ from nao_library_modules.process_modules import (
     do,
     fail,
     top_level,
-    uninterrupted,
     wait_for,
     wait_until,
 )
@@ -178,9 +177,6 @@ class Log:
                 fail(NavigationGoalNotReached, f"{word} is far", word=word)
             if how == "bug":
                 raise KeyError(word)
-            if how == "protected":
-                with uninterrupted():
-                    until_let()
             if how == "stumble at the end":
                 forever()
             return word
@@ -195,21 +191,18 @@ class _Logs:
 
     Attributes:
         asked: How many commands it was given.
-        requests: They.
     """
 
     def __init__(self, log, name=""):
         super().__init__(name)
         self.log = log
         self.asked = Fluent("asked", 0)
-        self.requests = []
 
     def execute(self, command):
         return self.log.carry_out(command)
 
     def submit(self, request):
         super().submit(request)
-        self.requests.append(request)
         self.asked.update(lambda count: count + 1)
 
 

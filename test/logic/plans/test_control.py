@@ -9,7 +9,6 @@ from plan_tools import Beside, at_once, fails, forever, seen
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import (
-    ManipulationPoseUnreachable,
     NavigationGoalNotReached,
     ObjectUnreachable,
     TaskEvaporatedFailure,
@@ -60,28 +59,6 @@ def test_par_ends_its_other_branches_at_the_first_failure_and_waits_until_they_h
     plan = p.do(p.par, stays("a", put_right), stays("b", put_right), stays.once(2, no_ball))
     fails(ObjectUnreachable, "no ball", plan)
     assert sorted(stays.ended) == ["a", "b"] and right == [True, True]
-
-
-def test_par_raises_the_first_failure_though_others_fail_while_they_are_ended(stays):
-    late = p.do(p.fail, ManipulationPoseUnreachable, "while it was ended").call
-    fails(NavigationGoalNotReached, "first", lambda: p.par(
-        stays("a", late), stays.once(1, p.do(p.fail, NavigationGoalNotReached, "first").call)
-    ))  # fmt: skip
-
-
-def test_a_hundred_branches_fail_with_the_one_that_failed_first():
-    gate = p.Fluent("gate", -1)
-
-    def branch(number):
-        p.wait_until(lambda: gate.value >= number, [gate])
-        gate.update(lambda value: max(value, number + 1))
-        p.fail(f"branch {number}")
-
-    def begin():
-        gate.value = 0
-        forever()
-
-    fails(p.PlanFailure, "branch 0$", lambda: p.par(begin, *(p.do(branch, number) for number in range(100))))
 
 
 @pytest.mark.parametrize("construct", [p.pursue, p.try_all])
@@ -199,15 +176,6 @@ def test_a_branch_that_somebody_ends_is_a_failure_of_its_construct(stays):
     assert sorted(stays.ended) == ["a", "b"]
 
 
-def test_a_branch_of_try_all_that_somebody_ends_has_failed(stays):
-    plan = Beside(lambda: p.try_all(stays("a"), p.do(p.fail, "no")))
-    seen(stays.there)
-    plan.root.find("a").evaporate("enough of it")
-    with pytest.raises(p.CompositeFailure) as caught:
-        plan.ended()
-    assert isinstance(caught.value.failures[0], TaskEvaporatedFailure)
-
-
 def test_the_end_of_a_branch_is_not_caught_by_accident():
     caught = []
 
@@ -219,17 +187,6 @@ def test_the_end_of_a_branch_is_not_caught_by_accident():
 
     assert p.top_level(lambda: p.pursue(careless, lambda: "over")) == "over"
     assert caught == []
-
-
-def test_a_plan_that_is_ended_before_its_branches_begin_begins_none():
-    done = []
-
-    def body():
-        p.current_task().evaporate("at once")
-        p.par(p.do(done.append, 1), p.do(done.append, 2))
-
-    fails(TaskEvaporatedFailure, "at once", body)
-    assert done == []
 
 
 def test_the_tree_tells_what_came_of_everything(run_plan):
@@ -266,22 +223,3 @@ def test_the_trace_tells_how_each_task_ended_within_its_parent_and_survives_json
         assert parent.began <= record.began <= record.ended <= parent.ended
     lines = str(trace).split("\n")
     assert lines[0].startswith("+ plan  ") and [line for line in lines if line.startswith("    ! first  ('no')")]
-
-
-def test_a_trace_is_taken_while_the_plan_grows():
-    stop = p.Fluent("stop", False)
-
-    def grow():
-        while not stop.value:
-            p.par(p.do(int, "1"), p.do(int, "2"))
-            p.checkpoint()
-
-    plan = Beside(lambda: p.par(grow, grow))
-
-    def look():
-        traces = [p.trace_of(plan.root) for _ in range(10)]
-        return all(p.Trace.from_json(trace.to_json()) == trace for trace in traces)
-
-    assert at_once(look, look) == [True, True]
-    stop.value = True
-    plan.ended()

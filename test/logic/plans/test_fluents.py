@@ -1,35 +1,12 @@
-"""Fluents: networks, pulses, and no wake-up that is lost, however many threads change them."""
+"""Fluents: networks, pulses, and no wake-up that is lost."""
 
 from __future__ import annotations
 
-import threading
-
 import numpy as np
 import pytest
-from plan_tools import Heard, at_once, fails, seen
+from plan_tools import Heard, fails, seen
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.process_modules.fluents import AnyFluent
-
-THREADS, ROUNDS = 4, 100
-
-
-def count(fluent, times=ROUNDS):
-    def body():
-        for _ in range(times):
-            fluent.update(lambda value: value + 1)
-
-    return body
-
-
-def beside(thread_body, plan):
-    """Run a plan while another thread does something."""
-    thread = threading.Thread(target=thread_body, daemon=True)
-    thread.start()
-    try:
-        return p.top_level(plan)
-    finally:
-        thread.join(10.0)
 
 
 def test_networks_follow_their_inputs():
@@ -64,8 +41,6 @@ def test_mistakes_are_told():
         bool(p.Fluent("door", True))
     with pytest.raises(p.PlanError, match="missed is 'twice': never, once or always"):
         p.pulsed(p.Fluent("a"), "twice")
-    with pytest.raises(TypeError, match="abstract.*pulses.*unlisten.*value"):
-        type("Nothing", (AnyFluent,), {"listen": lambda self, listener: None})("nothing")
 
 
 def test_wait_for_answers_the_value_or_false_when_the_time_is_over():
@@ -146,60 +121,6 @@ def test_nobody_listens_when_waits_have_ended_however_they_ended():
     too_hot = p.do(p.whenever, a, p.do(p.fail, "too hot").call)
     fails(p.PlanFailure, "too hot", lambda: p.par(too_hot, lambda: (p.sleep(0.002), setattr(a, "value", 1))))
     assert a.listeners == b.listeners == []
-
-
-def test_a_timeout_and_a_change_at_the_same_moment_agree():
-    for _ in range(20):
-        fluent = Heard("a", False)
-        timer = threading.Timer(0.002, setattr, (fluent, "value", "there"))
-        timer.start()
-        assert p.top_level(lambda fluent=fluent: p.wait_for(fluent, timeout=0.002)) in (False, "there")
-        timer.join()
-        assert fluent.listeners == []
-
-
-@pytest.mark.parametrize("missed, most", [("always", THREADS * ROUNDS), ("once", 1)])
-def test_updates_and_pulses_of_many_threads_are_all_counted(missed, most):
-    fluent = p.Fluent("a", 0)
-    pulses = p.pulsed(fluent, missed)
-    at_once(*[count(fluent)] * THREADS)
-    assert fluent.value == fluent.pulses == THREADS * ROUNDS
-    assert [pulses.take() for _ in range(most + 1)] == [True] * most + [False]
-
-
-def test_a_pulse_is_taken_by_one_of_many_who_take():
-    fluent = p.Fluent("a", 0)
-    pulses = p.pulsed(fluent, "always")
-
-    def take():
-        taken = 0
-        while fluent.pulses < 2 * ROUNDS or pulses.value:
-            taken += bool(pulses.take())
-        return taken
-
-    takers = at_once(take, take, count(fluent), count(fluent))[:2]
-    assert sum(takers) == 2 * ROUNDS
-
-
-def test_whenever_with_once_sees_the_last_value():
-    fluent, values = p.Fluent("a", 0), []
-    last = p.Fluent("last", False)
-
-    def body():
-        values.append(fluent.value)
-        last.value = values[-1] == ROUNDS
-
-    once = p.do(p.whenever, fluent, body, "once")
-    assert beside(count(fluent), lambda: p.pursue(once, lambda: p.wait_for(last, timeout=30.0)))
-    assert values == sorted(values)
-
-
-def test_networks_of_networks_wake_all_who_wait():
-    inputs = [p.Fluent(f"input {number}", 0) for number in range(5)]
-    total = sum(inputs[1:], inputs[0] + 0)
-    waits = [p.do(p.wait_for, total >= 5 * ROUNDS, 30.0)] * 3
-    hammer = lambda: at_once(*map(count, inputs))  # noqa: E731
-    assert beside(hammer, lambda: p.par(*waits)) == [True] * 3 and total.value == 5 * ROUNDS
 
 
 def test_a_value_is_handed_on_in_a_ring():

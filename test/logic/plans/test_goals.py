@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from plan_tools import Beside, fails, forever, seen
+from plan_tools import fails, forever
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.places import Place
@@ -80,18 +80,6 @@ def test_a_plan_that_does_not_reach_its_goal_fails_and_can_be_tried_again(is_ope
     assert len(tries) == 4
 
 
-def test_a_goal_that_somebody_else_reaches_meanwhile_is_reached(is_open, grippers):
-    p.def_goal(is_open)(lambda side, share: p.wait_until(lambda: grippers.value[side] >= share, [grippers]))
-    p.top_level(lambda: p.par(p.do(p.achieve, is_open("left")), opens(grippers)))
-
-
-def test_a_goal_of_goals_fails_with_what_failed(is_open):
-    everything = p.declare_goal(lambda: False)
-    p.def_goal(is_open)(lambda side, share: p.fail(NavigationGoalNotReached, "stuck"))
-    p.def_goal(everything)(lambda: p.par(p.do(p.achieve, is_open("left")), forever))
-    fails(NavigationGoalNotReached, "stuck", p.do(p.achieve, everything()))
-
-
 def test_a_goal_that_nobody_can_check_is_always_done():
     @p.declare_goal
     def greeted(name):
@@ -112,8 +100,6 @@ def test_mistakes_about_goals_are_told(is_open):
     fails(p.PlanError, "'open' is no occasion", p.do(p.achieve, "open"))
     with pytest.raises(p.PlanError, match="the pattern 3"):
         p.def_goal(is_open, p.ANY, p.ANY, p.ANY)
-    with pytest.raises(p.PlanError, match="arguments of goals have names and no stars"):
-        p.declare_goal(lambda *sides: True)
 
 
 def test_plans_are_tasks_wherever_they_are_called_and_top_level_plans_begin_a_tree_or_join_one(run_plan):
@@ -174,8 +160,6 @@ def test_what_is_perceived_is_known_and_examined(eyes):
     second = p.top_level(lambda: p.perceive(desig))
     assert p.desig_equal(first, second) and p.desig_equal(desig, second)
     assert p.current_desig(desig).reference().position.x == 1.1 and second.reference().name == "ball"
-    found = p.top_level(lambda: p.par(*[p.do(p.perceive, a_ball())] * 6))
-    assert {each.reference().name for each in found} == {"ball"}
 
 
 def test_the_best_of_several_is_taken_and_all_of_them_when_that_is_asked(eyes):
@@ -199,7 +183,6 @@ def test_what_is_not_seen_fails_and_can_be_looked_for_elsewhere(eyes):
     eyes.balls = [(None, 1.0)]
     fails(PerceptionObjectNotFound, "was seen, but not where it is", lambda: p.perceive(a_ball()))
     fails(p.PlanError, "is no object with a type", lambda: p.perceive(p.a(p.object_, name="Anna")))
-    fails(p.PlanError, "perceive 'some': a, all, the", lambda: p.perceive(a_ball(), "some"))
 
 
 class Walker(p.ProcessModule):
@@ -250,21 +233,6 @@ def test_a_place_is_lost_ten_times_and_not_more_often(walker):
     fails(NavigationHighLevelFailure, "lost 10 times", walker.at(body))
     assert walker.walks == [1.0] * 10
     fails(p.PlanError, "is no location", lambda: p.at_location(a_ball(), body, walker.here))
-
-
-def test_a_failure_of_the_body_is_no_loss_of_the_place(walker):
-    fails(p.PlanFailure, "cold", walker.at(p.do(p.fail, "cold")))
-    assert len(walker.walks) == 1
-
-
-def test_a_suspended_plan_at_a_place_goes_on_there(walker):
-    there, go = p.Fluent("there", False), p.Fluent("go", False)
-    plan = Beside(walker.at(lambda: (setattr(there, "value", True), p.wait_for(go), "done")[-1]))
-    seen(there)
-    plan.root.suspend()
-    go.value = True
-    plan.root.wake_up()
-    assert plan.ended() == "done" and len(walker.walks) == 1
 
 
 def test_places_that_cannot_be_reached_give_way_to_the_next_ten(walker):

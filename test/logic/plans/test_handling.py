@@ -8,7 +8,6 @@ from plan_tools import Beside, fails, forever, seen
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import (
     LowLevelFailure,
-    ManipulationPoseUnreachable,
     NavigationGoalNotReached,
     NavigationHighLevelFailure,
     NavigationLowLevelFailure,
@@ -81,26 +80,6 @@ def test_what_a_handler_does_not_answer_goes_to_the_outer_ones():
     fails(NavigationGoalNotReached, "try 1", handled(Stumbling(1), never))
 
 
-def test_a_handler_may_fail_with_something_else_and_outer_handlers_see_that():
-    worse = lambda failure: p.fail(NavigationHighLevelFailure, f"for good: {failure}")  # noqa: E731
-    inner = p.do(p.with_failure_handling, Stumbling(1), {NavigationGoalNotReached: worse})
-    outer = {NavigationGoalNotReached: p.give, NavigationHighLevelFailure: lambda failure: p.give(str(failure))}
-    assert handle(inner, outer) == "for good: try 1"
-
-
-def test_failures_of_branches_are_handled_around_their_par(stays):
-    tries = []
-
-    def again(failure):
-        tries.append(type(failure))
-        stays.there.value = 0
-        p.retry() if len(tries) < 3 else p.give("enough")
-
-    body = p.do(p.par, stays("walk"), stays.once(1, p.do(p.fail, ManipulationPoseUnreachable, "too far").call))
-    assert handle(body, {ManipulationPoseUnreachable: again}) == "enough"
-    assert stays.ended == ["walk"] * 3 and len(tries) == 3
-
-
 def test_the_end_of_a_task_is_no_failure_that_its_handlers_see(stays):
     seen_failures = []
     plan = Beside(handled(stays("a").call, {p.PlanFailure: lambda failure: seen_failures.append(failure) or p.give()}))
@@ -146,39 +125,6 @@ def test_a_counter_can_be_reset_and_an_unknown_one_is_an_error():
 
     assert handle(Stumbling(3), {p.PlanFailure: again}, walk=1) == "there"
     fails(p.PlanError, "no retry counter 'wakl': there are walk", handled(Stumbling(1), counted("wakl"), walk=1))
-
-
-def test_an_inner_retry_does_not_use_up_the_outer_counter():
-    body, counts = Stumbling(99), []
-
-    def outer(failure):
-        counts.append(p.get_counter("tries"))
-        p.do_retry("tries")
-
-    inner = handled(body, counted("tries"), tries=2)
-    fails(p.PlanFailure, "try 6", handled(inner, {p.PlanFailure: outer}, tries=1))
-    assert counts == [1, 0] and body.tries == 6
-
-
-def test_counters_of_branches_count_apart_and_one_from_outside_counts_in_all():
-    def tries(number):
-        body = Stumbling(99)
-        handlers = {p.PlanFailure: lambda failure: (p.do_retry(f"tries {number}"), p.give())}
-        with p.with_retry_counters(**{f"tries {number}": number}):
-            p.with_failure_handling(body, handlers)
-        return body.tries
-
-    def outside():
-        with p.with_retry_counters(all=3):
-            body = Stumbling(99)
-            branch = lambda: p.with_failure_handling(body, {p.PlanFailure: lambda _: (p.do_retry("all"), p.give())})  # noqa: E731
-            p.seq(branch, branch)
-            left = p.get_counter("all")
-            p.reset_counter("all")
-            return body.tries, left, p.get_counter("all")
-
-    assert p.top_level(lambda: p.par(*(p.do(tries, number) for number in range(4)))) == [1, 2, 3, 4]
-    assert p.top_level(outside) == (5, 0, 3)
 
 
 def limited(limit, body):
@@ -228,22 +174,3 @@ def test_cleaning_up_happens_when_the_body_fails_and_when_the_plan_is_ended(stay
     plan.root.evaporate("over")
     plan.fails(TaskEvaporatedFailure, "over")
     assert done == ["clean_up"] * 2
-
-
-@pytest.mark.parametrize("inside", [True, False])
-def test_policies_nest_and_the_one_that_is_met_counts(inside, stays):
-    policies = [p.timeout_policy(1000.0), upright(stays.there)][:: 1 if inside else -1]
-    nested = lambda: p.with_policy(policies[0], lambda: p.with_policy(policies[1], stays("a")))  # noqa: E731
-    fails(PolicyCheckConditionMet, "upright", nested)
-    assert stays.ended == ["a"]
-
-
-def test_a_policy_is_a_failure_that_can_be_handled_and_the_body_tried_again():
-    tries = []
-
-    def body():
-        tries.append(True)
-        return forever() if len(tries) < 3 else "in time"
-
-    again = {PlanTimedOut: lambda failure: p.retry()}
-    assert handle(limited(0.01, body), again) == "in time" and len(tries) == 3

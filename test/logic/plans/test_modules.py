@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 
 import pytest
@@ -129,9 +128,6 @@ def test_cancelling_a_module_ends_what_it_does_and_what_waits(one, log, begun):
         plan.fails(TaskEvaporatedFailure, "cancelled")
     assert log.events.value == (("begun", "a"), ("over", "a"))
     state_of(one, ModuleState.WAITING)
-    offline = One(log, "another")
-    p.pm_cancel(offline)
-    assert p.pm_status(offline) is ModuleState.OFFLINE
 
 
 @pytest.mark.parametrize("name", ["one", "many"])
@@ -153,16 +149,6 @@ def test_a_plan_that_ends_cancels_what_it_asked_for_and_sees_it_end(one, log):
     assert log.words("over") == ["a", "b"]
 
 
-def test_one_of_several_commands_is_ended_and_the_others_go_on(many, log, begun):
-    plan = Beside(lambda: p.try_in_order(p.do(p.perform, to("wait", "a", "many"), name="a"), lambda: "second way"))
-    other = begun("b", "many")
-    log.wait("begun", "a")
-    plan.root.find("a").evaporate("not this")
-    assert plan.ended() == "second way"
-    log.let("b")
-    assert other.ended() == "b"
-
-
 def test_a_failure_ends_what_runs_beside_it_also_where_that_fails_while_it_is_ended(one, many, log):
     log.let("far")
     stumble = lambda: (log.happened("begun", "walk"), p.perform(to("stumble", "far", "many")))  # noqa: E731
@@ -171,15 +157,6 @@ def test_a_failure_ends_what_runs_beside_it_also_where_that_fails_while_it_is_en
     assert (one.state, many.state) == (ModuleState.WAITING, ModuleState.FAILED)
     second = lambda: (log.happened("begun", "a"), p.fail(NavigationGoalNotReached, "first"))  # noqa: E731
     fails(NavigationGoalNotReached, "first", lambda: p.par(performing("stumble at the end", "a"), second))
-
-
-def test_a_plan_waits_for_commands_that_put_things_right(one, log, begun):
-    plan = begun("a", how="protected")
-    plan.root.evaporate("over")
-    assert plan.root.join(SHORT) is False
-    log.let("a")
-    plan.fails(TaskEvaporatedFailure, "over")
-    assert log.words("over") == ["a"]
 
 
 def test_a_suspension_takes_commands_back_and_sends_them_again(one, many, log, begun):
@@ -200,54 +177,6 @@ def test_a_suspension_takes_commands_back_and_sends_them_again(one, many, log, b
     ended.root.evaporate("over")
     ended.fails(TaskEvaporatedFailure, "over")
     assert log.words("begun").count("c") == 1
-
-
-def test_a_suspended_plan_that_waits_for_its_turn_asks_again(one, log, begun):
-    first, second = begun("a"), in_line(one, "b")
-    second.root.suspend()
-    seen(one.requests[1].over)
-    log.let("a", "b")
-    assert first.ended() == "a" and log.words("begun") == ["a"]
-    second.root.wake_up()
-    assert second.ended() == "b"
-
-
-def test_what_was_done_when_the_suspension_came_is_not_done_again(log, begun):
-    module, suspended = One(log), []
-
-    def suspend_at_the_end(task):
-        if task.parent is None and task.state is p.TaskState.SUCCEEDED and not suspended:
-            suspended.append(True)
-            plan.root.suspend("just now")
-
-    module.observers.append(suspend_at_the_end)
-    with p.with_process_modules_running(module):
-        plan = begun("a")
-        log.let("a")
-        state_of(module, ModuleState.WAITING)
-        assert plan.root.join(SHORT) is False and plan.root.state is p.TaskState.SUSPENDED
-        plan.root.wake_up()
-        assert plan.ended() == "a" and log.words("begun") == ["a"]
-
-
-def test_plans_wait_for_an_offline_module_with_a_warning_and_go_on_when_it_starts(log):
-    module, warnings = One(log), p.Fluent("warnings", ())
-    handler, logger = logging.Handler(), logging.getLogger("nao_library_modules")
-    handler.emit = lambda record: warnings.update(lambda told: (*told, record.getMessage()))
-    logger.addHandler(handler)
-    try:
-        plans = [Beside(p.do(p.pm_execute, module, p.Command("one", "quick", {"word": word}))) for word in "abc"]
-        seen(p.fl_funcall(lambda told: len(told) == 3, warnings))
-    finally:
-        logger.removeHandler(handler)
-    assert "the process module one is offline: one: quick(word='a') waits for it" in warnings.value
-    plans[0].root.evaporate("too late")
-    plans[0].fails(TaskEvaporatedFailure, "too late")
-    plans[1].root.suspend()
-    with p.with_process_modules_running(module):
-        assert plans[2].ended() == "c"
-        plans[1].root.wake_up()
-        assert plans[1].ended() == "b"
 
 
 def test_stopping_ends_what_runs_and_what_waits(log, begun):
@@ -272,25 +201,25 @@ def test_modules_run_once_and_those_started_beside_one_that_cannot_are_stopped_a
     with pytest.raises(ProcessModuleRunning, match="one runs already"), p.with_process_modules_running(other, One(log)):
         pass
     assert (other.state, one.state) == (ModuleState.OFFLINE, ModuleState.WAITING)
-    with pytest.raises(ZeroDivisionError), p.with_process_modules_running(other):
-        1 / 0  # noqa: B018
-    assert other.state is ModuleState.OFFLINE
 
 
 def test_a_module_may_run_in_a_thread_of_ones_own_until_it_is_stopped(log):
-    module, left, go_on = One(log), threading.Event(), threading.Event()
-    thread = threading.Thread(target=lambda: (p.pm_run(module), left.set(), go_on.wait(LIMIT)))
+    module = One(log)
+    thread = threading.Thread(target=p.pm_run, args=(module,))
     thread.start()
     state_of(module, ModuleState.WAITING)
     assert p.top_level(lambda: p.pm_execute(module, to("quick", "a"))) == "a"
-    with pytest.raises(ProcessModuleRunning):
-        p.pm_run(module)
-    assert at_once(module.stop) == [None], "it does not wait for a thread that has left pm_run"
-    assert left.wait(LIMIT) and module.state is ModuleState.OFFLINE
-    go_on.set()
-    thread.join()
+    module.stop()
+    thread.join(LIMIT)
+    assert not thread.is_alive() and module.state is ModuleState.OFFLINE
+
+
+def test_plans_wait_for_an_offline_module_and_go_on_when_it_starts(log):
+    module = One(log)
+    plan = Beside(p.do(p.pm_execute, module, p.Command("one", "quick", {"word": "a"})))
+    assert plan.root.join(SHORT) is False
     with p.with_process_modules_running(module):
-        assert module.state is ModuleState.WAITING
+        assert plan.ended() == "a"
 
 
 def test_aliases_last_as_long_as_their_block_and_hide_others(one, many):
@@ -304,25 +233,6 @@ def test_aliases_last_as_long_as_their_block_and_hide_others(one, many):
     assert not p.available_process_module("hand")
 
 
-def test_aliases_of_plans_beside_each_other_do_not_take_each_others_away(one, many):
-    first_in, second_in, first_out = (p.Fluent(name, False) for name in ("first in", "second in", "first out"))
-
-    def first():
-        with p.with_process_module_aliases(hand="one"):
-            first_in.value = True
-            p.wait_for(second_in)
-        first_out.value = True
-
-    def second():
-        p.wait_for(first_in)
-        with p.with_process_module_aliases(foot="many"):
-            second_in.value = True
-            p.wait_for(first_out)
-            assert get_process_module("foot") is many and not p.available_process_module("hand")
-
-    p.top_level(lambda: p.par(first, second))
-
-
 def test_what_cannot_be_performed_is_told(one):
     assert p.top_level(lambda: wait_for_process_module_running("one", timeout=5.0))
     fails(NoMatchingProcessModule, "is for the process module foot, which does not run", performing("kick", "", "foot"))
@@ -331,9 +241,6 @@ def test_what_cannot_be_performed_is_told(one):
     fails(p.PlanError, "no designator of an action or a motion", lambda: p.perform(place))
     fails(DesignatorError, "its solution 3 is nothing that a process module", lambda: p.pm_execute(one, three))
     fails(DesignatorError, "", lambda: p.perform(p.an(p.action, type="juggling with knives")))
-    for base in (p.ProcessModule, p.AsynchronousProcessModule):
-        with pytest.raises(TypeError, match="abstract.*execute"):
-            type("Idle", (base,), {"name": "idle"})()
 
 
 def watched(module):
@@ -347,19 +254,6 @@ def watched(module):
 
     module.watchers = Noted(module.watchers)
     return count
-
-
-def test_a_monitor_waits_for_its_designator_only_and_sees_the_first_end(many):
-    for turn in range(10):
-        first, count = to("quick", f"first {turn}", "many"), watched(many)
-
-        def act(first=first, count=count):
-            p.wait_for(count)
-            for each in (performing("quick", "x", "many"), p.do(p.perform, first)):
-                p.par(each, *[performing("quick", "y", "many")] * 3)
-
-        monitor = p.do(p.monitor_process_module, "many", first)
-        assert p.top_level(lambda monitor=monitor, act=act: p.par(monitor, act))[0] == f"first {turn}"
 
 
 def test_monitors_see_results_failures_and_cancels(one, log):

@@ -28,8 +28,6 @@ class Memory:
 
     def subscribeToEvent(self, *arguments):
         event, module, method = arguments[0], arguments[1], arguments[-1]
-        if not event:
-            raise ValueError("an event needs a name")
         self._subscribers[event, module] = (method, arguments[2] if len(arguments) == 4 else "")
 
     def unsubscribeToEvent(self, event, module):
@@ -73,8 +71,6 @@ class Module:
     def __init__(self):
         self._begun = []
         self._cancelled = 0
-        self.changed = qi.Signal("(m)")
-        self.volume = qi.Property("i")
 
     def add(self, first, second):
         """Add two numbers."""
@@ -114,11 +110,6 @@ class Module:
 
     def fails(self):
         raise ValueError("too hot: 81 degrees")
-
-    def fails_as_robots_do(self):
-        promise = qi.Promise()
-        promise.setError("ALMotion::setAngles\n\tjoint Tail does not exist")
-        return promise.future()
 
     def refusesTwo(self, *arguments):
         if len(arguments) == 2:

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import itertools
-import os
 import socket
-import threading
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,19 +22,14 @@ class Buttons(ALModule):
     def __init__(self, name):
         ALModule.__init__(self, name)
         self.heard = []
-        self.threads = set()
 
     def on_touch(self, key, value, message):
         """Remember a touch."""
-        self.threads.add(threading.current_thread().name)
         self.heard.append((key, value, message))
         return value
 
     def two(self, key, value):
         self.heard.append((key, value))
-
-    def all_of_them(self, *arguments):
-        self.heard.append(arguments)
 
     def none(self):
         self.heard.append(())
@@ -45,17 +37,8 @@ class Buttons(ALModule):
     def fails(self, key, value, message):
         raise KeyError("a callback with a fault")
 
-    def leaves(self, key, value, message):
-        raise SystemExit(3)
-
-    def asks_the_robot(self, key, value, message):
-        return self.robot.add(value, 1)
-
     def sum_of(self, first, second=10):
         return np.float64(first + second)
-
-    def size_of(self, raw):
-        return [type(raw).__name__, len(raw)]
 
     def processRemote(self, channels, frames, time, sound):
         self.heard.append((channels, frames, time, sound))
@@ -70,10 +53,7 @@ def broker_to(robot, **options):
 
 @pytest.fixture
 def broker(robot):
-    robot.proxy()
-    before = set(sockets_to(robot))
     broker = broker_to(robot)
-    broker.sockets_before = before
     yield broker
     broker.shutdown()
 
@@ -111,11 +91,6 @@ def memory(robot):
         memory.unsubscribeToEvent(EVENT, module)
 
 
-def test_the_newest_broker_gives_the_address(broker):
-    assert naoqi.ALProxy("ALTest").add(1, 2) == 3
-    assert naoqi.ALProxy("ALTest").connection is broker.connection
-
-
 def test_without_a_broker_the_text_says_what_to_do():
     for use in (lambda: naoqi.ALProxy("ALTest"), lambda: Buttons("Buttons")):
         with pytest.raises(errors.BrokerError, match="create ALBroker"):
@@ -137,13 +112,6 @@ def test_a_broker_without_a_robot_fails(robot):
         naoqi.ALProxy("ALTest")
 
 
-def test_a_port_in_use_is_refused(robot):
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
-        with pytest.raises(errors.BrokerError, match=f"cannot listen on 127.0.0.1:{port}"):
-            ALBroker("testBroker", "", port, *robot.address)
-
-
 def test_shutdown_takes_modules_and_port_back(robot, eventually):
     broker = broker_to(robot)
     Buttons("Buttons")
@@ -159,12 +127,11 @@ def test_shutdown_takes_modules_and_port_back(robot, eventually):
         Buttons("Buttons")
 
 
-def test_events_call_the_module_in_order_and_in_one_thread(buttons, memory):
+def test_events_call_the_module_in_order(buttons, memory):
     memory.subscribeToEvent(EVENT, buttons.getName(), "on_touch")
     for value in range(20):
         assert memory.raiseEvent(EVENT, value) == [value]
     assert buttons.heard == [(EVENT, value, "") for value in range(20)]
-    assert buttons.threads == {f"naoqi module {buttons.getName()}"}
 
 
 def test_the_message_of_a_subscription_arrives(buttons, memory):
@@ -173,39 +140,19 @@ def test_the_message_of_a_subscription_arrives(buttons, memory):
     assert buttons.heard == [(EVENT, 1.0, "head")]
 
 
-@pytest.mark.parametrize("method, heard", [("two", (EVENT, 1.0)), ("all_of_them", (EVENT, 1.0, "")), ("none", ())])
+@pytest.mark.parametrize("method, heard", [("two", (EVENT, 1.0)), ("none", ())])
 def test_callbacks_may_take_fewer_arguments(buttons, memory, method, heard):
     memory.subscribeToEvent(EVENT, buttons.getName(), method)
     memory.raiseEvent(EVENT, 1.0)
     assert buttons.heard == [heard]
 
 
-@pytest.mark.parametrize("method, trace", [("fails", "KeyError"), ("leaves", "SystemExit")])
-def test_a_failing_callback_is_logged_and_kills_nothing(buttons, memory, caplog, method, trace):
-    memory.subscribeToEvent(EVENT, buttons.getName(), method)
+def test_a_failing_callback_is_logged_and_kills_nothing(buttons, memory, caplog):
+    memory.subscribeToEvent(EVENT, buttons.getName(), "fails")
     (answer,) = memory.raiseEvent(EVENT, 1.0)
-    assert trace in answer
-    assert f"in {method}" in caplog.text and trace in caplog.text  # with its trace
+    assert "KeyError" in answer and "in fails" in caplog.text
     memory.subscribeToEvent(EVENT, buttons.getName(), "on_touch")
     assert memory.raiseEvent(EVENT, 2.0) == [2.0]
-
-
-def test_a_callback_may_call_the_robot(buttons, memory):
-    buttons.robot = naoqi.ALProxy("ALTest")
-    memory.subscribeToEvent(EVENT, buttons.getName(), "asks_the_robot")
-    assert memory.raiseEvent(EVENT, 4) == [5]
-
-
-def test_a_callback_may_subscribe_and_unsubscribe(buttons, memory, raised):
-    def once(key, value, message):
-        memory.unsubscribeToEvent(EVENT, buttons.getName())
-        buttons.heard.append(value)
-
-    buttons.once = once
-    buttons.BIND_PYTHON(buttons.getName(), "once")
-    memory.subscribeToEvent(EVENT, buttons.getName(), "once")
-    raised(1.0, [])  # at first by the callback, then because nobody listens any more
-    assert buttons.heard == [1.0]
 
 
 def test_a_module_is_called_through_a_proxy_like_any_other(robot, buttons):
@@ -218,8 +165,7 @@ def test_a_module_is_called_through_a_proxy_like_any_other(robot, buttons):
         proxy.sum_of(1, 2, 3, 4)
     with pytest.raises(errors.BadArguments):
         proxy.on_touch(1)
-    for hidden in ("_hidden", "heard", "exit", "BIND_PYTHON"):
-        assert not hasattr(proxy, hidden)
+    assert not hasattr(proxy, "_hidden") and not hasattr(proxy, "exit")
 
 
 def test_bind_python_serves_what_is_not_served_by_itself(buttons, memory, raised):
@@ -257,19 +203,15 @@ class TestAfterALoss:
         memory.subscribeToEvent(EVENT, buttons.getName(), "on_touch")
         memory.subscribeToEvent("Gone", buttons.getName(), "on_touch")
         memory.unsubscribeToEvent("Gone", buttons.getName())
-        task = memory.post.subscribeToEvent("", buttons.getName(), "on_touch")  # refused, so not to be made again
-        with pytest.raises(errors.NaoError):
-            memory.wait(task)
 
-    @pytest.mark.parametrize("harm, repair", [("kill", "start"), ("silence", "speak")])
     def test_modules_and_subscriptions_come_back(
-        self, robot, broker, buttons, memory, raised, states, eventually, caplog, harm, repair
+        self, robot, broker, buttons, memory, raised, states, eventually, caplog
     ):
         memory.subscribeToEvent("Other", "ALTest", "add")
         followed = states(broker.connection)
-        getattr(robot, harm)()
+        robot.kill()
         followed.wait_for("lost")
-        getattr(robot, repair)()
+        robot.start()
         followed.wait_for("lost", "connected")
         eventually(lambda: caplog.text.count("1 event subscriptions made again") == 2, "ours and the other one")
         assert f"modules registered again: {buttons.getName()}" in caplog.text
@@ -302,46 +244,6 @@ class TestAfterALoss:
         robot.proxy("Switch").leave(buttons.getName())
         raised(7.0, [7.0])
         assert buttons.heard == [(EVENT, 7.0, "")]
-
-    def test_a_broker_whose_own_session_breaks_serves_again(self, robot, broker, raised, caplog, eventually):
-        cut(set(sockets_to(robot)) - broker.sockets_before)
-        eventually(lambda: "made again" in caplog.text, "the log says so")
-        raised(6.0, [6.0])
-        assert broker.connection.generation == 1
-
-    def test_a_broker_that_was_shut_down_stays_so(self, robot, broker, buttons, memory, states):
-        broker.shutdown()
-        followed = states(broker.connection)
-        robot.kill()
-        followed.wait_for("lost")
-        robot.start()
-        followed.wait_for("lost", "connected")
-        assert buttons.getName() not in broker.connection.module_names()
-        assert memory.getSubscribers(EVENT) == []
-
-
-def sockets_to(robot):
-    """The sockets of this process that are connected to a robot, by number."""
-    for path in Path("/proc/self/fd").iterdir():
-        try:
-            if (
-                os.readlink(path).startswith("socket:")
-                and on(int(path.name), socket.socket.getpeername) == robot.address
-            ):
-                yield int(path.name)
-        except OSError:
-            continue  # gone by now, or connected to nobody
-
-
-def on(number, method, *arguments):
-    with socket.socket(fileno=os.dup(number)) as duplicate:
-        return method(duplicate, *arguments)
-
-
-def cut(numbers):
-    assert numbers
-    for number in numbers:
-        on(number, socket.socket.shutdown, socket.SHUT_RDWR)
 
 
 def subscribers(memory):

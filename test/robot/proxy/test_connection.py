@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import re
 import socket
-import threading
 import time
 
 import pytest
@@ -69,32 +68,13 @@ def test_the_same_proxy_works_again_when_the_robot_is_back(robot, states, harm, 
     followed = states(proxy.connection)
     getattr(robot, harm)()
     followed.wait_for("lost")
-    with pytest.raises(errors.RobotUnreachable, match="lost .* s ago .*reconnecting") as caught:
+    with pytest.raises(errors.RobotUnreachable, match="lost .* s ago .*reconnecting"):
         proxy.add(1, 2)
-    assert type(caught.value) is errors.RobotUnreachable
     getattr(robot, repair)()
     followed.wait_for("lost", "connected")
     assert proxy.add(1, 2) == 3
     assert method(3, 4) == 7
-    assert proxy.post.add(1, 1) > 0
     assert proxy.connection.generation == 2
-
-
-def test_losses_may_follow_one_another_and_are_a_line_each_in_the_log(robot, states, caplog):
-    caplog.set_level(logging.INFO, "naoqi")
-    proxy = robot.proxy()
-    followed, expected = states(proxy.connection), []
-    for _ in range(2):
-        robot.kill()
-        expected.append("lost")
-        followed.wait_for(*expected)
-        robot.start()
-        expected.append("connected")
-        followed.wait_for(*expected)
-        assert proxy.add(1, 1) == 2
-    lines = [each.getMessage() for each in caplog.records if each.levelno >= logging.WARNING]
-    assert len(lines) == 4 and all(proxy.connection.address in line for line in lines)
-    assert all("lost" in line for line in lines[::2]) and all("is back after" in line for line in lines[1::2])
 
 
 def test_a_robot_that_is_not_there_is_reported_at_once(robot):
@@ -114,24 +94,12 @@ def test_a_port_that_accepts_and_says_nothing_is_reported_in_time():
         assert time.monotonic() - start < SOON
 
 
-def test_an_attempt_that_failed_leaves_no_thread_behind(robot, eventually):
-    robot.kill()
-    before = threading.active_count()
-    with pytest.raises(errors.RobotUnreachable):
-        robot.proxy()
-    eventually(lambda: threading.active_count() <= before, "the threads of the attempt end")
-
-
 def test_a_lazy_proxy_may_be_there_before_the_robot(robot):
     robot.kill()
     proxy = robot.proxy(lazy=True)
     method = proxy.add
     with pytest.raises(errors.RobotUnreachable, match="not reached for"):
         method(1, 2)
-    with pytest.raises(errors.RobotUnreachable):
-        proxy.call_async("add", 1, 2)
-    with pytest.raises(errors.RobotUnreachable):
-        proxy.ping()
     robot.start()
     assert proxy.connection.wait_connected(10.0)
     assert method(1, 2) == 3
@@ -149,13 +117,6 @@ def test_a_module_may_appear_a_moment_after_the_robot(robot, states, in_thread):
     assert finish().get("value") == 2
 
 
-def test_waiting_for_a_robot_that_does_not_come_ends(robot):
-    robot.kill()
-    connection = naoqi.connection(*robot.address, wait=False)
-    assert connection.wait_connected(0.05) is False
-    assert connection.state == "connecting"
-
-
 def test_a_closed_connection_refuses_and_a_new_one_can_be_had(robot, states):
     proxy = robot.proxy()
     followed = states(proxy.connection)
@@ -167,58 +128,15 @@ def test_a_closed_connection_refuses_and_a_new_one_can_be_had(robot, states):
     assert robot.proxy().add(1, 2) == 3
 
 
-def test_closing_fails_the_call_under_way(robot, call_under_way):
-    naoqi.connection(*robot.address).close()
-    assert isinstance(call_under_way()["error"], errors.ConnectionLost)
-
-
-def test_a_listener_may_call_the_robot_fail_and_close(robot, states, caplog, patience):
-    proxy = robot.proxy(lazy=True)
-    answers, done = [], threading.Event()
-
-    def use(state):
-        answers.append((str(state), proxy.add(1, 1) if state == "connected" else None))
-
-    def fail(_state):
-        raise ValueError("a listener with a fault")
-
-    def close(state):
-        if state == "connected":
-            proxy.connection.close()
-        else:
-            done.set()
-
-    robot.kill()
-    naoqi.connection(*robot.address, wait=False).close()
-    proxy = robot.proxy(lazy=True)
-    for listener in (use, fail, close):
-        proxy.connection.add_listener(listener)
-    robot.start()
-    assert done.wait(patience)
-    assert answers == [("connected", 2), ("closed", None)]
-    assert "a listener with a fault" in caplog.text
-
-
-def test_closing_waits_for_those_who_are_still_inside_libqi(robot, monkeypatch):
+def test_a_removed_listener_hears_nothing(robot, states):
     connection = robot.proxy().connection
-    waits = []
-    monkeypatch.setattr(connection.presence, "wait_until_empty", lambda limit: waits.append(connection.live))
-    connection.close()
-    assert waits == [None]  # once, and after the session was gone
-
-
-def test_a_removed_listener_hears_nothing_even_if_another_removes_it(robot, states):
-    connection = robot.proxy().connection
-    heard, late = [], []
+    heard = []
     connection.add_listener(heard.append)
     connection.remove_listener(heard.append)
-    connection.remove_listener(heard.append)
-    connection.add_listener(lambda _state: connection.remove_listener(late.append))
-    connection.add_listener(late.append)
     followed = states(connection)
     connection.close()
     followed.wait_for("closed")
-    assert heard == late == []
+    assert heard == []
 
 
 @pytest.mark.parametrize("patience, complaints", [(0.0, 1), (60.0, 0)])
