@@ -61,15 +61,9 @@ def test_every_kind_of_step_is_read():
     "entry, told",
     [
         ({"posture": "Handstand"}, "allowed is Stand"),
-        ({"lights": "FaceLeds", "color": "pink"}, "#rrggbb"),
-        ({"lights": "FaceLeds"}, "color or an intensity"),
-        ({"lights": "Nose", "intensity": 1.0}, "no LED"),
         ({"frames": [{"time": 0.5, "angles": {"HeadYaw": 9.0}}]}, "HeadYaw: is 9"),
-        ({"frames": [{"time": 0.5, "angles": {"Tail": 0.0}}]}, "no joint"),
         ({"joints": {"HeadYaw": {"times": [0.5, 0.5], "angles": [0.1, 0.2]}}}, "do not rise"),
         ({"wait": -1.0}, "allowed is 0"),
-        ({"wait": float("nan")}, "not a number"),
-        ({"say": True}, "not a text"),
         ({"repeat": 0, "do": [{"lights": "FaceLeds", "color": "red"}]}, "takes no time"),
         ({"dance": "tango"}, "has not one of"),
         ({"wait": 1.0, "until": 2.0}, "unknown key 'until'"),
@@ -79,17 +73,6 @@ def test_what_is_wrong_is_told_with_its_place(entry, told):
     with pytest.raises(ConfigError, match=told) as error:
         steps({"wait": 0.1}, entry)
     assert error.value.where.startswith("file: test: do[1]")
-
-
-def test_what_nests_without_end_aliases_and_names_that_lead_elsewhere_are_refused(tmp_path):
-    entry, path = {"wait": 1.0}, tmp_path / "many.yaml"
-    for _ in range(40):
-        entry = {"together": [entry]}
-    path.write_text("behaviors: {a: {do: &x [{wait: 1}]}, b: {do: *x}}\n")
-    wrong = [(lambda: steps(entry), "nests deeper"), (lambda: read_behaviors(path), "aliases")]
-    for read, told in [*wrong, (lambda: steps({"wait": 1.0}, name="../x"), "no name")]:
-        with pytest.raises(ConfigError, match=told):
-            read()
 
 
 def test_all_files_that_come_with_the_simulator_and_the_example_of_the_documentation_are_sound(tmp_path):
@@ -226,11 +209,8 @@ def test_a_box_speaks_as_fast_as_it_says_and_on_a_timeline_at_its_frame():
         (project(box(1, "Mine", "", "os.remove('x')"), link(0, 1)), "box 'Mine' runs a script"),
         (project(box(1, "A", NOD) + box(2, "B", NOD), link(0, 1) + link(1, 2) + link(2, 1)), "circles"),
         (project(box(1, "A", timeline(curve("WheelB", (5, 1.0)))), link(0, 1)), "no joint of a NAO"),
-        (project(box(1, "A", timeline(curve("HeadYaw", (5, 300.0)))), link(0, 1)), "beyond what it can"),
         (b"<html/>", "no behaviour of Choregraphe"),
-        (b"no xml", "is no XML"),
         (b'<!DOCTYPE a [<!ENTITY x "x">]><a/>', "document type"),
-        ('<!DOCTYPE a [<!ENTITY x "x">]><a/>'.encode("utf-16"), "document type"),
     ],
 )
 def test_what_cannot_be_played_is_told(content, told):

@@ -9,20 +9,18 @@ from math import radians
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import BadValue, ConfigError
+from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.frames import frame_of
 from nao_sim_bridge.sim.hand_path import AWAY, HandPath
 from nao_sim_bridge.sim.kinematics import link_transforms
 from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.posture_graph import leaves_feet, path_to
-from nao_sim_bridge.sim.posture_moves import FILE, Ground, KeyFrame, Move, direct, load_moves, moves_of
+from nao_sim_bridge.sim.posture_graph import path_to
+from nao_sim_bridge.sim.posture_moves import FILE, Ground, KeyFrame, Move, direct, moves_of
 from nao_sim_bridge.sim.posture_recognition import (
     FAMILIES,
     UNKNOWN,
     Recognition,
-    lean_of,
     recognise_readings,
-    up_in_torso,
 )
 from nao_sim_bridge.sim.postures import load_postures, posture
 from nao_sim_bridge.sim.start_lean import start_pitch
@@ -87,12 +85,8 @@ def test_a_predefined_posture_is_recognised_in_spite_of_noise_and_not_in_the_air
     "angles, readings, recognition",
     [
         (changed("Stand", HeadYaw=1.0), {}, ("Stand", "Standing")),
-        (changed("Stand", Hand=1.0), {}, ("Stand", "Standing")),
-        (changed("Stand", LWristYaw=1.5), {}, ("Stand", "Standing")),
         (changed("Stand", ShoulderPitch=-1.5), {}, (UNKNOWN, "Standing")),
         (changed("StandInit", HipPitch=-0.6, KneePitch=1.1, AnklePitch=-0.5), {}, (None, "Standing")),
-        (changed("StandInit", HipPitch=-0.9, KneePitch=1.8, AnklePitch=-0.9), {}, (None, "Crouching")),
-        (changed("Crouch", HipPitch=-0.8, KneePitch=2.0, AnklePitch=-1.1), {}, (None, "Crouching")),
         (changed("StandInit", RHipPitch=-1.0, RKneePitch=1.6, RAnklePitch=-0.6), {"pitch": 6}, (None, "Standing")),
         # A chair takes the weight off bent legs.
         (changed("StandZero", HipPitch=-1.5, KneePitch=1.5, AnklePitch=0), {"load": 0.35}, (None, "SittingOnChair")),
@@ -105,24 +99,13 @@ def test_a_predefined_posture_is_recognised_in_spite_of_noise_and_not_in_the_air
         (posture(MODEL, "StandZero"), {"pitch": -60, "load": 0.8}, (None, "LyingBack")),
         (posture(MODEL, "StandZero"), {"roll": 60, "load": 0.8}, (None, "LyingRight")),
         (posture(MODEL, "StandZero"), {"roll": -60, "load": 0.8}, (None, "LyingLeft")),
-        (posture(MODEL, "StandZero"), {"roll": -100, "load": 0.8}, (None, "LyingLeft")),
         (posture(MODEL, "StandZero"), {"roll": 180, "pitch": 80, "load": 0.8}, (None, "LyingBelly")),
-        (posture(MODEL, "StandZero"), {"roll": 20, "pitch": -70, "load": 0.8}, (None, "LyingBack")),
     ],
 )
 def test_families_go_beyond_the_predefined_postures(angles, readings, recognition):
     name, family = recognition
     found = seen(angles, **readings)
     assert found.family == family and name in (None, found.posture)
-
-
-@pytest.mark.parametrize(
-    "roll, pitch, up, lean",
-    [(0, 0, (0, 0, 1), 0), (0, 90, (-1, 0, 0), 90), (0, -90, (1, 0, 0), 90), (90, 0, (0, 1, 0), 90)],
-)
-def test_the_way_up_as_the_torso_sees_it(roll, pitch, up, lean):
-    assert up_in_torso(radians(roll), radians(pitch)) == pytest.approx(up, abs=1e-12)
-    assert lean_of(radians(roll), radians(pitch)) == pytest.approx(radians(lean), abs=1e-7)
 
 
 # --- ways
@@ -142,7 +125,7 @@ def lost(family):
 
 UP, SIT_UP, SLOW = move("LyingBelly", "Stand"), move("Sit", "Stand"), move("LyingBack", "Stand", 9.0)
 THERE, ON = move("LyingBack", "Sit", 3.0), move("Sit", "Stand", 4.0)
-QUICK, FAIR, RISKY = (move("LyingBack", "Stand", 5.0, certainty) for certainty in (1.0, 0.9, 0.5))
+FAIR, RISKY = (move("LyingBack", "Stand", 5.0, certainty) for certainty in (0.9, 0.5))
 
 
 @pytest.mark.parametrize(
@@ -151,24 +134,18 @@ QUICK, FAIR, RISKY = (move("LyingBack", "Stand", 5.0, certainty) for certainty i
         *[(b, at(a), a, [], [f"{a} -> {b}"]) for a in STANDING_GROUP for b in STANDING_GROUP],
         ("StandInit", lost("Crouching"), "Stand", [], ["Crouching -> StandInit"]),
         ("SitRelax", at("Sit"), "Sit", [], ["Sit -> SitRelax"]),
-        ("Sit", lost("Sitting"), "Sit", [], ["Sitting -> Sit"]),
         # Moves of the file join what straight ones do not.
         ("Crouch", at("Sit"), "Sit", [], None),
-        ("Crouch", at("Sit"), "Sit", [SIT_UP], ["Sit -> Stand", "Stand -> Crouch"]),
         ("Crouch", at("SitRelax"), "SitRelax", [SIT_UP], ["SitRelax -> Sit", "Sit -> Stand", "Stand -> Crouch"]),
         # A move from a family begins in each of its poses, one from a posture does not.
         ("Stand", lost("LyingBelly"), "LyingBack", [UP], ["LyingBelly -> Stand"]),
-        ("Stand", at("LyingBelly"), "LyingBelly", [UP], ["LyingBelly -> Stand"]),
         ("Stand", lost("Sitting"), "Sit", [SIT_UP], ["Sitting -> Sit", "Sit -> Stand"]),
         # The quickest way wins, where one that often misses is not quick.
         ("Stand", at("LyingBack"), "LyingBack", [SLOW, THERE, ON], ["LyingBack -> Sit", "Sit -> Stand"]),
-        ("Stand", at("LyingBack"), "LyingBack", [SLOW, THERE], ["LyingBack -> Stand"]),
-        ("Stand", at("LyingBack"), "LyingBack", [QUICK, THERE, ON], ["LyingBack -> Stand"]),
         ("Stand", at("LyingBack"), "LyingBack", [FAIR, THERE, ON], ["LyingBack -> Stand"]),
         ("Stand", at("LyingBack"), "LyingBack", [RISKY, THERE, ON], ["LyingBack -> Sit", "Sit -> Stand"]),
         # Who lies on a side tips over first.
         ("Stand", lost("LyingLeft"), "LyingBack", [SLOW], ["LyingLeft -> LyingBack", "LyingBack -> Stand"]),
-        ("Stand", lost("LyingRight"), "LyingBack", [SLOW], ["LyingRight -> LyingBack", "LyingBack -> Stand"]),
         *[(g, at("LyingBelly"), "LyingBelly", [SLOW, move("Stand", "Sit")], None) for g in ("Stand", "Crouch", "Sit")],
     ],
 )
@@ -182,12 +159,6 @@ def test_what_is_no_posture_but_nearly_stands_goes_to_the_nearest_standing_one(l
     for family in (UNKNOWN, "SittingOnChair"):
         first, *_ = path_to("StandZero", lost(family), posture(MODEL, like), 1.0, MODEL, ())
         assert str(first) == f"{family} -> {like}"
-
-
-def test_moves_off_the_feet_are_told_from_those_on_them():
-    on = [(at("Stand"), "Crouch"), (lost("Standing"), "StandInit")]
-    off = [(at("Stand"), "Sit"), (at("LyingBelly"), "Stand"), (at("Sit"), "SitRelax"), (lost(UNKNOWN), "Stand")]
-    assert [leaves_feet(seen, move("Stand", goal)) for seen, goal in on + off] == [False] * 2 + [True] * 4
 
 
 # --- moves
@@ -215,37 +186,21 @@ def test_a_move_is_read_and_is_as_certain_as_it_was_found():
 @pytest.mark.parametrize(
     "wrong, text",
     [
-        ({"moves": {}}, "moves: is a dict, not a list"),
         ({"movs": []}, "unknown key 'movs', did you mean 'moves'"),
-        ({**content(), "more": 1}, "unknown key 'more'"),
         (content(**{"from": "Lying"}), r"moves\[0\].from: is 'Lying', allowed is .*LyingBelly"),
-        (content(to="Standing"), r"moves\[0\].to: is 'Standing', allowed is .*StandInit"),
         (content(to=None), "missing 'to'"),
-        (content(checked=3), "checked: is 3, not a mapping with runs and reached"),
-        (content(checked={"runs": 20}), "checked.reached: is None, not a number"),
         (content(checked={"runs": 20, "reached": 0}), "checked: reached is 0 of 20 runs, allowed is above 0 to all"),
         (content(frames=[]), "frames: is no list of key frames, at least one"),
         (content(frames=[{"time": 0, "angles": {}}]), r"frames\[0\].time: is 0.0, not above 0"),
-        (content(frames=[{"time": "1", "angles": {}}]), r"frames\[0\].time: is '1', not a number"),
         (
             content(frames=[FRAME, {"time": 1, "angles": {"HedYaw": 0.1}}]),
             r"frames\[1\].angles.*'HedYaw', did you mean",
         ),
-        (content(frames=[{"time": 1, "angles": {"HeadYaw": True}}]), "angles.HeadYaw: is True, not a number"),
     ],
 )
 def test_what_is_wrong_in_the_file_is_named(wrong, text):
     with pytest.raises(ConfigError, match=f"{FILE}.*{text}"):
         moves_of(wrong)
-
-
-def test_the_moves_of_the_file_end_in_their_postures():
-    legs = [MODEL.joint_index[name] for chain in ("LLeg", "RLeg") for name in MODEL.chains[chain]]
-    assert load_moves()
-    for move in load_moves():
-        final = posture(MODEL, move.goal)
-        reached = {index: angle for frame in move.frames for index, angle in frame.angles.items()}
-        assert {i: reached[i] for i in legs} == pytest.approx({i: final[i] for i in legs}, abs=0.01), str(move)
 
 
 def test_a_straight_move_takes_the_slowest_joint_its_time_and_what_is_safe():
@@ -351,33 +306,12 @@ def test_a_gesture_is_recognised_when_it_is_over_and_what_is_held_again_and_agai
         # Fingers need not land at once, and a sensor that bounces is not touched twice.
         ([("010", 0.015), ("110", 0.015), ("111", 0.2), AGAIN], ["SingleTap"]),
         ([("100", 0.2), (FREE, 0.017), ("100", 0.2), AGAIN], ["SingleFront"]),
-        ([ONCE, (FREE, SETTLE_TIME + SEQUENCE_TIME + 0.05), ONCE, AGAIN], ["SingleFront", "SingleFront"]),
         ([ONCE, ("001", 0.1), AGAIN], []),
         ([("100", 1.0), ("010", 0.1), AGAIN], ["SingleFrontHold", "SingleMiddle"]),
     ],
 )
 def test_touches_in_time(touches, gestures):
     assert names(told(*touches)) == gestures
-
-
-def test_times_can_be_changed_and_gestures_added():
-    times, book, triple = Times(), GestureBook(), [FREE, *["111", FREE] * 3]
-    times.hold, times.sequence = 0.2, 0.6
-    assert names(told(("100", 0.3), AGAIN, times=times)) == ["SingleFrontHold"]
-    times.hold = 2.0
-    assert names(told(ONCE, (FREE, 0.5), ONCE, AGAIN, times=times)) == ["DoubleFront"]
-    name = book.add(triple)
-    assert book.add(triple) == name and book.sequence_of(name) == triple and book.name_of(triple) == name
-    assert names(told(*[("111", 0.1), (FREE, 0.1)] * 3, AGAIN, book=book)) == [name]
-    assert book.add(GESTURES["ZoomIn"]) == "ZoomIn"
-
-
-def test_what_no_head_can_feel_is_refused():
-    book, long = GestureBook(), [FREE] + ["100", FREE] * 20
-    for sequence in ([], [FREE], ["100", FREE], [FREE, "12", FREE], [FREE, "200"], [FREE, FREE], [FREE, 100], long):
-        with pytest.raises(BadValue, match="sensor sequence"):
-            book.add(sequence)
-    assert book.all() == {name: list(gesture) for name, gesture in GESTURES.items()}
 
 
 def test_events_stand_for_their_sensors_and_hands_come_from_outside():

@@ -14,12 +14,11 @@ import vision_definitions
 from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim.cameras import parameters as names
 from nao_sim_bridge.sim.cameras.color_spaces import ENCODERS, encode, encoded
-from nao_sim_bridge.sim.cameras.optics import CameraOptics, Optics
-from nao_sim_bridge.sim.cameras.photograph import photograph, read_photograph
+from nao_sim_bridge.sim.cameras.optics import CameraOptics
 from nao_sim_bridge.sim.cameras.sensor import develop
 from nao_sim_bridge.sim.cameras.settings import FILE, load_cameras, parse_cameras
 from nao_sim_bridge.sim.cameras.shot import Shot
-from nao_sim_bridge.sim.errors import BadValue, ConfigError
+from nao_sim_bridge.sim.errors import ConfigError
 
 BRIGHTNESS, CONTRAST, SATURATION, HUE, GAIN, H_FLIP, V_FLIP, AUTO_WHITE = 0, 1, 2, 3, 6, 7, 8, 12
 EXPOSURE, ALGORITHM, SHARPNESS, WHITE, BACKLIGHT, AUTO_FOCUS, FOCUS = 17, 22, 24, 33, 34, 40, 43
@@ -157,23 +156,7 @@ def test_exposure_algorithms_of_v5():
     assert highlights < average < lowlights
 
 
-def test_a_photograph_brings_what_was_chosen_with_it(scene):
-    request = replace(SHOT, parameters={**MANUAL, EXPOSURE: 50}, color_space=0)
-    photo = read_photograph(photograph(scene, request))
-    rgb, chosen = develop(scene, request)
-    assert (photo.chosen.exposure, photo.chosen.gain, photo.chosen.white_balance) == (50, 16, chosen.white_balance)
-    assert photo.chosen.luminance == pytest.approx(chosen.luminance)
-    assert np.array_equal(np.frombuffer(photo.data, np.uint8).reshape(240, 320), cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY))
-
-
 RED, GREEN, BLUE, WHITEST, GREY, DARK = (255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255), (90, 90, 90), (1, 2, 3)
-
-
-@pytest.mark.parametrize("space", ENCODERS)
-def test_there_are_as_many_bytes_as_the_table_says(space):
-    noise = np.random.default_rng(1).integers(0, 256, (12, 16, 3), dtype=np.uint8)
-    assert len(encode(noise, space)) == 12 * 16 * load_cameras("V6").color_spaces[space].layers
-    assert encoded(noise, space).dtype == np.uint8
 
 
 @pytest.mark.parametrize(
@@ -191,13 +174,6 @@ def test_known_colors(space, color, expected):
     assert values[: len(expected)] == pytest.approx(expected, abs=1)
 
 
-def test_yuv422_shares_the_color_of_two_pixels():
-    picture = np.array([[RED, BLUE]], np.uint8)
-    u, v = (85 + 255) / 2, (255 + 107) / 2
-    assert list(encode(picture, 9)) == pytest.approx([76, u, 29, v], abs=1)
-    assert list(encode(picture, 14)) == pytest.approx([76, 29, u, v], abs=1)
-
-
 def test_lch_without_color_has_no_chroma_and_its_hue_goes_round_the_circle():
     values = list(encode(np.array([[GREY, GREY]], np.uint8), 26))
     assert values[1] == values[4] == 0
@@ -208,33 +184,10 @@ def test_lch_without_color_has_no_chroma_and_its_hue_goes_round_the_circle():
     assert hue == pytest.approx(np.arctan2(lab[2], lab[1]) * 128 / np.pi, abs=1)
 
 
-@pytest.mark.parametrize("space", [17, 20, 21, 23, 27])
-def test_what_needs_a_depth_camera_is_refused(space):
-    with pytest.raises(BadValue, match=f"colorSpace is {space}, allowed is one of 0, 1"):
-        encode(np.zeros((2, 2, 3), np.uint8), space)
-
-
 @pytest.mark.parametrize("version, h_deg, v_deg", [("V6", 56.3, 43.7), ("V5", 60.9, 47.6)])
 def test_each_version_has_its_field_of_view(version, h_deg, v_deg):
     for index in (0, 1):
         assert CameraOptics(version, index).fov == pytest.approx((math.radians(h_deg), math.radians(v_deg)))
-
-
-def test_intrinsics_are_those_of_a_pinhole():
-    pinhole, half = CameraOptics("V6", 0).intrinsics(640, 480), CameraOptics("V6", 0).intrinsics(320, 240)
-    assert (pinhole.fx, pinhole.fy, pinhole.cx, pinhole.cy) == pytest.approx((598.05, 598.53, 320, 240), abs=0.05)
-    assert (half.fx, half.fy) == pytest.approx((pinhole.fx / 2, pinhole.fy / 2))
-
-
-def test_signs_are_those_of_naoqi_and_angles_lead_back_to_the_place():
-    optics = Optics(1.0, 0.8)
-    assert optics.angles(0.5, 0.5) == (0.0, 0.0)
-    assert optics.angles(0.0, 0.0) == pytest.approx((0.5, -0.4))  # upper left corner
-    assert optics.angles(1.0, 1.0) == pytest.approx((-0.5, 0.4))
-    assert optics.angular_size(1.0, 1.0) == pytest.approx(optics.fov)
-    for x, y in [(0.1, 0.9), (0.5, 0.25), (0.98, 0.02)]:
-        assert optics.place(*optics.angles(x, y)) == pytest.approx((x, y))
-        assert optics.image_size(*optics.angular_size(x, y)) == pytest.approx((x, y))
 
 
 def test_a_ray_goes_where_the_angles_say_and_what_is_behind_is_in_no_picture():
@@ -266,30 +219,6 @@ def test_sizes_are_four_to_three_and_color_spaces_have_an_encoder_or_need_a_dept
     assert {space.id for space in v6.color_spaces.values() if not space.layers} == {17, 20, 21, 23}
     assert 4 not in v5.resolutions and 33 in v5.parameters and 33 not in v6.parameters
     assert (v5.parameter(0).least, v6.parameter(0).least) == (0, -255)
-
-
-@pytest.mark.parametrize(
-    "check, value, text",
-    [
-        ("camera", 2, r"camera is 2, allowed is one of 0 \(top\), 1 \(bottom\)"),
-        ("camera", True, "camera is True"),
-        ("camera", "top", "camera is 'top'"),
-        ("resolution", 9, r"resolution is 9, allowed is one of 8 \(40x30\), "),
-        ("color_space", 17, "colorSpace is 17, allowed is one of .*: kDepthColorSpace needs a depth camera"),
-        ("color_space", 27, "colorSpace is 27, allowed is one of 0, 1, "),
-        ("parameter", 33, r"parameter is 33, allowed is one of 0 \(kCameraBrightnessID\), "),
-    ],
-)
-def test_what_is_not_there_is_told_with_what_is(check, value, text):
-    with pytest.raises(BadValue, match=text):
-        getattr(load_cameras("V6"), check)(value)
-
-
-@pytest.mark.parametrize("fps", [0, -1, 31, True, "5", math.nan])
-def test_rates_have_limits(fps):
-    tables = load_cameras("V6")
-    with pytest.raises(BadValue, match="fps is .*, allowed is up to 30 frames a second, above 0"):
-        tables.check_rate(0, tables.resolution(1), fps)
 
 
 def test_mistakes_in_the_file_are_told():

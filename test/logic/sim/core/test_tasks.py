@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import threading
-
 import pytest
 
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.tasks import Task, TaskIds, killed_error
 from nao_sim_bridge.sim.timed_commands import AT_ONCE, merged, polyline
 
-PATIENCE = 15.0
 OLD, NEW = ((0.1, 100), (0.2, 200), (0.3, 300)), ((0.5, 250), (0.6, 200))
 
 
@@ -30,15 +27,6 @@ def test_a_task_ends_once_and_callbacks_hear_of_it_once_early_or_late(task):
     task.add_done_callback(lambda done: heard.append(("late", done.value)))
     assert task.finished and not task.killed and task.result(timeout=0) == "first" == task.value
     assert heard == [("early", "first"), ("late", "first")]
-
-
-def test_who_waits_in_another_thread_is_woken(task):
-    seen = []
-    waiting = threading.Thread(target=lambda: seen.append(task.result(PATIENCE)))
-    waiting.start()
-    task.finish(42)
-    waiting.join(PATIENCE)
-    assert seen == [42]
 
 
 def test_a_kill_drops_the_work_before_anybody_hears_of_the_end():
@@ -83,8 +71,6 @@ def test_a_requested_kill_goes_to_who_runs_the_simulation_also_from_the_end_of_a
         (NEW, "ClearAll", ((0.6, 200), (0.5, 250))),
         (NEW, "ClearAfter", ((0.1, 100), (0.6, 200), (0.5, 250))),
         (NEW, "ClearBefore", ((0.6, 200), (0.5, 250), (0.3, 300))),
-        ((), "Merge", OLD),
-        ((), "ClearAll", ()),
     ],
 )
 def test_how_new_commands_join_old_ones(new, update, result):

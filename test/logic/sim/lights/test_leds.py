@@ -7,8 +7,8 @@ import random
 import pytest
 
 from nao_sim_bridge.sim import led_animations
-from nao_sim_bridge.sim.errors import BadValue, UnknownName
-from nao_sim_bridge.sim.leds import LedBank, LedKeyframe, uniform
+from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.leds import LedBank, LedKeyframe
 from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.model import VERSIONS
 from nao_sim_bridge.sim.tasks import TaskIds
@@ -78,14 +78,6 @@ def shown(bank, now):
     return bank.values
 
 
-def test_set_works_at_once_on_what_it_names_within_0_to_1(bank):
-    before = bank.values
-    bank.set({1: 0.5, 3: 1.7, 2: -0.2})
-    assert bank.values == (0.0, 0.5, 0.0, 1.0) and before == (0.0,) * 4
-    bank.animate("fade", [LedKeyframe(1.0, {0: 1.7, 1: -0.2})], now=0.0)
-    assert shown(bank, 1.0) == (1.0, 0.0, 0.0, 1.0)
-
-
 def test_a_fade_runs_evenly_through_its_colours_and_ends_its_task(bank):
     bank.set({0: 0.2})
     task = bank.animate("fade", [LedKeyframe(2.0, {0: 1.0, 1: 0.5}), LedKeyframe(4.0, {0: 0.0})], now=10.0)
@@ -103,25 +95,6 @@ def test_steps_jump_at_their_times_and_what_has_none_ends(bank):
     assert task.finished and nothing.finished
 
 
-def test_who_comes_later_takes_over_only_what_he_names(bank):
-    old = bank.animate("fade", [LedKeyframe(2.0, uniform((0, 1, 2), 1.0))], now=0.0)
-    bank.tick(1.0)
-    bank.set({2: 0.1})
-    new = bank.animate("fade", [LedKeyframe(2.0, {0: 0.0})], now=1.0)
-    assert shown(bank, 1.5)[:3] == pytest.approx((0.375, 0.75, 0.1))
-    assert shown(bank, 2.0)[:3] == pytest.approx((0.25, 1.0, 0.1)) and old.finished and not new.finished
-    assert shown(bank, 3.0)[:3] == (0.0, 1.0, 0.1) and new.finished
-
-
-def test_a_killed_fade_leaves_the_light_as_it_is(bank):
-    tasks = [bank.animate("fade", [LedKeyframe(2.0, {i: 1.0})], now=0.0) for i in range(3)]
-    bank.tick(1.0)
-    assert tasks[0].kill() and tasks[0].killed
-    assert shown(bank, 1.5)[:2] == pytest.approx((0.5, 0.75))
-    bank.kill_all()
-    assert all(task.killed for task in tasks) and shown(bank, 2.0) == pytest.approx((0.5, 0.75, 0.75, 0.0))
-
-
 # --- animations
 
 
@@ -136,12 +109,6 @@ def test_a_number_becomes_a_colour_and_each_device_takes_its_part_of_it():
     values = led_animations.colored(LEDS, LEDS.devices_of("AllLeds"), (0.1, 0.2, 0.3))
     for channel, share in (("red", 0.1), ("green", 0.2), ("blue", 0.3), ("white", 0.3)):
         assert {values[i] for i in range(89) if LEDS.channels[i] == channel} == {share}
-
-
-def test_after_boot_eyes_ears_and_head_shine_white_and_the_rest_is_dark():
-    values = led_animations.power_on(LEDS)
-    shining = {i for name in ("FaceLeds", "EarLeds", "BrainLeds") for i in LEDS.devices_of(name)}
-    assert values == {i: 1.0 if i in shining else 0.0 for i in range(89)}
 
 
 def test_random_eyes_change_all_eye_leds_by_chance_for_the_time_asked():
@@ -183,13 +150,3 @@ def test_ears_point_at_an_angle_and_stay_on_only_when_asked(degrees, number):
     between = led_animations.ear_angle(LEDS, 27, 1.0, leave_on=True)[0].values
     shared = [between[LEDS.short_names[f"LeftEarLed{number}"][0]] for number in (1, 2)]
     assert shared == pytest.approx([0.75, 0.25])
-
-
-def test_an_animation_of_too_many_colours_is_refused():
-    for animation in (
-        lambda: led_animations.random_eyes(LEDS, 1e300, random.Random(1)),
-        lambda: led_animations.rasta(LEDS, 1e6),
-        lambda: led_animations.rotate_eyes(LEDS, (1.0, 0.0, 0.0), 1e-6, 1.0),
-    ):
-        with pytest.raises(BadValue, match="duration is .*, allowed is .* s at most"):
-            animation()

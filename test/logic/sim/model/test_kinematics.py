@@ -55,14 +55,6 @@ def test_the_zero_posture_meets_the_published_positions():
         assert found == pytest.approx(expected, abs=1e-5), name
 
 
-def test_turning_the_head_left_moves_the_camera_left():
-    angles = list(ZERO)
-    angles[MODEL.joint_index["HeadYaw"]] = math.pi / 2
-    camera = MODEL.cameras[0].place
-    position = link_transforms(MODEL, angles)[camera.parent_link] @ np.append(camera.position, 1.0)
-    assert position[:3] == pytest.approx((0.0, 0.05871, 0.19014), abs=1e-5)
-
-
 def test_fingers_are_straight_when_open_and_curl_towards_the_thumb():
     straight, closed = finger_transforms(MODEL, 1.0), finger_transforms(MODEL, 0.0)
     assert straight["Finger13"][:3, 3] - straight["Finger11"][:3, 3] == pytest.approx((2 * 0.01436, 0, 0))
@@ -166,16 +158,6 @@ def nudged(angles, joint):
     return moved
 
 
-def test_links_are_where_forward_kinematics_has_them(angles):
-    now = BODY.at(angles)
-    for name, pose in link_transforms(MODEL, angles).items():
-        assert now.poses[BODY.row[name]] == pytest.approx(pose, abs=1e-8)
-    assert now.center_of_mass() == pytest.approx(center_of_mass(MODEL, angles), abs=1e-9)
-    jacobian = now.jacobian(frame_of(MODEL, "RLeg"))
-    assert not jacobian[:, ~BODY.movable].any(), "hands and the right half of the common hip motor"
-    assert jacobian[:, BODY.left_hip].any()
-
-
 @pytest.mark.parametrize("standing", [None, "LLeg", "RLeg"])
 def test_jacobians_say_what_a_small_step_of_a_joint_does(angles, standing):
     foot = standing and frame_of(MODEL, standing)
@@ -196,16 +178,6 @@ def test_jacobians_say_what_a_small_step_of_a_joint_does(angles, standing):
         assert now.jacobian(foot) == pytest.approx(np.zeros((6, 26)))
 
 
-def test_limits_of_a_joint_follow_the_joint_that_it_depends_on():
-    angles, limit, joint = np.zeros(26), MODEL.coupled_limits["LAnkleRoll"], MODEL.joint("LAnkleRoll")
-    roll = MODEL.joint_index["LAnkleRoll"]
-    for pitch in limit.table[:, 0]:
-        angles[MODEL.joint_index["LAnklePitch"]] = pitch
-        lower, upper = BODY.limits(angles)
-        least, most = limit.limits_at(pitch)
-        assert (lower[roll], upper[roll]) == pytest.approx((max(least, joint.lower), min(most, joint.upper)))
-
-
 # --- stances
 
 
@@ -224,14 +196,3 @@ def test_stances_agree_with_the_kinematics(seed):
         corners = np.c_[outline, np.full(len(outline), -MODEL.sole_height), np.ones(len(outline))]
         expected = (level @ (corners @ links[f"{letter}AnkleRoll"].T)[:, :3].T).T
         assert np.array(STANCES.sole(side, angles, roll, pitch)) == pytest.approx(expected)
-
-
-@pytest.mark.parametrize("name, pitch", [("Stand", -0.002), ("StandZero", 0.0), ("StandInit", 0.1), ("Crouch", -0.05)])
-def test_the_lean_of_a_posture_follows_from_flat_soles(name, pitch):
-    angles = posture(MODEL, name)
-    assert STANCES.lean(angles) == pytest.approx((0.0, pitch), abs=1e-3)
-    heights = [corner[2] for side in (0, 1) for corner in STANCES.sole(side, angles, *STANCES.lean(angles))]
-    assert max(heights) - min(heights) < 0.005
-    upright, leaning = STANCES.read(angles, 0.0, 0.0), STANCES.read(angles, 0.0, 0.1)
-    ahead = leaning.com_from_feet[0] - upright.com_from_feet[0]
-    assert ahead == pytest.approx(0.1 * upright.com_from_feet[2], rel=0.05)

@@ -5,14 +5,11 @@ from __future__ import annotations
 import pytest
 
 from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.coupled import couplings
 from nao_sim_bridge.sim.motion.joints import STICTION, JointCommands
 
 MODEL = load_model()
 DT = 0.01
-YAW, PITCH, ELBOW, ANKLE_PITCH, ANKLE_ROLL = (
-    MODEL.joint_index[name] for name in ("HeadYaw", "HeadPitch", "LElbowRoll", "LAnklePitch", "LAnkleRoll")
-)
+YAW, PITCH, ELBOW = (MODEL.joint_index[name] for name in ("HeadYaw", "HeadPitch", "LElbowRoll"))
 LEFT, RIGHT = (MODEL.joint_index[name] for name in JointCommands.COUPLED)
 TOP = MODEL.joints[YAW].max_velocity
 LEAST_BEND = -0.0349066
@@ -114,15 +111,6 @@ def drive(joints, wanted, seconds=1.0):
         joints.step(wanted, DT)
 
 
-def test_the_fast_tables_of_coupled_limits_are_those_of_the_model():
-    found = couplings(MODEL)
-    assert {MODEL.joints[c.joint].name for c in found} == {"HeadPitch", "LAnkleRoll", "RAnkleRoll"}
-    for coupling in found:
-        slow = MODEL.coupled_limits[MODEL.joints[coupling.joint].name]
-        for angle in (0.05 * k for k in range(-60, 61)):
-            assert coupling.limits_at(angle) == pytest.approx(slow.limits_at(angle))
-
-
 def test_a_head_that_looks_aside_nods_less_and_a_nodding_head_is_raised_when_it_turns(joints):
     limits = MODEL.coupled_limits["HeadPitch"].limits_at
     drive(joints, {PITCH: 0.5})
@@ -136,19 +124,3 @@ def test_a_head_that_looks_aside_nods_less_and_a_nodding_head_is_raised_when_it_
     assert joints.limits(PITCH) == pytest.approx(limits(-1.5))
     assert joints.clamp(PITCH, 2.0) == pytest.approx(limits(-1.5)[1])
     assert joints.limits(YAW) == joints.limits_alone(YAW)
-
-
-def test_a_joint_leaves_a_limit_that_moved_no_faster_than_its_motor_and_all_the_way(joints):
-    """The ankle pitches faster than its roll can follow; the roll goes on when nobody asks for anything any more."""
-    drive(joints, {ANKLE_ROLL: 0.7})
-    before, lagged = joints.commands[ANKLE_ROLL], False
-    for _ in range(19):  # as long as the pitch takes
-        joints.step({ANKLE_PITCH: -1.18}, DT)
-        assert abs(joints.commands[ANKLE_ROLL] - before) <= MODEL.joints[ANKLE_ROLL].max_velocity * DT + 1e-12
-        before = joints.commands[ANKLE_ROLL]
-        lagged |= before > joints.limits(ANKLE_ROLL)[1] + 1e-6
-    assert joints.commands[ANKLE_PITCH] == -1.18 and lagged
-    drive(joints, {})
-    assert joints.commands[ANKLE_ROLL] == pytest.approx(joints.limits(ANKLE_ROLL)[1])
-    step(joints, {})
-    assert not step(joints, {})

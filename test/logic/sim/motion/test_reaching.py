@@ -7,13 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.frames import FEET, ROBOT, TORSO, WORLD, Placement, frame_of
+from nao_sim_bridge.sim.frames import FEET, TORSO, Placement, frame_of
 from nao_sim_bridge.sim.kinematics import axis_matrix, link_transforms, transform
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.motion.body_kinematics import body_kinematics
 from nao_sim_bridge.sim.motion.cartesian_move import CartesianMove, EffectorMove
 from nao_sim_bridge.sim.motion.cartesian_path import PosePath, SolvedPath, joint_curves, sample_times
-from nao_sim_bridge.sim.motion.grounded_pose import Footing, GroundedPose
 from nao_sim_bridge.sim.motion.inverse_kinematics import Goal, rotation_vector, solve
 from nao_sim_bridge.sim.motion.task_solver import Wish, ranked_step
 from nao_sim_bridge.sim.motion.whole_body_aims import PathAim, TargetAim
@@ -119,16 +118,6 @@ def test_axes_outside_the_mask_do_not_matter_and_what_must_hold_holds():
     assert found.pose(LEFT)[2, 3] > now.pose(LEFT)[2, 3] + 0.005
 
 
-def test_legs_with_knees_bent_backwards_lower_the_torso_all_the_same():
-    now = BODY.at(STAND)
-    assert STAND[MODEL.joint_index["LKneePitch"]] < 0.0
-    raised = [now.pose(foot) @ transform(np.eye(3), (0.0, 0.0, 0.03)) for foot in (LEFT, RIGHT)]
-    goals = [Goal(foot, pose, 7) for foot, pose in zip((LEFT, RIGHT), raised)]
-    found = BODY.at(solve(BODY, chain("LLeg", "RLeg"), goals, STAND))
-    for foot, pose in zip((LEFT, RIGHT), raised):
-        assert found.pose(foot)[:3, 3] == pytest.approx(pose[:3, 3], abs=1e-4)
-
-
 # --- paths
 
 
@@ -140,11 +129,6 @@ def whole(moves, moment):
         for index, curve in curves.items():
             angles[index] = curve.value(time)
     return angles
-
-
-def on_the_left_foot(angles):
-    """The body in the frame of the torso as it was before."""
-    return GroundedPose(BODY.at(angles), Footing(LEFT, NOW.pose(LEFT)))
 
 
 def straight(start, *by):
@@ -176,39 +160,6 @@ def test_the_path_of_a_hand_is_straight():
     for moment in np.linspace(0.0, 1.0, 6):
         found = BODY.at(whole([EffectorMove("LArm", TORSO, 7, way)], moment)).pose(ARM)
         assert found[:3, 3] == pytest.approx(way(moment)[:3, 3], abs=5e-4)
-
-
-@pytest.mark.parametrize("space", [TORSO, WORLD, ROBOT])
-def test_the_torso_moves_over_feet_that_stay(space):
-    start = np.eye(4) if space == TORSO else PLACED.torso_in_world
-    # The frame of the robot is between the feet: the same shift, another origin.
-    moves = [EffectorMove("Torso", WORLD if space == ROBOT else space, 63, straight(start, 0.01, 0.02, -0.03))]
-    for moment in (0.3, 1.0):
-        now = on_the_left_foot(whole(moves, moment))
-        assert now.torso[:3, 3] == pytest.approx(
-            straight(start, 0.01, 0.02, -0.03)(moment)[:3, 3] - start[:3, 3], abs=1e-3
-        )
-        for foot in (LEFT, RIGHT):
-            assert now.pose(foot) == pytest.approx(NOW.pose(foot), abs=5e-4)
-
-
-def test_each_effector_goes_its_own_way_while_others_stay():
-    torso, hand = PLACED.torso_in_world, frame_of(MODEL, "RArm")
-    held, foot = torso @ NOW.pose(hand), torso @ NOW.pose(RIGHT)
-    down = EffectorMove("Torso", WORLD, 63, straight(torso, 0.0, 0.02, -0.02))
-    end = on_the_left_foot(whole([down, EffectorMove("RArm", WORLD, 7, lambda _: held)], 1.0))
-    assert end.pose(hand)[:3, 3] == pytest.approx(NOW.pose(hand)[:3, 3], abs=1e-3)
-    lifts = [
-        EffectorMove("Torso", WORLD, 63, lambda _: torso),
-        EffectorMove("RLeg", WORLD, 63, straight(foot, 0, 0, 0.02)),
-    ]
-    end = on_the_left_foot(whole(lifts, 1.0))
-    assert end.pose(RIGHT)[:3, 3] - NOW.pose(RIGHT)[:3, 3] == pytest.approx([0.0, 0.0, 0.02], abs=1e-3)
-    assert end.torso == pytest.approx(np.eye(4), abs=1e-3)
-    way = straight(NOW.pose(LEFT), 0.02, 0.01, 0.03)
-    end = BODY.at(whole([EffectorMove("LLeg", TORSO, 63, way)], 1.0))
-    assert end.pose(LEFT)[:3, 3] == pytest.approx(way(1.0)[:3, 3], abs=1e-3)
-    assert end.pose(RIGHT) == pytest.approx(NOW.pose(RIGHT), abs=1e-4)
 
 
 # --- aims

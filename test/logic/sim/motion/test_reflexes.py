@@ -9,7 +9,7 @@ from nao_sim_bridge.sim.external_collision import SLOWEST, ExternalCollision
 from nao_sim_bridge.sim.kinematics import link_transforms
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.motion.capsules import segment_distances
-from nao_sim_bridge.sim.motion.idle import BREATH, EASE_TIME, FIVE_DEGREES, GROUPS, Idle, Mode
+from nao_sim_bridge.sim.motion.idle import BREATH, EASE_TIME, FIVE_DEGREES, Idle, Mode
 from nao_sim_bridge.sim.motion.joints import JointCommands
 from nao_sim_bridge.sim.motion.self_collision import CONTACT, REACH, SelfCollision
 from nao_sim_bridge.sim.motion.smart_stiffness import ALL, FACTOR, MOVED, SETTLING, SPARE, SmartStiffness
@@ -88,26 +88,6 @@ def test_an_arm_stops_before_the_chest_may_leave_it_and_the_other_arm_goes_on(gu
     assert walk(guard, posed(**CHEST), STAND)[-1] == pytest.approx(STAND)
 
 
-def test_two_hands_in_one_place_both_stop(guard):
-    bent = {"ShoulderRoll": -0.3, "ElbowYaw": -0.2, "ElbowRoll": -0.6}
-    both = {side + kind: sign * angle for side, sign in (("L", 1), ("R", -1)) for kind, angle in bent.items()}
-    shoulders = {"LShoulderPitch": 0.0, "RShoulderPitch": 0.0}
-    goal = posed(**both, **shoulders)
-    assert guard.distances(goal).min() < CONTACT
-    end = walk(guard, posed(**shoulders), goal)[-1]
-    for name in ("LShoulderRoll", "RShoulderRoll"):
-        assert end[INDEX[name]] != pytest.approx(goal[INDEX[name]], abs=0.05)
-
-
-def test_without_protection_nothing_is_kept(guard):
-    goal, reached = posed(**CHEST), []
-    for enabled, suspended in ((False, False), (True, True), (True, False)):
-        (guard.enabled.add if enabled else guard.enabled.discard)("LArm")
-        guard.suspended = suspended
-        reached.append(walk(guard, STAND, goal)[-1] == pytest.approx(goal))
-    assert reached == [True, True, False]
-
-
 # --- arms and obstacles
 
 FAR = 5.0
@@ -168,18 +148,6 @@ class Chains:
 @pytest.fixture
 def chains():
     return Chains()
-
-
-def test_chains_do_nothing_by_themselves_and_the_last_mode_of_each_counts(chains):
-    idle = chains.idle
-    assert not idle.active and chains.run(1.0) == [{}] * 20
-    idle.set_mode("Body", Mode.BREATH)
-    assert all(idle.has_mode(group, Mode.BREATH) for group in GROUPS)
-    idle.set_mode("LArm", Mode.POSTURE)
-    assert not idle.has_mode("Arms", Mode.BREATH) and not idle.has_mode("Body", Mode.BREATH)
-    assert idle.has_mode("RArm", Mode.BREATH) and idle.has_mode("LArm", Mode.POSTURE)
-    idle.set_mode("Body", Mode.NOTHING)
-    assert not idle.active
 
 
 @pytest.mark.parametrize("amplitude, most", [(0.0, FIVE_DEGREES), (1.0, 2 * FIVE_DEGREES)])

@@ -15,7 +15,7 @@ from nao_sim_bridge.sim.motion.footholds import Footholds, FootState
 from nao_sim_bridge.sim.motion.grounded_pose import GroundedPose
 from nao_sim_bridge.sim.motion.joints import JointCommands
 from nao_sim_bridge.sim.motion.whole_body import WholeBody
-from nao_sim_bridge.sim.motion.whole_body_aims import PathAim, TargetAim
+from nao_sim_bridge.sim.motion.whole_body_aims import TargetAim
 from nao_sim_bridge.sim.motion.whole_body_tasks import go_to_balance
 from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.tasks import TaskIds
@@ -169,49 +169,6 @@ def test_the_centre_of_mass_goes_over_one_foot(name, foot):
     assert task.value is True and one.outside([foot]) < 0.0 and one.slip < 2e-3
 
 
-def test_a_way_takes_the_time_it_needs_and_ends_where_it_is_killed():
-    one = Body()
-    task = one.go("LLeg", 0.0)
-    one.run(0.4)
-    assert not task.finished
-    one.run(1.0)
-    assert task.value is True
-    one = Body()
-    task = one.go("LLeg", 2.0)
-    one.run(1.0)
-    task.request_kill()
-    one.motion.kill_all()
-    one.run(0.1)
-    stopped = one.now.center_of_mass()
-    one.run(1.0)
-    assert one.now.center_of_mass() == pytest.approx(stopped, abs=2e-3) and one.outside(["LLeg"]) > 0.0
-
-
-def test_a_place_out_of_reach_is_refused_and_nothing_moves():
-    one = Body("Stand")
-    one.run(3.0)
-    before, task = one.joints.commands, one.go("LLeg", 1.0)
-    one.run(0.5)
-    assert task.value is False and one.joints.commands == pytest.approx(before, abs=1e-4)
-
-
-def test_balance_over_one_foot_is_kept_while_the_other_is_raised_and_an_arm_moves():
-    one = Body()
-    one.go("LLeg", 1.0)
-    one.run(1.5)
-    before = one.now.pose(RIGHT)[2, 3]
-    one.control.set_foot_states(["RLeg"], FootState.FREE)
-    one.lead("RLeg", 0.0, 0.0, 0.05, mask=63)
-    one.run(2.0)
-    one.move(1.0, LShoulderRoll=1.2, RShoulderRoll=0.2, RShoulderPitch=0.0)
-    one.run(1.5, ["LLeg"])
-    assert one.worst < 1e-3 and one.now.pose(RIGHT)[2, 3] - before == pytest.approx(0.05, abs=1e-3)
-    assert one.angles("LShoulderRoll") == pytest.approx([1.2], abs=0.02)
-    task = one.go("RLeg", 1.0)
-    one.run(0.5)
-    assert task.value is False, "nobody balances over a foot in the air"
-
-
 def test_an_arm_takes_the_body_with_it_and_stops_before_it_would_tip_the_robot_over():
     one = Body()
     target = one.lead("LArm", 0.15, 0.0, -0.03)
@@ -223,21 +180,6 @@ def test_an_arm_takes_the_body_with_it_and_stops_before_it_would_tip_the_robot_o
     one.run(4.0)
     assert one.worst < 1e-3 and one.slip < 1e-3 and one.outside() == pytest.approx(0.0, abs=1e-3)
     assert one.now.pose(ARM)[0, 3] - before > 0.1
-
-
-def test_joint_motion_or_a_kill_ends_the_goal_of_an_effector():
-    one = Body()
-    goal = one.control.goal_here("LArm", 7)
-    one.control.lead("LArm", PathAim(goal, lambda _: goal.pose, 1.0))
-    one.move(0.5, LElbowRoll=-0.1)
-    one.run(0.6)
-    assert one.control.aim_of("LArm") is None and one.angles("LElbowRoll") == pytest.approx([-0.1])
-    one.lead("LArm", 0.1, 0.0, 0.1)
-    one.run(0.5)
-    one.motion.kill_using([MODEL.joint_index["LElbowRoll"]])
-    stopped = one.now.pose(ARM)[:3, 3]
-    one.run(1.0)
-    assert one.now.pose(ARM)[:3, 3] == pytest.approx(stopped, abs=5e-3)
 
 
 def test_a_foot_in_its_plane_slides_but_does_not_leave_the_ground():
@@ -271,11 +213,3 @@ def test_switched_off_suspended_or_limp_it_changes_nothing():
     limp.move(0.5, LHipRoll=0.3)
     limp.run(0.6)
     assert limp.angles("LHipRoll") == pytest.approx([0.3])
-
-
-def test_controlled_effectors_switch_it_on_by_themselves():
-    control, active = Body(enabled=False).control, []
-    for effector, on in (("LArm", True), ("Head", True), ("LArm", False), ("Head", False)):
-        control.enable_effector(effector, on)
-        active.append(control.active)
-    assert active == [True, True, True, False]

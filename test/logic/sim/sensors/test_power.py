@@ -113,14 +113,6 @@ def test_motors_warm_up_at_work_to_where_cooling_equals_it_and_cool_down(power):
     assert AMBIENT < power.temperatures[0] < 70.0
 
 
-def test_the_head_warms_up_to_where_it_stays(power):
-    let_pass(power, 3600.0, IDLE, dt=1.0)
-    assert power.head == pytest.approx(AMBIENT + SETTINGS.head.warmth_k, abs=0.5)
-    power.head = 100.0
-    let_pass(power, 600.0, IDLE, dt=1.0)
-    assert power.head < 80.0
-
-
 def test_the_battery_bears_computer_boards_and_motors_that_are_asked_ten_times_a_second(power):
     def watts(work):
         power.advance(lambda: work, 0.1)
@@ -150,25 +142,6 @@ def battery():
 def use(battery, hours, watts):
     for _ in range(round(3600.0 * hours / STEP)):
         battery.advance(watts, STEP)
-
-
-def test_flags_are_right_before_any_time_has_passed(battery):
-    def flags():
-        return battery.reading.status & (Status.FULL | Status.CHARGING | Status.DISCHARGING)
-
-    assert battery.reading.charge == 1.0 and battery.reading.full
-    assert flags() == Status.FULL | Status.DISCHARGING
-    battery.put(0.2)
-    assert flags() == Status.DISCHARGING
-    battery.plug(True)
-    assert flags() == Status.CHARGING and battery.reading.status & Status.POWER_SUPPLY_PRESENT
-    battery.put(1.0)
-    assert flags() == Status.FULL
-    battery.plug(False)
-    assert flags() == Status.FULL | Status.DISCHARGING
-    silent = Battery(SETTINGS.battery, 27.0, tells_plugged=False)
-    silent.plug(True)
-    assert not silent.reading.status & Status.POWER_SUPPLY_PRESENT, "only a board that can tells the plug"
 
 
 def test_it_empties_and_fills_in_the_published_times(battery):
@@ -201,18 +174,6 @@ def test_the_voltage_falls_with_the_charge_and_under_load(battery):
     assert strongest - weakest == pytest.approx(SETTINGS.battery.cell_spread_v)
     table = ((0.0, 1.0), (1.0, 2.0), (3.0, 10.0))
     assert [interpolated(table, x) for x in (0.0, 0.5, 1.0, 2.0, 3.0, 9.0)] == pytest.approx([1, 1.5, 2, 6, 10, 10])
-
-
-def test_a_heavy_load_warms_it_rest_cools_it_and_it_raises_an_alarm_when_it_is_hot(battery):
-    use(battery, 0.4, 60.0)
-    warm = battery.reading.temperature
-    assert 28.0 < warm < 57.0
-    use(battery, 0.4, 1.0)
-    assert 27.0 <= battery.reading.temperature < warm
-    for celsius, alarm in ((59.9, False), (60.0, True)):
-        battery.warm_up(celsius)
-        assert battery.reading.hot is alarm
-        assert bool(battery.reading.status & Status.DISCHARGE_TEMPERATURE_ALARM) is alarm
 
 
 def test_the_charger_gives_less_and_less_from_a_charge_on():

@@ -8,7 +8,6 @@ import pytest
 
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.readings import Pose
-from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
 from nao_sim_bridge.sim.sensors import sonar
 from nao_sim_bridge.sim.sensors.sonar import FARTHEST, NEAREST, NO_ECHO, Sonars, Surface
 from nao_sim_bridge.sim.settings import load_settings
@@ -88,12 +87,6 @@ def test_a_wall_is_heard_as_far_as_they_reach_and_small_things_near_by_only():
     assert sonar.smallness(1.0, LARGE) == 0.0 < sonar.smallness(1.0, pole) < sonar.smallness(2.0, pole)
 
 
-def test_they_turn_with_the_robot():
-    turned = Pose((1.0, 2.0, HEIGHT), from_roll_pitch_yaw(0.0, 0.0, math.pi / 2))
-    assert heard((1.0, 3.0, LEFT[2]), at=turned) == pytest.approx((0.995, 0.995), abs=0.001)
-    assert heard((2.0, 2.0, LEFT[2]), at=turned) == SILENCE
-
-
 def test_they_measure_ten_times_a_second_and_keep_the_reading_in_between():
     tick, around = load_settings().tick_s, Points()
     sonars, asked = Sonars(MODEL, around), []
@@ -112,11 +105,3 @@ def test_they_measure_ten_times_a_second_and_keep_the_reading_in_between():
     sonars.reset()
     assert sonars.read(0.11, STANDING) == first, "after a reset at once"
     assert sonars.echoes is not echoes and sonars.echoes == echoes, "each measurement has echoes of its own"
-
-
-def test_each_silence_has_echoes_of_its_own():
-    sonars, echoes = Sonars(MODEL, Points()), []
-    for now in (0.0, 0.05, 0.1):
-        sonars.read(now, STANDING)
-        echoes.append(sonars.echoes)
-    assert echoes[1] is echoes[0] and echoes[2] is not echoes[0] and echoes[2] == echoes[0]

@@ -8,8 +8,8 @@ import soundfile
 
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.sound import wav_file
-from nao_sim_bridge.sim.sound.files import SoundFileError, read_sound, write_sound
-from nao_sim_bridge.sim.sound.samples import Sound, sine
+from nao_sim_bridge.sim.sound.files import read_sound, write_sound
+from nao_sim_bridge.sim.sound.samples import sine
 from nao_sim_bridge.sim.sound.wav_file import OggFile, WavFile
 
 
@@ -24,30 +24,13 @@ def test_a_sound_comes_back_from_its_file(tmp_path, name, error):
     assert levels[0] == pytest.approx(levels[1], rel=error)
 
 
-@pytest.mark.parametrize("coding", ["PCM_U8", "PCM_24", "PCM_32", "FLOAT", "DOUBLE", "ULAW"])
+@pytest.mark.parametrize("coding", ["PCM_U8", "PCM_24", "FLOAT", "ULAW"])
 def test_wav_files_of_all_codings_are_read(tmp_path, coding):
     samples = np.stack([np.linspace(-0.9, 0.9, 1000), np.zeros(1000)], axis=1)
     soundfile.write(tmp_path / "a.wav", samples, 22050, coding)
     sound = read_sound(tmp_path / "a.wav")
     assert sound.channels == 2 and sound.rate == 22050
     assert np.abs(sound.samples - samples).max() < (0.03 if coding in ("PCM_U8", "ULAW") else 1e-5)
-
-
-def test_errors_name_the_file_and_what_is_wrong(tmp_path):
-    (tmp_path / "text.wav").write_text("this is no sound")
-    soundfile.write(tmp_path / "empty.wav", np.zeros((0, 1)), 48000)
-    for name, word in (("missing.wav", "no such"), (".", "not a file"), ("text.wav", "cannot"), ("empty.wav", "0 fr")):
-        with pytest.raises(SoundFileError, match=word) as caught:
-            read_sound(tmp_path / name)
-        assert str(tmp_path) in str(caught.value)
-    with pytest.raises(SoundFileError, match=r"\.wav, \.flac"):
-        write_sound(tmp_path / "a.xyz", Sound(np.zeros(5)))
-
-
-def test_a_long_ogg_can_be_written(tmp_path):
-    long = Sound(np.zeros((300 * 8000, 2), np.float32), 8000)
-    write_sound(tmp_path / "long.ogg", long)
-    assert read_sound(tmp_path / "long.ogg").frames == long.frames
 
 
 @pytest.fixture

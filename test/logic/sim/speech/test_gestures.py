@@ -18,7 +18,6 @@ from nao_sim_bridge.sim.speech.animations import load_animations, read_animation
 from nao_sim_bridge.sim.speech.body_language import CONTEXTUAL, DISABLED, QUICKEST, RANDOM, SLOWEST, plan
 
 GESTURES = "animations/Stand/Gestures/"
-NAMES = ("Explain_1", "Hey_1", "Me_1", "You_1", "Yes_1", "No_1", "IDontKnow_1", "Enthusiastic_1")
 ALL = sorted(load_animations().animations)
 # How near limbs may come, m: the shapes that are looked at are wider than the limbs, and an arm is kept at -0.006.
 NEAREST = -0.004
@@ -27,16 +26,6 @@ NEAREST = -0.004
 @pytest.fixture
 def library():
     return load_animations()
-
-
-def test_the_gestures_that_scripts_use_are_there_by_all_their_names(library):
-    for name in NAMES:
-        found = library.find(GESTURES + name)
-        assert found.name == GESTURES + name
-        for other in (name, f"Stand/Gestures/{name}", f"animations/[posture]/Gestures/{name}"):
-            assert library.find(other) is found
-    assert library.find(GESTURES + "Hey_6") is library.find("Hey_1")
-    assert library.find(GESTURES + "Somersault_1") is None
 
 
 def test_tags_and_words_lead_to_gestures(library):
@@ -67,27 +56,12 @@ def test_no_arm_comes_too_near_on_the_way(library, start):
             assert not (distances < nearest).any(), f"{name}: {distances.min():.3f} m at {time:.2f} s"
 
 
-def test_joints_end_where_they_began_and_are_no_faster_than_their_motors(library):
-    model = load_model()
-    home = posture(model, "Stand")
-    for animation in library.animations.values():
-        for joint in animation.joints:
-            index = model.joint_index[joint]
-            curve = animation.curve(joint, home[index], home[index], QUICKEST)
-            assert curve.value(0.0) == curve.value(curve.duration) == home[index]
-            assert curve.duration == pytest.approx(QUICKEST * animation.length)
-            assert curve.peak_speed() < model.joints[index].max_velocity, (animation.name, joint)
-
-
 @pytest.mark.parametrize(
     "change, problem",
     [
         ({"joints": {}}, "moves no joint"),
         ({"joints": {"LKneePitch": {"times": [1.0], "angles": [0.0]}}}, "no joint of arms, hands or head"),
-        ({"joints": {"LElbow": {"times": [1.0], "angles": [0.0]}}}, "no joint of arms, hands or head"),
         ({"joints": {"LHand": {"times": [2.5], "angles": [0.0]}}}, "do not rise between 0 and 2 s"),
-        ({"joints": {"LHand": {"times": [1.0, 0.5], "angles": [0.0, 1.0]}}}, "do not rise"),
-        ({"joints": {"LHand": {"times": [1.0, 1.5], "angles": [0.0]}}}, "not 2 finite numbers"),
         ({"joints": {"LElbowRoll": {"times": [1.0], "angles": [0.5]}}}, "not all within"),
         ({"speed": 2}, "unknown key 'speed'"),
     ],

@@ -76,13 +76,6 @@ def test_a_ball_that_the_edge_of_the_picture_cuts_is_found_where_it_is(alpha, be
     assert ball.distance(0.05) == pytest.approx(0.6, rel=0.05)
 
 
-def test_the_better_of_two_balls_comes_first():
-    cut, whole = sphere(0.6, 0.05, ACROSS - 0.02, 0.0, noise=0.0), sphere(0.6, 0.05, -0.2, 0.0, noise=0.0)
-    first, second = balls(np.where((cut[..., 2] > 90)[..., None] & (cut[..., :1] < 60), cut, whole))
-    assert (first.alpha, second.alpha) == pytest.approx((-0.2, ACROSS - 0.02), abs=0.01)
-    assert first.quality > second.quality
-
-
 def drawn(draw, color=(20, 25, 215)):
     """A picture with what `draw(picture, color)` draws, with smooth edges."""
     fine = np.empty((960, 1280, 3), np.uint8)
@@ -131,13 +124,6 @@ def test_a_mark_is_where_it_is_and_as_large(distance, alpha, beta):
     assert (seen.x, seen.y) == pytest.approx(OPTICS.place(alpha, beta), abs=0.005)
 
 
-def test_a_mark_turned_away_is_narrower_and_no_smaller():
-    (seen,) = marks(mark(84, 0.8, yaw=math.radians(40.0)))
-    angle = 2.0 * math.atan(SIZE / 2.0 / 0.8)
-    assert seen.width == pytest.approx(angle * math.cos(math.radians(40.0)), rel=0.06)
-    assert (seen.height, seen.size) == pytest.approx((angle, angle), rel=0.05)
-
-
 @pytest.mark.parametrize("roll", [-2.5, -0.6, 0.0, 0.2, 1.0, 3.0])
 def test_its_heading_is_its_turn_in_the_picture(roll):
     (seen,) = marks(mark(84, 0.8, roll=roll))
@@ -154,38 +140,6 @@ def test_several_come_from_left_to_right_on_every_wall_and_in_uneven_light():
     for wall in (10, 250):
         behind = np.full((240, 320, 3), wall, np.uint8)
         assert [found.number for found in marks(mark(136, 1.2, onto=behind))] == [136]
-
-
-def wheel(spokes):
-    """A black disc with evenly spaced white fans on a white card: no mark."""
-    picture = np.full((240, 320, 3), 120, np.uint8)
-    cv2.rectangle(picture, (110, 70), (210, 170), (230, 230, 230), -1)
-    cv2.circle(picture, (160, 120), 40, (25, 25, 25), -1, cv2.LINE_AA)
-    for spoke in range(spokes):
-        begin = 360.0 * spoke / spokes
-        cv2.ellipse(picture, (160, 120), (32, 32), 0, begin, begin + 180.0 / spokes, (230, 230, 230), -1, cv2.LINE_AA)
-    return picture
-
-
-def with_wrong_sectors(*wrong):
-    table, picture = load_landmarks(), mark(119, 0.5)
-    radius = OPTICS.intrinsics(320, 240).fx * SIZE / 2.0 / 0.5
-    for sector in wrong:
-        begin = 360.0 * sector / table.sectors - 90.0
-        color = (25, 25, 25) if table.marks[119][sector] else (229, 229, 229)
-        turns = np.radians(np.linspace(begin, begin + 360.0 / table.sectors, 8))
-        arc = np.stack([np.cos(turns), np.sin(turns)], axis=1) * radius
-        outline = np.concatenate([arc * table.fan_outer, arc[::-1] * table.fan_inner]) + (160.0, 120.0)
-        cv2.fillPoly(picture, [np.int32(outline * 16)], color, cv2.LINE_AA, 4)
-    return picture
-
-
-def test_other_wheels_codes_and_marks_that_are_cut_or_wrong_are_no_marks():
-    assert [marks(wheel(spokes)) for spokes in range(10)] == [[]] * 10
-    assert marks(mark(119, 0.6, alpha=OPTICS.hfov / 2.0 - 0.02)) == []
-    assert len(marks(with_wrong_sectors())) == 1 and marks(with_wrong_sectors(2, 9)) == []
-    for kind, content in (("qr", "119"), ("barcode", "4006381333931")):
-        assert marks(card(WorldPicture(kind, content), 0.15, 0.6)) == []
 
 
 QR, VGA = WorldPicture("qr", "hello world"), (640, 480)
@@ -212,25 +166,6 @@ def test_corners_go_clockwise_from_the_upper_left_one_of_the_code():
     (code,) = codes(card(QR, 0.2, 0.5, roll=np.pi / 2.0))
     first = np.array(code.corners[0]) - centre(code)
     assert first[0] < 0.0 < first[1]  # its upper left corner is the lower left one of the picture
-
-
-def test_barcodes_and_letters_of_all_languages_are_read():
-    for content, text, kind in (("4006381333931",) * 2 + ("EAN13",), ("code128:ABC-1", "ABC-1", "Code128")):
-        (code,) = codes(card(WorldPicture("barcode", content), 0.2, 0.45, size=VGA))
-        assert (code.text, code.kind) == (text, kind)
-        assert centre(code) == pytest.approx((320.0, 240.0), abs=40.0)
-    (code,) = codes(card(WorldPicture("qr", "Grüße, 北京"), 0.2, 0.5, size=VGA))
-    assert code.text == "Grüße, 北京"
-
-
-def test_an_article_number_is_rather_not_read_than_wrongly():
-    read = []
-    for turn in range(16):
-        how = dict(alpha=0.01 * turn, yaw=0.4 * math.sin(turn), seed=turn)
-        read += [
-            code.text for code in codes(card(WorldPicture("barcode", "5901234123457"), 0.2, 0.3 + 0.02 * turn, **how))
-        ]
-    assert set(read) == {"5901234123457"}
 
 
 def test_two_codes_come_from_left_to_right_and_stripes_are_none():
@@ -309,17 +244,3 @@ def test_a_moving_head_is_no_movement_and_afterwards_it_goes_on(room):
     shifts = [0] * 4 + [6 * k for k in range(1, 6)] + [30] * 5
     found = watch([room(shift=shift) for shift in shifts], poses=poses)
     assert found[2:4] == [[], []] and found[4:9] == [None] * 5 and found[-2:] == [[], []]
-
-
-def test_another_camera_another_size_or_a_reset_begins_anew(room):
-    detector = MovementDetector()
-
-    def look(time, camera, picture):
-        return detector.detect(picture, OPTICS, MovementSettings(0.8, time, camera, POSE))
-
-    look(0.0, 0, room())
-    assert look(0.3, 0, room(ball=(100, 100)))
-    assert look(0.6, 1, room(ball=(200, 100))) is None
-    assert look(0.9, 1, room()[:120, :160]) is None
-    detector.reset()
-    assert look(1.2, 1, room(ball=(100, 100))[:120, :160]) is None

@@ -64,13 +64,6 @@ def test_a_wall_has_no_face_and_nobody_is_blue(detector):
     assert [len(find(detector, seen, track=False)) for seen in (picture, grey, blue)] == [1, 1, 0]
 
 
-def test_two_faces_are_two_the_larger_first(detector):
-    picture = face_picture("hugo", 0.8, place=(460, 240), picture=face_picture("anna", 1.2, place=(160, 240)))
-    right, left = find(detector, picture)
-    assert right.centre[0] < -0.1 < 0.1 < left.centre[0] and right.size[0] > left.size[0]
-    assert {right.number, left.number} == {1, 2}
-
-
 def test_a_face_keeps_its_number_while_it_moves_and_in_pictures_of_another_size(detector):
     for step in range(8):
         (face,) = find(detector, face_picture("emma", 1.0, place=(200 + 25 * step, 240)), 0.1 * step)
@@ -79,21 +72,6 @@ def test_a_face_keeps_its_number_while_it_moves_and_in_pictures_of_another_size(
     (half,) = find(detector, small, 0.8)
     assert half.number == 1 and half.box[2] == pytest.approx(0.5 * face.box[2], rel=0.25)
     assert find(detector, face_picture("emma", 1.0), 3.0)[0].number == 2, "it comes back later"
-
-
-def test_a_new_face_is_noticed_while_another_is_followed(detector):
-    one = face_picture("ben", 1.0, place=(150, 240))
-    two = face_picture("clara", 1.0, place=(480, 240), picture=one)
-    find(detector, one, 0.0)
-    assert [len(find(detector, two, time)) for time in (0.1, 0.2, 0.35)] == [1, 1, 2]
-    assert len(find(detector, one, 0.4)) == 1
-
-
-def test_without_tracking_every_picture_stands_alone_and_descriptions_are_made_when_wanted(detector):
-    picture = face_picture("ben", 1.0)
-    assert [find(detector, picture, 0.1 * k, track=False)[0].number for k in range(3)] == [1, 2, 3]
-    assert find(detector, picture, 0.0, describe=False)[0].description is None
-    assert np.linalg.norm(find(detector, picture, 0.1)[0].description) == pytest.approx(1.0, abs=1e-3)
 
 
 def describe(*arguments, **options):
@@ -171,18 +149,6 @@ def test_known_people_survive_the_robot_and_a_broken_file_is_put_aside(tmp_path)
     assert again.names == ["anna"] and again.recognise(direction(0)) == ("anna", 1.0)
     again.clear()
     assert KnownPeople(ClientFiles(tmp_path)).names == []
-
-
-def test_who_cannot_be_kept_is_not_known(tmp_path):
-    people = KnownPeople(ClientFiles(tmp_path))
-    people.learn("anna", direction(0))
-    for path in tmp_path.iterdir():
-        path.unlink()
-    tmp_path.rmdir()
-    tmp_path.write_text("a file where the folder was")
-    with pytest.raises((FaceFileError, OSError, ValueError)):
-        people.learn("ben", direction(1))
-    assert people.names == ["anna"]
 
 
 def face(name="", number=1):

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import logging
 import queue
-import threading
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,17 +12,13 @@ from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.extractor import Subscription
 from nao_sim_bridge.services.memory_store import MemoryStore
-from nao_sim_bridge.services.vision.face_detection_learning import MOST_WAITING, FaceLearner
 from nao_sim_bridge.services.vision.sight import Sight
 from nao_sim_bridge.services.vision.vision_extractor import VisionExtractor
 from nao_sim_bridge.services.vision.watching import Watching
 from nao_sim_bridge.sim.config import read_json
 from nao_sim_bridge.sim.errors import BadValue, ConfigError, SimulationError
-from nao_sim_bridge.sim.render import RenderError
 from nao_sim_bridge.sim.vision.cone import fit_cone
 from nao_sim_bridge.sim.vision.settings import FILE, load_vision, parse_vision
-
-PATIENCE = 15.0
 
 
 class Eyes(Head):
@@ -86,33 +79,6 @@ def eyes(eyes_of):
     return eyes_of()
 
 
-def test_it_looks_from_the_first_subscriber_to_the_last_unless_paused(eyes):
-    assert not eyes.watching.looks and eyes.cameras.streams == ()
-    eyes.subscribe(one=1000)
-    assert eyes.watching.looks
-    eyes.advance(2.0)
-    assert eyes.results.get(timeout=PATIENCE) == (pytest.approx(1 / 120), 0, 0, "seen at 0.01")
-    assert eyes.results.get(timeout=PATIENCE)[0] == pytest.approx(1.0, abs=0.02)
-    eyes.watching.pause(True)
-    assert eyes.watching.paused and not eyes.watching.looks and (eyes.closed, eyes.stops) == (1, 1)
-    eyes.watching.pause(False)
-    assert not eyes.watching.paused and eyes.watching.looks
-    eyes.watching.stop()
-    assert not eyes.watching.looks and eyes.cameras.streams == () and (eyes.closed, eyes.stops) == (2, 2)
-    eyes.watching.pause(True)
-    eyes.watching.start()
-    assert not eyes.watching.looks, "paused before anybody subscribed"
-    eyes.watching.pause(False)
-    assert eyes.watching.looks
-
-
-def test_the_shortest_period_is_kept_between_two_pictures(eyes):
-    eyes.subscribe(one=2000, two=1500)
-    assert eyes.stream.fps == 1  # no rate is lower
-    eyes.advance(5.0)
-    assert eyes.seen() == [(0.008, 0), (2.008, 40), (4.008, 80)]
-
-
 @pytest.mark.parametrize("period, fps", [(0, 30), (30, 30), (33, 30), (50, 20), (100, 10), (300, 3), (5000, 1)])
 def test_the_camera_runs_as_slowly_as_the_period_allows(eyes, period, fps):
     eyes.subscribe(one=period)
@@ -162,38 +128,6 @@ def test_without_a_camera_of_its_own_it_follows_the_active_one(eyes_of):
     assert cameras[0] == 0 and set(cameras[1:]) == {1} and eyes.stream.camera == 1
 
 
-def test_pictures_that_cannot_be_drawn_or_looked_at_are_told_once_and_it_goes_on(eyes, caplog):
-    eyes.subscribe(one=100)
-    errors = lambda: [r.getMessage() for r in caplog.records if r.levelno == logging.ERROR]  # noqa: E731
-    once = "ALTest: {}; it goes on, and further failures in a row are not logged"
-    eyes.pictures.error = RenderError("cannot be drawn")
-    eyes.advance(0.15)
-    eyes.pictures.error, eyes.fails = None, True
-    eyes.advance(0.2)
-    assert errors() == [once.format("cannot be drawn")]
-    eyes.fails = False
-    eyes.advance(0.1)
-    assert eyes.results.get(timeout=PATIENCE)
-    eyes.fails = True
-    eyes.advance(0.2)
-    assert errors()[1:] == [once.format("cannot look at this")], "after a success it is news again"
-
-
-def test_a_result_that_nobody_wants_any_more_is_dropped(eyes):
-    begun, go_on = threading.Event(), threading.Event()
-    eyes.detect = lambda *_: (begun.set(), go_on.wait(PATIENCE))
-    eyes.subscribe(one=0)
-    eyes.run()
-    assert begun.wait(PATIENCE)
-    stopping = threading.Thread(target=eyes.watching.stop)
-    stopping.start()
-    while eyes.watching.looks and stopping.is_alive():
-        stopping.join(0.001)
-    go_on.set()
-    stopping.join(PATIENCE)
-    assert eyes.results.empty() and eyes.stops == 1
-
-
 @pytest.mark.parametrize("tell_end, told", [(True, [["a"], ["b"], [], ["c"]]), (False, [["a"], ["b"], ["c"]])])
 def test_what_is_seen_is_told_each_time_and_its_end_once_or_not_at_all(tell_end, told):
     memory, heard = MemoryStore(lambda: 0.0), []
@@ -211,26 +145,9 @@ def test_what_is_seen_is_told_each_time_and_its_end_once_or_not_at_all(tell_end,
     assert heard == told
 
 
-def test_calls_that_learn_a_face_are_counted_and_end_with_the_cameras():
-    head = Head()
-    learner = FaceLearner(head.cameras, SimpleNamespace(close=lambda: None), lambda: 0)
-    tasks = [learner.look(lambda _: True) for _ in range(MOST_WAITING)]
-    with pytest.raises(BadValue, match=f"calls that learn a face is {MOST_WAITING + 1}, allowed is at most"):
-        learner.look(lambda _: True)
-    head.close()
-    for thread in threading.enumerate():
-        if thread.name == "learn a face":
-            thread.join(PATIENCE)
-    for task in (*tasks, learner.look(lambda _: True)):  # there is room again
-        with pytest.raises(RuntimeError, match="the cameras were closed"):
-            task.result(PATIENCE)
-
-
 @pytest.mark.parametrize(
     "spoil, problem",
     [
-        (lambda c: c.pop("ball"), "missing 'ball'"),
-        (lambda c: c.update(bal={}), "unknown key 'bal', did you mean 'ball'"),
         (lambda c: c["landmarks"].pop("lead"), f"{FILE} landmarks: missing 'lead'"),
         (lambda c: c["ball"].update(rednes=1), f"{FILE} ball: unknown key 'rednes', did you mean 'redness'"),
     ],

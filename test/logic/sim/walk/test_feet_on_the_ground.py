@@ -26,11 +26,6 @@ def test_a_move_is_in_the_own_frame():
     assert FootPose(1.0, 2.0, math.pi / 2).moved(0.5, 0.1, 0.2) == pytest.approx((0.9, 2.5, math.pi / 2 + 0.2))
 
 
-@given(poses, st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-3.0, 3.0))
-def test_what_was_moved_is_seen_where_it_was_moved_to(start, x, y, yaw):
-    assert start.moved(x, y, yaw).seen_from(start) == pytest.approx((x, y, yaw), abs=ROUNDING)
-
-
 def test_turns_go_the_short_way():
     assert FootPose(0.0, 0.0, 3.0).seen_from(FootPose(0.0, 0.0, -3.0)).yaw == pytest.approx(6.0 - 2 * math.pi)
     x, y, yaw = middle(FootPose(0.0, 0.05, 3.1), FootPose(0.1, -0.05, -3.1))
@@ -60,7 +55,7 @@ def test_a_clipped_step_is_in_reach_mirrored_by_the_other_leg_and_stays_as_it_is
     assert clip_step(clipped, side, LIMITS) == pytest.approx(clipped, abs=0.5 * LIMITS.max_turn / 20)
 
 
-@pytest.mark.parametrize("x, y, turn", [(0, 0.1, 0), (0.04, 0.1, 0), (-0.03, 0.11, 0.1), (0, 0.15, 0.5)])
+@pytest.mark.parametrize("x, y, turn", [(0.04, 0.1, 0), (-0.03, 0.11, 0.1), (0, 0.15, 0.5)])
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
 def test_what_legs_can_step_is_not_clipped(x, y, turn, side):
     assert clip_step(FootPose(x, side * y, side * turn), side, LIMITS) == pytest.approx((x, side * y, side * turn))

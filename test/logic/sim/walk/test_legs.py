@@ -10,14 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nao_sim_bridge.sim.frames import FEET, frame_of
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
+from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
 from nao_sim_bridge.sim.walk.body import WalkingBody
 from nao_sim_bridge.sim.walk.footsteps import middle
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT, SIDES, Sole
-from nao_sim_bridge.sim.walk.matrices import IDENTITY, about_z
+from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT, SIDES
 from nao_sim_bridge.sim.walk.whereabouts import foot_on_ground, robot_on_ground
 
 MODEL = load_model()
@@ -68,32 +67,3 @@ def test_soles_on_the_ground_are_where_the_whole_robot_has_them(angles, roll, pi
         sole = world @ links[frame.link] @ frame.offset
         assert foot == pytest.approx((sole[0, 3], sole[1, 3], math.atan2(sole[1, 0], sole[0, 0])), abs=1e-6)
     assert robot_on_ground(BODY, torso, angles) == pytest.approx(middle(*feet))
-
-
-@pytest.mark.parametrize("turn", [-0.3, 0.0, 0.3])
-@pytest.mark.parametrize("step", [-0.05, 0.0, 0.06])
-def test_both_soles_are_put_where_they_are_asked_for(turn, step):
-    torso, lean = (0.01, 0.005, 0.3), tuple(rpy_matrix((0.02, 0.05, 0.03)).ravel())
-    soles = {
-        LEFT: Sole((step, 0.05, 0.0), about_z(turn)),
-        RIGHT: Sole((-step, -0.05, 0.01), about_z(-turn)),
-    }
-    hip, left, right = LEGS.solve(torso, lean, soles[LEFT], soles[RIGHT], 0.0)
-    matrix = np.array(lean).reshape(3, 3)
-    turned_off = []
-    for side, angles in ((LEFT, left), (RIGHT, right)):
-        _, ankle, foot = LEGS.state(side, hip, angles)
-        sole = matrix @ (np.array(ankle) - LEGS.sole_height * np.array(foot).reshape(3, 3)[:, 2]) + torso
-        assert sole == pytest.approx(soles[side].position, abs=1e-4)
-        off = np.array(soles[side].rotation).reshape(3, 3).T @ matrix @ np.array(foot).reshape(3, 3)
-        assert off[2, 2] == pytest.approx(1.0, abs=1e-6), "the sole is not flat"
-        turned_off.append(math.atan2(off[1, 0], off[0, 0]))
-    # One motor for two hips: what it cannot do is shared out.
-    assert turned_off[0] == pytest.approx(turned_off[1], abs=6e-3)
-    assert abs(turned_off[0]) < 0.1
-
-
-def test_a_sole_out_of_reach_stretches_the_leg():
-    soles = (Sole((0.0, 0.05, 0.0), IDENTITY), Sole((0.0, -0.05, 0.0), IDENTITY))
-    _, left, _ = LEGS.solve((0.0, 0.0, 0.5), IDENTITY, *soles, 0.0)
-    assert left[2] == pytest.approx(0.0, abs=0.1)

@@ -34,15 +34,6 @@ def test_followed_through_the_plan_it_comes_to_rest_at_the_end():
     assert (x, y) == pytest.approx(END, abs=4e-4)
 
 
-def test_a_segment_cut_in_two_or_without_time_changes_nothing():
-    first, whole = PLAN[0], divergent_component(PLAN, END, OMEGA)
-    half = tuple((a + b) / 2 for a, b in zip(first.start, first.end))
-    cut = [Segment(0.15, first.start, half), Segment(0.15, half, first.end), *PLAN[1:]]
-    assert divergent_component(cut, END, OMEGA) == pytest.approx(whole)
-    instant = [Segment(0.0, (1.0, 1.0), (2.0, 2.0)), *PLAN]
-    assert divergent_component(instant, END, OMEGA) == pytest.approx(whole)
-
-
 @pytest.fixture
 def observer():
     settings = load_walk_settings()

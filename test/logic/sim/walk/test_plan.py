@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import math
-import random
 from typing import NamedTuple
 
 import pytest
 
-from nao_sim_bridge.sim.body_mass import convex_hull
-from nao_sim_bridge.sim.support_polygon import outside
-from nao_sim_bridge.sim.walk.clipping import step_limits
 from nao_sim_bridge.sim.walk.courses import STANDSTILL
-from nao_sim_bridge.sim.walk.footsteps import FootPose, middle
+from nao_sim_bridge.sim.walk.footsteps import FootPose
 from nao_sim_bridge.sim.walk.gait import FeetGait, feet_gait
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.sim.walk.plan import LONGEST_SWING, Phase, WalkPlan
@@ -104,22 +100,6 @@ def whole_walk(course, end_after=None, dt=DT):
     return plan, seen + until(plan, Phase.STAND, dt)
 
 
-def random_walk(seed, dt=DT):
-    """All ticks of a walk whose velocity changes at random moments."""
-    r = random.Random(seed)
-    plan = plan_of()
-    seen = until(plan, Phase.STAND)[-1:]
-    course = velocity(*(r.uniform(-most, most) for most in (0.05, 0.03, 0.4)))
-    plan.begin(course)
-    seen += ticks(plan, r.uniform(1.0, 2.0), dt)
-    for _ in range(3):
-        course = velocity(*(r.uniform(-most, most) for most in (0.05, 0.03, 0.4)), rate=course.rate)
-        plan.take_course(course)
-        seen += ticks(plan, r.uniform(0.3, 2.0), dt)
-    course.end()
-    return plan, seen + until(plan, Phase.STAND, dt)
-
-
 def jumps(plan, seen, dt=FINE):
     """How far the divergent component is at each tick from where the pressure takes it since the tick before, m."""
     grown = math.exp(plan.omega * dt)
@@ -137,9 +117,7 @@ def jumps(plan, seen, dt=FINE):
 COURSES = [
     (lambda: velocity(0.04), 3.0),
     (lambda: velocity(0.02, -0.01, -0.2), 3.1),
-    (lambda: velocity(0.0, 0.0, 0.349), 2.9),
     (lambda: target(0.2, 0.1, 0.5), None),
-    (lambda: steps(1), None),
     (lambda: steps(4, 0.02, 0.9), None),
 ]
 
@@ -161,12 +139,6 @@ def test_a_walk_goes_through_its_phases_in_order():
     lasted = [order.count(phase) * DT for phase in first[:3]]
     start, settle = SETTINGS.push_time + SETTINGS.shift_time, SETTINGS.settle_time + SETTINGS.stand_time
     assert lasted == pytest.approx([start, 3 * 0.42, settle], abs=2 * DT)
-
-
-def test_the_longer_a_step_the_longer_it_stands_on_both_feet():
-    for period, in_air in [(0.42, 0.42 * (1.0 - SETTINGS.double_support_share)), (1.0, LONGEST_SWING)]:
-        _, seen = whole_walk(steps(3, period=period))
-        assert sum(0.0 < now.swing_share < 1.0 for now in seen) * DT == pytest.approx(3 * in_air, abs=6 * DT)
 
 
 @pytest.mark.parametrize("course, end_after", COURSES)
@@ -191,22 +163,7 @@ def test_nothing_jumps_one_foot_is_in_the_air_and_it_ends_at_rest_over_both_feet
     assert stood[-1].feet == seen[-1].feet and stood[-1].com == pytest.approx(plan.rest(), abs=1e-5)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_however_the_velocity_changes_the_pressure_is_under_soles_that_carry_and_the_body_over_them(seed):
-    plan, seen = random_walk(seed, FINE)
-    found = sorted(jumps(plan, seen))
-    assert found[-1] < CHANGED
-    assert found[-5] < SMOOTH, "besides the ticks at which one of four courses came"
-    limits = step_limits()
-    for now in seen[::4]:
-        carry = SIDES if now.both else (now.support,)
-        corners = [now.feet[s].moved(x, y)[:2] for s in carry for x, y in limits.box(s)]
-        assert outside(convex_hull(corners), now.pressure)[0] <= 0.0, now
-        assert math.dist(now.com, middle(now.feet[LEFT], now.feet[RIGHT])[:2]) < 0.06
-    assert max(math.dist(a.com, b.com) / FINE for a, b in zip(seen, seen[1:])) < 0.5
-
-
-@pytest.mark.parametrize("height", [0.005, 0.02, 0.035])
+@pytest.mark.parametrize("height", [0.005, 0.035])
 def test_feet_go_as_high_as_the_gait_says_and_a_bit_more(height):
     _, seen = whole_walk(velocity(gait=feet_gait({"StepHeight": height})), end_after=1.5)
     for side in SIDES:
@@ -236,19 +193,3 @@ def test_a_foot_that_does_not_feel_the_ground_goes_down_and_is_waited_for():
     assert plan.support == RIGHT
     ticks(plan, 2 * DT)
     assert plan.support == LEFT, "it has landed"
-
-
-def test_it_tells_where_the_robot_is_after_this_step_and_which_steps_follow():
-    plan = standing()
-    assert plan.robot == pytest.approx((0.0, 0.0, 0.0)) and plan.further(3) == []
-    plan.begin(steps(4, 0.03))
-    until(plan, Phase.STEP)
-    assert plan.robot == pytest.approx((0.015, 0.0, 0.0))
-    expected, made = plan.further(10), []
-    assert len(expected) == 3
-    while plan.phase is Phase.STEP:
-        before = plan.support
-        tick(plan)
-        if plan.phase is Phase.STEP and plan.support != before:
-            made.append(plan.step)
-    assert made == expected

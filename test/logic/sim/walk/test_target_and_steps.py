@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import random
 
 import pytest
 from hypothesis import given, settings
@@ -69,35 +68,12 @@ def test_from_everywhere_it_arrives_with_steps_that_legs_can_make_coming_closer_
         assert all(abs(b - a) <= most + ROUNDING for a, b, most in zip(before, now, SETTINGS.change))
 
 
-@pytest.mark.parametrize("goal", [(1.0, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 1.5)])
-def test_it_takes_hardly_longer_than_it_must(walked, goal):
-    assert least_steps(goal) <= len(walked(course(goal))) + 1 <= least_steps(goal) + 7
-
-
-A, B, O = (0.1, 0.0, 0.0), (0.1, 0.1, 0.5), (0.0, 0.0, 0.0)  # noqa: E741
-
-
-@pytest.mark.parametrize("points", [[A, (0.15, 0.05, 0.3)], [B, B, O], [O, A]])
-def test_no_point_on_the_way_is_the_end(walked, points):
-    """Feet that are never put exactly where they should be do not keep it from going on to the next point."""
-    r = random.Random(1)
-    one, made = course(*points), None
-    for _ in range(50):
-        (made,) = walked(one, 1, after=made)
-        if one.reached:
-            break
-        one.frame = FootPose(r.uniform(-0.003, 0.003), r.uniform(-0.003, 0.003), r.uniform(-0.005, 0.005))
-    assert one.reached
-    assert off(points[-1], made.robot)[0] < 2.0 * ARRIVED
-
-
 @pytest.mark.parametrize("goal, side", [((1.0, 0.0, 0.0), LEFT), ((1.0, -0.1, 0.0), RIGHT), ((0.0, 0.0, -1.0), RIGHT)])
 def test_the_foot_on_the_side_of_the_goal_moves_first(feet_at, goal, side):
     assert course(goal).first_side(feet_at()) == side
 
 
-@pytest.mark.parametrize("change", [0.01, 0.12])
-@pytest.mark.parametrize("distance", [0.0, 0.005, 0.05, 0.5, 2.0])
+@pytest.mark.parametrize("change, distance", [(0.01, 0.0), (0.01, 0.5), (0.12, 0.05), (0.12, 2.0)])
 def test_braking_comes_to_rest_just_at_the_end(change, distance):
     """Of the last steps one may be harder by an eighth: they are whole ones."""
     left, rate = distance, math.inf
@@ -130,11 +106,6 @@ def test_it_makes_exactly_the_steps_of_the_plan_and_is_over_after_the_last_one(w
     assert [m.step.side for m in made] == [s.side for s in PLAN]
     assert [m.placement for m in made] == [pytest.approx(s.beside) for s in PLAN]
     assert [m.step.period for m in made] == pytest.approx([s.period for s in PLAN])
-
-
-def test_the_foot_of_the_first_step_moves_first(feet_at):
-    assert planned(step(RIGHT), step(LEFT)).first_side(feet_at()) == RIGHT
-    assert planned().first_side(feet_at()) == LEFT
 
 
 def test_feet_that_stand_in_any_way_are_put_side_by_side_before_the_first_step(walked):

@@ -133,28 +133,6 @@ def test_told_to_end_it_closes_the_feet_and_is_over(walked, rate):
         assert one.rate == STANDSTILL
 
 
-def test_feet_that_stand_in_any_way_are_put_side_by_side_in_the_heading_of_the_robot(walked):
-    one = course(STANDSTILL)
-    one.end()
-    robot = FootPose(0.3, -0.2, 0.4)
-    feet = {LEFT: robot.moved(0.04, 0.06, 0.2), RIGHT: robot.moved(-0.04, -0.06, -0.2)}
-    one.begin_at(robot)
-    made = walked(one, feet=feet)
-    assert len(made) == 2
-    assert made[-1].feet[LEFT].seen_from(made[-1].feet[RIGHT]) == pytest.approx((0.0, 0.1, 0.0), abs=1e-6)
-    assert made[-1].robot.seen_from(robot) == pytest.approx((-0.0267, 0.0054, 0.0), abs=1e-3)
-
-
-def test_at_long_steps_it_slows_down_first(walked):
-    one = course((0.08, 0.0, 0.0), feet_gait({"MaxStepX": 0.08}))
-    made = walked(one, 10)
-    one.end()
-    last = walked(one, after=made[-1])
-    assert CLOSING_STEPS < len(last) <= 5
-    ways = [m.robot.x - b.robot.x for b, m in zip([made[-1], *last], last)]
-    assert ways == sorted(ways, reverse=True)
-
-
 @pytest.mark.parametrize("turn, made_up_for", [(-0.2, -0.2), (0.15, 0.15), (2.0, 0.5)])
 def test_a_robot_that_was_turned_goes_back_to_its_heading_but_not_all_the_way_round(walked, turn, made_up_for):
     one = course()

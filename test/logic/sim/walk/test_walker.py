@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 
 import pytest
 
@@ -169,21 +168,6 @@ def test_a_body_that_leans_is_shifted_back_until_that_is_a_habit_and_far_off_it_
     assert -sign * feedback.shift[axis] == pytest.approx(SETTINGS.shift_limit, rel=0.01)
 
 
-def test_errors_are_ahead_and_aside_of_the_foot_that_carries_however_the_robot_stands():
-    turned, still = (Ideal(course=velocity(0.0, 0.0, 0.3)) for _ in range(2))
-    for one in (turned, still):
-        one.ticks(400)
-    turned.leaning = (0.0, 0.05)
-    for one in (turned, still):
-        one.ticks(20)
-    off = [a - b for a, b in zip(turned.walker.feedback.error, still.walker.feedback.error)]
-    shift = [a - b for a, b in zip(turned.walker.feedback.shift, still.walker.feedback.shift)]
-    heading = turned.plan.feet[turned.plan.support].yaw
-    assert off == pytest.approx((0.014, 0.0), abs=0.002)
-    back = -SETTINGS.shift_gain * off[0]
-    assert shift == pytest.approx((back * math.cos(heading), back * math.sin(heading)), abs=5e-4)
-
-
 def test_a_body_that_turns_is_held_by_the_ankles_that_carry():
     robot, still = Ideal(course=velocity(0.03, 0.0, 0.0)), Ideal(course=velocity(0.03, 0.0, 0.0))
     for one in (robot, still):
@@ -241,21 +225,6 @@ def test_arms_without_hands_swing_against_the_legs_and_not_while_it_stands(strid
     assert wanted == pytest.approx(expected)
 
 
-def test_arms_join_in_without_a_jerk():
-    arms = Arms("StandZero", stride=0.04)
-    before, fastest = dict(enumerate(arms.joints.commands)), 0.0
-    for _ in range(round(SETTINGS.arm_ease / DT)):
-        assert not arms.swing.alone
-        wanted = arms.swing.wishes(NOBODY, DT)
-        fastest = max(fastest, *(abs(angle - before[i]) / DT for i, angle in wanted.items()))
-        before.update(wanted)
-    furthest = max(abs(HOME[i] - posture(MODEL, "StandZero")[i]) for i in ARM["L"])
-    assert fastest < 1.6 * (furthest + SETTINGS.arm_swing) / SETTINGS.arm_ease
-    assert before[LEFT_ARM] == pytest.approx(HOME[LEFT_ARM] + SETTINGS.arm_swing)
-    arms.after(DT)
-    assert arms.swing.alone
-
-
 def test_an_arm_that_is_busy_limp_or_may_not_swing_does_not():
     arms = Arms(stride=0.04)
     arms.after()
@@ -268,12 +237,3 @@ def test_an_arm_that_is_busy_limp_or_may_not_swing_does_not():
         one = Arms()
         one.swing.enabled[arm] = False
         assert set(one.after()) == ARM[other]
-
-
-def test_what_else_moves_idle_joints_goes_on_beneath():
-    arms, head = Arms(), MODEL.joint_index["HeadYaw"]
-    arms.swing.over(SimpleNamespace(wishes=lambda busy, dt: {head: 0.3, LEFT_ARM: 0.0}))
-    wanted = arms.after(2 * SETTINGS.arm_ease)
-    assert wanted[head] == 0.3 and wanted[LEFT_ARM] == pytest.approx(HOME[LEFT_ARM]), "the swing comes first"
-    arms.stride = None
-    assert arms.after(DT) == {head: 0.3, LEFT_ARM: 0.0}

@@ -15,10 +15,10 @@ from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.faces import load_faces
 from nao_sim_bridge.sim.landmarks import load_landmarks
 from nao_sim_bridge.sim.painting import names
-from nao_sim_bridge.sim.painting.canvas import Canvas, arch, grain
+from nao_sim_bridge.sim.painting.canvas import Canvas
 from nao_sim_bridge.sim.world_pictures import ASPECTS, WorldPicture, aspect, barcode, paint
 
-EAN, RED = "4006381333931", (1.0, 0.0, 0.0)
+EAN = "4006381333931"
 KNOWN = {
     "landmark": list(map(str, load_landmarks().marks)),
     "face": list(load_faces()),
@@ -48,8 +48,6 @@ def test_everything_that_is_known_can_be_painted(kind):
     "kind, content, text, form",
     [
         ("qr", "hello nao", "hello nao", "QRCode"),
-        ("qr", "Grüße vom Roboter, 100 %", "Grüße vom Roboter, 100 %", "QRCode"),
-        ("qr", "x" * 300, "x" * 300, "QRCode"),
         ("barcode", EAN, EAN, "EAN13"),
         ("barcode", EAN[:12], EAN, "EAN13"),
         ("barcode", "code128:NAO-25 b", "NAO-25 b", "Code128"),
@@ -65,15 +63,10 @@ def test_codes_can_be_read_again(kind, content, text, form):
     "kind, content, message",
     [
         ("landmark", "65", "landmark is '65', allowed is one of 64, 68"),
-        ("qr", "", "1 to 300 bytes"),
         ("qr", "ü" * 151, "1 to 300 bytes"),
         ("barcode", "4006381333932", "check digit of this one would be 1"),
-        ("barcode", "40063813339", "12 or 13 digits"),
         ("barcode", "code128:", "1 to 40 printable"),
-        ("barcode", "code128:ä", "1 to 40 printable"),
         ("face", "nobody", "face is 'nobody', allowed is one of anna"),
-        ("poster", "mona", "allowed is one of hills"),
-        ("pattern", "gold", "allowed is one of oak"),
         ("file", "/nowhere.png", "a file that is there"),
     ],
 )
@@ -98,32 +91,7 @@ def test_a_file_is_shown_as_it_is_a_large_one_smaller_and_a_vanished_one_grey(tm
     assert "a thing of the world is grey: picture file is" in caplog.text
 
 
-def test_files_that_are_no_pictures_broken_or_bombs_are_refused(tmp_path):
-    path = tmp_path / "wrong.png"
-    Image.fromarray(np.random.default_rng(1).integers(0, 255, (20, 30, 3), dtype=np.uint8)).save(path)
-    content = path.read_bytes()
-    length_at = content.index(b"IDAT") - 4
-    broken = content[:length_at] + (100).to_bytes(4, "big") + content[length_at + 4 :]
-    Image.new("1", (8000, 8000)).save(path)
-    bomb = path.read_bytes()
-    assert len(bomb) < 100_000
-    wrong = [(b"no picture", ""), (broken, "broken PNG file"), (bomb, "it has 8000x8000 pixels, more than 50000000")]
-    for content, message in wrong:
-        path.write_bytes(content)
-        with pytest.raises(BadValue, match=f"a picture: {message}"):
-            aspect(WorldPicture("file", str(path)))
-
-
 # --- landmarks and faces
-
-
-def test_marks_differ_in_four_sectors_in_any_rotation():
-    words = list(load_landmarks().marks.values())
-    assert len(words) == 18
-    for index, word in enumerate(words):
-        for other in words[: index + 1]:
-            for step in range(1 if other is word else 0, len(word)):
-                assert sum(a != b for a, b in zip(word, other[step:] + other[:step])) >= 4
 
 
 def test_sectors_follow_clockwise_from_the_top():
@@ -151,13 +119,6 @@ def test_a_detector_of_faces_finds_everybody(name):
         assert x + w / 2.0 == pytest.approx(160.0, abs=width * 0.1) and 0.7 * head < w < 1.5 * head
 
 
-def test_no_two_people_look_alike():
-    faces = [cv2.cvtColor(paint(WorldPicture("head", name)), cv2.COLOR_RGB2GRAY) for name in load_faces()]
-    small = [cv2.resize(face, (32, 46)).astype(float) for face in faces]
-    alike = np.corrcoef([face.ravel() for face in small])
-    assert (alike[~np.eye(len(small), dtype=bool)] < 0.9).all()
-
-
 # --- the canvas
 
 
@@ -174,11 +135,6 @@ def row(canvas, y):
     return np.argmin(np.abs(canvas.y[:, 0] - y))
 
 
-def test_the_canvas_has_x_to_the_right_and_y_upwards(canvas):
-    assert (canvas.x[0, 0], canvas.x[0, -1]) == pytest.approx((-1.975, 1.975))
-    assert (canvas.y[0, 0], canvas.y[-1, 0]) == pytest.approx((1.475, -1.475))
-
-
 @pytest.mark.parametrize("soft", [0.0, 0.8])
 def test_an_ellipse_has_its_place_its_area_and_is_tilted_against_the_clock(canvas, soft):
     mask = canvas.ellipse(0.5, -0.3, 0.8, 0.4, 0.6, soft)
@@ -188,24 +144,3 @@ def test_an_ellipse_has_its_place_its_area_and_is_tilted_against_the_clock(canva
     assert mask.min() >= 0.0 and mask.max() <= 1.0
     mask = canvas.ellipse(0.0, 0.0, 1.0, 0.2, math.pi / 4.0)
     assert [mask[row(canvas, y), column(canvas, 0.5)] for y in (0.5, -0.5)] == [1.0, 0.0]
-
-
-def test_strokes_and_colours_are_laid_where_they_belong(canvas):
-    canvas.lay(canvas.ellipse(9.0, 9.0, 0.5, 0.5), RED)
-    canvas.lay(canvas.stroke([(5.0, 5.0), (6.0, 5.0)], (0.1, 0.1)), RED)
-    assert np.unique(canvas.pixels()).tolist() == [128], "what is outside leaves no trace"
-    across = canvas.stroke([(-1.0, 0.0), (1.0, 0.0)], (0.1, 0.3)).sum(axis=0) / 20.0
-    assert [across[column(canvas, x)] for x in (-0.5, 0.5)] == pytest.approx([0.3, 0.5], abs=0.06)
-    canvas.lay(canvas.inside(canvas.x), RED, 0.5)
-    assert canvas.rgb[30, -1].tolist() == pytest.approx([0.75, 0.25, 0.25])
-    canvas.shade(canvas.inside(canvas.x), 0.5)
-    assert canvas.rgb[30, -1].tolist() == pytest.approx([0.375, 0.125, 0.125])
-    assert canvas.rgb[30, 0].tolist() == [0.5, 0.5, 0.5]
-    points = arch(2.0, 1.0, -1.0)
-    assert (points[0], points[4], points[-1]) == ((-2.0, -1.0), (0.0, 1.0), (2.0, -1.0))
-
-
-def test_grain_is_repeatable_and_about_nothing_in_the_mean():
-    first, again, other = (grain((60, 80), seed, (4, 6)) for seed in (3, 3, 4))
-    assert np.array_equal(first, again) and not np.array_equal(first, other)
-    assert first.shape == (60, 80) and abs(first.mean()) < 0.1 and 0.2 < first.std() < 0.6

@@ -54,39 +54,20 @@ def robot(entry):
     "content, message",
     [
         ({"flor": {}}, "unknown key 'flor', did you mean 'floor'"),
-        ({}, "missing 'floor'"),
         (floor(friction=-1), r"floor\.friction: is -1, allowed is 0 or more"),
-        (floor(friction="much"), r"floor\.friction"),
         ({**floor(), "light": {"direction": [1, 0, -1]}}, "light must be above"),
         (floor(color=[0, 0, 2]), r"floor\.color: .* allowed is 0..1"),
-        ({**floor(), "objects": {"a": 1}}, "objects: .*not a list"),
         (of({**BALL, "mas": 1}), r"objects\[0\]: unknown key 'mas'"),
-        (of({**BALL, "box": [1, 1, 1]}), "exactly one of"),
-        (of({**TABLE, "box": [1, 1]}), "not 3 finite numbers"),
-        (of({**TABLE, "box": [1, 1, 0]}), "must be above 0"),
         (of(BALL, BALL), r"objects\[1\]\.name: 'ball' is taken"),
-        (of({**BALL, "name": "floor"}), "'floor' is taken"),
-        (of({**CHAIR, "box": [1, 1, 1]}), "parts and a shape of its own"),
-        (of({**CHAIR, "parts": []}), r"objects\[0\]\.parts: has 0 entries"),
         (of({**CHAIR, "parts": CHAIR["parts"] * 17}), r"has 17 .* allowed is 1\.\.16"),
         (of({**CHAIR, "parts": [{"xyz": [0, 0, 0]}]}), r"parts\[0\]: .*exactly one"),
-        (of({**CHAIR, "parts": {"box": [1, 1, 1]}}), "parts: .*not a list"),
-        (floor(slope_deg=[3]), r"floor\.slope_deg: .*not 2 finite numbers"),
         (floor(slope_deg=[0, -40]), r"slope_deg: .*allowed is -30\.\.30"),
         (floor(rugs=[{**RUG, "size": [1, 0]}]), r"rugs\[0\]\.size: .*above 0"),
-        (floor(rugs=[{"center": [0, 0]}]), r"rugs\[0\]: missing 'size', 'color'"),
         ({**floor(), "background": {"haze": 0}}, r"background\.haze: is 0, allowed is 0\.1 or more"),
         (floor(bumps={**BUMPS, "count": 0}), r"bumps\.count: is 0, allowed is 1\.\.500"),
-        (floor(bumps={**BUMPS, "count": 2.5}), r"bumps\.count: is 2\.5, not a whole number"),
         (floor(bumps={**BUMPS, "height": [0.01, 0.005]}), r"bumps\.height: .*smaller one first"),
         (floor(bumps={**BUMPS, "keep_free": 3}), r"keep_free: is 3 m, which leaves no room"),
-        (floor(bumps={**BUMPS, "area": [0, 1]}), r"bumps\.area: .*not 2 x 2 finite numbers"),
-        (robot({"position": [1]}), r"test.yaml: robots\[0\]"),
-        (robot({"yaw": 1}), r"test.yaml: robots\[0\]"),
-        (robot({"position": [1, 2], "turn": 3}), r"test.yaml: robots\[0\]"),
         (robot({"position": [99, 0]}), r"test.yaml: robots\[0\]"),
-        (robot(7), r"test.yaml: robots\[0\]"),
-        (["floor"], "not a mapping"),
     ],
 )
 def test_wrong_worlds_are_refused_with_the_place(content, message):
@@ -245,26 +226,14 @@ def test_another_nao_is_on_the_floor_in_its_posture_with_its_lights(posture, low
     [
         ({}, "needs exactly one of box, sphere, .*nao, has none"),
         ({"ball": 0.03, "box": [1, 1, 1]}, "exactly one of .*, has box, ball"),
-        ({"ball": -1}, "sizes must be above 0"),
-        ({"ball": 0.03, "stand": True}, "unknown key 'stand'"),
         ({"landmark": 65}, r"it\.landmark: landmark is '65', allowed is one of 64"),
         ({"landmark": 64, "size": 0}, r"it\.size: is 0, allowed is 0.01..4"),
-        ({"landmark": 64, "stand": "yes"}, r"it\.stand: is 'yes', not true or false"),
         ({"poster": "hills", "size": 2.0, "stand": True}, r"it\.position: has z 0.5: a card of 2.67 m"),
         ({"landmark": 64, "heading": 1, "rpy": [0, 0, 1]}, "rpy and heading: one of both"),
-        ({"qr": "x" * 301}, "1 to 300 bytes"),
-        ({"barcode": "123"}, "12 or 13 digits"),
         ({"barcode": 4006381333931}, r"it\.barcode: is 4006381333931, not a text: put it between quotes"),
-        ({"landmark": True}, "landmark is 'True', allowed is one of 64"),
-        ({"image": "nowhere.png"}, "a file that is there"),
-        ({"person": "nobody"}, "allowed is one of anna"),
         ({"person": "anna", "height": 3}, r"it\.height: is 3, allowed is 0.9..1.9"),
-        ({"person": "anna", "trouser": [0, 0, 0]}, "did you mean 'trousers'"),
         ({"nao": "Handstand"}, r"it\.nao: unknown posture 'Handstand'"),
         ({"nao": "Stand", "leds": [2, 0, 0]}, r"it\.leds: .* allowed is 0..1 each"),
-        ({"box": [1, 1, 1], "picture": "oak"}, r"it\.picture: is 'oak', not a kind and a name"),
-        ({"box": [1, 1, 1], "picture": "file:/etc/passwd"}, "not a kind and a name"),
-        ({"box": [1, 1, 1], "picture": "pattern:gold"}, "allowed is one of oak"),
     ],
 )
 def test_wrong_things_are_refused(entry, message):
@@ -287,56 +256,25 @@ def made(entry, folder=None):
     return make_sound(*sounds(entry, folder=folder), lambda text, voice: sine(300.0, 0.1 * len(text), 0.5))
 
 
-def test_a_sound_has_sensible_defaults():
-    (hum,) = sounds(HUM)
-    assert (hum.kind, hum.content, hum.position, hum.on) == ("tone", (100.0,), (1.0, 2.0, 3.0), None)
-    assert (hum.level_db, hum.start, hum.loop, hum.pause, hum.duration) == (65.0, 0.0, False, 0.0, None)
-    kinds = {sound.name: sound.kind for sound in load_world("party").sounds}
-    assert (kinds["anna"], kinds["fan"], kinds["radio_1"]) == ("say", "noise", "tone")
-
-
 @pytest.mark.parametrize(
     "entry, message",
     [
-        ("loud", "is 'loud', not a mapping"),
         ({**HUM, "levl_db": 3}, "unknown key 'levl_db', did you mean 'level_db'"),
-        ({"tone": 100, "position": [1, 2, 3]}, "missing 'name'"),
-        ({**HUM, "name": ""}, "name: is '', not a name"),
         ({"name": "hum", "tone": 100}, "missing 'position', or 'on'"),
         (HERE, "has nothing to sound, needs exactly one of file, tone, noise, say"),
         ({**HUM, "noise": "white"}, "has tone and noise to sound"),
-        ({**HUM, "position": [1, 2]}, "not 3 finite numbers"),
         ({"name": "hum", "on": "dog", "tone": 1}, r"on: is 'dog', allowed is an object of this world \(ball, table\)"),
         ({**HUM, "tone": -5}, "tone: is -5, allowed is above 0 to 20000 Hz"),
-        ({**HUM, "tone": []}, "tone"),
-        ({**HUM, "tone": "A4"}, "tone: .*not"),
         ({**HERE, "noise": "blue"}, "noise: is 'blue', allowed is white or pink"),
-        ({**HERE, "say": " "}, "say: is ' ', not a text"),
-        ({**HUM, "voice": "slt"}, "voice: is for a text to say"),
-        ({**HUM, "loop": "yes please"}, "loop: is 'yes please', allowed is true or false"),
         ({**HUM, "pause": 1.0}, "pause: is for what is repeated"),
-        ({**HUM, "start": -1}, "start: is -1, allowed is 0 or more"),
         ({**HUM, "level_db": 200}, r"level_db: is 200, allowed is -20\.\.140"),
         ({**HERE, "say": "hi", "duration": 2}, "duration: is for tones and noises"),
-        ({**HUM, "duration": 0}, "duration: is 0"),
-        ({**HERE, "file": "a.wav"}, "file: a world without a file"),
     ],
 )
 def test_wrong_sounds_are_refused(entry, message):
     with pytest.raises(WorldError, match=message) as raised:
         sounds(entry)
     assert str(raised.value).startswith("test.yaml: sounds[0]")
-
-
-def test_names_of_sounds_are_unique_and_files_are_beside_the_world_file(tmp_path):
-    with pytest.raises(WorldError, match=r"sounds\[1\]\.name: 'hum' is taken"):
-        sounds(HUM, HUM)
-    (tmp_path / "world").mkdir()
-    (tmp_path / "a.wav").touch()
-    inside = "allowed is a name inside"
-    for name, message in (("../a.wav", inside), ("/a.wav", inside), ("b.wav", "there is no file 'b.wav'")):
-        with pytest.raises(WorldError, match=message):
-            sounds({**HERE, "file": name}, folder=tmp_path / "world")
 
 
 def spectrum(sound):
