@@ -164,11 +164,6 @@ def program(library):
     return make
 
 
-@pytest.fixture(scope="session")
-def make_clients():
-    return Clients
-
-
 @pytest.fixture
 def clients():
     return Clients()

@@ -1,17 +1,15 @@
-"""Files of behaviours: what they may hold, what is said about wrong ones, how they are kept, recorded and damaged."""
+"""Files of behaviours: what they may hold, what is said about wrong ones, how they are kept and recorded."""
 
 from __future__ import annotations
 
 import re
 import textwrap
-from dataclasses import dataclass
 from pathlib import Path
 
 import genpy
 import pytest
-import roslib.message
 from actionlib_msgs.msg import GoalStatus
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nao_library_actions.msg import NaoLedGoal, NaoMotionGoal
@@ -34,15 +32,12 @@ from nao_library_modules.behaviors.model import (
     Parallel,
     Repeat,
     Sequence,
-    Step,
     Timeline,
     Wait,
 )
 from nao_library_modules.behaviors.program import Goal, walk
-from nao_library_modules.behaviors.reader import require_name
 from nao_library_modules.behaviors.recording import Recording
-from nao_library_modules.behaviors.servers import NAMES, server_of
-from nao_library_modules.behaviors.step_reader import COMMON, FURTHER, KINDS
+from nao_library_modules.behaviors.servers import NAMES
 from nao_library_modules.behaviors.times import At
 from nao_library_modules.behaviors.writer import text_of
 from nao_library_modules.behaviors.yaml_text import dump, load
@@ -102,8 +97,6 @@ def test_everything_that_a_file_may_hold_is_read():
     assert [each["function"] for each in steps[4].functions] == ["on", "off"]
     assert (steps[5].variable, steps[6].label, steps[6].limit) == ("round", "x", 3.0)
     assert (steps[6].policy.retries, steps[6].policy.skip) == (2, True)
-    with pytest.raises(TypeError, match="abstract.*what"):
-        dataclass(frozen=True)(type("Jump", (Step,), {}))(("do", 0))
 
 
 HEADS = [
@@ -118,21 +111,15 @@ PARAMETERS = [
     ("a: {default: 1, help: x, minn: 1}", "did you mean 'min'"),
     ("a: {default: hi, help: x, min: 1}", "field min: it is for numbers, and the default 'hi' makes this parameter a "
      "text: a text may have choices; for min, let the default be a number"),
-    ("a: {default: true, help: x, max: 1}", "makes this parameter a truth"),
-    ("a: {default: [1], help: x, max: 1}", "makes this parameter a list"),
-    ("a: {default: hi, help: x, unit: s}", "let the default be a number, or"),
     ("a: {default: 1, help: x, min: low}", "'low' is not allowed: a number"),
-    ("a: {default: 1, help: x, unit: 3}", "a text, as m, rad or s"),
     ("a: {default: 9, help: x, max: 5}", "field a: 9 is not allowed"),
-    ("a: {default: a, help: x, max: 5}", "field max"),
     ("a: {default: {}, help: x}", "a text, a number"),
     ("1a: {default: 1, help: x}", "no digit in front"),
     ("a: {default: b, help: x, choices: [c]}", "'b' is not allowed"),
 ]  # fmt: skip
 STEPS = [
-    ("{wait: -1}", "0 or more"), ("{wait: .nan}", "0 or more"), ("{wait: true}", "0 or more"),
-    ("{wait: '${n}'}", "no parameter 'n'"), ("{wait: 1, at: 2}", "for entries of a timeline"),
-    ("{wait: 1, on_eror: skip}", "did you mean 'on_error'"), ("{wait: 1, on_error: maybe}", "field on_error"),
+    ("{wait: -1}", "0 or more"), ("{wait: true}", "0 or more"), ("{wait: '${n}'}", "no parameter 'n'"),
+    ("{wait: 1, at: 2}", "for entries of a timeline"), ("{wait: 1, on_error: maybe}", "field on_error"),
     ("{wait: 1, NaoLights.on: {}}", "several things at once"), ("{label: x}", "does not say what to do"),
     ("{paralel: []}", "did you mean 'parallel'"), ("4", "a mapping with one of"), ("[]", "the sequence is empty"),
     ("{parallel: []}", "at least one"), ("{A.b.c: {}}", "SERVER.FUNCTION"),
@@ -142,8 +129,7 @@ STEPS = [
     ("{repeat: 3}", "field do"),
     ("{repeat: 2, as: i, do: [{repeat: 2, as: i, do: [{wait: 1}]}]}", "there is a 'i' already"),
     ("{repeat: 2, as: i, do: [{wait: 1}]}, {wait: '${i}'}", "no parameter 'i'"),
-    ("{repeat: 2, as: [], do: [{wait: 1}]}", "field as"), ("{repeat: 2, as: 0, do: [{wait: 1}]}", "field as"),
-    ("{repeat: 2, as: null, do: [{wait: 1}]}", "field as"),
+    ("{repeat: 2, as: [], do: [{wait: 1}]}", "field as"),
     ("{wait: 1, label: a}, {wait: 1, label: a}", "the label 'a' is taken by step 1"),
     ("{timeline: [{wait: 1, at: b}]}", "no label 'b'"), ("{timeline: [{wait: 1, at: a - 1, label: a}]}", "field at"),
     ("{timeline: [{wait: 1, at: a, label: a}]}", "wait for each other"),
@@ -152,7 +138,6 @@ STEPS = [
     ("{timeline: [{wait: 1}, {barrier: 1}]}", "a name: letters"),
     ("{timeline: [{wait: 1}, {barrier: b}, {barrier: b}]}", "is there already on this timeline"),
     ("{barrier: b}", "stands on a timeline"), ("{parallel: [[{barrier: b}], [{wait: 1}]]}", "only one branch"),
-    ("{parallel: [[{repeat: 2, do: [{barrier: b}]}], [{barrier: b}]]}", "in no repetition"),
     ("{parallel: [[{barrier: a}, {barrier: b}], [{barrier: b}, {barrier: a}]]}", "in circles"),
 ]  # fmt: skip
 WRONG = [
@@ -178,7 +163,6 @@ def test_a_few_lines_cannot_stand_for_endless_values():
     assert "levels" in str(told_of("[" * 60 + "]" * 60)[0])
 
 
-MOMENTS = {"time": genpy.Time, "duration": genpy.Duration}
 VALUES = {"n": 3, "x": 0.5, "text": "hi", "flag": True, "names": ["a", "b"]}
 
 
@@ -200,8 +184,7 @@ def test_values_take_the_place_of_expressions(value, expected):
     "text, told",
     [
         ("${m}", "there is no parameter 'm'"), ("${txt}", "did you mean 'text'"), ("${n", "its } is missing"),
-        ("${}", "cannot be read"), ("${n +}", "cannot be read"), ("${n ** 9999999}", "cannot be read"),
-        ("${n(3)}", "cannot be read"), ("${n.real}", "cannot be read"), ("${'a' * 9}", "cannot be read"),
+        ("${n +}", "cannot be read"), ("${n ** 9999999}", "cannot be read"), ("${n(3)}", "cannot be read"),
         ("${n / 0}", "divides by zero"), ("${1e308 * 1e308}", "too large"), ("${text + 1}", "'hi' is no number"),
         ("${flag + 1}", "no number"), ("${" + "1+" * 150 + "1}", "characters"),
     ],
@@ -222,11 +205,9 @@ def test_escaped_values_stay_as_they_are(text):
     "fields, told",
     [
         ({"light": []}, "did you mean 'lights'"), ({"lights": "FaceLeds"}, "a list: [FaceLeds]"),
-        ({"lights": [["a"]]}, "lights[0]"), ({"str_param": True}, "is no text"), ({"str_param": None}, "a text"),
-        ({"i_values": ["1"]}, "i_values[0]"), ({"i_values": [float("nan")]}, "finite"),
-        ({"i_values": [10**400]}, "finite"), ({"revert": 1}, "true or false"), ({"angle": 1.5}, "a whole number"),
-        ({"angle": 2**31}, "-2147483648..2147483647"), ({"angle": True}, "a whole number"),
-        ({"time": 1e12}, "2147483648"), ({"time": "1"}, "a number"), ({3: 4}, "no field 3"),
+        ({"lights": [["a"]]}, "lights[0]"), ({"str_param": True}, "is no text"), ({"i_values": ["1"]}, "i_values[0]"),
+        ({"i_values": [float("nan")]}, "finite"), ({"revert": 1}, "true or false"), ({"angle": 1.5}, "a whole number"),
+        ({"angle": 2**31}, "-2147483648..2147483647"), ({"time": 1e12}, "2147483648"), ({"time": "1"}, "a number"),
     ],
 )  # fmt: skip
 def test_fields_of_the_wrong_kind_are_refused(fields, told):
@@ -243,33 +224,7 @@ def test_fields_become_what_they_are_in_the_message():
     assert (message.angles, message.str_param, message.limp) == ([1.0, 0.5], "4", True)
     assert message.time == genpy.Duration(1, 300000000)
     assert message.trajectory.points[0].time_from_start == genpy.Duration(0, 700000000)
-
-
-def values_of(kind):
-    """A strategy for values of a field of this type."""
-    if kind.endswith("[]"):
-        return st.lists(values_of(kind[:-2]), max_size=2)
-    moments = st.tuples(st.integers(0, 99), st.integers(0, 10**9 - 1))
-    texts = ["", "a", "on", "${x}", "3", "1e3", "1:30", "010", "~", "2024-01-01", "ä\n#: '\"", " x "]
-    known = {"string": st.sampled_from(texts), "bool": st.booleans()}
-    known.update((name, moments.map(lambda each, kind=kind: kind(*each))) for name, kind in MOMENTS.items())
-    if kind in known:
-        return known[kind]
-    if re.fullmatch(r"float\d+|u?int\d+", kind):
-        return st.integers(0, 99) if "int" in kind else st.sampled_from([0.0, -1.25, 0.1, 1e-12, 1e22])
-    message = roslib.message.get_message_class(kind)
-    fields = {name: values_of(each) for name, each in zip(message.__slots__, message._slot_types)}
-    return st.fixed_dictionaries({}, optional=fields).map(lambda given: message(**given))
-
-
-@pytest.mark.parametrize("server", NAMES)
-def test_messages_come_back_through_a_file(server):
-    @settings(max_examples=12, suppress_health_check=list(HealthCheck))
-    @given(values_of(server_of(server).function._type))
-    def comes_back(message):
-        assert message_of(type(message), load(dump(fields_of(message)), "test") or {}) == message
-
-    comes_back()
+    assert message_of(MotionFunction, load(dump(fields_of(message)), "test")) == message
 
 
 @pytest.fixture
@@ -315,24 +270,16 @@ def test_names_change_and_users_of_a_box_are_known(store):
             ask("helloo")
 
 
-@pytest.mark.parametrize("name", ["", "../x", "a/b", ".hidden", "a b", "-a", "a.yaml", "ä", "a" * 101, "a\n", "a\0"])
-def test_names_stay_in_their_folder(store, name):
+def test_names_stay_in_their_folder_and_broken_files_do_not_hide_the_others(store):
     store.save("a", WAITS)
-    asks = [require_name, store.text, store.delete, store.of_user, lambda n: store.save(n, WAITS)]
-    for ask in [*asks, lambda n: store.rename("a", n)]:
-        with pytest.raises(BadGoal, match="no name for a behavior"):
-            ask(name)
-
-
-def test_broken_files_are_told_and_do_not_hide_the_others(store, tmp_path):
-    store.save("a", WAITS)
+    for ask in (store.text, store.delete, lambda n: store.save(n, WAITS), lambda n: store.rename("a", n)):
+        for name in ("", "../x", "a/b", ".hidden", "a b", "-a", "a.yaml", "ä", "a" * 101, "a\n"):
+            with pytest.raises(BadGoal, match="no name for a behavior"):
+                ask(name)
     store.folder.joinpath("bad.yaml").write_bytes(b"\xff\xfe")
     with pytest.raises(BehaviorError, match="cannot be read"):
         store.load("bad")
     assert store.names() == ["a", "bad", "hello"]
-    (tmp_path / "file").write_text("a file")
-    with pytest.raises(BadGoal, match="cannot be written"):
-        BehaviorStore(tmp_path / "file", tmp_path).save("a", WAITS)
 
 
 RED = NaoLedGoal([LedFunction(function="setColor", lights=["FaceLeds"], str_param="${red}")])
@@ -346,7 +293,7 @@ def goals_in(text):
     return [each for each in walk(bind(read(text, "test"), {}, lambda name: None)) if isinstance(each, Goal)]
 
 
-def recorded(*goals, servers=NAMES, check=lambda step: None):
+def recorded(*goals, servers=NAMES):
     """A recording of goals: server, goal, when it was sent, how and when it ended, s."""
     recording = Recording("x", servers)
     for number, (server, goal, sent, *_) in enumerate(goals):
@@ -354,7 +301,7 @@ def recorded(*goals, servers=NAMES, check=lambda step: None):
     for number, (_, _, _, *end) in sorted(enumerate(goals), key=lambda each: each[1][4:]):
         if end:
             recording.ended(str(number), *end)
-    return recording.timeline(check)
+    return recording.timeline(lambda step: None)
 
 
 @pytest.mark.parametrize("server, goal", [("NaoLights", RED), ("NaoMotion", MOVE), ("NaoLights", ODD)])
@@ -377,17 +324,8 @@ def test_recorded_goals_come_again_at_their_times_and_are_cut_short_again():
     # The first was replaced by the second: it goes when that one comes, not when it was over.
     assert [entry.get("for") for entry in entries] == [2.0, None, 0.5]
     assert [entry.get("on_error") for entry in entries] == [None, "skip", None]
-
-
-def test_what_cannot_be_stored_is_left_out_and_other_servers_do_not_count():
-    def no_chains(step):
-        if "chain" in step:
-            raise BadGoal("function", "setAngles", "nothing")
-
-    entries, (left,) = recorded(("NaoLights", RED, 1.0), ("NaoMotion", MOVE, 1.5), check=no_chains)
-    assert len(entries) == 1 and "NaoMotion at 0.500 s" in left and "setAngles" in left
     with pytest.raises(BadGoal, match="nothing was sent"):
-        recorded(("NaoLights", RED, 1.0), servers=["NaoMotion"])
+        recorded(("NaoLights", RED, 1.0), servers=["NaoMotion"])  # other servers do not count
 
 
 def test_what_the_guide_shows_and_what_comes_with_the_library_can_be_run(tmp_path, tables):
@@ -398,53 +336,3 @@ def test_what_the_guide_shows_and_what_comes_with_the_library_can_be_run(tmp_pat
     names = store.names()
     found = {name: problems_of(lambda name=name: store.load(name), store.load, tables) for name in names}
     assert len(names) == 10 and found == {name: [] for name in names}
-
-
-@pytest.mark.parametrize("key", sorted({*COMMON, *KINDS, *(key for keys in FURTHER.values() for key in keys), "at"}))
-def test_every_key_is_explained(key):
-    assert re.search(rf"`{re.escape(key)}\b", GUIDE)
-
-
-STRANGE = [
-    "null", "~", "-1", "1e999", ".inf", ".nan", "9" * 400, "[]", "{}", "[[[[]]]]", "'", '"', "&a", "*a", "on", "\t",
-    "!!python/name:os", "!!binary aGk=", "2024-01-01", "${", "${}", "${count}", "${count / 0}", "? a", "<<: 3", "---",
-    "${" + "(" * 150 + "1" + ")" * 150 + "}", "${9" + "9" * 150 + " * 9" + "9" * 30 + "}", "...", "\x00", "\u202e",
-    "\ud800", "x" * 5000,
-]  # fmt: skip
-
-
-@st.composite
-def damaged(draw):
-    """A text with some of its parts cut out, doubled, moved or replaced."""
-    lines = EVERYTHING.splitlines()
-    for _ in range(draw(st.integers(1, 3))):
-        at, kind = (
-            draw(st.integers(0, len(lines) - 1)),
-            draw(st.sampled_from(["cut", "double", "word", "part", "value"])),
-        )
-        words, strange = lines[at].split(" "), draw(st.sampled_from(STRANGE))
-        if kind == "double":
-            lines.insert(draw(st.integers(0, len(lines))), lines[at])
-        elif kind == "word":
-            words[draw(st.integers(0, len(words) - 1))] = strange
-            lines[at] = " ".join(words)
-        elif kind == "part":
-            start = draw(st.integers(0, len(lines[at])))
-            lines[at] = lines[at][:start] + lines[at][start + draw(st.integers(1, 4)) :]
-        else:
-            key, colon, _ = lines[at].rpartition(": ")
-            lines[at] = "" if kind == "cut" else f"{key}{colon}{strange}"
-    return "\n".join(lines)
-
-
-def only_bow(name):
-    if name != "bow":
-        raise NoSuchBehavior(name, ["bow"])
-    return read("help: Bows.\nparameters: {depth: {default: 0.2, help: x}}\ndo: [{wait: '${depth}'}]", "bow")
-
-
-@settings(max_examples=100, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
-@given(damaged())
-def test_what_is_wrong_with_damaged_files_is_told_and_never_more(tables, text):
-    found = problems_of(lambda: read(text, "test"), only_bow, tables)
-    assert all(isinstance(problem, str) and problem for problem in found)
