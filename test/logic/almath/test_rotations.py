@@ -65,7 +65,7 @@ def test_three_angles_turn_about_x_first_and_z_last(wx, wy, wz):
 
 
 @pytest.mark.parametrize("wy", [math.pi / 2, -math.pi / 2])
-@pytest.mark.parametrize("wx, wz", [(0.0, 0.0), (0.4, 0.0), (0.0, -0.9), (1.2, 0.5)])
+@pytest.mark.parametrize("wx, wz", [(0.4, 0.0), (1.2, 0.5)])
 def test_angles_are_found_where_the_pitch_is_a_right_angle(wx, wy, wz):
     rotation = Rotation.from3DRotation(wx, wy, wz)
     assert Rotation.from3DRotation(*almath.rotation3DFromRotation(rotation).toVector()).isNear(rotation, 1e-9)
@@ -100,34 +100,13 @@ def test_rotation_about_an_axis_leaves_the_axis_and_turns_by_the_angle(axis, ang
     assert almath.axisRotationProjection(axis * 5.0, rotation).isNear(rotation, 1e-9)
 
 
-def test_rotation_about_a_coordinate_axis_has_its_sign_and_an_axis_has_length_one():
-    for axis, about in ((X, Rotation.fromRotX), (Y, Rotation.fromRotY), (Z, Rotation.fromRotZ)):
-        assert Rotation.fromAngleDirection(0.7, *axis.toVector()).isNear(about(0.7), 1e-12)
-    refused("length 1", Rotation.fromAngleDirection, 0.5, 1.0, 1.0, 0.0)
-    refused("rotationFromAngleDirection takes", almath.rotationFromAngleDirection, 0.5, 1.0, 0.0)
-
-
-@pytest.mark.parametrize(
-    "exact, rounded",
-    [
-        (Rotation.fromRotXPi(), Rotation.fromRotX(math.pi)),
-        (Rotation.fromRotYPi(), Rotation.fromRotY(math.pi)),
-        (Rotation.fromRotZPi(), Rotation.fromRotZ(math.pi)),
-        (Rotation.fromRotZHalfPi(), Rotation.fromRotZ(math.pi / 2)),
-    ],
-)
-def test_named_turns_have_no_rounding(exact, rounded):
-    assert exact.isNear(rounded, 1e-12)
-    assert set(exact.toVector()) <= {-1.0, 0.0, 1.0}
-
-
 def test_a_rotation_is_made_row_by_row_or_from_the_list_of_a_transform():
     transform = Transform.fromPosition(1.0, 2.0, 3.0, 0.1, 0.2, 0.3)
     rotation = Rotation.from3DRotation(0.1, 0.2, 0.3)
     assert Rotation(transform.toVector()) == Rotation(transform.toVector()[:12]) == rotation
     assert Rotation(range(9)).r2_c3 == 5.0
     refused("9, 12 or 16 numbers, got 10", Rotation, [0.0] * 10)
-    refused("got 3 arguments", Rotation, 0.1, 0.2, 0.3)
+    refused("length 1", Rotation.fromAngleDirection, 0.5, 1.0, 1.0, 0.0)
 
 
 @few
@@ -143,16 +122,8 @@ def test_normalizing_a_disturbed_rotation_keeps_the_third_column_and_is_idempote
     assert again.isNear(disturbed, 1e-12)
 
 
-@pytest.mark.parametrize("numbers", [[0.0] * 9, [0, 1, 1, 0, 1, 1, 0, 1, 1], [math.nan] * 9])
-def test_a_matrix_without_a_plane_is_no_rotation(numbers):
-    refused("do not span a plane", Rotation(numbers).normalizeRotation)
-
-
-def test_mirrors_and_stretched_matrices_are_no_rotations():
-    assert not Rotation([1, 0, 0, 0, 1, 0, 0, 0, -1]).isRotation()
-    assert not Rotation([1.001, 0, 0, 0, 1, 0, 0, 0, 1]).isRotation()
-    with pytest.raises(TypeError):
-        Rotation() * almath.Pose2D()
+def test_a_matrix_without_a_plane_is_no_rotation():
+    refused("do not span a plane", Rotation([0, 1, 1, 0, 1, 1, 0, 1, 1]).normalizeRotation)
 
 
 def test_axes_become_columns():
@@ -164,6 +135,15 @@ def test_axes_become_columns():
     assert almath.rotationFromAxesYZ(y, z).isNear(rotation, 1e-12)
     refused("right-handed", almath.rotationFromAxesXYZ, y, x, z)
     refused("right angles", almath.rotationFromAxesXY, x, x)
+
+
+def test_named_turns_have_no_rounding_and_mirrors_and_stretched_matrices_are_no_rotations():
+    assert Rotation.fromRotXPi() == Rotation([1, 0, 0, 0, -1, 0, 0, 0, -1])
+    assert Rotation.fromRotYPi() == Rotation([-1, 0, 0, 0, 1, 0, 0, 0, -1])
+    assert Rotation.fromRotZPi() == Rotation([-1, 0, 0, 0, -1, 0, 0, 0, 1])
+    assert Rotation.fromRotZHalfPi() == Rotation([0, -1, 0, 1, 0, 0, 0, 0, 1])
+    assert not Rotation([1, 0, 0, 0, 1, 0, 0, 0, -1]).isRotation()
+    assert not Rotation([1.001, 0, 0, 0, 1, 0, 0, 0, 1]).isRotation()
 
 
 # Rotations about a given axis
@@ -189,10 +169,9 @@ def test_projection_of_transforms_keeps_the_origin_and_works_in_place():
     almath.axisRotationProjectionInPlace(Y, transform)
     assert transform == projected
     refused("no direction", almath.axisRotationProjection, Position3D(), Rotation())
-    refused("a Rotation or a Transform", almath.axisRotationProjection, X, almath.Rotation3D())
 
 
-@pytest.mark.parametrize("axis", [(2, 0, 0), (0, -3, 0), (0, 0, 0.5), (0, 0, -1), (1, 2, -3), (1e-6, 1.0, 1.0)])
+@pytest.mark.parametrize("axis", [(2, 0, 0), (0, -3, 0), (0, 0, -1), (1, 2, -3)])
 def test_orthogonal_space_is_a_rotation_with_the_axis_in_its_third_column(axis):
     frame = almath.orthogonalSpace(Position3D(axis))
     assert frame.isTransform(1e-9)
@@ -215,12 +194,6 @@ def test_rotation_about_a_named_axis(mask, about):
     assert out == almath.transformFromRotVec(mask, 0.4, point)
 
 
-def test_wrong_arguments_of_a_named_axis_are_refused():
-    for arguments in [(), (almath.AXIS_MASK_WX, 0.1), (almath.AXIS_MASK_X,), (almath.AXIS_MASK_X, X)]:
-        refused("transformFromRotVec takes", almath.transformFromRotVec, *arguments)
-    refused("last argument", almath.transformFromRotVecInPlace)
-
-
 # Quaternions
 
 
@@ -228,7 +201,10 @@ def test_i_times_j_is_k():
     i, j, k = Quaternion(0, 1, 0, 0), Quaternion(0, 0, 1, 0), Quaternion(0, 0, 0, 1)
     assert (i * j, j * k, k * i) == (k, i, j)
     assert i * i == j * j == k * k == Quaternion(-1, 0, 0, 0)
-    assert Quaternion() * Position3D(1.0, 2.0, 3.0) == Position3D(1.0, 2.0, 3.0)
+    quaternion = Quaternion(1.0, 2.0, 3.0, 4.0)
+    assert quaternion / 2.0 == Quaternion(0.5, 1.0, 1.5, 2.0)
+    quaternion *= i
+    assert quaternion == Quaternion(-2.0, 1.0, 4.0, -3.0)
 
 
 @few
@@ -273,22 +249,7 @@ def test_a_zero_quaternion_is_no_rotation():
     refused("norm is zero", zero.normalize)
 
 
-def test_multiples_and_in_place_products_of_quaternions():
-    quaternion = Quaternion(1.0, 2.0, 3.0, 4.0)
-    assert quaternion / 2.0 == Quaternion(0.5, 1.0, 1.5, 2.0)
-    quaternion *= Quaternion(0.0, 1.0, 0.0, 0.0)
-    assert quaternion == Quaternion(-2.0, 1.0, 4.0, -3.0)
-    refused("would not leave a Quaternion", quaternion.__imul__, X)
-
-
 # Transforms
-
-
-def test_a_transform_is_the_identity_or_a_translation_unless_told():
-    assert matrix_of(Transform()) == pytest.approx(numpy.eye(4))
-    assert Transform(1.0, 2.0, 3.0) * Position3D(0.5, 0.5, 0.5) == Position3D(1.5, 2.5, 3.5)
-    on_floor = Transform.fromRotZ(math.pi / 2) * almath.Position2D(1.0, 0.0)
-    assert on_floor.isNear(Y, 1e-12)
 
 
 @few
@@ -348,24 +309,11 @@ def test_lists_of_12_and_16_numbers_make_the_transform_again_and_are_put_right(t
     "arguments, told",
     [
         (([0.0] * 6,), "12 or 16 numbers, got 6"),
-        (([0.0] * 16,), "do not span a plane"),
-        ((1.0,), "3 numbers or a sequence"),
         ((1.0, 2.0), "got 2 arguments"),
-        ((1.0, "2", 3.0), "Transform y must be a number"),
-        (([[1.0, 0.0, 0.0, 0.0]] * 4,), r"Transform\[0\] must be a number"),
     ],
 )
 def test_wrong_arguments_of_a_transform_are_refused_and_named(arguments, told):
     refused(told, Transform, *arguments)
-
-
-def test_normalizing_repairs_a_changed_entry():
-    transform = Transform(1.0, 2.0, 3.0)
-    transform.r1_c2 = 0.2
-    assert not transform.isTransform()
-    almath.normalizeTransform(transform)
-    assert transform.isTransform(1e-12)
-    assert transform.toVector()[3::4][:3] == [1.0, 2.0, 3.0]
 
 
 def test_pairs_copy_their_parts_and_compare_them():
@@ -376,7 +324,6 @@ def test_pairs_copy_their_parts_and_compare_them():
     assert pair.isNear(almath.TransformAndVelocity6D(Transform(1.0, 2.0, 3.0), velocity))
     assert not pair.isNear(almath.TransformAndVelocity6D(Transform(1.0, 2.0, 3.0)))
     assert not pair.isNear(almath.TransformAndVelocity6D(None, velocity))
-    assert "Velocity6D(xd=0.1" in repr(pair)
 
 
 # From one kind to another
@@ -415,13 +362,6 @@ def test_quaternions_and_displacements_are_transforms_in_other_numbers(a, b):
     assert almath.transformFromDisplacement(first * second).isNear(a * b, 1e-9)
     first *= second
     assert first.isNear(almath.displacementFromTransform(a * b), 1e-9)
-
-
-def test_displacements_compare_both_parts():
-    displacement = almath.displacementFromTransform(Transform.fromPosition(0.1, 0.2, 0.3, 0.4, 0.5, 0.6))
-    assert almath.transformFromDisplacement(almath.Displacement()) == Transform()
-    assert not displacement.isNear(almath.Displacement(displacement.P))
-    assert not displacement.isNear(almath.Displacement(None, displacement.Q))
 
 
 def test_rotation_from_a_quaternion_takes_it_whole_or_in_numbers():
@@ -478,7 +418,6 @@ def test_in_place_forms_write_what_the_others_return(function, value, out):
     in_place = getattr(almath, function.__name__ + "InPlace")
     assert in_place(value, out) is None
     assert out == function(value)
-    refused(f"{function.__name__}InPlace takes a {type(out).__name__}, got None", in_place, value, None)
 
 
 def test_in_place_forms_that_write_a_part_keep_the_other():
@@ -489,8 +428,6 @@ def test_in_place_forms_that_write_a_part_keep_the_other():
     pose = almath.Pose2D()
     almath.pose2DFromPosition2DInPlace(almath.Position2D(1.0, 2.0), 0.5, pose)
     assert pose == almath.Pose2D(1.0, 2.0, 0.5)
-    told = r"transformFromPosition6D takes a Position6D, got Pose2D\(x=0"
-    refused(told, almath.transformFromPosition6D, almath.Pose2D())
 
 
 # In turned axes
@@ -528,8 +465,6 @@ def test_pose_is_turned_about_the_origin_and_keeps_its_heading():
     assert out.isNear(almath.Pose2D(-2.0, 1.0, 0.5), 1e-12)
     almath.changeReferencePose2DInPlace(-almath.PI_2, out)
     assert out.isNear(almath.Pose2D(1.0, 2.0, 0.5), 1e-12)
-    told = "changeReferencePosition3D takes a Position3D, got Position6D"
-    refused(told, almath.changeReferencePosition3D, Transform(), Position3D(), Position6D())
 
 
 # Screws
@@ -546,7 +481,7 @@ def power_series(velocity, terms=40):
     return total
 
 
-@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-10, 1e-5, 0.9e-4, 1.1e-4, 0.01, 1.0, math.pi - 1e-7])
+@pytest.mark.parametrize("angle", [0.0, 1e-10, 0.9e-4, 1.1e-4, 1.0, math.pi - 1e-7])
 @settings(max_examples=6)
 @given(points, axes)
 def test_exponential_is_the_power_series_and_the_logarithm_finds_it_again(angle, linear, axis):
@@ -556,18 +491,11 @@ def test_exponential_is_the_power_series_and_the_logarithm_finds_it_again(angle,
     assert almath.transformLogarithm(transform).isNear(velocity, 1e-6)
 
 
-@pytest.mark.parametrize("axis", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0.6, 0.8, 0.0), (-0.48, 0.6, 0.64)])
+@pytest.mark.parametrize("axis", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (-0.48, 0.6, 0.64)])
 def test_logarithm_of_half_a_turn_leads_there(axis):
     turn = almath.rotationFromAngleDirection(math.pi, *axis)
     transform = almath.transformFromRotationPosition3D(turn, 0.3, -0.2, 0.1)
     assert almath.velocityExponential(almath.transformLogarithm(transform)).isNear(transform, 1e-9)
-
-
-def test_a_quarter_turn_while_driving_is_an_arc():
-    velocity = Velocity6D(math.pi / 2, 0.0, 0.0, 0.0, 0.0, math.pi / 2)
-    expected = Transform(1.0, 1.0, 0.0) * Transform.fromRotZ(math.pi / 2)
-    assert almath.velocityExponential(velocity).isNear(expected, 1e-12)
-    assert almath.transformLogarithm(expected).isNear(velocity, 1e-9)
 
 
 @few

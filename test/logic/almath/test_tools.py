@@ -1,4 +1,4 @@
-"""Angles on the circle, limits, inertia, filter and controller, constants, and passages of scripts for a robot."""
+"""Angles on the circle, limits, inertia, filter and controller, constants."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import almath
 import motion
 import vision_definitions
-from almath import PI, AlmathError, Position2D, Position3D
+from almath import PI, AlmathError, Position3D
 from nao_sim_bridge.paths import config_file
 
 few = settings(max_examples=30)
@@ -28,18 +28,9 @@ def refused(told, function, *arguments):
 # Angles
 
 
-@pytest.mark.parametrize("angle, wrapped", [(0.99 * PI, 0.99 * PI), (PI, PI), (-PI, PI), (PI + 0.5, 0.5 - PI)])
+@pytest.mark.parametrize("angle, wrapped", [(0.99 * PI, 0.99 * PI), (PI, PI), (-PI, PI), (7 * PI + 0.5, 0.5 - PI)])
 def test_angles_are_wrapped_to_one_turn(angle, wrapped):
     assert almath.modulo2PI(angle) == pytest.approx(wrapped)
-
-
-@few
-@given(st.floats(-100.0, 100.0))
-def test_wrapping_changes_an_angle_by_whole_turns(angle):
-    wrapped = almath.modulo2PI(angle)
-    turns = (angle - wrapped) / (2.0 * PI)
-    assert -PI < wrapped <= PI
-    assert turns == pytest.approx(round(turns), abs=1e-9)
     angles = [angle, 0.2]
     almath.modulo2PIInPlace(angles)
     assert angles == pytest.approx([wrapped, 0.2])
@@ -90,7 +81,6 @@ def test_clipping_changes_lists_in_place_and_tells_whether_it_did():
     assert nested == [[0.1, 0.2], [0.3, 1.0]]
     refused("a list to clip in place, got 0.7", almath.clipData, 0.0, 0.5, 0.7)
     refused("minimum up to the maximum", almath.clipData, 1.0, 0.0, [0.5])
-    refused("modulo2PI returns", almath.modulo2PIInPlace, 4.0)
 
 
 @few
@@ -117,9 +107,7 @@ def test_functions_ask_the_value_they_are_given():
     out = Position3D()
     assert almath.crossProduct(Position3D(1, 0, 0), Position3D(0, 1, 0), out) is None
     assert out == Position3D(0, 0, 1)
-    refused("returns a number", almath.crossProduct, Position2D(1, 0), Position2D(0, 1), 0.0)
-    for function, argument in (("norm", 3.0), ("normalize", almath.Transform()), ("pinv", rotation)):
-        refused(f"{function} takes one of .*Pose2D", getattr(almath, function), argument)
+    refused("norm takes one of .*Pose2D", almath.norm, 3.0)
 
 
 # Digital filter and PID controller
@@ -159,6 +147,8 @@ def test_proportional_gain_answers_the_error_beyond_the_threshold():
 def test_a_fresh_controller_answers_nothing_until_it_has_gains():
     controller = almath.PIDController()
     assert [controller.computeFeedback(error, 0.0) for error in (1.0, -2.0)] == [0.0, 0.0]
+    refused("gains of zero or more", almath.PIDController, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+    refused("period above zero", almath.PIDController, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     controller.initialize()
     controller.setGains(1.0, 1.0, 1.0)
     # Without a set period a second passes with each call.
@@ -192,19 +182,6 @@ def test_initialize_forgets_and_gains_can_change():
     assert controller.computeFeedback(1.0, 0.0) == first
     controller.setGains(0.0, 0.0, 0.0)
     assert controller.computeFeedback(1.0, 0.0) == 0.0
-
-
-@pytest.mark.parametrize(
-    "settings_of_it, told",
-    [
-        ((1.0, 0.0, 0.0), "6 settings, got 3"),
-        ((-1.0, 0.0, 0.0, 0.0, 0.0, 1.0), "gains of zero or more"),
-        ((1.0, 0.0, 0.0, -0.1, 0.0, 1.0), "threshold"),
-        ((1.0, 0.0, 0.0, 0.0, 0.0, 0.0), "period above zero"),
-    ],
-)
-def test_wrong_settings_of_a_controller_are_named(settings_of_it, told):
-    refused(told, almath.PIDController, *settings_of_it)
 
 
 # Constants of almath, motion and vision_definitions
@@ -244,51 +221,3 @@ def test_cameras_agree_with_the_robot_data():
     assert (vision_definitions.kTopCamera, vision_definitions.kBottomCamera) == (0, 1)
     numbers = set(constants_of(vision_definitions, "kCamera").values())
     assert numbers == set(range(41)) | {43}  # without gap up to the focus
-
-
-def test_both_spellings_of_a_colour_space_mean_the_same():
-    for old, new in (("kHsv", "kHsy"), ("khSv", "khSy"), ("khsV", "khsY"), ("kHSV", "kHSY")):
-        first, second = (getattr(vision_definitions, f"{stem}ColorSpace") for stem in (old, new))
-        assert first == second
-    assert vision_definitions.kYUV422InterlacedColorSpace == vision_definitions.kYUV422ColorSpace == 9
-    assert vision_definitions.k960p == vision_definitions.k4VGA
-
-
-# Passages as they stand in scripts for a robot, with lists as ALMotion returns them
-
-
-def test_displacement_of_the_robot_between_two_odometry_readings():
-    start = almath.Pose2D([1.0, 0.5, math.pi - 0.1])
-    end = almath.Pose2D([0.9, 0.5, -math.pi + 0.1])
-    move = almath.pose2DInverse(start) * end
-    move.theta = almath.modulo2PI(move.theta)
-    assert move.isNear(almath.Pose2D(0.1 * math.cos(0.1), 0.1 * math.sin(0.1), 0.2), 1e-9)
-
-
-def test_hand_is_moved_five_centimetres_to_the_right_of_where_it_is():
-    current = [1.0, 0.0, 0.0, 0.2, 0.0, 1.0, 0.0, 0.1, 0.0, 0.0, 1.0, 0.3, 0.0, 0.0, 0.0, 1.0]
-    target = almath.Transform(current)
-    target.r2_c4 -= 0.05
-    path = list(target.toVector())
-    assert path == current[:7] + [0.1 - 0.05] + current[8:]
-    assert isinstance(path[0], float)
-
-
-def test_landmark_seen_by_the_camera_is_placed_in_the_frame_of_the_robot():
-    camera = almath.Transform.fromPosition(0.06, 0.0, 0.48, 0.0, 0.2, 0.0)
-    alpha, beta, angular_size, size = 0.1, -0.2, 0.15, 0.06
-    distance = size / (2.0 * math.tan(angular_size / 2.0))
-    towards = almath.Transform_from3DRotation(0, beta, alpha)
-    landmark = almath.Transform(almath.vectorFloat(camera.toVector())) * towards * almath.Transform(distance, 0, 0)
-    straight = math.hypot(landmark.r1_c4 - 0.06, landmark.r2_c4, landmark.r3_c4 - 0.48)
-    assert math.isclose(straight, distance)
-    # Pitch of the head and elevation of the mark cancel out; what is left is the way to the left.
-    assert abs(landmark.r3_c4 - 0.48) < 0.01
-    assert math.isclose(landmark.r2_c4, distance * math.cos(beta) * math.sin(alpha))
-
-
-def test_masks_frames_and_cameras_are_the_integers_that_calls_take():
-    arguments = [motion.FRAME_ROBOT, almath.AXIS_MASK_VEL, motion.AXIS_MASK_ALL - motion.AXIS_MASK_WZ]
-    arguments += [vision_definitions.kTopCamera, vision_definitions.kVGA, vision_definitions.kBGRColorSpace]
-    assert arguments == [2, 7, 31, 0, 2, 13]
-    assert all(type(argument) is int for argument in arguments)

@@ -128,18 +128,3 @@ def test_what_was_in_a_goal_is_gone_when_it_is_over_and_its_state_is_told_on(ser
     assert goal() is None and one.told() == ["first"]
     one.inside.internal_cancel_callback(GoalID(id="first"))
     assert not one.server.is_preempt_requested() and one.told() == ["first"], "a late cancel changes nothing"
-
-
-def test_a_goal_that_was_never_taken_up_is_let_go_of_when_another_takes_its_place(serve):
-    busy, go_on = threading.Event(), threading.Event()
-    one = serve(lambda _: (busy.set(), go_on.wait(LIMIT), one.server.set_preempted()))
-    running = one.send("first")
-    assert busy.wait(LIMIT)
-    waiting = one.send("second")
-    assert None not in (running(), waiting())
-    one.send("third")
-    assert waiting() is None, "it was kept although it is over"
-    assert running() is not None, "it was let go of before its end"
-    go_on.set()
-    one.end()
-    assert one.told() == ["first", "second", "third"]

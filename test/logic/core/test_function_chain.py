@@ -39,14 +39,6 @@ def test_fields_become_arguments_by_name_in_the_order_of_the_parameters():
         arguments(lambda velocity: None)
 
 
-def test_an_entry_can_be_replaced_at_any_time():
-    table = {"move": lambda names: None}
-    chain = FunctionChain(table)
-    assert chain.read([Message(names=["a"])])[0].args == (["a"],)
-    table["move"] = lambda speed: None
-    assert chain.read([Message(speed=0.1)])[0].args == (0.1,)
-
-
 def test_an_unknown_function_names_its_place_and_the_closest_names_or_all():
     table = {"move": print, "setColor": print, "on": print}
     with pytest.raises(FunctionFailed) as caught:
@@ -111,11 +103,3 @@ def test_a_check_knows_what_earlier_functions_of_the_same_chain_define_and_of_no
     chain.read([define, use])
     with pytest.raises(FunctionFailed, match=r"function 1 \(use\)"):
         chain.read([use, define])
-
-
-def test_a_typo_is_found_before_any_check_asks_the_robot():
-    asked = []
-    look = checked_by(lambda names: asked.append(names))(lambda names: None)
-    with pytest.raises(FunctionFailed, match=r"function 2 \(loook\)"):
-        FunctionChain({"look": look}).read([Message(function="look"), Message(function="loook")])
-    assert asked == []

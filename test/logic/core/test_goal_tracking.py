@@ -18,16 +18,6 @@ SENDING = 0.05
 LIMIT = 15.0
 
 
-class Acknowledged(threading.Event):
-    """The server tells of the goal as soon as somebody waits for that."""
-
-    goal = None
-
-    def wait(self, timeout=None):
-        self.goal.tell(GoalStatus.ACTIVE)
-        return super().wait(timeout)
-
-
 @pytest.fixture
 def watch():
     return GoalWatch()
@@ -38,30 +28,11 @@ def goal(watch):
     return FakeGoal(watch.look)
 
 
-@pytest.mark.parametrize("told", ["before", "meanwhile"])
-def test_a_goal_that_goes_on_is_cancelled_when_its_server_knows_of_it(watch, goal, told):
-    if told == "before":
-        goal.tell(GoalStatus.ACTIVE)
-    else:
-        watch.acknowledged = Acknowledged()
-        watch.acknowledged.goal = goal
-    assert watch.cancel(goal.handle)
-    assert goal.cancelled == [CommState.ACTIVE] and watch.over.wait(LIMIT)
-    assert goal.handle.get_terminal_state() == GoalStatus.PREEMPTED
-
-
 def test_a_goal_that_is_over_is_neither_cancelled_nor_lost(watch, goal):
     goal.end(GoalStatus.ABORTED, "no such light")
     assert not watch.cancel(goal.handle)
     goal.tell()  # told before the goal came to the server
     assert (goal.cancelled, goal.handle.get_terminal_state()) == ([], GoalStatus.ABORTED)
-
-
-def test_a_goal_that_ends_while_it_is_to_be_cancelled_is_not_cancelled(watch, goal):
-    goal.tell(GoalStatus.ACTIVE)
-    goal.just_before_the_cancel(lambda: goal.end(GoalStatus.SUCCEEDED))
-    assert not watch.cancel(goal.handle)
-    assert (goal.cancelled, goal.handle.get_terminal_state()) == ([], GoalStatus.SUCCEEDED)
 
 
 def test_a_goal_of_which_the_server_never_tells_is_cancelled_all_the_same(watch, goal):
@@ -139,11 +110,3 @@ def test_news_of_the_goal_before_are_neither_taken_for_those_of_this_one_nor_tol
     on_transition(former)
     assert news == ["feedback 2"] and client.get_goal_status_text() == "goal 2"
     assert not caplog.records
-
-
-def test_a_callback_may_wait_for_the_one_who_sends(client):
-    sent, seen = threading.Event(), threading.Event()
-    client.send_goal(1, done_cb=lambda *_: sent.wait(LIMIT) and seen.set())
-    sent.set()
-    assert seen.wait(LIMIT)
-    client.action_client.join()

@@ -56,14 +56,6 @@ def test_a_launch_path_is_a_text_or_a_list():
             launch_path(value)
 
 
-def test_help_names_options_and_parameters(capsys):
-    with pytest.raises(SystemExit) as caught:
-        robot_parser("Lights of a NAO.").parse_args(["--help"])
-    text = capsys.readouterr().out
-    assert caught.value.code == 0
-    assert all(word in text for word in ("Lights of a NAO.", "--pip", "--pport", "~pip"))
-
-
 @pytest.mark.parametrize(
     ("parameters", "status", "options"),
     [({}, 0, {}), ({"~patience": 60}, 0, {"patience": 60.0}), ({"~patience": "long"}, 1, None)],
@@ -150,7 +142,7 @@ SILENT, BROKEN = "#!/bin/sh\nexec sleep 1000\n", "#!/bin/sh\necho begun\necho no
 
 
 @pytest.fixture
-def stack(tmp_path, monkeypatch):
+def own_stack(tmp_path, monkeypatch):
     made = []
 
     def make(program):
@@ -165,8 +157,8 @@ def stack(tmp_path, monkeypatch):
         one.stop()
 
 
-def test_master_and_robot_are_waited_for_and_are_gone_after_the_end(stack):
-    one = stack(LISTENER)
+def test_master_and_robot_are_waited_for_and_are_gone_after_the_end(own_stack):
+    one = own_stack(LISTENER)
     one.wait_for_master(LIMIT)
     one.wait_for_robot(LIMIT)
     assert one.alive() and can_connect(one.ros_port) and can_connect(one.nao_port)
@@ -176,9 +168,9 @@ def test_master_and_robot_are_waited_for_and_are_gone_after_the_end(stack):
         pass
 
 
-def test_waiting_has_an_end_which_is_that_of_roslaunch_with_its_last_words(stack):
+def test_waiting_has_an_end_which_is_that_of_roslaunch_with_its_last_words(own_stack):
     for wait, what in (("wait_for_master", "the ROS master"), ("wait_for_robot", "the simulated robot")):
         with pytest.raises(TimeoutError, match=f"{what} does not come up: roslaunch has ended: no such file: nao_sim"):
-            getattr(stack(BROKEN), wait)(LIMIT)
+            getattr(own_stack(BROKEN), wait)(LIMIT)
     with pytest.raises(TimeoutError, match="the ROS master does not come up: not there within 0.2 s"):
-        stack(SILENT).wait_for_master(0.2)
+        own_stack(SILENT).wait_for_master(0.2)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import os
 import sys
-import threading
 
 import pytest
 
@@ -77,32 +76,6 @@ def test_a_program_that_dies_is_started_again_and_the_log_says_how_it_ended(supe
     assert "the program ended by itself with exit status 3; it is started again in 0.01 s" in caplog.text
     delays = [record.args[2] for record in caplog.records if "started again" in record.msg]
     assert delays[:5] == [0.01, 0.02, 0.04, 0.04, 0.04], "the delay doubles up to its limit"
-
-
-def test_a_program_killed_by_a_signal_is_reported_by_its_name(supervise, pipe, caplog):
-    supervise(SAY + "say('up'); os.kill(os.getpid(), 9)")
-    pipe.line()
-    pipe.line()
-    assert "was ended by SIGKILL" in caplog.text
-
-
-def test_a_program_that_cannot_be_started_is_reported():
-    supervisor, tried = Supervisor(["/nonexistent/program"], "the program", timing=QUICK), threading.Event()
-
-    class Watch(logging.Handler):
-        def emit(self, record):
-            if "cannot be started" in record.getMessage():
-                tried.set()
-
-    log, watch = logging.getLogger("nao_library_modules.supervisor"), Watch()
-    log.addHandler(watch)
-    try:
-        supervisor.start()
-        assert tried.wait(LIMIT)
-    finally:
-        supervisor.stop()
-        log.removeHandler(watch)
-    assert supervisor.status.state is State.STOPPED
 
 
 def test_a_program_that_ignores_polite_signals_is_killed(supervise, pipe, caplog):

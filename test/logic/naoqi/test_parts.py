@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import weakref
 
 import pytest
 
@@ -37,15 +36,12 @@ def failed(number):
 
 
 def test_numbers_of_calls_are_unique_known_and_over_with_their_call():
-    table, call = TaskTable(), EndedCall()
-    kept = weakref.ref(call)
-    first, second = table.add(call), table.add(EndedCall())
+    table = TaskTable()
+    first, second = table.add(EndedCall()), table.add(EndedCall())
     assert first != second and table.knows(first) and table.knows(second)
     assert not any(table.knows(other) for other in (0, second + 1, "1", True, None))
     assert not table.is_running(first)
     assert table.wait(first, None) is False
-    del call
-    assert kept() is None
 
 
 def test_the_newest_errors_are_kept_for_whoever_waits_and_all_are_logged(caplog):
@@ -65,25 +61,21 @@ def worker():
     worker.close()
 
 
-def test_jobs_keep_their_order_and_their_thread(worker):
+def test_jobs_keep_their_order(worker):
     done, seen = threading.Event(), []
     for number in range(100):
-        worker.submit(lambda number=number: seen.append((number, threading.current_thread().name)))
+        worker.submit(lambda number=number: seen.append(number))
     worker.submit(done.set)
     assert done.wait(PATIENCE)
-    assert seen == [(number, "test worker") for number in range(100)]
+    assert seen == list(range(100))
 
 
-@pytest.mark.parametrize("error", [ValueError("a job with a fault"), SystemExit("a job with a fault")])
-def test_a_failing_job_is_logged_and_the_next_one_done(worker, caplog, error):
-    def fail():
-        raise error
-
+def test_a_failing_job_is_logged_and_the_next_one_done(worker, caplog):
     done = threading.Event()
-    worker.submit(fail)
+    worker.submit(lambda: 1 / 0)
     worker.submit(done.set)
     assert done.wait(PATIENCE)
-    assert "a job with a fault" in caplog.text
+    assert "ZeroDivisionError" in caplog.text
 
 
 def test_closing_does_what_is_there_and_takes_nothing_more(worker):
@@ -111,39 +103,6 @@ def test_who_is_inside_is_waited_for_until_it_leaves():
     presence.leave("nobody")
     waiting.join(PATIENCE)
     assert answers == [True]
-
-
-def test_a_lent_callback_has_left_when_nobody_holds_it():
-    presence, lent = Presence(), threading.Event()
-    presence.lend(lent)
-    assert not presence.wait_until_empty(0.0)
-    del lent
-    assert presence.wait_until_empty(0.0)
-
-
-def test_a_served_object_dies_in_the_hands_of_who_waits():
-    presence, died_in, served = Presence(), [], threading.Event()
-    weakref.finalize(served, lambda: died_in.append(threading.current_thread()))
-    presence.serve(served)
-    assert not presence.wait_until_empty(0.0)
-    other = threading.Thread(target=lambda kept=served: None)
-    del served
-    assert died_in == []
-    other.start()
-    other.join()
-    del other
-    assert presence.wait_until_empty(0.0)
-    assert died_in == [threading.main_thread()]
-
-
-def test_a_served_object_is_waited_for_until_its_queue_is_dropped_too():
-    presence, served = Presence(), threading.Event()
-    strand = served.__qi_strand__ = object()
-    presence.serve(served)
-    del served
-    assert not presence.wait_until_empty(0.01)
-    del strand
-    assert presence.wait_until_empty(0.0)
 
 
 def test_a_silent_robot_is_given_up_within_two_seconds():

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-
 import pytest
 
 from nao_sim_bridge.services.errors import NaoqiError
@@ -138,12 +136,6 @@ def test_a_listener_may_come_before_its_event_is_known_and_all_are_gone_in_the_e
     assert heard == [1]
 
 
-def test_micro_events_are_a_kind_of_their_own(store, heard):
-    subscribe(store, heard, "Light", kind="MicroEvent")
-    store.raise_micro_event("Light", 1)
-    assert (store.names("MicroEvent"), store.names("Event"), len(heard)) == (["Light"], [], 1)
-
-
 def test_the_history_keeps_the_last_values_with_their_times(store, clock):
     for n in range(HISTORY_LENGTH + 3):
         clock.now = float(n)
@@ -181,18 +173,3 @@ def test_a_subscriber_may_use_the_memory(store, heard):
     store.raise_event("First", 1)
     store.raise_event("First", 5)
     assert [entry[2] for entry in heard] == [2]
-
-
-def test_no_event_is_lost_when_many_threads_raise(store, heard):
-    def raise_many(number):
-        for n in range(200):
-            store.raise_event("Happened", (number, n))
-
-    subscribe(store, heard)
-    threads = [threading.Thread(target=raise_many, args=(number,)) for number in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join(15.0)
-    values = [entry[2] for entry in heard]
-    assert all([n for of, n in values if of == number] == list(range(200)) for number in range(4))

@@ -6,12 +6,10 @@ import math
 
 import pytest
 
-from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.services.api import COMMON, EXTRACTOR, FILE, Method, Overload, module_methods, qi_type
+from nao_sim_bridge.services.api import FILE, Method, Overload, module_methods, qi_type
 from nao_sim_bridge.services.arguments import number, numbers, per_item
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.wire_types import fitted, fitted_to
-from nao_sim_bridge.sim.config import read_json
 from nao_sim_bridge.sim.errors import BadValue, ConfigError
 
 CODES = {
@@ -31,22 +29,6 @@ def test_types_become_codes_of_libqi_and_unknown_ones_are_refused():
     for name in ("text", "list<text>", "list<>", "map<string>", "tuple<>", "pair<int>", ""):
         with pytest.raises(ConfigError, match=f"{FILE}: unknown type"):
             qi_type(name)
-
-
-def test_every_method_of_every_module_can_be_published():
-    for module in (name for name in read_json(config_file(FILE)) if not name.startswith("_")):
-        methods = module_methods(module)
-        assert set(module_methods(COMMON)) <= set(methods)
-        for method in methods.values():
-            assert qi_type(method.returns) and method.overloads and method.summary
-            signatures = [overload.signature for overload in method.overloads]
-            assert len(set(signatures)) == len(signatures), f"{module}.{method.name} has an overload twice"
-            assert all(len(o.types) == len(o.names) and all(o.names) for o in method.overloads)
-    shared = set(module_methods(EXTRACTOR))
-    assert {"subscribe", "unsubscribe", "getSubscribersInfo"} <= shared <= set(module_methods("ALSoundLocalization"))
-    assert not shared <= set(module_methods("ALMotion"))
-    with pytest.raises(ConfigError, match="no module 'ALLed'"):
-        module_methods("ALLed")
 
 
 def test_an_overload_is_a_signature_and_a_text():
@@ -126,12 +108,10 @@ def test_numbers_are_checked_by_name_place_and_range():
             number(wrong, "speed")
     for call, told in (
         (lambda: number(1.5, "speed", 0.0, 1.0), "speed is 1.5, allowed is 0 to 1"),
-        (lambda: number(-0.1, "speed", 0.0, 1.0), "speed is -0.1, allowed is 0 to 1"),
         (lambda: number(-1, "speed", 0.0, math.inf), "speed is -1, allowed is 0 or more"),
         (lambda: numbers([1.0, "x"], "force"), r"force\[1\] is 'x'"),
         (lambda: numbers(3, "force"), "force is 3, allowed is a list of numbers"),
         *((lambda v=v: per_item(v, 3, "angles"), "angles is .* one number or 3, one for each") for v in ([], [1, 2])),
-        (lambda: per_item([1] * 4, 3, "angles"), "angles is .* one number or 3, one for each joint"),
     ):
         with pytest.raises(BadValue, match=told):
             call()

@@ -10,7 +10,6 @@ from genpy import Duration
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_modules.errors import BadGoal, Preempted, UnknownFunction
-from nao_library_modules.function_chain import checked_by
 from nao_library_modules.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
 from naoqi.errors import RobotUnreachable
@@ -148,20 +147,6 @@ def test_an_unexpected_error_is_logged_with_its_trace_and_the_server_lives_on(go
     goals.succeed(f("say", "again"))
 
 
-def test_an_unexpected_error_in_a_check_names_the_function_and_runs_nothing(goals, done, caplog):
-    def check(str_param):
-        raise KeyError("oops")
-
-    goals.module.function_table["odd"] = checked_by(check)(lambda str_param: goals.module.say(str_param))
-    assert goals.refused(f("say", "one"), f("odd", "two")) == "function 2 (odd): KeyError: 'oops'"
-    assert "Traceback" in caplog.text and done == []
-
-
-def test_a_function_is_one_key_value_pair(goals):
-    goals.module.function_table["shout"] = lambda str_param: str_param.upper()
-    assert goals.succeed(f("shout", "hey")).memList == ["HEY"]
-
-
 # Preemption
 
 
@@ -194,13 +179,6 @@ def test_a_call_that_fails_cancels_those_beside_it(robot, goals):
     before = robot.led(BRAIN0)
     robot.advance(1.0)
     assert robot.led(BRAIN0) == before > 0.5
-
-
-def test_a_preemption_that_came_before_the_goal_began_counts(goals, done):
-    server = goals.module.server
-    server.preempt_requested = True
-    server.execute(NaoLedGoal([f("say", "one")]))
-    assert (server.end, done) == ("preempted", [])
 
 
 def test_the_end_of_the_node_interrupts_and_cleans_up_before_it_returns(robot, goals, done):
@@ -284,12 +262,3 @@ def test_functions_can_be_run_outside_of_goals(goals):
     module.interrupt.trigger()
     with pytest.raises(Preempted):
         module.wait(60.0)
-
-
-def test_reports_are_there_for_the_diagnostics(robot, goals):
-    goals.play(f("sya"))
-    goals.play(f("say"))
-    robot_report, goal_report = (goals.edge.reports[f"Module {what}"]() for what in ("robot", "goals"))
-    assert robot_report.message == "connected" and robot_report.values["address"] == f"127.0.0.1:{robot.port}"
-    assert (goal_report.values["aborted"], goal_report.values["succeeded"]) == ("1", "1")
-    assert "unknown function 'sya'" in goal_report.values["last error"]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-
 import pytest
 from genpy import Duration
 
@@ -53,13 +51,3 @@ def test_it_tells_the_goal_that_runs(ask, lights, robot):
     assert (answer.running, answer.index) == (["listGroups", "listLEDs"], 1)
     goal.cancel()
     assert ask(without_functions=True).running == []
-
-
-def test_several_clients_may_ask_at_once(ask, lights):
-    answers = []
-    threads = [threading.Thread(target=lambda: answers.append(len(ask().functions))) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join(15.0)
-    assert answers == [len(lights.module.function_table)] * 4

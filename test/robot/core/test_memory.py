@@ -6,10 +6,8 @@ import json
 
 import pytest
 
-from nao_library_modules.event_relay import EventRelay
 from nao_library_modules.memory_functions import parse_assignment
 from nao_library_msgs.msg import LedFunction
-from naoqi.errors import RobotError
 
 ACCELEROMETER = "Device/SubDeviceList/InertialSensor/AccelerometerZ/Sensor/Value"
 
@@ -93,41 +91,3 @@ def test_assignments_hold_json_or_plain_text():
         ("Sum = a=b", "Sum", " a=b"),
     ):  # fmt: skip
         assert parse_assignment(text) == (key, value)
-
-
-class OneEvent:
-    """ALMemory with subscribers that the test calls or has refused."""
-
-    def __init__(self):
-        self.links, self.signal, self.refuses = [], self, False
-
-    def subscriber(self, name):
-        if self.refuses:
-            raise RobotError("ALMemory", "subscriber", f"no event {name}")
-        return self
-
-    def connect(self, callback):
-        self.links.append(callback)
-        return callback
-
-    def disconnect(self, link):
-        self.links.remove(link)
-
-
-def test_a_relay_keeps_no_subscription_that_failed_and_ends_all_at_its_close(caplog):
-    def full(name, value):
-        raise ValueError("sink is full")
-
-    memory = OneEvent()
-    relay = EventRelay(lambda: memory, full)
-    memory.refuses = True
-    with pytest.raises(RobotError):
-        relay.subscribe("A")
-    assert relay.names == []
-    memory.refuses = False
-    relay.subscribe("A")
-    relay.subscribe("B")
-    memory.links[0](5)
-    assert "sink is full" in caplog.text, "it does not reach the robot"
-    relay.close()
-    assert memory.links == []
