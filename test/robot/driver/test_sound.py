@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -10,18 +9,16 @@ import numpy as np
 import pytest
 
 from nao_library_modules.driver import demand
-from nao_library_modules.driver import speech as speech_module
 from nao_library_modules.driver.audio_directions import SoundDirections
 from nao_library_modules.driver.audio_player import AudioPlayer
 from nao_library_modules.driver.audio_requests import read_recording
 from nao_library_modules.driver.microphone import SILENCE_LIMIT, Microphone
-from nao_library_modules.driver.speech import LONGEST_QUEUE, QUIET_LIMIT, NothingSaid, Speech
+from nao_library_modules.driver.speech import LONGEST_QUEUE, Speech
 from nao_library_modules.driver.speech_recognition import Heard, Recognition, RecognitionInUse
 from nao_library_modules.driver.speech_settings import SpeechSettings
 from nao_library_modules.errors import Preempted
 from nao_library_modules.interrupt import Interrupt
-from nao_library_modules.robot import Robot
-from naoqi.errors import NaoError, RobotError, RobotUnreachable
+from naoqi.errors import NaoError, RobotError
 
 LIMIT = 15.0
 BLOCK = 0.17
@@ -72,19 +69,6 @@ def test_blocks_come_while_somebody_listens_with_samples_times_and_places(microp
             microphone.set_rate(rate)
 
 
-def test_microphones_are_heard_again_after_a_loss_and_their_end_leaves_nothing_on_the_robot(
-    microphone, driver_robot, blocks, until, begin
-):
-    microphone.want(True)
-    until(lambda: blocks)
-    driver_robot.lose()
-    blocks.clear()
-    until(lambda: len(blocks) >= 2, limit=60.0, step=BLOCK)
-    ended = begin(microphone.close)
-    until(ended.done)
-    assert "ros_naoqi_microphone" not in driver_robot.connection.module_names()
-
-
 def test_silence_of_a_robot_that_cannot_reach_us_is_told_and_tried_again(
     driver_robot, robot, blocks, closing, soon, until
 ):
@@ -100,6 +84,9 @@ def test_silence_of_a_robot_that_cannot_reach_us_is_told_and_tried_again(
     assert "has to reach this program at 127.0.0.1:" in microphone.report().message
     blocks.clear()
     until(lambda: blocks and microphone.report().message == "heard")
+    driver_robot.lose()
+    blocks.clear()
+    until(lambda: len(blocks) >= 2, limit=60.0, step=BLOCK)
 
 
 # Files, volume and directions
@@ -139,9 +126,7 @@ def test_a_recording_takes_its_time_of_the_robot_and_plays_as_long(player, robot
     assert player.volume() == robot.ALAudioDevice.getOutputVolume() == 35
 
 
-def test_an_interrupt_ends_what_is_played_and_completes_what_is_recorded(
-    player, robot, driver_robot, interrupt, until, begin
-):
+def test_an_interrupt_ends_what_is_played_and_completes_what_is_recorded(player, robot, interrupt, until, begin):
     record = begin(player.record, recording(20, "cut.wav"))
     robot.advance(1.0)
     interrupt.trigger()
@@ -160,12 +145,6 @@ def test_an_interrupt_ends_what_is_played_and_completes_what_is_recorded(
     until(play.done, limit=0.3)
     with pytest.raises(Preempted):
         play.result()
-    interrupt.clear()
-    record = begin(player.record, recording(20, "lost.wav"))
-    robot.advance(0.5)
-    driver_robot.lose()
-    until(record.done, limit=1.0)
-    assert robot.now.time < start + 10.0  # the wait ended with the connection
 
 
 def test_sounds_are_located_only_while_somebody_listens_and_once_after_a_loss(robot, driver_robot, closing, soon):
@@ -236,14 +215,6 @@ def test_voice_language_and_volume_are_used_for_the_text_and_put_back(speech, ro
     assert during == [("English", "rms", 0.6), ("French", "naofrf", before[2])]
 
 
-def test_what_somebody_changes_meanwhile_is_left_alone(speech, robot, settings, until):
-    language, before, _ = voice(robot)
-    settings[0] = SpeechSettings(voice="awb", volume=0.6)
-    text = speech.say("hello", on_start=lambda: robot.ALTextToSpeech.setVolume(0.1))
-    until(text.ended.is_set)
-    assert voice(robot) == (language, before, 0.1) and before != "awb"
-
-
 def test_settings_that_the_robot_refuses_are_an_error_and_change_nothing(speech, robot, settings, soon, until):
     before, failures = voice(robot), []
     settings[0] = SpeechSettings(language="French", voice="nobody")
@@ -272,43 +243,6 @@ def test_a_text_is_silenced_at_once_or_before_it_begins(speech, robot, settings,
     until(third.ended.is_set)
     assert third.error is None and len(started) == 2 and voice(robot) == before
     assert speech.report().values["interrupted"] == "2"
-
-
-class HandClock:
-    """Time that the test turns; waits end when it does."""
-
-    def __init__(self):
-        self.time, self.waits, self._turned = 0.0, 0, threading.Condition()
-
-    def now(self):
-        return self.time
-
-    def turn(self, time=None):
-        with self._turned:
-            self.time = self.time if time is None else time
-            self._turned.notify_all()
-
-    def wait(self, duration, interrupt):
-        with interrupt.waking(self.turn), self._turned:
-            self.waits += 1
-            end = self.time + duration
-            self._turned.wait_for(lambda: self.time >= end or interrupt.is_set())
-
-
-def test_a_robot_that_says_nothing_for_two_minutes_is_given_up(robot, driver_robot, closing, soon):
-    clock, started = HandClock(), []
-    speech = closing(Speech(driver_robot, clock, SpeechSettings))
-    text = speech.say("a long story", on_start=lambda: started.append(clock.time))
-    soon(lambda: clock.waits)
-    assert speech.report().message == "speaks"
-    clock.turn(0.9 * QUIET_LIMIT)
-    soon(lambda: started or robot.ALMemory.raiseEvent("ALTextToSpeech/TextStarted", True))  # a sign of life
-    waits = clock.waits
-    clock.turn(1.8 * QUIET_LIMIT)
-    soon(lambda: clock.waits > waits or text.ended.is_set())
-    assert not text.ended.is_set() and started == [0.9 * QUIET_LIMIT]
-    soon(lambda: text.ended.is_set() or clock.turn(clock.time + QUIET_LIMIT))
-    assert isinstance(text.error, NothingSaid)
 
 
 def test_texts_for_a_lost_robot_fail_and_later_ones_are_said_in_its_own_voice(
@@ -346,21 +280,6 @@ def test_there_is_an_end_to_the_queue_and_the_end_of_the_node_silences_everythin
     assert isinstance(speech.say("after the end").error, Preempted)
 
 
-def test_a_text_waits_a_moment_for_a_robot_that_was_never_there(driver_robot, clock, closing, soon, until, monkeypatch):
-    connection = SimpleNamespace(state="connecting", generation=1)
-    connection.wait_connected = lambda limit: setattr(connection, "state", "connected") or True
-    arriving = SimpleNamespace(connection=connection, proxy=driver_robot.proxy, address="nao:9559")
-    text = closing(Speech(arriving, clock, SpeechSettings)).say("Walker online")
-    until(text.ended.is_set)
-    assert text.error is None
-    monkeypatch.setattr(speech_module, "PATIENCE", 0.0)
-    absent = Robot("127.0.0.1", 1)
-    text = closing(Speech(absent, clock, SpeechSettings)).say("hello")
-    soon(text.ended.is_set)
-    assert isinstance(text.error, RobotUnreachable)
-    absent.connection.close()
-
-
 # Recognition of words
 
 
@@ -393,6 +312,14 @@ def test_it_listens_for_the_vocabulary_until_it_is_stopped(recognition, robot, s
     with pytest.raises(NaoError, match="no vocabulary"):
         recognition.start()
     assert not recognition.running and listeners(robot) == []
+    recognition.apply()  # while it does not listen a vocabulary waits
+    good = settings[0] = SpeechSettings(vocabulary=("stop",))
+    recognition.start()
+    settings[0] = replace(good, vocabulary=("",))
+    with pytest.raises(NaoError):
+        recognition.apply()
+    settings[0] = good
+    assert listeners(robot) == ["ros_nao_speech"] and recognition.report().message == "listens"
 
 
 def test_it_does_not_take_the_vocabulary_from_others_but_from_a_killed_run(recognition, robot):
@@ -403,20 +330,6 @@ def test_it_does_not_take_the_vocabulary_from_others_but_from_a_killed_run(recog
     robot.ALSpeechRecognition.subscribe("ros_nao_speech")
     recognition.start()
     assert listeners(robot) == ["ros_nao_speech"]
-
-
-def test_a_new_vocabulary_is_used_at_once_and_one_that_is_refused_leaves_the_old_one(
-    recognition, robot, settings, soon
-):
-    recognition.apply()  # while it does not listen a vocabulary waits
-    recognition.start()
-    good = settings[0] = replace(settings[0], vocabulary=("stop",))
-    recognition.apply()
-    settings[0] = replace(good, vocabulary=("",))
-    with pytest.raises(NaoError):
-        recognition.apply()
-    settings[0] = good
-    assert listeners(robot) == ["ros_nao_speech"] and recognition.report().message == "listens"
 
 
 def test_words_are_passed_on_whoever_listens_and_once_after_a_loss(recognition, robot, driver_robot, heard, soon):
