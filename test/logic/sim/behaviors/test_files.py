@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
 import zipfile
-from pathlib import Path
 
 import pytest
 
-from nao_sim_bridge.sim.behaviors.installed import InstalledBehaviors, shipped_behaviors
 from nao_sim_bridge.sim.behaviors.packages import read_package, renamed
-from nao_sim_bridge.sim.behaviors.reader import behaviors_of, read_behaviors
+from nao_sim_bridge.sim.behaviors.reader import behaviors_of
 from nao_sim_bridge.sim.behaviors.steps import (
-    Behavior,
     GoToPosture,
     InTurn,
     Joints,
@@ -26,10 +22,7 @@ from nao_sim_bridge.sim.behaviors.steps import (
     length_of,
 )
 from nao_sim_bridge.sim.behaviors.xar import xar_step
-from nao_sim_bridge.sim.errors import BadValue, ConfigError, UnknownName
-from nao_sim_bridge.sim.speech.animations import load_animations
-
-DOCUMENT = Path(__file__).parents[4] / "docs" / "robot_behaviors.md"
+from nao_sim_bridge.sim.errors import ConfigError
 
 
 def steps(*entries, name="test"):
@@ -74,52 +67,6 @@ def test_what_is_wrong_is_told_with_its_place(entry, told):
         steps({"wait": 0.1}, entry)
     assert error.value.where.startswith("file: test: do[1]")
 
-
-def test_all_files_that_come_with_the_simulator_and_the_example_of_the_documentation_are_sound(tmp_path):
-    shipped = shipped_behaviors()
-    assert len(shipped) >= 18 and all(behavior.help for behavior in shipped.values())
-    assert {b.nature for b in shipped.values()} == {"solitary", "interactive", "no nature"}
-    path = tmp_path / "example.yaml"
-    path.write_text(re.search(r"```yaml\n(.*?)```", DOCUMENT.read_text(encoding="utf-8"), re.DOTALL).group(1))
-    (behavior,) = read_behaviors(path).values()
-    assert behavior.nature == "interactive" and length_of(behavior.step) > 3.0
-
-
-# --- installed
-
-HEY = "animations/Stand/Gestures/Hey_1"
-
-
-@pytest.fixture
-def installed():
-    return InstalledBehaviors(load_animations())
-
-
-def made(*names):
-    return [Behavior(name, Wait(1.0)) for name in names]
-
-
-def test_a_behaviour_has_more_than_one_name_but_only_its_full_name_is_known(installed):
-    for name in (HEY, "Hey_1", "Gestures/Hey_1", "User/" + HEY, HEY + "/.", "/" + HEY):
-        assert installed.resolve(name).name == HEY
-    assert installed.knows(HEY) and not installed.knows("Hey_1")
-    with pytest.raises(UnknownName, match="Hey_1"):
-        installed.resolve("animations/Stand/Gestures/Hei_1")
-
-
-def test_installing_tells_what_is_new_and_removing_takes_the_package(installed):
-    assert installed.install(made("a/x")) == (["a/x"], [])
-    assert installed.resolve("a").name == "a/x", "a package with one behaviour may stand for it"
-    assert installed.install(made("a/x", "a/z")) == (["a/z"], ["a/x"])
-    refused = [(lambda: installed.resolve("a"), "one of 2"), (lambda: installed.install(made(HEY)), "free")]
-    refused += [(lambda: installed.install(made("a/x"), overwrite=False), "free")]
-    for call, text in [*refused, (lambda: installed.remove(HEY), "installed")]:
-        with pytest.raises(BadValue, match=text):
-            call()
-    assert sorted(installed.remove("a")) == ["a/x", "a/z"] and installed.user == {}
-
-
-# --- Choregraphe
 
 HEADER = '<?xml version="1.0" encoding="UTF-8" ?>'
 SPACE = "http://www.aldebaran-robotics.com/schema/choregraphe/project.xsd"

@@ -14,7 +14,7 @@ from nao_sim_bridge.sim.cameras.stream import CameraClosed
 from nao_sim_bridge.sim.errors import BadValue
 
 TOP, BOTTOM = 0, 1
-AUTO_EXPOSURE, AUTO_WHITE, EXPOSURE, GAIN, WHITE, LUMINANCE = 11, 12, 17, 6, 33, 39
+AUTO_EXPOSURE, EXPOSURE, GAIN, LUMINANCE = 11, 17, 6, 39
 TICKS = Fraction(120)
 
 
@@ -79,22 +79,6 @@ def test_frames_fall_due_in_simulated_time_and_slower_streams_get_those_of_the_f
     assert slow_ticks == [21, 45, 69, 93, 117] and set(slow_ticks[1:]) < set(fast_ticks)
 
 
-def test_a_frame_says_what_it_is(head):
-    stream = head.open(camera=BOTTOM, resolution=0, color_space=13)
-    head.run(3)
-    assert head.pictures.shots == [], "nothing is drawn before somebody asks"
-    frame = head.take(stream)
-    assert len(head.pictures.shots) == 1
-    assert (frame.time, frame.camera, frame.number) == (pytest.approx(1 / 120), BOTTOM, 0)
-    assert (frame.width, frame.height, frame.layers, frame.color_space) == (160, 120, 3, 13)
-    assert (frame.hfov, frame.vfov) == head.cameras.optics(BOTTOM).fov
-    assert frame.array().shape == (120, 160, 3) and not frame.array().flags.writeable
-    assert frame.stamp == (0, 8333)
-    grey = head.open(color_space=0)
-    head.run()
-    assert head.take(grey).array().shape == (240, 320)
-
-
 def test_the_newest_frame_is_had_once_and_who_waits_gets_the_next(head):
     stream = head.open()
     head.run(40)
@@ -128,58 +112,6 @@ def test_every_frame_counts_for_those_who_say_so_and_a_finished_stream_gives_wha
         head.open(every=True, keep=0)
 
 
-def test_the_same_picture_is_drawn_once(head):
-    of_one_size = [head.open() for _ in range(3)]
-    head.run()
-    pictures = [head.take(stream).data for stream in of_one_size]
-    assert len(head.pictures.shots) == 1 and pictures[0] == pictures[1] == pictures[2]
-    other = head.open(color_space=0)
-    head.run(4)
-    head.take(of_one_size[0]), head.take(other)
-    assert len(head.pictures.shots) == 3
-
-
-def test_who_waits_at_the_end_is_told(head):
-    stream, other, answers = head.open(), head.open(), queue.Queue()
-    stream.ask(answers.put)
-    stream.close()
-    assert isinstance(answers.get(timeout=head.patience), CameraClosed)
-    assert stream.closed and head.cameras.streams == (other,)
-    other.ask(answers.put)
-    head.cameras.close()
-    assert isinstance(answers.get(timeout=head.patience), CameraClosed)
-    with pytest.raises(CameraClosed):
-        head.take(other)
-    with pytest.raises(CameraClosed, match="the simulation has ended"):
-        head.open()
-
-
-def test_fast_time_waits_for_those_who_want_every_frame_until_they_ask_for_the_next(head, monkeypatch):
-    stream, newest = head.open(every=True), head.open()
-    assert not head.cameras.holds()
-    head.run()
-    assert head.cameras.holds()
-    head.take(stream)
-    assert head.cameras.holds(), "what is done with the frame takes no simulated time either"
-    head.released.clear()
-    answers = queue.Queue()
-    stream.ask(answers.put)
-    assert not head.cameras.holds() and head.released.is_set()
-    head.pictures.free.clear()
-    head.run(4)
-    assert head.cameras.holds(), "it is being drawn"
-    head.pictures.free.set()
-    answers.get(timeout=head.patience)
-    monkeypatch.setattr(streams, "PATIENCE", 0.0)
-    assert not head.cameras.holds(), "not for ever"
-    monkeypatch.undo()
-    assert head.cameras.holds()
-    stream.close()
-    head.take(newest)
-    head.run(10)
-    assert not head.cameras.holds()
-
-
 def test_automatics_tell_what_they_chose_and_leave_it_behind(head):
     head.pictures.paint = lambda _, shape: np.full(shape, 60, np.uint8)
     stream = head.open()
@@ -195,22 +127,3 @@ def test_automatics_tell_what_they_chose_and_leave_it_behind(head):
     assert head.take(stream).array().mean() == pytest.approx(135, abs=3)
     head.cameras.reset_parameters(TOP)
     assert head.cameras.parameter(TOP, AUTO_EXPOSURE) == 1 and head.cameras.parameter(TOP, LUMINANCE) == 0
-
-
-def test_the_cameras_of_an_older_robot(head_of):
-    head = head_of(version="V5")
-    head.pictures.paint = lambda _, shape: np.full(shape, (130, 122, 116), np.uint8)
-    stream = head.open()
-    head.run()
-    frame = head.take(stream)
-    assert np.degrees((frame.hfov, frame.vfov)) == pytest.approx((60.9, 47.6))
-    seen = head.cameras.parameter(TOP, WHITE)
-    assert seen < 4600, "the light is warm"
-    head.cameras.set_parameter(TOP, AUTO_WHITE, 0)
-    assert head.cameras.parameter(TOP, WHITE) == seen
-    head.cameras.set_parameter(TOP, WHITE, 6500)
-    assert head.cameras.parameter(TOP, WHITE) == 6500
-    with pytest.raises(BadValue, match="resolution is 4"):
-        head.open(resolution=4)
-    with pytest.raises(BadValue, match="parameter is 40"):
-        head.cameras.parameter(TOP, 40)

@@ -9,7 +9,7 @@ import pytest
 from nao_sim_bridge.sim import balance, errors, fall_manager, settings
 from nao_sim_bridge.sim.errors import BadValue, ConfigError, UnknownName
 from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.places import CIRCLE, NEAREST, ORIGIN, RobotPlace, checked_places, on_circle, parse_places
+from nao_sim_bridge.sim.places import NEAREST, ORIGIN, RobotPlace, checked_places, on_circle, parse_places
 from nao_sim_bridge.sim.scene import Scene
 from nao_sim_bridge.sim.sensors import noise_settings
 
@@ -32,18 +32,8 @@ def test_errors_keep_their_facts_and_say_them():
     assert str(error) == "unknown joint 'HeadYow': did you mean 'HeadYaw' or 'HeadPitch'?"
     assert str(UnknownName("joint", "zzz", ["HeadYaw"])) == "unknown joint 'zzz'"
     assert all(repr(name) in str(UnknownName("joint", name, ["HeadYaw"])) for name in (3, None, ["HeadYaw"]))
-    error = BadValue("speed", -1.0, "above 0")
-    assert (error.field, error.value, error.allowed) == ("speed", -1.0, "above 0")
-    assert str(error) == "speed is -1.0, allowed is above 0"
-    error = ConfigError("physics.json: motor", "missing 'gain'")
-    assert (error.where, error.problem) == ("physics.json: motor", "missing 'gain'")
-    assert str(error) == "physics.json: motor: missing 'gain'"
-
-
-def test_values_of_megabytes_are_shortened():
-    text = str(BadValue("name", "x" * 1000000, "a short one"))
-    assert text.startswith("name is 'xxx") and text.endswith("xxx... (1000002 characters), allowed is a short one")
-    assert max(len(text), len(str(UnknownName("joint", "x" * 1000000, ["HeadYaw"])))) < 400
+    assert str(BadValue("speed", -1.0, "above 0")) == "speed is -1.0, allowed is above 0"
+    assert str(ConfigError("physics.json: motor", "missing 'gain'")) == "physics.json: motor: missing 'gain'"
 
 
 def test_a_tick_is_a_whole_number_of_steps_and_an_encoder_has_4096_a_turn():
@@ -72,9 +62,6 @@ def test_wrong_entries_are_refused_with_their_place(change_file, file, change, m
         load()
 
 
-# --- what a simulation starts with
-
-
 @pytest.mark.parametrize("name", ["friction", "payload", "sensor_noise", "sensor_delay"])
 def test_amounts_below_zero_or_without_end_are_refused(name):
     for value in (-0.1, math.inf, math.nan):
@@ -82,17 +69,6 @@ def test_amounts_below_zero_or_without_end_are_refused(name):
             Scene(**{name: value})
     with pytest.raises(BadValue, match="sensor_delay is 1.5, allowed is 0 to 1 s"):
         Scene(sensor_delay=1.5)
-
-
-@pytest.mark.parametrize("count", [2, 3, 5, 8])
-def test_on_a_circle_all_look_at_the_middle_and_nobody_is_too_near(count):
-    places = checked_places(on_circle(count), count)
-    for place in places:
-        assert math.hypot(place.x, place.y) == pytest.approx(CIRCLE, abs=1e-5)
-        ahead = (place.x + CIRCLE * math.cos(place.yaw), place.y + CIRCLE * math.sin(place.yaw))
-        assert ahead == pytest.approx((0.0, 0.0), abs=1e-5)
-    assert places[0].yaw == 0.0
-    assert on_circle(1) == (ORIGIN,) == (RobotPlace(0.0, 0.0, 0.0),), "one that is alone stands at the origin"
 
 
 def test_places_are_read_from_a_line():

@@ -8,9 +8,8 @@ from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.hearing import grammar as g
 from nao_sim_bridge.sim.hearing.bnf import GrammarError, parse_bnf
 from nao_sim_bridge.sim.hearing.contexts import ContextError, Contexts
-from nao_sim_bridge.sim.hearing.network import OTHER, build, spoken_word
+from nao_sim_bridge.sim.hearing.network import build, spoken_word
 from nao_sim_bridge.sim.hearing.phrases import spoken_words
-from nao_sim_bridge.sim.hearing.pronunciation import Pronouncer, phones_of_ipa
 
 HOUSE = """#BNF+EM V2.1;
 !grammar House; // of a flat
@@ -70,15 +69,6 @@ def test_phrases_become_the_words_that_people_say(phrase, words):
 def test_a_phrase_without_words_is_refused(phrase):
     with pytest.raises(BadValue, match="at least one word"):
         spoken_words(phrase)
-
-
-def test_pronunciations_are_those_of_the_dictionary(tmp_path):
-    (tmp_path / "words.dict").write_text("read R IY D\nread(2) R EH D\nrobot R OW B AA T\n")
-    pronouncer = Pronouncer(tmp_path / "words.dict")
-    assert pronouncer.phones("read") == ["R IY D", "R EH D"]
-    assert pronouncer.phones("robot's") == ["R OW B AA T S"]
-    for ipa, phones in [("nˈaʊ", "N AW"), ("tʃˈɜːtʃ", "CH ER CH"), ("(en)bˈeɪkə(fr)", "B EY K AH"), ("ʘ", "")]:
-        assert phones_of_ipa(ipa) == phones
 
 
 # --- grammar files ----------------------------------------------------------------------------------------------------
@@ -185,13 +175,3 @@ def test_parts_are_repeated_and_loops_are_left_only_where_they_end(least, most, 
     assert said(made(g.Repeat(word("no"), least, most)), most=3) == wanted
     loop = made(g.Sequence((word("a"), g.Repeat(word("no"), least, most), word("c"))))
     assert said(loop, most=5) == {" ".join(f"a {w} c".split()) for w in wanted}
-
-
-def test_other_speech_is_any_row_of_sounds():
-    network = made(g.Sequence((g.Anything(), word("yes"))))
-    assert said(network, most=3) == {"yes", "OTHER-written yes", "OTHER-written OTHER-written yes"}
-    others = {name: token for name, token in network.tokens.items() if name.startswith(OTHER)}
-    assert sorted(token.phones[0] for token in others.values()) == ["AA", "S"]
-    assert {token.heard for token in others.values()} == {g.OTHER_SPEECH}
-    spotting = made(g.vocabulary("v", ["yes"], word_spotting=True).root)  # here it is not written, so not heard
-    assert {token.heard for token in spotting.tokens.values()} == {"", "<...> yes <...>"}

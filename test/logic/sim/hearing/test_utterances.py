@@ -13,11 +13,9 @@ from nao_sim_bridge.sim.hearing.evidence import Evidence, evidence
 from nao_sim_bridge.sim.hearing.noise_reduction import FRAME, noise_spectrum, reduce_noise
 from nao_sim_bridge.sim.hearing.phone_distance import difference, distance
 from nao_sim_bridge.sim.hearing.settings import ConfidenceSettings, load_recognition
-from nao_sim_bridge.sim.hearing.speech_likeness import likeness
 from nao_sim_bridge.sim.hearing.voice_activity import RATE, SpeechChange, Utterance, VoiceActivity
 
 TIMES = np.arange(RATE) / RATE
-BOUNDS = load_recognition().speech_likeness
 
 
 def stream(*parts, seed=1):
@@ -55,26 +53,6 @@ def test_a_short_pause_belongs_to_the_utterance_and_a_long_one_ends_it(pause, co
 @pytest.mark.parametrize("parts", [[(5.0, -74.0)], [(2.0, -74.0), (0.02, -30.0), (2.0, -74.0)], [(6.0, -45.0)]])
 def test_silence_clicks_and_steady_noise_are_no_utterance(parts):
     assert utterances(heard(stream(*parts))) == []
-
-
-def test_more_sensitive_ears_hear_quieter_speech():
-    sound = stream((2.0, -60.0), (0.8, -52.0), (1.5, -60.0))
-    assert [len(utterances(heard(sound, sensitivity))) for sensitivity in (0.0, 1.0)] == [0, 1]
-
-
-# --- what sounds like speech ------------------------------------------------------------------------------------------
-
-
-def test_tones_hums_and_noise_of_any_colour_are_no_speech():
-    tone = likeness(np.sin(2.0 * np.pi * 440.0 * TIMES))
-    assert tone.tone > BOUNDS.most_tone and tone.change < 0.1
-    assert likeness(sum(np.sin(2.0 * np.pi * 150.0 * k * TIMES) / k for k in range(1, 9))).change < BOUNDS.least_change
-    for power in (0.0, 0.5, 1.0):
-        for seed in range(20):
-            random = np.random.default_rng(seed)
-            frames = round(random.uniform(0.2, 2.0) * RATE)
-            spectrum = np.fft.rfft(random.standard_normal(frames)) / np.arange(1.0, frames // 2 + 2.0) ** power
-            assert likeness(np.fft.irfft(spectrum, frames)).voice < BOUNDS.least_voice, (power, seed)
 
 
 # --- noise is taken out -----------------------------------------------------------------------------------------------

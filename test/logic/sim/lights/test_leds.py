@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import random
-
 import pytest
 
 from nao_sim_bridge.sim import led_animations
 from nao_sim_bridge.sim.errors import UnknownName
-from nao_sim_bridge.sim.leds import LedBank, LedKeyframe
+from nao_sim_bridge.sim.leds import LedBank
 from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.model import VERSIONS
 from nao_sim_bridge.sim.tasks import TaskIds
 
 LEDS = load_leds()
-EYES = set(LEDS.devices_of("FaceLeds"))
-
-# --- names
 
 
 @pytest.mark.parametrize("version", VERSIONS)
@@ -65,9 +60,6 @@ def test_lamps_have_angles_and_the_colours_of_their_devices():
     assert shown["RightFaceLed1"] == (0.0, 0.0, 0.0)
 
 
-# --- over time
-
-
 @pytest.fixture
 def bank():
     return LedBank(4, TaskIds())
@@ -76,26 +68,6 @@ def bank():
 def shown(bank, now):
     bank.tick(now)
     return bank.values
-
-
-def test_a_fade_runs_evenly_through_its_colours_and_ends_its_task(bank):
-    bank.set({0: 0.2})
-    task = bank.animate("fade", [LedKeyframe(2.0, {0: 1.0, 1: 0.5}), LedKeyframe(4.0, {0: 0.0})], now=10.0)
-    for now, values in ((10.5, (0.4, 0.125)), (11.75, (0.9, 0.4375)), (12.0, (1.0, 0.5)), (13.0, (0.5, 0.5))):
-        assert shown(bank, now)[:2] == pytest.approx(values)
-        assert not task.finished
-    assert shown(bank, 14.0 - 1e-12)[:2] == (0.0, 0.5), "exactly, though its end is a rounding away"
-    assert task.finished and not task.killed
-
-
-def test_steps_jump_at_their_times_and_what_has_none_ends(bank):
-    task = bank.animate("blink", [LedKeyframe(0.0, {0: 1.0}), LedKeyframe(1.0, {0: 0.3})], now=0.0, step=True)
-    nothing = bank.animate("nothing", [], now=0.0)
-    assert [shown(bank, now)[0] for now in (0.01, 0.99, 1.0)] == [1.0, 1.0, 0.3]
-    assert task.finished and nothing.finished
-
-
-# --- animations
 
 
 def lit(frame, part, side):
@@ -109,24 +81,6 @@ def test_a_number_becomes_a_colour_and_each_device_takes_its_part_of_it():
     values = led_animations.colored(LEDS, LEDS.devices_of("AllLeds"), (0.1, 0.2, 0.3))
     for channel, share in (("red", 0.1), ("green", 0.2), ("blue", 0.3), ("white", 0.3)):
         assert {values[i] for i in range(89) if LEDS.channels[i] == channel} == {share}
-
-
-def test_random_eyes_change_all_eye_leds_by_chance_for_the_time_asked():
-    frames, again, other = (led_animations.random_eyes(LEDS, 1.0, random.Random(seed)) for seed in (3, 3, 4))
-    assert frames == again != other
-    assert [frame.time for frame in frames] == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
-    for frame in frames[:-1]:
-        assert set(frame.values) == EYES and all(0.0 <= value <= 1.0 for value in frame.values.values())
-    assert frames[0].values != frames[1].values
-
-
-def test_rasta_shows_green_yellow_red_in_turn_on_every_coloured_led():
-    frames = led_animations.rasta(LEDS, 1.6)
-    assert [frame.time for frame in frames] == pytest.approx([0.0, 0.4, 0.8, 1.2, 1.6])
-    chest = [LEDS.short_names[f"ChestLeds{color}"][0] for color in ("Red", "Green", "Blue")]
-    shown = [tuple(frame.values[i] for i in chest) for frame in frames[:-1]]
-    assert shown == [(0, 1, 0), (1, 1, 0), (1, 0, 0), (0, 1, 0)]
-    assert set(frames[0].values) == EYES | {i for name in ("ChestLeds", "FeetLeds") for i in LEDS.devices_of(name)}
 
 
 def test_rotating_eyes_light_one_segment_after_the_other_on_both_sides():

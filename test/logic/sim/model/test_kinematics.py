@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim.config import read_json
-from nao_sim_bridge.sim.errors import UnknownName
-from nao_sim_bridge.sim.frames import FEET, ROBOT, WORLD, Placement, commanded, frame_of, robot_in_world, space_in_torso
+from nao_sim_bridge.sim.frames import frame_of
 from nao_sim_bridge.sim.glide import Glide, slerp
 from nao_sim_bridge.sim.kinematics import (
     axis_matrix,
@@ -23,7 +22,6 @@ from nao_sim_bridge.sim.kinematics import (
     matrix_rpy,
     quaternion_matrix,
     rpy_matrix,
-    transform,
 )
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.motion.body_kinematics import body_kinematics
@@ -62,9 +60,6 @@ def test_fingers_are_straight_when_open_and_curl_towards_the_thumb():
     assert closed["Thumb2"][2, 3] > straight["Thumb2"][2, 3] + 0.01
 
 
-# --- rotations
-
-
 @given(RPY, RPY, st.tuples(ANGLE, ANGLE, ANGLE))
 @settings(max_examples=50)
 def test_rotations_agree_in_every_form(first, second, vector):
@@ -96,14 +91,6 @@ def test_rotations_follow_the_right_hand_rule(quaternion, vector, turned):
     assert cross((1, 0, 0), (0, 1, 0)) == (0, 0, 1) and cross((1, 2, 3), (4, 5, 6)) == (-3, 6, -3)
 
 
-@pytest.mark.parametrize("pitch", [math.pi / 2, -math.pi / 2])
-def test_a_pitch_of_ninety_degrees_survives_rounding(pitch):
-    assert roll_pitch_yaw(from_roll_pitch_yaw(0.0, pitch, 0.0))[1] == pytest.approx(pitch)
-    assert rpy_matrix(matrix_rpy(rpy_matrix((0.0, pitch, 0.7)))) == pytest.approx(rpy_matrix((0.0, pitch, 0.7)))
-    # A component a hair above 1 must not leave the range of the arc sine.
-    assert math.isfinite(roll_pitch_yaw((0.0, HALF + 1e-9, 0.0, HALF + 1e-9))[1])
-
-
 def test_a_way_between_two_poses_is_straight_and_turns_the_short_way_round():
     glide = Glide(Pose((1.0, 0.0, 0.2), UPRIGHT), Pose((1.0, 2.0, 0.2), from_roll_pitch_yaw(0, 0, 1.0)), 10.0, 4.0)
     assert glide.velocity == pytest.approx((0.0, 0.5, 0.0))
@@ -119,29 +106,6 @@ def test_a_way_between_two_poses_is_straight_and_turns_the_short_way_round():
     turn = from_roll_pitch_yaw(0.1, 0.2, 0.3)
     assert slerp(turn, turn, 0.5) == pytest.approx(turn)
 
-
-# --- frames
-
-
-def test_places_in_the_frames_of_almotion():
-    torso = transform(rpy_matrix((0.0, 0.0, 3.0)), (1.0, 2.0, 0.3))
-    placed = Placement(link_transforms(MODEL, posture(MODEL, "Stand")), torso)
-    frame = space_in_torso(MODEL, ROBOT, placed)
-    left, right = (np.linalg.inv(frame) @ placed.in_torso(frame_of(MODEL, name)) for name in FEET)
-    assert left[:2, 3] + right[:2, 3] == pytest.approx([0.0, 0.0], abs=1e-9)
-    assert left[0, 0] == pytest.approx(right[0, 0], abs=1e-3)
-    assert robot_in_world(MODEL, placed)[2, 2] == pytest.approx(1.0)
-    assert np.linalg.inv(space_in_torso(MODEL, WORLD, placed)) == pytest.approx(torso)
-    # Commands that bend the legs lower the torso and keep the support foot.
-    asked, foot = commanded(MODEL, posture(MODEL, "Crouch"), placed), frame_of(MODEL, "LLeg")
-    assert asked.torso_in_world @ asked.in_torso(foot) == pytest.approx(torso @ placed.in_torso(foot))
-    assert asked.torso_in_world[2, 3] < torso[2, 3] - 0.03
-    assert frame_of(MODEL, "CameraTop").link == "HeadPitch"
-    with pytest.raises(UnknownName, match="CameraTop"):
-        frame_of(MODEL, "CamraTop")
-
-
-# --- the body of whole body control and inverse kinematics
 
 SMALL = 1e-6
 
@@ -176,9 +140,6 @@ def test_jacobians_say_what_a_small_step_of_a_joint_does(angles, standing):
     if standing:
         assert now.pose(foot) == pytest.approx(footing.pose), "a foot that stands does not move"
         assert now.jacobian(foot) == pytest.approx(np.zeros((6, 26)))
-
-
-# --- stances
 
 
 @pytest.mark.parametrize("seed", range(3))

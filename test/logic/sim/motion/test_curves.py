@@ -60,21 +60,6 @@ def test_it_passes_points_on_its_way_without_a_stop_or_kink_and_rests_at_turning
         assert (curve.value(b) - curve.value(a)) / step == pytest.approx(slope, abs=1e-3)
 
 
-@pytest.mark.parametrize(
-    "make, message",
-    [
-        (lambda: SmoothCurve((0.0, 1.0, 1.0), (0.0, 1.0, 2.0)), "do not rise strictly"),
-        (lambda: BezierCurve([KeyPoint(t, 0.0) for t in (0.0, 1.0, 1.0)]), "do not rise"),
-    ],
-)
-def test_points_that_make_no_curve_are_refused(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
-
-
-# --- Bezier
-
-
 def rise(after, before):
     """From (0 s, 0 rad) to (1 s, 1 rad)."""
     return BezierCurve([KeyPoint(0.0, 0.0, after=after), KeyPoint(1.0, 1.0, before=before)])

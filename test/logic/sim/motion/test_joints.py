@@ -9,7 +9,7 @@ from nao_sim_bridge.sim.motion.joints import STICTION, JointCommands
 
 MODEL = load_model()
 DT = 0.01
-YAW, PITCH, ELBOW = (MODEL.joint_index[name] for name in ("HeadYaw", "HeadPitch", "LElbowRoll"))
+YAW, ELBOW = (MODEL.joint_index[name] for name in ("HeadYaw", "LElbowRoll"))
 LEFT, RIGHT = (MODEL.joint_index[name] for name in JointCommands.COUPLED)
 TOP = MODEL.joints[YAW].max_velocity
 LEAST_BEND = -0.0349066
@@ -101,26 +101,3 @@ def test_corrections_change_what_motors_are_told_and_not_the_commands(joints):
     assert joints.aims[YAW] == pytest.approx(0.05 + TOP * DT), "no faster than the motor"
     joints.correct({YAW: -1.0}, DT)
     assert joints.aim_velocities[YAW] == pytest.approx(-TOP)
-
-
-# --- limits that depend on another joint
-
-
-def drive(joints, wanted, seconds=1.0):
-    for _ in range(round(seconds / DT)):
-        joints.step(wanted, DT)
-
-
-def test_a_head_that_looks_aside_nods_less_and_a_nodding_head_is_raised_when_it_turns(joints):
-    limits = MODEL.coupled_limits["HeadPitch"].limits_at
-    drive(joints, {PITCH: 0.5})
-    assert joints.commands[PITCH] == 0.5
-    for wanted in ({YAW: 1.5}, {YAW: 1.5, PITCH: 0.5}):
-        drive(joints, wanted)
-        assert joints.commands[PITCH] == pytest.approx(limits(1.5)[1]) and joints.commands[PITCH] < 0.25
-    drive(joints, {YAW: 0.0, PITCH: 0.5})
-    assert joints.commands[PITCH] == 0.5, "the limit opens again for who still wants it"
-    drive(joints, {YAW: -1.5})
-    assert joints.limits(PITCH) == pytest.approx(limits(-1.5))
-    assert joints.clamp(PITCH, 2.0) == pytest.approx(limits(-1.5)[1])
-    assert joints.limits(YAW) == joints.limits_alone(YAW)

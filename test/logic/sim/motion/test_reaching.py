@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.frames import FEET, TORSO, Placement, frame_of
-from nao_sim_bridge.sim.kinematics import axis_matrix, link_transforms, transform
+from nao_sim_bridge.sim.frames import FEET, frame_of
+from nao_sim_bridge.sim.kinematics import axis_matrix, transform
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.motion.body_kinematics import body_kinematics
-from nao_sim_bridge.sim.motion.cartesian_move import CartesianMove, EffectorMove
-from nao_sim_bridge.sim.motion.cartesian_path import PosePath, SolvedPath, joint_curves, sample_times
-from nao_sim_bridge.sim.motion.inverse_kinematics import Goal, rotation_vector, solve
+from nao_sim_bridge.sim.motion.cartesian_path import SolvedPath
+from nao_sim_bridge.sim.motion.inverse_kinematics import Goal, solve
 from nao_sim_bridge.sim.motion.task_solver import Wish, ranked_step
 from nao_sim_bridge.sim.motion.whole_body_aims import PathAim, TargetAim
 from nao_sim_bridge.sim.postures import posture
 
 MODEL = load_model()
 BODY = body_kinematics(MODEL)
-STAND, INIT = (np.array(posture(MODEL, name)) for name in ("Stand", "StandInit"))
+STAND = np.array(posture(MODEL, "Stand"))
 ARM, LEFT, RIGHT = (frame_of(MODEL, name) for name in ("LArm", *FEET))
-NOW = BODY.at(INIT)
-PLACED = Placement(link_transforms(MODEL, INIT), transform(np.eye(3), -NOW.pose(LEFT)[:3, 3]))
 Z = (0.0, 0.0, 1.0)
 
 
@@ -36,8 +31,6 @@ def shifted(pose, *by):
     moved[:3, 3] += by
     return moved
 
-
-# --- ranked wishes of joints
 
 WIDE, EVEN, NOTHING = np.full(4, 10.0), np.ones(4), np.zeros(4)
 
@@ -68,15 +61,6 @@ def test_others_make_up_for_a_joint_at_its_bound_and_no_bound_is_overstepped():
     lower, upper = np.array([0.0, 0.5, -10.0, -10.0]), np.array([0.0, 0.6, 10.0, 10.0])
     step = ranked_step([SUM], NOTHING, lower, upper, EVEN)
     assert step[0] == 0.0 and 0.5 <= step[1] <= 0.6 and step.sum() == pytest.approx(2.0)
-
-
-# --- poses
-
-
-@pytest.mark.parametrize("angle", [0.0, 1e-8, 0.5, 3.0, math.pi])
-def test_a_rotation_vector_is_axis_times_angle(angle):
-    axis = np.array([0.6, 0.0, 0.8])
-    assert rotation_vector(axis_matrix(axis, angle)) == pytest.approx(axis * angle, abs=1e-7)
 
 
 @pytest.mark.parametrize("names, mask", [(["LArm"], 7), (["LArm", "RArm"], 63), (["LLeg", "RLeg"], 63)])
@@ -118,34 +102,6 @@ def test_axes_outside_the_mask_do_not_matter_and_what_must_hold_holds():
     assert found.pose(LEFT)[2, 3] > now.pose(LEFT)[2, 3] + 0.005
 
 
-# --- paths
-
-
-def whole(moves, moment):
-    """(26,) angles at a time of moves that take a second."""
-    move, angles = CartesianMove(BODY, moves, PLACED), INIT.copy()
-    curves = joint_curves(BODY, move.indices, move.goals_at, [1.0], INIT, move.footing_at)
-    for time in np.linspace(0.0, moment, 11):  # curves are solved in the order of time
-        for index, curve in curves.items():
-            angles[index] = curve.value(time)
-    return angles
-
-
-def straight(start, *by):
-    return PosePath((0.0, 1.0), [start, shifted(start, *by)]).pose
-
-
-def test_samples_hold_every_key_time_and_are_solved_when_time_comes_near_them():
-    expected = [0.0, 0.04, 0.08, 0.12, 0.12 + 0.13 / 3, 0.12 + 0.26 / 3, 0.25]
-    assert sample_times((0.12, 0.25)) == pytest.approx(expected) and sample_times((0.05,)) == [0.0, 0.05]
-    times, asked = sample_times((10.0,)), []
-    path = SolvedPath(times, np.zeros(1), lambda moment, before: asked.append(moment) or np.array([moment]))
-    for tick in range(1201):
-        path.angles(tick / 120.0)
-        assert len(asked) <= len([t for t in times if t <= tick / 120.0]) + 2
-    assert asked == times[1:]
-
-
 def test_an_interpolated_path_passes_through_its_samples_and_rests_at_its_ends():
     values = {0.1: 1.0, 0.2: 3.0, 0.3: 2.0}
     path = SolvedPath([0.0, *values], np.zeros(1), lambda moment, before: np.array([values[moment]]))
@@ -154,15 +110,6 @@ def test_an_interpolated_path_passes_through_its_samples_and_rests_at_its_ends()
     assert max(path.angles(t)[0] for t in np.linspace(0.0, 0.3, 61)) <= 3.0
     assert (path.angles(-1.0)[0], path.angles(9.0)[0]) == (0.0, 2.0)
 
-
-def test_the_path_of_a_hand_is_straight():
-    way = straight(NOW.pose(ARM), 0.04, 0.0, 0.04)
-    for moment in np.linspace(0.0, 1.0, 6):
-        found = BODY.at(whole([EffectorMove("LArm", TORSO, 7, way)], moment)).pose(ARM)
-        assert found[:3, 3] == pytest.approx(way(moment)[:3, 3], abs=5e-4)
-
-
-# --- aims
 
 TICK, SPEED = 1.0 / 120.0, (0.1, 1.0)
 

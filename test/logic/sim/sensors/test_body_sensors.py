@@ -1,4 +1,4 @@
-"""What presses, holds up and turns the body: contacts, foot sensors, touch, the inertial unit, odometry, clicks."""
+"""What presses, holds up and turns the body: contacts, foot sensors, touch, the inertial unit."""
 
 from __future__ import annotations
 
@@ -7,18 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.frames import FEET, frame_of
-from nao_sim_bridge.sim.kinematics import link_transforms, matrix_rpy, quaternion_matrix, transform
 from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.odometry import Odometry
-from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.readings import BodyReadings, Contact, Pose
 from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
-from nao_sim_bridge.sim.sensors.contacts import Press, in_link_frames, not_from_below
+from nao_sim_bridge.sim.sensors.contacts import Press, in_link_frames
 from nao_sim_bridge.sim.sensors.feet import FootSensors
 from nao_sim_bridge.sim.sensors.inertial import InertialUnit
-from nao_sim_bridge.sim.sensors.touch import REACH, TouchSensors
-from nao_sim_bridge.sim.touch_clicks import LONGEST_CLICK, LONGEST_PAUSE, ClickCounter
+from nao_sim_bridge.sim.sensors.touch import TouchSensors
 
 MODEL = load_model()
 LINKS = {link.name: number for number, link in enumerate(MODEL.links)}
@@ -26,8 +21,6 @@ STILL = (0.0, 0.0, 0.0)
 UPRIGHT = Pose((1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 1.0))
 TURNED = Pose((0.0, 0.0, 1.0), from_roll_pitch_yaw(0.0, 0.0, math.pi / 2))
 OVER = Pose(STILL, from_roll_pitch_yaw(math.pi, 0.0, 0.0))
-
-# --- contacts
 
 
 @pytest.mark.parametrize(
@@ -47,17 +40,6 @@ def test_contacts_are_moved_and_turned_into_the_frame_of_their_link(pose, positi
     assert in_link_frames([], {}) == {}
 
 
-@pytest.mark.parametrize("roll, kept", [(0.0, False), (0.9, False), (1.2, True), (math.pi, True)])
-def test_what_pushes_along_the_z_axis_of_a_link_comes_from_below(roll, kept):
-    """The floor under a foot that is tilted by `roll`, rad; at a right angle it is at its side."""
-    contact = Contact(3, STILL, (0.0, 0.0, 1.0), 5.0)
-    pose = Pose((0.0, 0.0, 0.1), from_roll_pitch_yaw(roll, 0.0, 0.3))
-    assert not_from_below([contact], {3: pose}) == ([contact] if kept else [])
-
-
-# --- feet
-
-
 def foot(side, *presses):
     """Reads a foot under presses of (x, y, force) from straight below."""
     return FootSensors(MODEL, side).read([Press(x, y, -0.045, 1.0, force) for x, y, force in presses])
@@ -75,18 +57,6 @@ def test_a_force_on_a_sensor_is_felt_by_that_sensor_and_one_amid_them_by_all(sid
     assert foot(side, (*middle, 8.0)).forces == pytest.approx((2.0,) * 4, rel=0.1)
 
 
-def test_shares_add_up_wherever_the_force_is():
-    for x, y in ((0.02, 0.01), (0.09, 0.04), (-0.04, -0.03), (0.05, -0.08)):
-        reading = foot("L", (x, y, 8.0), (0.0, 0.0, 3.0))
-        assert sum(reading.forces) == pytest.approx(reading.total) == pytest.approx(11.0) and min(reading.forces) >= 0.0
-    front_left, front_right, rear_left, rear_right = foot("L", (0.09, 0.0, 8.0)).forces
-    assert rear_left == rear_right == 0.0 and front_left + front_right == pytest.approx(8.0), "beyond the toes"
-    assert foot("R", (0.06, 0.02, 1.0), (-0.02, -0.02, 3.0)).center_of_pressure == pytest.approx((0.0, -0.01))
-
-
-# --- touch
-
-
 @pytest.fixture
 def touch():
     return TouchSensors(MODEL, LINKS.__getitem__)
@@ -94,17 +64,6 @@ def touch():
 
 def at(x, y, z, upward=0.0):
     return Press(x, y, z, upward, 1.0)
-
-
-def test_each_sensor_feels_a_press_on_its_middle_and_none_elsewhere(touch):
-    assert len(touch.names) == len(set(touch.names)) == 14 and sum("/Bumper/" in name for name in touch.names) == 4
-    for place in MODEL.touch:
-        (x, y, z), link = place.position, LINKS[place.parent_link]
-        assert place.name in touch.read({link: [at(x, y, z)]})
-        assert touch.read({link: [at(x - 3 * REACH, y, z + 2 * REACH)]}) == frozenset(), place.name
-    head = {place.name: at(*place.position) for place in MODEL.touch if "Head" in place.name}
-    assert touch.read({LINKS["LKneePitch"]: list(head.values())}) == touch.read({}) == frozenset(), "another link"
-    assert touch.read({LINKS["HeadPitch"]: list(head.values())}) == set(head)
 
 
 @pytest.mark.parametrize(
@@ -118,33 +77,6 @@ def test_a_bumper_is_the_shell_round_its_half_of_the_toes(touch, y, felt):
     for nothing in (at(0.0876, 0.019, -0.0353, upward=1.0), at(-0.05, 0.02, -0.035)):  # the floor, the heel
         assert touch.read({LINKS["LAnkleRoll"]: [nothing]}) == frozenset()
 
-
-TICK = 1.0 / 120.0
-
-
-def clicks_of(*presses, until=6.0):
-    """[(time, clicks)] that are told, for presses (from, to) in s."""
-    counter = ClickCounter()
-    told = [(t, counter.feed(any(a <= t < b for a, b in presses), t)) for t in (k * TICK for k in range(720))]
-    return [(time, clicks) for time, clicks in told if clicks]
-
-
-def test_clicks_that_belong_together_are_counted():
-    one, two, three, four = (1.0, 1.1), (1.3, 1.4), (1.6, 1.7), (1.9, 2.0)
-    for presses, count in (([one], 1), ([one, two], 2)):
-        ((when, clicks),) = clicks_of(*presses)
-        assert clicks == count and when == pytest.approx(presses[-1][1] + LONGEST_PAUSE, abs=2 * TICK)
-    (when, clicks), *more = clicks_of(one, two, three, four)
-    assert (clicks, when) == (3, pytest.approx(1.7, abs=TICK)), "the third is told at once, the fourth begins anew"
-    assert [clicks for _, clicks in more] == [1]
-    pause = LONGEST_PAUSE + 0.05
-    assert [clicks for _, clicks in clicks_of(one, (1.1 + pause, 1.2 + pause))] == [1, 1]
-    # The pause counts, not the time from press to press.
-    assert [clicks for _, clicks in clicks_of((1.0, 1.6), (2.0, 2.6))] == [2]
-    assert clicks_of() == clicks_of((1.0, 1.1 + LONGEST_CLICK)) == clicks_of(one, (1.3, 1.4 + LONGEST_CLICK)) == []
-
-
-# --- the inertial unit
 
 DT = 0.01
 
@@ -188,57 +120,3 @@ def test_it_feels_how_its_place_speeds_up(unit, moved, felt):
     unit.reset()
     assert unit.read(body(), DT).accelerometer == pytest.approx((0.0, 0.0, 9.81)), "the old velocity is forgotten"
     assert unit.read(body(TURNED, turning=(1.0, 0.0, 2.0)), DT).gyroscope == pytest.approx((0.0, -1.0, 2.0))
-
-
-# --- odometry
-
-INIT = np.array(posture(MODEL, "StandInit"))
-# The pitch of the torso, rad, when the feet are flat on the ground.
-LEAN = 0.1
-LEFT, RIGHT = 11, 22
-
-
-def load(left, right):
-    return [Contact(link, STILL, (0.0, 0.0, 1.0), force) for link, force in ((LEFT, left), (RIGHT, right)) if force]
-
-
-def feet(torso, angles):
-    """(4, 4) poses of the soles for a (4, 4) torso in world."""
-    links, frames = link_transforms(MODEL, angles), [frame_of(MODEL, name) for name in FEET]
-    return [torso @ links[frame.link] @ frame.offset for frame in frames]
-
-
-def matrix(pose):
-    return transform(quaternion_matrix(pose.orientation), pose.position)
-
-
-def turned(angles, **joints):
-    changed = angles.copy()
-    for name, angle in joints.items():
-        changed[MODEL.joint_index[name]] += angle
-    return changed
-
-
-@pytest.fixture
-def odometry():
-    return Odometry(MODEL, (LEFT, RIGHT), INIT, (0.0, LEAN, 1.0))
-
-
-@pytest.mark.parametrize("side, loads", [(0, (40.0, 5.0)), (1, (5.0, 40.0))])
-def test_the_world_begins_between_the_feet_and_the_one_that_carries_stays(odometry, side, loads):
-    left, right = feet(matrix(odometry.torso), INIT)
-    assert left[:3, 3] + right[:3, 3] == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
-    assert left[:3, 0] + right[:3, 0] == pytest.approx([2.0, 0.0, 0.0], abs=1e-6)
-    odometry.update(INIT, (0.0, LEAN, 1.0), load(*loads))
-    before = feet(matrix(odometry.torso), INIT)[side]
-    leaning = turned(INIT, LAnklePitch=-0.1, RAnklePitch=-0.1)
-    after = feet(matrix(odometry.update(leaning, (0.0, LEAN + 0.1, 1.0), load(*loads))), leaning)[side]
-    assert after == pytest.approx(before, abs=1e-6)
-
-
-def test_headings_come_from_the_inertial_unit_and_in_the_air_it_stays_where_it_was(odometry):
-    before = odometry.torso.position
-    odometry.update(turned(INIT, LKneePitch=0.5, RKneePitch=0.5), (0.3, 0.2, 1.0), [])
-    assert odometry.torso.position == pytest.approx(before)
-    odometry.update(INIT, (0.0, LEAN, 1.5), load(20.0, 20.0))
-    assert matrix_rpy(quaternion_matrix(odometry.torso.orientation))[2] == pytest.approx(0.5)

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_sim_bridge.sim.battery import Battery, Status, interpolated
+from nao_sim_bridge.sim.battery import Battery, Status
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.sensors.heat import HOT, heat_shares, heat_status
 from nao_sim_bridge.sim.sensors.motors import Motors, Work, motor_of
@@ -18,8 +18,6 @@ from nao_sim_bridge.sim.temperatures import NOTHING_HOT, hot_devices
 MODEL, SETTINGS = load_model(), load_settings()
 STILL, STIFF = [0.0] * 26, [1.0] * 26
 KNEE = MODEL.joint_index["LKneePitch"]
-
-# --- motors
 
 
 @pytest.fixture
@@ -53,9 +51,6 @@ def test_lifting_draws_more_than_holding_lowering_and_limp_motors_nothing(motors
     assert motors.work(STILL, STILL, STIFF).stiff == 26
 
 
-# --- what is hot
-
-
 def test_hot_motors_have_a_status_and_less_torque():
     assert [heat_status(celsius) for celsius in (20.0, 67.9, 68.0, 74.0, 80.0, 200.0)] == [0, 0, 1, 2, 3, 3]
     assert heat_shares([30.0, HOT[1] - 0.1]) == () != heat_shares([30.0, HOT[1]])
@@ -82,8 +77,6 @@ def test_the_worst_devices_decide_on_the_status():
     assert all(found.chains == found.joints == () for found in heads), "no failure of a chain"
     assert hot(battery=True).devices == {"Battery": 1}
 
-
-# --- heat and loads
 
 AMBIENT, CAPACITIES, IDLE = SETTINGS.motor.ambient_c, (32.0, 16.0), Work((0.0, 0.0), 0.0, 0)
 
@@ -112,24 +105,6 @@ def test_motors_warm_up_at_work_to_where_cooling_equals_it_and_cool_down(power):
     let_pass(power, 60.0, IDLE)
     assert AMBIENT < power.temperatures[0] < 70.0
 
-
-def test_the_battery_bears_computer_boards_and_motors_that_are_asked_ten_times_a_second(power):
-    def watts(work):
-        power.advance(lambda: work, 0.1)
-        return power.battery.reading.current * power.battery.reading.voltage
-
-    power.battery.put(0.5)
-    limp, stiff, busy = (watts(work) for work in (IDLE, Work((0.0, 0.0), 0.0, 26), Work((9.0, 9.0), 30.0, 26)))
-    assert limp == pytest.approx(SETTINGS.battery.idle_w, rel=0.05)
-    assert stiff - limp == pytest.approx(26 * SETTINGS.battery.driver_w, rel=0.05)
-    assert busy - stiff == pytest.approx(30.0, rel=0.08)  # the voltage sags
-    asked = []
-    for _ in range(400):
-        power.advance(lambda: asked.append(1) or IDLE, 0.01)
-    assert len(asked) == pytest.approx(40, abs=4)
-
-
-# --- the battery
 
 STEP = 10.0
 
@@ -160,20 +135,6 @@ def test_it_empties_and_fills_in_the_published_times(battery):
     assert 0.9 < battery.reading.charge < SETTINGS.battery.full_charge
     use(battery, 0.2, 15.0)
     assert battery.reading.full and not battery.reading.charging and not battery.reading.discharging
-
-
-def test_the_voltage_falls_with_the_charge_and_under_load(battery):
-    rest, voltages = battery.reading.voltage, []
-    for charge in range(21):
-        battery.put(charge / 20.0)
-        voltages.append(battery.reading.voltage)
-    assert voltages == sorted(set(voltages)) and 15.0 < voltages[0] and voltages[-1] == rest < 26.0
-    battery.advance(80.0, 0.1)
-    assert battery.reading.voltage < rest - 0.5
-    weakest, strongest = battery.reading.cell_voltages
-    assert strongest - weakest == pytest.approx(SETTINGS.battery.cell_spread_v)
-    table = ((0.0, 1.0), (1.0, 2.0), (3.0, 10.0))
-    assert [interpolated(table, x) for x in (0.0, 0.5, 1.0, 2.0, 3.0, 9.0)] == pytest.approx([1, 1.5, 2, 6, 10, 10])
 
 
 def test_the_charger_gives_less_and_less_from_a_charge_on():

@@ -10,7 +10,6 @@ from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.sensors import sonar
 from nao_sim_bridge.sim.sensors.sonar import FARTHEST, NEAREST, NO_ECHO, Sonars, Surface
-from nao_sim_bridge.sim.settings import load_settings
 
 MODEL = load_model()
 HEIGHT = 0.33
@@ -85,23 +84,3 @@ def test_a_wall_is_heard_as_far_as_they_reach_and_small_things_near_by_only():
     assert spread(FARTHEST, math.radians(22.6)) < sonar.BUDGET < spread(FARTHEST, math.radians(25.0))
     assert heard((0.6, 0.0, 0.39), extents=pole) != SILENCE == heard((1.5, 0.0, 0.39), extents=pole)
     assert sonar.smallness(1.0, LARGE) == 0.0 < sonar.smallness(1.0, pole) < sonar.smallness(2.0, pole)
-
-
-def test_they_measure_ten_times_a_second_and_keep_the_reading_in_between():
-    tick, around = load_settings().tick_s, Points()
-    sonars, asked = Sonars(MODEL, around), []
-    for n in range(round(5.0 / tick)):
-        before = around.asked
-        sonars.read(n * tick, STANDING)
-        asked += [n] * (around.asked > before)
-    assert {later - earlier for earlier, later in zip(asked, asked[1:])} == {round(sonar.PERIOD / tick)}
-    around = Points((0.5, 0.0, 0.39))
-    sonars = Sonars(MODEL, around)
-    first, echoes = sonars.read(0.0, STANDING), sonars.echoes
-    around.places = [(1.0, 0.0, 0.39)]
-    assert sonars.read(0.05, STANDING) == first and sonars.echoes is echoes
-    assert sonars.read(0.1, STANDING) == pytest.approx((0.995, 0.995), abs=0.001)
-    around.places = [(0.5, 0.0, 0.39)]
-    sonars.reset()
-    assert sonars.read(0.11, STANDING) == first, "after a reset at once"
-    assert sonars.echoes is not echoes and sonars.echoes == echoes, "each measurement has echoes of its own"

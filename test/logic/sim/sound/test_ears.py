@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-
 import numpy as np
 import pytest
 
@@ -19,22 +17,6 @@ def loud(room):
     one = room(background_db=30.0)
     one.sources.add(SoundSource("radio", (1.0, 0.5, 0.3), sine(1000.0, 5.0, 0.5), level_db=80.0, loop=True))
     return one
-
-
-@pytest.fixture
-def slow_listener(loud, patience):
-    """Somebody who got his first block 0.2 s after the begin, and waits with it for an event; event, and blocks."""
-    entered, go_on, blocks = threading.Event(), threading.Event(), []
-
-    def slow(block):
-        entered.set()
-        assert go_on.wait(patience)
-        blocks.append(block)
-
-    loud.ears.listen("slow", slow)
-    loud.run(0.2)
-    assert entered.wait(patience)
-    return go_on, blocks
 
 
 def times(blocks):
@@ -89,44 +71,6 @@ def test_an_exact_listener_hears_from_its_first_to_its_last_moment(loud, wants, 
     assert sum(len(block.samples) for block in blocks) == rate
     for first, second in zip(blocks, blocks[1:]):
         assert first.end == pytest.approx(second.time)
-
-
-def test_equal_runs_sound_equal_to_the_last_bit_however_fast_they_are(room):
-    """Once with ears that keep up at each step, once with all the work at the end."""
-    results = []
-    for keep_up in (True, False):
-        one = room(background_db=30.0)
-        blocks = []
-        one.ears.listen("test", blocks.append)
-        one.moves = lambda time, one=one: setattr(one, "yaw", np.sin(3.0 * time))
-        playing = one.loudspeakers.play(sine(300.0, 3.0, 0.3), "say")
-        one.sources.add(SoundSource("radio", (1.0, 0.5, 0.3), sine(1000.0, 5.0, 0.5), loop=True))
-        for step in range(20):
-            one.run(0.05)
-            if step == 5:
-                playing.pause()
-                one.sources.move("radio", (2.0, -1.0, 0.3))
-            if step == 10:
-                playing.resume()
-                one.loudspeakers.volume = 40.0
-            if keep_up:
-                one.ears.catch_up()
-        one.ears.catch_up()
-        results.append(joined(blocks))
-    assert len(results[0]) == 5 * BLOCK and np.array_equal(*results)
-
-
-def test_ears_lag_behind_a_slow_listener_and_ask_time_to_wait(loud, slow_listener, patience):
-    go_on, blocks = slow_listener
-    assert not loud.ears.holds()
-    loud.run(0.3)
-    assert loud.ears.lag == pytest.approx(0.34) and loud.ears.holds()
-    go_on.set()
-    loud.ears.catch_up(patience)
-    assert loud.ears.lag == 0.0 and not loud.ears.holds() and len(blocks) == 2
-
-
-# --- followers of time ------------------------------------------------------------------------------------------------
 
 
 def test_a_follower_is_told_of_all_time_from_its_beginning_to_its_end(room):

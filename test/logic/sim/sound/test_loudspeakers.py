@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import gc
-import weakref
-
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
 from nao_sim_bridge.sim.sound.track import RAMP
 
@@ -99,28 +95,3 @@ def test_sounds_in_a_row_have_no_gap_even_when_one_ends_between_two_ticks(room):
     one.loudspeakers.play(Sound(RISING.samples[5000:9001]), "send", after=first)
     one.run(0.3)
     assert np.array_equal(one.loudspeakers.played(0.0, 9001 / RATE).samples[:, 0], RISING.samples[:9001, 0])
-
-
-def test_only_the_past_can_be_read_and_only_as_long_as_it_is_kept(room):
-    one = room(keep_s=2.0)
-    one.run(1.0)
-    with pytest.raises(BadValue, match="time of now"):
-        one.loudspeakers.played(0.5, 1.5)
-    one.run(3.0)
-    with pytest.raises(BadValue, match="memory begins"):
-        one.loudspeakers.played(0.5, 1.5)
-
-
-@pytest.mark.parametrize("killed", [False, True])
-def test_a_sound_of_long_ago_leaves_memory_without_help_of_the_collector(room, killed):
-    one = room(keep_s=2.0)
-    playing = weakref.ref(one.loudspeakers.play(sine(500.0, 0.2), "say"))
-    one.run(0.1)
-    if killed:
-        playing().stop()
-    gc.disable()
-    try:
-        one.run(5.0)
-        assert playing() is None
-    finally:
-        gc.enable()

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from nao_sim_bridge.sim.errors import BadValue, ConfigError
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
 from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.readings import Pose
-from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
 from nao_sim_bridge.sim.sound import settings
-from nao_sim_bridge.sim.sound.poses import PoseTrack
 from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
 from nao_sim_bridge.sim.sound.settings import load_sound_settings
 
@@ -29,16 +24,6 @@ def test_a_quiet_room_has_the_noise_that_the_settings_say(room):
     heard = one.frames(0.0, 1.0)
     assert 20 * math.log10(rms(heard) * math.sqrt(2.0)) == pytest.approx(30.0 - 104.0, abs=0.1)
     assert np.abs(np.corrcoef(heard) - np.eye(4)).max() < 0.02
-
-
-def test_noise_depends_on_seed_and_time_only(room):
-    first, second, other = room(background_db=30.0), room(background_db=30.0), room(background_db=30.0, seed=5)
-    for one in (first, second, other):
-        one.run(1.0)
-    whole = first.frames(0.0, 1.0)
-    assert np.array_equal(whole[:, 12345:30000], second.frames(12345 / RATE, 30000 / RATE))
-    assert abs(np.corrcoef(whole[0], other.frames(0.0, 1.0)[0])[0, 1]) < 0.02
-    assert abs(np.corrcoef(whole[0, :24000], whole[0, 24000:])[0, 1]) < 0.02
 
 
 def test_own_speech_has_the_level_of_the_loudspeakers(room):
@@ -60,9 +45,6 @@ def test_own_speech_arrives_after_the_way_from_the_loudspeaker(room):
         assert np.argmax(np.abs(channel)) == pytest.approx(np.linalg.norm(place - speaker) / 343.0 * RATE, abs=0.51)
 
 
-# --- files in place of the air ----------------------------------------------------------------------------------------
-
-
 def test_a_file_takes_the_place_of_the_air_and_the_past_stays(room):
     one = room(background_db=30.0)
     one.run(0.5)
@@ -77,32 +59,6 @@ def test_a_file_takes_the_place_of_the_air_and_the_past_stays(room):
     assert rms(heard[:, RATE // 10 :]) == pytest.approx(rms(before), rel=0.05)  # it is over
     with pytest.raises(BadValue, match="1 or 2 .* or 4"):
         one.microphones.replaced_by = Sound(np.zeros((5, 3)))
-
-
-# --- places and settings ----------------------------------------------------------------------------------------------
-
-
-def snapshot(tick):
-    turn = from_roll_pitch_yaw(0.1 * tick, -0.05 * tick, 0.3 * tick)
-    return SimpleNamespace(torso=Pose((0.1 * tick, 0.2, 0.3), turn), positions=(0.2 * tick, -0.1 * tick, *[0.0] * 24))
-
-
-def test_points_of_the_head_are_where_the_kinematics_put_them_for_as_long_as_they_are_kept():
-    model = load_model()
-    track = PoseTrack(model, "HeadPitch", 10)
-    for tick in range(60):
-        track.record(tick, snapshot(tick))
-    point = np.array([[0.02, 0.03, 0.1], [-0.02, 0.05, 0.08]])
-    found = track.at(50, 59).place(point)
-    assert len(found) == 10
-    for row, tick in enumerate(range(50, 60)):
-        now = snapshot(tick)
-        torso = transform(quaternion_matrix(now.torso.orientation), now.torso.position)
-        head = torso @ link_transforms(model, now.positions)["HeadPitch"]
-        assert found[row] == pytest.approx((head @ np.c_[point, [1.0, 1.0]].T)[:3].T, abs=1e-9)
-    for first, last in ((49, 55), (55, 60)):
-        with pytest.raises(BadValue):
-            track.at(first, last)
 
 
 def test_the_settings_of_the_package_fit_the_robot():

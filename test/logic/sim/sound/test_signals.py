@@ -7,9 +7,9 @@ import pytest
 
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.sound.decimation import REACH, third
-from nao_sim_bridge.sim.sound.envelope import PART, Envelope
+from nao_sim_bridge.sim.sound.envelope import Envelope
 from nao_sim_bridge.sim.sound.pitch import shifted
-from nao_sim_bridge.sim.sound.propagation import FixedWays, arrivals, at_places
+from nao_sim_bridge.sim.sound.propagation import FixedWays, arrivals
 from nao_sim_bridge.sim.sound.samples import RATE, Sound, pcm16, sine
 
 MIDDLE = slice(RATE // 4, 3 * RATE // 4)
@@ -29,14 +29,6 @@ def rms(samples):
 
 def wave(frequency, first=0, last=RATE):
     return np.sin(2 * np.pi * frequency / RATE * np.arange(first, last)).astype(np.float32)
-
-
-def asked(frequency):
-    """A tone as those want it who ask for samples from a frame to another."""
-    return lambda first, last: wave(frequency, first, last)
-
-
-# --- samples ----------------------------------------------------------------------------------------------------------
 
 
 def test_samples_are_scaled_mixed_cut_out_and_converted():
@@ -69,9 +61,6 @@ def test_what_is_no_sound_is_refused(samples, rate, word):
         Sound(samples, rate)
 
 
-# --- a third of the rate, another pitch -------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("frequency", [100.0, 4000.0, 6500.0, 9500.0, 16000.0, 20000.0])
 def test_at_a_third_of_the_rate_tones_that_fit_come_without_delay_and_the_others_are_gone(frequency):
     heard = third(wave(frequency, -REACH, 4800 + REACH))
@@ -87,9 +76,6 @@ def test_a_tone_moves_by_the_factor_and_keeps_length_and_level(factor):
     assert rms(result[MIDDLE]) == pytest.approx(0.3 / np.sqrt(2.0), rel=0.01)
 
 
-# --- ways through the air ---------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("frequency", [100.0, 1000.0, 8000.0])
 @pytest.mark.parametrize("delay", [0.0, 0.25, 5.13, 77.5, 400.999])
 def test_a_fixed_way_delays_and_weakens(delay, frequency):
@@ -98,16 +84,6 @@ def test_a_fixed_way_delays_and_weakens(delay, frequency):
     heard = ways.through(wave(frequency, 1000 - before, 3000 + after), 0)
     wanted = 0.5 * np.sin(2 * np.pi * frequency / RATE * (np.arange(1000, 3000) - delay))
     assert heard == pytest.approx(wanted, abs=1e-3)
-
-
-def test_two_fixed_ways_at_once_are_their_sum_and_both_kinds_of_ways_agree():
-    ways = FixedWays.of(np.array([[3.2, 8.0], [10.7, 4.0]]), np.array([[0.5, 1.0], [0.2, 1.0]]))
-    before, after = ways.span
-    signal = wave(700.0, 1000 - before, 1500 + after)
-    both = ways.through(signal, (slice(None), 0))
-    assert both == pytest.approx(ways.through(signal, (0, 0)) + ways.through(signal, (1, 0)), abs=1e-6)
-    moving = at_places(asked(700.0), np.arange(1000, 1500) - 4.0)
-    assert moving == pytest.approx(ways.through(signal, (1, 1)), abs=1e-3)
 
 
 def test_sound_of_a_moving_source_was_given_off_where_it_was_then():
@@ -121,9 +97,6 @@ def test_sound_of_a_moving_source_was_given_off_where_it_was_then():
     true = np.linalg.norm(places(given_off), axis=-1)
     assert np.abs((frames[:, None] - given_off) - true * RATE / 343.0).max() < 0.01
     assert distances == pytest.approx(true, abs=1e-3)
-
-
-# --- levels that change -----------------------------------------------------------------------------------------------
 
 
 def test_an_envelope_stays_until_set_and_then_goes_straight():
@@ -140,13 +113,3 @@ def test_a_change_on_the_way_starts_where_it_is():
     envelope.set(50, (0.5, 0.5))
     assert np.abs(np.diff(envelope.over(np.arange(0, 300))[0])).max() <= 0.0101
     assert envelope.at(75) == pytest.approx((0.5, 0.5))
-
-
-def test_many_changes_are_read_across_their_parts_and_forgotten():
-    envelope = Envelope((0.0,), 10)
-    for change in range(5 * PART):
-        envelope.set(100 * change, (change + 1.0,))
-    ends = np.array([100 * change + 99 for change in range(5 * PART)])
-    assert envelope.over(ends)[0].tolist() == [change + 1.0 for change in range(5 * PART)]
-    envelope.forget(100 * 4 * PART)
-    assert envelope.at(100 * 4 * PART + 99) == (4 * PART + 1.0,)

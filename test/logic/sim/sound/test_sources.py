@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
 from nao_sim_bridge.sim.sound.sources import SoundSource
 
@@ -66,12 +65,6 @@ def test_delays_between_microphones_are_those_of_the_geometry(sounding, bearing)
         assert delay == pytest.approx((distances[k] - distances[0]) / 343.0, abs=1e-5)
 
 
-def test_sound_takes_its_time(sounding):
-    one = sounding(Sound(np.r_[1.0, np.zeros(RATE)].astype(np.float32)), 3.43)
-    one.run(0.1)
-    assert np.argmax(np.abs(one.frames(0.0, 0.09)[2])) == pytest.approx(0.01 * RATE, abs=8)
-
-
 def test_a_level_is_that_of_the_sound_and_not_of_its_pauses_and_has_a_volume(sounding):
     half = Sound(np.concatenate([NOISE.samples[:RATE, 0], np.zeros(RATE, np.float32)]))
     one = sounding(half, level_db=70.0)
@@ -104,21 +97,3 @@ def test_a_source_that_comes_nearer_sounds_higher(sounding):
     heard = one.frames(0.2, 1.2)[0]
     spectrum = np.abs(np.fft.rfft(heard * np.hanning(len(heard))))
     assert np.argmax(spectrum) == pytest.approx(1000.0 / (1.0 - 0.01), abs=1.5)
-
-
-@pytest.mark.parametrize(
-    "name, place, options",
-    [
-        ("it", (1.0, 0.0, 0.0), {}),
-        ("b", (1.0, 0.0, math.nan), {}),
-        ("b", (1.0, 0.0, 0.0), {"level_db": 300.0}),
-        ("b", (1.0, 0.0, 0.0), {"start": 20.0}),
-    ],
-)
-def test_wrong_sources_are_refused(sounding, name, place, options):
-    one = sounding(TONE)
-    with pytest.raises(BadValue):
-        one.sources.add(SoundSource(name, place, TONE, **options))
-    with pytest.raises(UnknownName, match="did you mean 'it'"):
-        one.sources.move("itt", (0.0, 0.0, 0.0))
-    assert one.sources.names() == ["it"]

@@ -1,4 +1,4 @@
-"""Texts: tags in them, sentences, pronunciations of words; and languages with their voices."""
+"""Texts: tags in them, sentences, pronunciations of words."""
 
 from __future__ import annotations
 
@@ -6,13 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.speech.dictionary import Pronunciations
 from nao_sim_bridge.sim.speech.parameters import Prosody
-from nao_sim_bridge.sim.speech.sentences import LONGEST, Sentence, sentences
-from nao_sim_bridge.sim.speech.speech import SpeechError
-from nao_sim_bridge.sim.speech.tags import Bookmark, Gate, Pause, Spoken, TagReader
-from nao_sim_bridge.sim.speech.voices import load_voices
+from nao_sim_bridge.sim.speech.sentences import sentences
+from nao_sim_bridge.sim.speech.tags import Bookmark, Pause, Spoken, TagReader
 
 
 @pytest.fixture
@@ -119,23 +116,6 @@ def test_sentences_end_where_a_reader_would_end_them(text, expected):
     assert [item.text for item in sentences(TagReader().read(text))] == expected
 
 
-def test_nothing_of_a_long_text_is_lost_and_no_sentence_is_too_long():
-    text = "word, " * 500 + "x" * 1000 + " end. " + "Short one. " * 600
-    pieces = [item.text for item in sentences(TagReader().read(text))]
-    assert max(map(len, pieces)) <= LONGEST
-    assert "".join("".join(pieces).split()) == "".join(text.split())
-
-
-def test_marks_stay_in_their_sentence_and_a_gate_parts_one(read):
-    first, second = sentences(read(r"One \mrk=1\ two. \pau=200\ Three \mrk=2\ "))
-    assert [p for p in first.parts if isinstance(p, Bookmark)] == [Bookmark(1)]
-    assert [p for p in second.parts if isinstance(p, (Bookmark, Pause))] == [Pause(0.2), Bookmark(2)]
-    assert sentences([Bookmark(3)]) == [Sentence((Bookmark(3),))]
-    gate = Gate(lambda: None)
-    before, between, behind = sentences([*read("Look at"), gate, *read(" this.")])
-    assert (before.text, between, behind.text) == ("Look at", gate, "this.")
-
-
 # --- pronunciations ---------------------------------------------------------------------------------------------------
 
 
@@ -152,35 +132,3 @@ def test_whole_words_are_replaced_and_places_lead_back_to_the_text_as_it_is_writ
     again = names.with_entry("NAO", "noah")
     assert again.spoken("Nao")[0] == "noah"
     assert not again.without("nao").knows("Nao") and again.without("nao").spoken("Nao")[0] == "Nao"
-
-
-# --- languages and voices ---------------------------------------------------------------------------------------------
-
-
-class Installed:
-    """Engines of a machine."""
-
-    def __init__(self, *engines):
-        self.engines = engines
-
-    def missing(self, engine, voice):
-        return None if engine in self.engines else f"the engine {engine} is not installed"
-
-
-def test_a_language_has_the_robots_own_voice_and_is_available_when_one_of_its_voices_is():
-    voices, both = load_voices(), Installed("flite", "espeak-ng")
-    own = {"English": "naoenu", "French": "naofrf", "German": "naogem", "Spanish": "naosps", "Italian": "naoitv"}
-    for language, voice in own.items():
-        assert voices.languages[language].voices[0] == voice and voices.voices[voice].language == language
-    assert voices.available_languages(Installed("flite")) == ["English"]
-    assert set(voices.available_languages(Installed("espeak-ng"))) == set(voices.languages)
-    assert voices.available_languages(Installed()) == []
-    assert "naoenu" not in voices.available_voices(Installed("espeak-ng"))
-    with pytest.raises(BadValue, match="'Klingon', allowed is one of English, French, German"):
-        voices.language("Klingon", both)
-    with pytest.raises(BadValue, match="'Bob', allowed is one of naoenu, slt"):
-        voices.voice("Bob", both)
-    with pytest.raises(SpeechError, match="'naofrf' cannot speak: the engine espeak-ng is not installed"):
-        voices.voice("naofrf", Installed("flite"))
-    with pytest.raises(SpeechError, match="French cannot be spoken: the engine espeak-ng"):
-        voices.language("French", Installed("flite"))

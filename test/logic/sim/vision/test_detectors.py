@@ -45,24 +45,6 @@ def test_a_ball_is_found_where_it_is(radius, distance, alpha, beta):
     assert (ball.x, ball.y) == pytest.approx(OPTICS.place(alpha, beta), abs=0.005)
 
 
-CHAIR = np.where(np.arange(240)[:, None, None] < 120, np.uint8([[[46, 51, 158]]]), np.uint8([[GREY]]))
-
-
-@pytest.mark.parametrize("back", [(30, 30, 30), (60, 100, 150), (240, 240, 240), "dark room", "red chair"])
-def test_what_is_behind_makes_no_difference(back):
-    plain = sphere(0.8, 0.05, 0.1, 0.0, noise=0.0)
-    if back == "dark room":
-        picture = (plain * 0.3).astype(np.uint8)
-    elif back == "red chair":
-        there = (plain[..., 2].astype(int) - plain[..., 0] > 40)[..., None]
-        picture = np.where(there, plain, np.broadcast_to(CHAIR, plain.shape))
-    else:
-        picture = sphere(0.8, 0.05, 0.1, 0.0, back=back)
-    (ball,) = balls(picture)
-    assert (ball.alpha, ball.beta) == pytest.approx((0.1, 0.0), abs=math.radians(0.3))
-    assert ball.distance(0.05) == pytest.approx(0.8, rel=0.05)
-
-
 ACROSS, DOWN = (field / 2.0 for field in OPTICS.fov)
 
 
@@ -156,27 +138,6 @@ def test_a_qr_code_is_read_and_found_where_it_is(size, distance):
     assert centre(code) == pytest.approx(np.array(OPTICS.place(0.1, -0.05)) * size, abs=3.0)
 
 
-def test_corners_go_clockwise_from_the_upper_left_one_of_the_code():
-    (code,) = codes(card(QR, 0.2, 0.5))
-    corners = np.array(code.corners) - centre(code)
-    assert np.all(np.sign(corners) == [(-1, -1), (1, -1), (1, 1), (-1, 1)])
-    # The code itself, without its white margin of four modules on each side of 21.
-    edge = OPTICS.intrinsics(320, 240).fx * 0.2 / 0.5 * 21 / 29
-    assert np.ptp(corners, axis=0) == pytest.approx((edge, edge), abs=4.0)
-    (code,) = codes(card(QR, 0.2, 0.5, roll=np.pi / 2.0))
-    first = np.array(code.corners[0]) - centre(code)
-    assert first[0] < 0.0 < first[1]  # its upper left corner is the lower left one of the picture
-
-
-def test_two_codes_come_from_left_to_right_and_stripes_are_none():
-    picture = card(WorldPicture("qr", "right"), 0.2, 0.7, alpha=-0.25, size=VGA)
-    picture = card(WorldPicture("qr", "left"), 0.2, 0.7, alpha=0.25, size=VGA, onto=picture)
-    assert [code.text for code in codes(picture)] == ["left", "right"]
-    stripes = np.full((240, 320, 3), 230, np.uint8)
-    stripes[:, ::7] = stripes[:, 1::7] = 20
-    assert codes(stripes) == []
-
-
 POSE = (0.05, 0.0, 0.5, 0.0, 0.1, 0.0)
 
 
@@ -225,22 +186,3 @@ def test_a_ball_that_rolls_by_is_found_where_it_is(room, pixels):
         assert 0.0 < left < middle / 320 < left + width < 1.0 and top < 0.5 < top + height
         assert width * 320 <= 24 + 2 * pixels + 8 and height * 240 <= 32
         assert 0.0 < cluster.share_of_picture < 0.03 < cluster.share_of_rectangle <= 1.0
-
-
-def test_the_lower_the_sensitivity_the_more_it_takes_and_slow_pictures_are_compared_with_the_one_before(room):
-    def faint(step):
-        picture = room(noise=2.0).astype(np.int16)
-        picture[100:140, 100 + 8 * step : 150 + 8 * step] += 30
-        return np.clip(picture, 0, 255).astype(np.uint8)
-
-    pictures = [faint(step) for step in range(6)]
-    assert all(watch(pictures, sensitivity=0.9)[2:]) and not any(watch(pictures, sensitivity=0.3))
-    found = watch([room(ball=(80 + 10 * k, 120)) for k in range(4)], period=1.0)
-    assert found[0] is None and all(found[1:])
-
-
-def test_a_moving_head_is_no_movement_and_afterwards_it_goes_on(room):
-    poses = [POSE] * 4 + [(*POSE[:5], 0.02 * k) for k in range(1, 6)] + [(*POSE[:5], 0.1)] * 5
-    shifts = [0] * 4 + [6 * k for k in range(1, 6)] + [30] * 5
-    found = watch([room(shift=shift) for shift in shifts], poses=poses)
-    assert found[2:4] == [[], []] and found[4:9] == [None] * 5 and found[-2:] == [[], []]

@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 from face_pictures import CARD, FOCAL, OPTICS, face_picture, wall
 
-from nao_sim_bridge.record_dir import ClientFiles
-from nao_sim_bridge.services.vision.face_detection_people import KnownPeople
 from nao_sim_bridge.services.vision.face_detection_value import NamedFace, NamesOnce
 from nao_sim_bridge.sim.faces import load_faces
 from nao_sim_bridge.sim.vision.face_memory import MOST_PICTURES, FaceFileError, FaceMemory
@@ -64,16 +62,6 @@ def test_a_wall_has_no_face_and_nobody_is_blue(detector):
     assert [len(find(detector, seen, track=False)) for seen in (picture, grey, blue)] == [1, 1, 0]
 
 
-def test_a_face_keeps_its_number_while_it_moves_and_in_pictures_of_another_size(detector):
-    for step in range(8):
-        (face,) = find(detector, face_picture("emma", 1.0, place=(200 + 25 * step, 240)), 0.1 * step)
-        assert face.number == 1
-    small = cv2.resize(face_picture("emma", 1.0, place=(375, 240)), (320, 240), interpolation=cv2.INTER_AREA)
-    (half,) = find(detector, small, 0.8)
-    assert half.number == 1 and half.box[2] == pytest.approx(0.5 * face.box[2], rel=0.25)
-    assert find(detector, face_picture("emma", 1.0), 3.0)[0].number == 2, "it comes back later"
-
-
 def describe(*arguments, **options):
     faces = find(FaceDetector(), face_picture(*arguments, **options))
     return faces[0].description if faces else None
@@ -121,11 +109,6 @@ def test_a_file_gives_back_what_was_saved_and_broken_ones_are_errors(tmp_path):
         path.write_bytes(content)
         with pytest.raises(FaceFileError, match="faces.npz' is"):
             FaceMemory.load(path)
-    np.savez(path, names=np.array(["a", "b"]), person_0=np.ones((1, 4)), person_1=np.ones((1, 5)))
-    with pytest.raises(FaceFileError, match="do not fit together"):
-        FaceMemory.load(path)
-    with pytest.raises(FaceFileError, match="cannot be written to .*No such file or directory"):
-        memory.save(tmp_path / "none" / "faces.npz")
 
 
 @pytest.mark.parametrize("policy, pictures", [("overwrite", (0, 1)), ("merge", (1, 1)), ("keep", (1, 0))])
@@ -136,19 +119,6 @@ def test_policies_for_people_whom_both_know(policy, pictures):
     mine.take_over(other, policy)
     assert mine.names == ["a", "b"]
     assert tuple(round(mine.recognise(direction(number))[1]) for number in (0, 1)) == pictures
-
-
-def test_known_people_survive_the_robot_and_a_broken_file_is_put_aside(tmp_path):
-    (tmp_path / "faces.npz").write_bytes(b"broken")
-    people = KnownPeople(ClientFiles(tmp_path))
-    assert people.names == [] and people.take_over("merge") is False
-    assert people.learn("anna", direction(0)) and people.learn("ben", direction(1))
-    assert (tmp_path / "faces.npz.broken").read_bytes() == b"broken"
-    assert people.forget("ben") and not people.forget("nobody")
-    again = KnownPeople(ClientFiles(tmp_path))
-    assert again.names == ["anna"] and again.recognise(direction(0)) == ("anna", 1.0)
-    again.clear()
-    assert KnownPeople(ClientFiles(tmp_path)).names == []
 
 
 def face(name="", number=1):

@@ -67,13 +67,6 @@ def test_a_long_step_ahead_and_aside_keeps_its_proportions():
     assert (y - LIMITS.min_y) / (LIMITS.max_y - LIMITS.min_y) == pytest.approx(math.sqrt(0.5))
 
 
-@pytest.mark.parametrize("side", [LEFT, RIGHT])
-def test_toes_are_turned_back_only_as_far_as_the_other_foot_demands(side):
-    inwards = clip_step(FootPose(0.0, side * LIMITS.min_y, -side * 0.5), side, LIMITS)
-    assert 0.0 <= -side * inwards.yaw < 0.5
-    assert feet_overlap(inwards._replace(yaw=inwards.yaw - side * 0.5 / 20), side, LIMITS)
-
-
 @pytest.mark.parametrize("x, y, yaw, over", [(0, 0.05, 0, 1), (0.02, -0.01, 1, 1), (0, 0.1, 0, 0), (0.3, 0, 0, 0)])
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
 def test_feet_overlap_where_one_stands_on_the_other(x, y, yaw, over, side):

@@ -12,18 +12,11 @@ import pytest
 from nao_sim_bridge.sim.errors import BadValue, ConfigError, UnknownName
 from nao_sim_bridge.sim.walk import gait as gait_module
 from nao_sim_bridge.sim.walk.clipping import step_limits
-from nao_sim_bridge.sim.walk.gait import FIELDS, FeetGait, Gait, feet_gait, parameters, walk_file
+from nao_sim_bridge.sim.walk.gait import FIELDS, Gait, feet_gait, parameters, walk_file
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.sim.walk.settings import load_walk_settings
 
 LOADERS = (walk_file, parameters, load_walk_settings, step_limits)
-
-
-def test_nothing_asked_for_is_the_default_and_what_can_be_set_has_a_field():
-    assert feet_gait({}) == FeetGait()
-    assert {name for name, known in parameters().items() if known.settable} == set(FIELDS)
-    for name, field in FIELDS.items():
-        assert getattr(Gait(), field) == parameters()[name].default
 
 
 @pytest.mark.parametrize("name", FIELDS)

@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
-from nao_sim_bridge.sim.frames import FEET, frame_of
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.sim.kinematics import link_transforms
 from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.readings import Pose
-from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
 from nao_sim_bridge.sim.walk.body import WalkingBody
-from nao_sim_bridge.sim.walk.footsteps import middle
 from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT, SIDES
-from nao_sim_bridge.sim.walk.whereabouts import foot_on_ground, robot_on_ground
 
 MODEL = load_model()
 BODY = WalkingBody(MODEL)
@@ -53,17 +46,3 @@ def test_a_leg_is_where_the_whole_robot_has_it_and_finds_back_to_its_angles(angl
     assert moment == pytest.approx(expected, abs=1e-6)
     found, off = LEGS.leg(side, hip, ankle, foot)
     assert found == pytest.approx(leg, abs=1e-6) and off == pytest.approx(0.0, abs=1e-6)
-
-
-@given(bodies(), st.floats(-0.2, 0.2), st.floats(-0.2, 0.2), st.floats(-3.0, 3.0))
-@settings(max_examples=20)
-def test_soles_on_the_ground_are_where_the_whole_robot_has_them(angles, roll, pitch, yaw):
-    torso = Pose((0.4, -0.7, 0.3), from_roll_pitch_yaw(roll, pitch, yaw))
-    links = link_transforms(MODEL, angles)
-    world = transform(quaternion_matrix(torso.orientation), torso.position)
-    feet = [foot_on_ground(BODY, torso, angles, side) for side in (LEFT, RIGHT)]
-    for foot, name in zip(feet, FEET):
-        frame = frame_of(MODEL, name)
-        sole = world @ links[frame.link] @ frame.offset
-        assert foot == pytest.approx((sole[0, 3], sole[1, 3], math.atan2(sole[1, 0], sole[0, 0])), abs=1e-6)
-    assert robot_on_ground(BODY, torso, angles) == pytest.approx(middle(*feet))

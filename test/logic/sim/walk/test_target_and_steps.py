@@ -108,14 +108,6 @@ def test_it_makes_exactly_the_steps_of_the_plan_and_is_over_after_the_last_one(w
     assert [m.step.period for m in made] == pytest.approx([s.period for s in PLAN])
 
 
-def test_feet_that_stand_in_any_way_are_put_side_by_side_before_the_first_step(walked):
-    feet = {LEFT: FootPose(0.05, 0.05, 0.0), RIGHT: FootPose(-0.05, -0.05, 0.0)}
-    first, second = walked(planned(step(RIGHT, 0.0)), feet=feet)
-    assert (first.step.side, second.step.side) == (LEFT, RIGHT)
-    assert first.step.landing == pytest.approx((0.0, 0.05, 0.0))
-    assert second.step.landing == pytest.approx((0.0, -0.05, 0.0))
-
-
 def test_what_legs_cannot_step_is_clipped_and_no_step_is_too_quick(walked):
     far = step(LEFT, 0.3, 0.3, 1.0)
     (made,) = walked(planned(far))
@@ -132,19 +124,3 @@ def test_between_two_steps_of_one_foot_the_other_one_comes_beside_it(walked):
     assert made[1].placement == pytest.approx((0.0, -0.1, 0.0))
     assert made[2].placement == pytest.approx((0.04, 0.1, 0.0))
     assert made[2].robot.x == pytest.approx(0.06)
-
-
-def test_steps_can_be_added_or_take_the_place_of_those_to_come(walked):
-    one = planned(*PLAN[:2])
-    made = walked(one, 1)
-    one.add(PLAN[2:], clear=False)
-    assert one.left == tuple(PLAN[1:])
-    made += walked(one, 1, after=made[-1])
-    back = step(LEFT, -0.03)
-    one.add([back], clear=True)
-    assert [m.placement for m in walked(one, after=made[-1])] == [pytest.approx(back.beside)]
-    assert walked(planned()) == []
-    one = planned(*PLAN)
-    made = walked(one, 2)
-    one.add([], clear=True)
-    assert walked(one, after=made[-1]) == []

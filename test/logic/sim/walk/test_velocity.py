@@ -74,13 +74,6 @@ def test_rates_change_by_no_more_than_a_step_can_and_no_step_is_larger_than_legs
             at = one.rate
 
 
-def test_a_sidestep_is_made_by_the_outer_foot(walked):
-    outer, inner = walked(course((0.0, 0.02, 0.0)), SPEEDING_UP)[-2:]
-    assert (outer.step.side, inner.step.side) == (LEFT, RIGHT)
-    assert outer.placement.y == pytest.approx(0.1 + 0.028)
-    assert -inner.placement.y == pytest.approx(SETTINGS.min_foot_separation)
-
-
 def test_of_a_turn_the_outer_foot_makes_its_share(walked):
     outer, inner = walked(course((0.0, 0.0, -0.2)), SPEEDING_UP)[-2:]
     assert (outer.step.side, inner.step.side) == (RIGHT, LEFT)
@@ -113,13 +106,6 @@ def test_each_foot_steps_at_its_own_gait(walked):
     assert (left.step.period, right.step.period) == pytest.approx((0.6, 0.42))
 
 
-def test_a_body_that_is_off_its_plan_may_use_a_share_of_the_speed(walked):
-    one = course((0.04, 0.0, 0.0))
-    one.haste = 0.25
-    walked(one, SPEEDING_UP)
-    assert one.rate == pytest.approx((0.01, 0.0, 0.0))
-
-
 @pytest.mark.parametrize("rate", STRAIGHT + TURNING)
 def test_told_to_end_it_closes_the_feet_and_is_over(walked, rate):
     for count in range(7):
@@ -143,19 +129,3 @@ def test_a_robot_that_was_turned_goes_back_to_its_heading_but_not_all_the_way_ro
     headings = [before + turn, *(one.frame.moved(*m.robot).yaw for m in walked(one, 60, after=begun))]
     assert headings[-1] == pytest.approx(before + turn - made_up_for, abs=0.02)
     assert all(abs(b - a) <= SETTINGS.turn_hold_limit + ROUNDING for a, b in zip(headings, headings[1:]))
-
-
-@pytest.mark.parametrize("aside, made_up_for", [(0.03, 0.03), (-0.03, -0.03), (0.2, 0.05)])
-def test_a_robot_that_was_pushed_aside_comes_back_to_its_line(walked, aside, made_up_for):
-    one = course()
-    begun = walked(one, SPEEDING_UP)[-1]
-    one.frame = one.frame.moved(0.0, aside)
-    other = course((0.02, 0.0, 0.0), at=one.rate)
-    other.follow(one)
-    assert other.frame == one.frame
-    y = other.frame.moved(*walked(other, 40, after=begun)[-1].robot).y
-    assert y == pytest.approx(aside - made_up_for, abs=3e-3), "another velocity goes on from there"
-    made = walked(one, 40, after=begun)
-    assert one.frame.moved(*made[-1].robot).y == pytest.approx(aside - made_up_for, abs=3e-3)
-    for before, now in zip([begun, *made], made):
-        assert abs(now.robot.y - before.robot.y) <= SETTINGS.aside_hold_limit + ROUNDING

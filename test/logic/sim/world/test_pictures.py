@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import pickle
 
-import cv2
 import numpy as np
 import pytest
 import zxingcpp
@@ -91,9 +89,6 @@ def test_a_file_is_shown_as_it_is_a_large_one_smaller_and_a_vanished_one_grey(tm
     assert "a thing of the world is grey: picture file is" in caplog.text
 
 
-# --- landmarks and faces
-
-
 def test_sectors_follow_clockwise_from_the_top():
     table, picture = load_landmarks(), paint(WorldPicture("landmark", "119"))
     middle = picture.shape[0] / 2.0
@@ -103,23 +98,6 @@ def test_sectors_follow_clockwise_from_the_top():
     assert tuple(bool(picture[int(row), int(column), 0] > 128) for row, column in places) == table.marks[119]
     assert picture[2, 2, 0] > 200, "the card is white"
     assert picture[int(middle - 0.9 * radius), int(middle), 0] < 60, "the rim is black"
-
-
-@pytest.mark.parametrize("name", load_faces())
-def test_a_detector_of_faces_finds_everybody(name):
-    face = cv2.cvtColor(paint(WorldPicture("face", name)), cv2.COLOR_RGB2GRAY)
-    detector = cv2.CascadeClassifier(cv2.data.haarcascades + "haarcascade_frontalface_alt2.xml")
-    for width in (48, 80, 140):
-        room, height = np.full((240, 320), 150, np.uint8), round(width * face.shape[0] / face.shape[1])
-        top, left = (240 - height) // 2, (320 - width) // 2
-        small = cv2.resize(face, (width, height), interpolation=cv2.INTER_AREA)
-        room[top : top + height, left : left + width] = small
-        found, head = detector.detectMultiScale(room, 1.1, 3, minSize=(20, 20)), width * 2.0 / 3.0
-        x, _, w, _ = min(found, key=lambda box: abs(box[2] - head))
-        assert x + w / 2.0 == pytest.approx(160.0, abs=width * 0.1) and 0.7 * head < w < 1.5 * head
-
-
-# --- the canvas
 
 
 @pytest.fixture
@@ -133,14 +111,3 @@ def column(canvas, x):
 
 def row(canvas, y):
     return np.argmin(np.abs(canvas.y[:, 0] - y))
-
-
-@pytest.mark.parametrize("soft", [0.0, 0.8])
-def test_an_ellipse_has_its_place_its_area_and_is_tilted_against_the_clock(canvas, soft):
-    mask = canvas.ellipse(0.5, -0.3, 0.8, 0.4, 0.6, soft)
-    middle = (canvas.x * mask).sum() / mask.sum(), (canvas.y * mask).sum() / mask.sum()
-    assert middle == pytest.approx((0.5, -0.3), abs=0.01)
-    assert mask.sum() / 400.0 == pytest.approx(math.pi * 0.8 * 0.4, rel=0.08)
-    assert mask.min() >= 0.0 and mask.max() <= 1.0
-    mask = canvas.ellipse(0.0, 0.0, 1.0, 0.2, math.pi / 4.0)
-    assert [mask[row(canvas, y), column(canvas, 0.5)] for y in (0.5, -0.5)] == [1.0, 0.0]
