@@ -1,25 +1,18 @@
 """What keeps a body in physics from harm, alive and still: whole body control, arms, breath, stiffness, tracking."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.fall_manager import FallState
 from nao_sim_bridge.sim.frames import FEET, frame_of
 from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
 from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.curves import SmoothCurve
 from nao_sim_bridge.sim.motion.footholds import FootState
-from nao_sim_bridge.sim.motion.idle import FIVE_DEGREES, Mode
-from nao_sim_bridge.sim.motion.self_collision import CONTACT
 from nao_sim_bridge.sim.motion.whole_body_aims import TargetAim
 from nao_sim_bridge.sim.motion.whole_body_tasks import go_to_balance
-from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.rotations import roll_pitch_yaw
-from nao_sim_bridge.sim.tracking.follower import EFFECTORS, Follower
+from nao_sim_bridge.sim.tracking.follower import Follower
 from nao_sim_bridge.sim.tracking.follower import Mode as Tracking
 
 INDEX = load_model().joint_index
@@ -85,19 +78,6 @@ def test_a_leg_that_is_raised_by_its_joints_and_arms_that_move_tip_only_a_robot_
     assert not upright(alone.run(5.0))
 
 
-def test_an_interpolation_into_the_chest_ends_in_time_with_the_arm_short_of_it(bench):
-    one = bench()
-    one.run(0.3)
-    chest = {"LShoulderPitch": 0.8, "LShoulderRoll": -0.3, "LElbowYaw": -0.3, "LElbowRoll": -1.5}
-    goals = {INDEX[name]: angle for name, angle in chest.items()}
-    curves = lambda now: {i: SmoothCurve((0.0, 1.0), (now[i], angle)) for i, angle in goals.items()}  # noqa: E731
-    task, guard = one.robot.motion.follow("glide", goals, curves), one.robot.reflexes.self_collision
-    least = min(guard.distances(snapshot.positions).min() for snapshot in one.watch(1.1))
-    assert task.finished and one.joint("LElbowRoll") > chest["LElbowRoll"] + 0.1
-    # Motors swing past their command by a little.
-    assert least > CONTACT - 0.004 and guard.state("LArm", one.now.commands) == "near"
-
-
 def test_a_robot_before_a_wall_stretches_its_arm_slowly(bench, world_file):
     """The wall is further away than the hand gets, and closer than the security distance."""
     wall, peaks = "{name: wall, box: [0.1, 2.0, 1.5], position: [0.36, 0.0, 0.75]}", []
@@ -112,43 +92,6 @@ def test_a_robot_before_a_wall_stretches_its_arm_slowly(bench, world_file):
         assert told[-1] == pytest.approx(0.1)
         peaks.append(max(abs(b - a) for a, b in zip(told, told[1:])))
     assert peaks[1] < 0.6 * peaks[0]
-
-
-def test_a_breathing_robot_stays_on_its_feet_and_a_target_interrupts_the_breath_of_its_chain(bench):
-    one = bench()
-    one.run(0.3)
-    one.robot.reflexes.idle.set_breath(10.0, 0.8)
-    one.robot.reflexes.idle.set_mode("Body", Mode.BREATH)
-    seen = one.watch(6.5)
-    elbows = [snapshot.positions[INDEX["LElbowRoll"]] for snapshot in seen]
-    assert max(elbows) - min(elbows) > FIVE_DEGREES
-    assert max(abs(angle) for snapshot in seen for angle in snapshot.imu.angles[:2]) < 0.02
-    assert one.robot.stability.on_feet and one.robot.stability.falls.state is not FallState.FALLING
-    one.aim(HeadYaw=0.5)
-    one.run(0.55)
-    assert one.joint("HeadYaw") == pytest.approx(0.5, abs=0.02)
-    one.run(3.0)
-    assert one.joint("HeadYaw") == pytest.approx(posture(one.model, "Stand")[INDEX["HeadYaw"]], abs=0.01)
-
-
-def test_a_robot_that_keeps_still_stands_as_before_with_less_torque_to_give(bench):
-    one = bench()
-    one.stiffen(0.1, "RWristYaw")
-    one.run(0.9)
-    joints = one.robot.joints
-    assert joints.efforts == joints.stiffnesses
-    before, after = one.run(0.05), one.run(2.5)
-    assert min(joints.efforts) < 0.3 and max(joints.efforts) < 1.0 and joints.stiffnesses.count(1.0) == 25
-    assert joints.efforts[INDEX["RWristYaw"]] == 0.1, "a lower stiffness of the caller wins"
-    assert after.positions == pytest.approx(before.positions, abs=0.005)
-    goals = {"LShoulderPitch": 0.0, "RShoulderPitch": 0.5, "RElbowRoll": 1.2, "HeadPitch": 0.4}
-    one.aim(**goals)
-    one.run(0.1)
-    assert sorted(joints.efforts)[1:] == [1.0] * 25
-    one.run(4.0)
-    assert max(joints.efforts) < 1.0
-    for name, angle in goals.items():
-        assert one.joint(name) == pytest.approx(angle, abs=0.0087), "in the air within half a degree"
 
 
 class Eye:
@@ -174,7 +117,7 @@ def eye(bench):
     return Eye(bench())
 
 
-def test_the_head_turns_to_a_place_and_follows_it_within_speed_and_acceleration(eye, bench):
+def test_the_head_turns_to_a_place_and_follows_it_within_speed_and_acceleration(eye):
     for place in ((1.0, 0.5, 0.4), (1.0, -0.4, 0.6)):
         eye.follow(place)
         assert eye.off(place) < 1.0
@@ -188,17 +131,6 @@ def test_the_head_turns_to_a_place_and_follows_it_within_speed_and_acceleration(
     speeds = [(b - a) / dt for a, b in zip(yaws, yaws[1:])]
     assert max(speeds) == pytest.approx(0.5, abs=0.01)
     assert max((b - a) / dt for a, b in zip(speeds, speeds[1:])) < 1.1
-    limp = Eye(bench(stiffness=0.0))
-    before = limp.bench.joint("HeadYaw", of="commands")
-    limp.follow((1.0, 1.0, 0.5), 0.3)
-    assert limp.bench.joint("HeadYaw", of="commands") == before
-
-
-def test_the_nearer_arm_points(eye):
-    eye.follower.effector = EFFECTORS["Arms"]
-    right = eye.bench.joint("RShoulderPitch", of="commands")
-    eye.follow((1.0, 0.5, 0.4), 2.0)
-    assert eye.off((1.0, 0.5, 0.4), "LArm") < 6.0 and eye.bench.joint("RShoulderPitch", of="commands") == right
 
 
 def test_the_whole_body_bends_for_what_is_too_low_for_the_head(eye):
@@ -208,14 +140,3 @@ def test_the_whole_body_bends_for_what_is_too_low_for_the_head(eye):
     eye.follower.mode = Tracking.WHOLE_BODY
     eye.follow(place, 3.0)
     assert eye.off(place) < 6.0 and eye.bench.robot.stability.on_feet
-    eye.follower.stop()
-    assert not eye.bench.robot.whole_body.enabled
-
-
-def test_it_looks_around_for_what_is_lost_until_it_is_found(eye):
-    eye.follower.search_share = 1.0
-    eye.follower.search()
-    yaws = [now.positions[INDEX["HeadYaw"]] for now in eye.bench.watch(2.8)]
-    assert max(yaws) > 0.7 and min(yaws) < -0.2
-    eye.follow((1.0, 0.0, 0.5))
-    assert eye.off((1.0, 0.0, 0.5)) < 1.0

@@ -1,14 +1,12 @@
 """What the robot notices of itself and its surroundings: walls, boxes, fingers, hands, heat, noise, broken devices."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import BadValue, NotAllowed, SimulationError, UnknownName
+from nao_sim_bridge.sim.errors import NotAllowed, SimulationError, UnknownName
 from nao_sim_bridge.sim.faults import CRITICAL, NEGLIGIBLE, SERIOUS, severity
 from nao_sim_bridge.sim.hand_path import AWAY
 from nao_sim_bridge.sim.hands import COME_TIME, LEAVE_TIME, PATIENCE
@@ -16,7 +14,6 @@ from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, rp
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.rotations import roll_pitch_yaw
 from nao_sim_bridge.sim.sensors.sonar import NO_ECHO
-from nao_sim_bridge.sim.touch_gestures import GestureBook, GestureRecogniser, Times
 from nao_sim_bridge.sim.touch_names import CHEST_BUTTON, HEAD, SENSORS
 from nao_sim_bridge.sim.walk.gait import feet_gait
 from nao_sim_bridge.sim.world_objects import read_object
@@ -59,7 +56,7 @@ def place(one, **entry):
 
 def test_both_sonars_measure_the_distance_of_a_wall(bench):
     one = bench()
-    for distance in (0.25, 0.3, 0.5, 0.8, 1.0, 1.5, 2.0, 2.5):
+    for distance in (0.25, 0.8, 2.5):
         now = place(one, box=[0.1, 4, 2], position=[distance + 0.05, 0, 1])
         sonar = one.model.sonars[0].position[0] + now.torso.position[0]
         assert now.sonars == pytest.approx((distance - sonar,) * 2, abs=0.003)
@@ -90,25 +87,6 @@ def test_only_who_lies_hears_the_floor(bench, world):
         assert {snapshot.sonars for snapshot in one.watch(2.0)} == {SILENCE}
 
 
-def test_people_robots_and_things_are_heard_on_their_side_and_nothing_low_or_behind(bench):
-    one = bench()
-    for entry, distance, gap in (
-        ({"person": "anna", "position": [1.5, 0, 0], "heading": 3.14}, 1.5, 0.25),
-        ({"person": "ben", "position": [2.2, 0, 0], "heading": 3.14}, 2.2, 0.25),
-        ({"nao": "Stand", "position": [1.0, 0, 0], "heading": 3.14}, 1.0, 0.15),
-        ({"box": [0.2, 0.3, 0.3], "position": [0.7, 0, 0.15]}, 0.7, 0.12),
-        ({"cylinder": [0.03, 1.0], "position": [0.8, 0, 0.5]}, 0.8, 0.04),
-    ):
-        assert all(distance - gap <= echo <= distance for echo in place(one, **entry).sonars), entry
-    for near, y in ((0, 0.3), (1, -0.3)):
-        sonars = place(one, cylinder=[0.05, 1.0], position=[0.5, y, 0.5]).sonars
-        assert sonars[near] == pytest.approx(0.53, abs=0.05) and sonars[1 - near] == NO_ECHO
-    assert place(one, ball=0.03, position=[0.4, 0, 0.03], mass=0).sonars == SILENCE
-    assert place(one, box=[0.2, 0.4, 0.8], position=[-0.4, 0, 0.4]).sonars == SILENCE
-    one.aim(3.0, LShoulderPitch=0.6, LElbowRoll=-1.5, LElbowYaw=-1.2)
-    assert one.run(1.2).sonars == SILENCE, "nor its own arm"
-
-
 def test_a_robot_with_noise_feels_errors_of_its_seed_but_the_truth_stays_true(bench):
     noisy, same, other = (bench("Crouch", sensor_noise=1.0, seed=seed).run(0.4) for seed in (1, 1, 2))
     true = bench("Crouch").run(0.4)
@@ -128,28 +106,6 @@ def test_a_late_robot_feels_what_was_all_of_one_time(bench):
         angles.append([snapshot.positions[YAW] for snapshot in one.watch(0.5)])
     late, truth = angles
     assert late[6:] == pytest.approx(truth[:-6], abs=1e-3) and abs(late[10] - truth[10]) > 0.02
-    one = bench("Stand", sensor_delay=0.1)
-    one.push((60.0, 0.0, 0.0), 0.2)
-    for snapshot in one.watch(1.0):
-        assert set(snapshot.link_poses) == {contact.link for contact in snapshot.contacts}
-        assert snapshot.left_foot.total >= 0.0
-
-
-def test_a_motor_that_gets_critically_hot_goes_limp_and_cools_down_again(bench):
-    one = bench()
-    one.robot.reflexes.diagnosis_enabled = False
-    one.robot.warm_up("HeadYaw", 75.0)
-    one.aim(2.0, LShoulderPitch=0.0)
-    assert one.run(0.2).temperatures[YAW] > 74.0 and one.robot.joints.efforts[YAW] < 0.7
-    one.run(1.3)
-    held = one.joint("LShoulderPitch")
-    one.robot.warm_up("LShoulderPitch", 85.0)
-    one.run(1.5)
-    assert one.joint("LShoulderPitch") > held + 0.2
-    assert one.robot.joints.stiffnesses[MODEL.joint_index["LShoulderPitch"]] == 1.0
-    assert one.run(3.5).temperatures[YAW] < 74.0
-    with pytest.raises(RuntimeError, match="unknown joint 'Tail'"):
-        one.robot.warm_up("Tail", 50.0)
 
 
 def test_how_bad_a_broken_device_is():
@@ -170,10 +126,8 @@ def test_a_broken_motor_gives_no_torque_until_it_is_repaired_and_only_stiff_ones
     one.run(1.0)
     assert one.joint("HeadYaw") == pytest.approx(0.0, abs=0.02) and one.robot.joints.efforts[YAW] == 0.0
     for how, found in ((0.0, frozenset()), (1.0, {YAW})):
-        limp = bench().robot.faults
-        limp.break_device("HeadYaw")
-        limp.try_motors([how] * 26)
-        assert limp.found == found
+        faults.try_motors([how] * 26)
+        assert faults.found == found
     faults.repair("HeadYaw")
     one.run(1.0)
     assert one.joint("HeadYaw") == pytest.approx(0.8, abs=0.02) and faults.found == frozenset()
@@ -198,18 +152,6 @@ def test_broken_sensors_read_an_error_beside_others_that_work(bench):
     assert (one.robot.faults.sensors, one.robot.faults.motors) == (frozenset(), frozenset()), "a new robot is whole"
 
 
-def test_fingers_stay_until_they_are_taken_away_and_a_ball_is_felt_where_it_lies(bench, world_file):
-    one = bench(world=world_file("{name: ball, sphere: 0.02, position: [0, 0, 0.55], mass: 0.05}"))
-    felt = set().union(*(snapshot.touched for snapshot in one.watch(0.6)))
-    assert felt and felt <= set(HEAD)
-    one = bench()
-    one.robot.press(["Head/Touch/Front", "RHand/Touch/Back"])
-    assert one.run(0.2).touched == {"Head/Touch/Front", "RHand/Touch/Back"}
-    for pressed in ({CHEST_BUTTON}, set()):
-        one.robot.press(pressed)
-        assert one.simulation.tick().touched == pressed
-
-
 def ray_at(one, name):
     """From a place outside the robot that looks at a sensor, nearly straight."""
     at = next(place for place in one.model.touch if place.name == name)
@@ -230,9 +172,6 @@ def test_pointing_at_a_sensor_touches_it_until_the_button_is_released(bench, wor
             assert one.simulation.tick().touched == {name}
             one.robot.point_at(aside)
             assert one.simulation.tick().touched == frozenset()
-    one.robot.press([HEAD[2]])
-    one.robot.point_at(ray_at(one, CHEST_BUTTON))
-    assert one.simulation.tick().touched == {HEAD[2], CHEST_BUTTON}, "fingers stay when somebody points"
     one = bench(world=world_file("{name: wall, box: [0.02, 2, 2], position: [0.4, 0, 1]}"))
     one.robot.point_at(ray_at(one, CHEST_BUTTON))
     assert one.simulation.tick().touched == frozenset(), "what hides a sensor is pointed at instead"
@@ -266,22 +205,7 @@ def test_each_sensor_feels_a_hand_and_the_robot_keeps_still(bench, posture, stif
     assert "hand" not in one.now.objects and one.now.placed == ()
 
 
-@pytest.mark.parametrize("sensors, gesture", [(HEAD, "CaressFtoR"), (HEAD[::-1], "CaressRtoF")])
-def test_a_stroke_over_the_head_is_a_caress_the_same_in_every_run(bench, sensors, gesture):
-    for duration in (0.3, 1.2):
-        ends = []
-        for _ in range(2):
-            one, recogniser, told = bench(), GestureRecogniser(GestureBook(), Times()), []
-            one.run(0.2)
-            for snapshot in [*touch(one, sensors, duration), *one.watch(0.3)]:
-                pattern = "".join("1" if sensor in snapshot.touched else "0" for sensor in HEAD)
-                told += filter(None, [recogniser.feed(pattern, snapshot.time).gesture])
-            assert told == [gesture]
-            ends.append((one.now.positions, one.now.torso))
-        assert ends[0] == ends[1]
-
-
-def test_hands_stay_until_they_are_released_are_seen_and_go_with_a_robot_that_moves(bench, world_file):
+def test_hands_stay_until_they_are_released_are_seen_and_go_with_a_robot_that_moves(bench):
     one = bench()
     task = one.simulation.hands.touch(["MiddleTactilTouched"], 0.0)
     one.simulation.tick()
@@ -303,8 +227,6 @@ def test_hands_stay_until_they_are_released_are_seen_and_go_with_a_robot_that_mo
     assert one.run(LEAVE_TIME + 0.02).touched == {HEAD[0], CHEST_BUTTON}
     one.simulation.hands.release()
     assert one.run(0.3).touched == frozenset() and one.now.placed == ()
-    shelf = bench(world=world_file("{name: box, box: [0.2, 0.2, 0.03], position: [0.35, 0, 0.42]}"))
-    assert any(CHEST_BUTTON in snapshot.touched for snapshot in touch(shelf, [CHEST_BUTTON], 0.2))
 
 
 def test_a_hand_that_is_not_felt_says_so(bench):
@@ -326,21 +248,3 @@ def test_a_touch_that_is_killed_reset_or_removed_is_over_and_another_may_come(be
     assert not one.run(0.3).touched and one.now.placed == () and task.killed
     one.simulation.hands.release()
     assert touch(one, [HEAD[0]], 0.1)
-
-
-@pytest.mark.parametrize(
-    "sensors, duration, error, text",
-    [
-        (["Head/Touch/Fron"], 1.0, UnknownName, "did you mean 'Head/Touch/Front'"),
-        ([], 1.0, BadValue, "number of sensors is 0, allowed is 1 to 8"),
-        ([HEAD[0], CHEST_BUTTON], 1.0, BadValue, "sensors of one part of the robot"),
-        (HEAD, 0.0, BadValue, "duration is 0.0, allowed is above 0 for a stroke"),
-        ([HEAD[0]], -1.0, BadValue, "duration is -1.0"),
-        ([HEAD[0]], math.nan, BadValue, "duration is nan"),
-    ],
-)
-def test_what_no_hand_can_do_is_refused(bench, sensors, duration, error, text):
-    one = bench()
-    with pytest.raises(error, match=text):
-        one.simulation.hands.touch(sensors, duration)
-    assert one.simulation.tick().placed == ()

@@ -1,18 +1,13 @@
 """What is true of a real NAO on its feet: it stands, weighs what it weighs, and moves as its motors can."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
 
-from nao_sim_bridge.sim import led_animations
-from nao_sim_bridge.sim.errors import UnknownName
 from nao_sim_bridge.sim.fall_manager import FallState
-from nao_sim_bridge.sim.kinematics import matrix_rpy, quaternion_matrix, rpy_matrix, transform
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.motion import sequences
-from nao_sim_bridge.sim.posture_recognition import UNKNOWN, recognise
+from nao_sim_bridge.sim.posture_recognition import recognise
 from nao_sim_bridge.sim.postures import load_postures
 
 MODEL = load_model()
@@ -51,8 +46,6 @@ def test_it_stands_for_twenty_seconds_within_a_millimetre(bench):
         # The centre of pressure of somebody who stands is under the ankle, well within the sole.
         assert -0.03 < foot.center_of_pressure[0] < 0.07 and abs(foot.center_of_pressure[1]) < 0.03
     assert max(abs(a - b) for a, b in zip(end.positions, end.commands)) < math.radians(0.5)
-    assert 40.0 > max(end.temperatures) > max(settled.temperatures) >= 27.0
-    assert 0.95 < end.battery.charge < settled.battery.charge <= 1.0
     assert len(end.link_poses) == 2 and end.touched == frozenset(), "nothing but the soles touches anything"
 
 
@@ -79,10 +72,6 @@ def test_feet_hold_below_the_friction_and_slide_above(bench):
         return one.run(0.25).link_poses[foot].position[0] - before
 
     assert abs(slide(0.25, friction=0.4)) < 2e-3 and slide(0.55, friction=0.4) > 5e-3 and abs(slide(0.55)) < 2e-3
-    one = bench(friction=0.4)
-    sole = one.simulation.settings.contact.sole_friction
-    # The engine multiplies the coefficients of the two that touch.
-    assert one.simulation.scene.load_world(sole).floor.friction * sole == pytest.approx(0.4)
 
 
 def lean(one, roll):
@@ -110,21 +99,6 @@ def test_leaning_to_a_side_loads_that_foot_until_it_carries_everything(bench):
     assert one.robot.stability.falls.state is FallState.WATCHING, "standing on one foot is no fall"
 
 
-def test_odometry_knows_where_a_standing_robot_is_while_it_moves(bench):
-    one, offset = bench("StandInit"), None
-    for pitch, roll in ((0.1, 0.0), (-0.1, 0.05), (0.0, -0.05)):
-        hips = {"LHipPitch": pitch - 0.45, "RHipPitch": pitch - 0.45, "LHipRoll": roll, "RHipRoll": roll}
-        one.aim(0.5, **hips, LAnkleRoll=-roll, RAnkleRoll=-roll)
-        now = one.run(1.0)
-        truth, reckoned = (transform(quaternion_matrix(p.orientation), p.position) for p in (now.torso, now.odometry))
-        # The start in world: it must come out the same all the time.
-        start = truth @ transform(reckoned[:3, :3].T, -reckoned[:3, :3].T @ reckoned[:3, 3])
-        offset = start if offset is None else offset
-        assert start == pytest.approx(offset, abs=2e-3)
-    assert math.hypot(offset[2, 3], *offset[2, :2]) < 0.005
-    assert rpy_matrix((0.0, 0.0, matrix_rpy(offset[:3, :3])[2])) == pytest.approx(offset[:3, :3], abs=5e-3)
-
-
 @pytest.mark.parametrize("name", FAMILY)
 def test_a_stiff_robot_stays_in_the_posture_it_starts_in_and_a_limp_one_in_its_family(bench, name):
     one = bench(name)
@@ -139,30 +113,9 @@ def test_a_stiff_robot_stays_in_the_posture_it_starts_in_and_a_limp_one_in_its_f
     height, settled, end = limp.now.torso.position[2], limp.run(1.5), limp.run(1.0)
     if name in ("SitRelax", "LyingBelly", "LyingBack", "Crouch"):  # what leans or stands upright slumps
         assert recognise(limp.model, end).family == FAMILY[name]
-    if name == "Crouch":
-        assert math.dist(settled.torso.position, end.torso.position) < 1e-3 and limp.robot.stability.on_feet
-        assert tilt(end) < math.radians(10.0) and sum(loads(end)) == pytest.approx(5.36 * G, rel=0.02)
     if name == "StandInit":
         assert settled.torso.position[2] < height - 0.07, "with bent knees it collapses"
         assert limp.robot.stability.falls.state is FallState.RESTING, "which is no fall"
-    if name == "StandZero":
-        assert recognise(limp.model, end).family not in ("Standing", UNKNOWN)
-
-
-def test_an_unknown_posture_link_or_sensor_is_refused_with_the_closest(bench):
-    one = bench()
-    refused = [
-        (lambda: bench("Standing"), "unknown posture 'Standing'.*'Stand'"),
-        (lambda: one.push((1.0, 0.0, 0.0), 0.1, "l_ancle"), "unknown link 'l_ancle'.*'l_ankle'"),
-        (
-            lambda: one.robot.press(["Head/Touch/Middle", "Head/Touch/Frnt"]),
-            "unknown touch sensor 'Head/Touch/Frnt'.*'Head/Touch/Front'",
-        ),
-    ]
-    for call, message in refused:
-        with pytest.raises(UnknownName, match=message):
-            call()
-    assert one.simulation.tick().touched == frozenset()
 
 
 @pytest.mark.parametrize("stiffness", [1.0, 0.5])
@@ -180,23 +133,6 @@ def test_no_motor_gives_more_than_its_torque_however_hard_the_task(bench, stiffn
     assert max(ratios(limp.watch(1.0))) <= friction + SLACK, "a limp joint has only the friction of its gears"
 
 
-def test_stiffness_decides_on_what_a_motor_can_hold(bench):
-    one = bench()
-    one.aim(2.0, LShoulderPitch=0.0)
-    one.run(1.5)
-    held = one.joint("LShoulderPitch")
-    assert held == pytest.approx(0.0, abs=0.02)
-    needed = abs(one.joint("LShoulderPitch", of="torques"))
-    one.stiffen(0.5 * needed / MODEL.joint("LShoulderPitch").max_torque, "LShoulderPitch")
-    one.run(1.0)
-    assert one.joint("LShoulderPitch") > held + 0.2
-    one.stiffen(0.0, "LShoulderPitch")
-    one.run(1.0)
-    assert one.joint("LShoulderPitch") > 1.2
-    assert one.joint("LShoulderPitch", of="velocities") == pytest.approx(0.0, abs=0.05)
-    assert one.joint("RShoulderPitch") == pytest.approx(1.4426, abs=0.02)
-
-
 def test_no_motor_turns_faster_than_it_can_and_each_follows_its_command(bench):
     one, slow = bench(), bench()
     for each in (one, slow):
@@ -210,9 +146,6 @@ def test_no_motor_turns_faster_than_it_can_and_each_follows_its_command(bench):
         # As fast as it can: the move was at the limit.
         assert 0.9 * top_speed <= max(abs(s.velocities[index]) for s in seen) <= 1.02 * top_speed, name
         assert seen[-1].positions[index] == pytest.approx(target, abs=0.02)
-    one.aim(5.0, LHand=0.0, RHand=1.0)
-    one.run(0.6)
-    assert (one.joint("LHand"), one.joint("RHand")) == pytest.approx((0.0, 1.0), abs=0.02)
     slow.aim(1.0, HeadYaw=1.0, LElbowRoll=-1.2, RShoulderRoll=-0.6)
     for snapshot in slow.watch(0.6):
         for name in ("HeadYaw", "LElbowRoll", "RShoulderRoll"):
@@ -236,11 +169,3 @@ def test_both_hips_are_one_motor_for_commands_and_for_pulls(bench):
     seen = [hips(snapshot) for snapshot in one.watch(1.2)]
     lefts = [left for left, _ in seen]
     assert max(lefts) - min(lefts) > 0.2 and max(abs(left - right) for left, right in seen) < 0.01
-
-
-def test_lights_do_not_disturb_the_body(bench):
-    dark, bright = bench(), bench()
-    animation = led_animations.rasta(bright.simulation.led_layout, 1.0)
-    bright.robot.leds.animate("eyes", animation, bright.robot.time, step=True)
-    bright.robot.leds.set({0: 0.3})
-    assert bright.watch(0.5) == dark.watch(0.5)

@@ -1,7 +1,5 @@
 """ALVideoDevice of the robot, as clients have it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,11 +1,8 @@
 """ALPhotoCapture and ALVideoRecorder over the network: what is in the files, and when it is there."""
 
-from __future__ import annotations
-
 import av
 import cv2
 import pytest
-from simulator import Simulator
 
 from nao_sim_bridge.services.vision.photo_capture_files import FORMATS
 
@@ -96,8 +93,6 @@ def test_a_camera_that_is_held_ready_gives_its_picture_while_time_stands_still(r
     photos.setResolution(1)  # counts from the next half press on
     robot.advance(0.1)
     assert cv2.imread(take("two", after=0.0)).shape == (120, 160, 3)
-    series = robot.finish("ALPhotoCapture", "takePictures", 3, "photos", "series", after=0.45)
-    assert len(series[0]) == 3
     photos.halfPress()
     assert not photos.isHalfPressed()
     assert cv2.imread(take("three")).shape == (240, 320, 3)
@@ -120,26 +115,17 @@ def test_a_cancelled_series_ends_at_once_and_keeps_what_it_has(robot, photos, fo
     assert 1 <= len(list((folder / "cancelled").iterdir())) <= 4
 
 
-def test_what_photos_cannot_be_is_refused_with_what_they_can(photos, folder):
-    (folder / "no_folder").write_text("file")
+def test_what_photos_cannot_be_is_refused_with_what_they_can(photos):
     refuses(
         photos,
         [
             ("setCameraID", (2,), "camera is 2, allowed is one of 0 .top., 1 .bottom."),
             ("setResolution", (9,), "resolution is 9, allowed is one of"),
             ("setColorSpace", (11,), "colorSpace is 11, allowed is 0 .grey. or 13 .BGR."),
-            ("setColorSpace", ([13],), "colorSpace is"),
-            ("setCaptureInterval", (0,), "captureInterval is 0, allowed is 1 to"),
             ("setPictureFormat", ("gif",), "pictureFormat is 'gif', allowed is one of bmp"),
             ("takePictures", (0, "", "a"), "numberOfPictures is 0, allowed is a whole number, 1 to"),
-            ("takePictures", ("a", "", "a"), "numberOfPictures is 'a', allowed is a whole number"),
             ("takePicture", ("a", 5), "fileName is 5, allowed is a text"),
-            ("takePicture", ([1], "a"), r"folderPath is .1.?., allowed is a text"),
-            ("takePicture", ("a", "x" * 1000000), "fileName is 'x{40}...', allowed is 4000 characters at most"),
-            ("takePicture", ("a", ""), "fileName is '', allowed is the name of a file"),
             ("takePicture", ("../..", "a"), "is not inside"),
-            ("takePicture", ("/tmp", "a"), "is not inside"),
-            ("takePicture", ("no_folder", "a"), "no_folder"),
         ],
     )
 
@@ -214,28 +200,15 @@ def test_a_film_that_is_there_is_kept_when_it_must_not_be_overwritten_and_withou
     assert not (folder / "films" / "empty.avi").exists()
 
 
-def test_the_end_of_the_simulator_completes_the_film(tmp_path):
-    simulator = Simulator(tmp_path)
-    simulator.ALVideoRecorder.startRecording("", "end")
-    simulator.advance(1.0)
-    simulator.close()
-    assert read(tmp_path / "end.avi")[3] == 15
-
-
-def test_what_films_cannot_be_is_refused_with_what_they_can(films, folder):
-    (folder / "folder.avi").mkdir()
+def test_what_films_cannot_be_is_refused_with_what_they_can(films):
     refuses(
         films,
         [
-            ("setCameraID", (2,), "camera is 2, allowed is"),
             ("setResolution", (3,), "resolution is 3, allowed is 0 .160x120., 1 .320x240. or 2 .640x480."),
             ("setColorSpace", (11,), "colorSpace is 11, allowed is 0 .grey. or 13 .BGR."),
             ("setFrameRate", (31.0,), "frameRate is 31.0, allowed is 1 to 30"),
             ("setVideoFormat", ("H264",), "videoFormat is 'H264', allowed is MJPG or IYUV"),
             ("startRecording", ("..", "a"), "is not inside"),
-            ("startRecording", ("/etc", "a"), "is not inside"),
-            ("startRecording", ("films", ""), "fileName is '', allowed is the name of a file"),
-            ("startRecording", ("", "folder"), "folder.avi' cannot be written: Is a directory"),
         ],
     )
     films.setFrameRate(2)

@@ -1,7 +1,5 @@
 """NaoMotion on the simulated robot."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

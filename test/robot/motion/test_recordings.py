@@ -1,7 +1,5 @@
 """Motions recorded from the joints, replayed, mirrored, kept under names."""
 
-from __future__ import annotations
-
 import pytest
 from genpy import Duration
 
@@ -105,27 +103,14 @@ def test_names_are_changed_deleted_and_used_within_a_chain(stiff_robot, motion, 
     motion.succeed(play("wave"))  # that of the library
 
 
-@pytest.mark.parametrize("mirror", [False, True])
-def test_a_joint_that_leant_on_its_stop_is_replayed_to_the_limit(stiff_robot, motion, store, angle, mirror):
-    joint, limit = ("RShoulderRoll", -1.3265) if mirror else ("LShoulderRoll", 1.3265)
-    store.save("stop", RecordedMotion((joint,), (0.0, 1.0), ((0.0,), (limit * 1.004,))))
-    motion.succeed(play("stop", mirror=mirror))
-    assert angle("LShoulderRoll") == pytest.approx(1.3265, abs=NEAR)
-
-
 REFUSED = [
     (play("wafe"), "did you mean 'wave'"),
     (play("mine", speed=100.0), "RShoulderRoll cannot go"),
-    (play("mine", speed=-1.0), "field speed"),
     (play("wide", mirror=True), "RShoulderRoll cannot go to -1.5000"),
     (record("../x"), "is no name for a motion"),
-    (record(".hidden"), "is no name for a motion"),
-    (record(""), "is no name for a motion"),
     (record("x", duration=0.0), "field duration"),
-    (record("x", rate=1000.0), "field rate"),
     (f("renameMotion", str_param="mine"), "field texts"),
     (f("renameMotion", str_param="mine", texts=["wide"]), "there is a motion 'wide' already"),
-    (f("renameMotion", str_param="wafe", texts=["greet"]), "did you mean 'wave'"),
     (f("deleteMotion", str_param="nothing"), "there is no motion 'nothing'"),
 ]
 

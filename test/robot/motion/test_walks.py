@@ -1,7 +1,5 @@
 """Goals that walk: where the robot really gets, what it does meanwhile, and that every end is on two feet."""
 
-from __future__ import annotations
-
 import json
 import math
 import threading
@@ -9,7 +7,6 @@ import threading
 import pytest
 from genpy import Duration
 
-from nao_library_modules.errors import Preempted
 from nao_library_modules.places import Place
 from nao_library_msgs.msg import MotionFunction
 
@@ -101,12 +98,8 @@ def test_targets_in_the_world_and_in_frames_of_tf(robot, motion, walked):
     points = [start.then(Place(*point)) for point in ((0.05, 0.1, 0.0), (0.05, 0.05, 0.0))]
     motion.succeed(f("walkPath", values=[n for point in points for n in point], frame=1))
     walked(0.05, 0.05)
-    motion.succeed(f("walk_path", values=[0.05, 0.0, 0.0]))
-    walked(0.1, 0.05)
     assert "the frame chair cannot be found" in motion.refused(f("walkTarget", values=[0, 0, 0], str_param="chair"))
-    motion.edge.frames["moon"] = Place(90.0, 0.0, 0.0)
-    assert "x cannot be 140" in motion.refused(f("walkTarget", values=[50.0, 0.0, 0.0], str_param="moon"))
-    walked(0.1, 0.05)
+    walked(0.05, 0.05)
 
 
 def test_footsteps_go_where_they_are_put(robot, motion, walked, stands):
@@ -143,9 +136,7 @@ def test_a_goal_may_leave_it_walking_and_another_one_ends_it(robot, motion, way,
     stands()
 
 
-def test_head_and_arms_move_while_it_walks(robot, motion, way, angle, lights):
-    from nao_library_msgs.msg import LedFunction
-
+def test_head_and_arms_move_while_it_walks(motion, way, angle):
     goal = motion.send(
         f("setMoveArmsEnabled", names=["LArm"], enable=False),
         f("moveToward", values=[1.0, 0.0, 0.0]),
@@ -153,8 +144,6 @@ def test_head_and_arms_move_while_it_walks(robot, motion, way, angle, lights):
         f("setPose", names=["LArm"], angles=[0.5, 0.3, -1.0, -0.8, 0.0, 0.5], duration=1.5),
         f("getRobotVelocity"), f("stopMove"),
     )  # fmt: skip
-    lights.succeed(LedFunction(function="fade", lights=["Brain0"], i_values=[0.0], duration=1.0))
-    assert goal.active and robot.led("Head/Led/Front/Right/1") < 0.02
     goal.finish()
     assert goal.state == "succeeded" and float(goal.result.results[4].values[0]) > 0.05 and way()[0] > 0.15
     assert angle("HeadYaw") == pytest.approx(0.3, abs=0.05) and angle("LShoulderPitch") == pytest.approx(0.5, abs=0.1)
@@ -179,7 +168,7 @@ def test_settings_of_the_walk(robot, motion):
     "function, moment",
     [
         (walk(2.0), 0.4), (f("walkPath", values=[1, 0, 0, 2, 0, 0]), 1.7),
-        (walk(0, 0, 3.0), 1.1), (f("moveToward", 60.0, values=[-1, 0.5, 0.2]), 1.9),
+        (f("moveToward", 60.0, values=[-1, 0.5, 0.2]), 1.9),
         (f("setFootStepsWithSpeed", names=["LLeg", "RLeg"] * 4, values=[0.04, 0.1, 0, 0.04, -0.1, 0] * 4), 1.3),
     ],
 )  # fmt: skip
@@ -192,22 +181,19 @@ def test_cancelled_at_any_moment_it_stands_on_both_feet(robot, motion, stands, f
     stands()
 
 
-@pytest.mark.parametrize("end", ["cancelled", "failed", "cancelled while it waits for the end"])
-def test_a_walk_that_goes_on_ends_with_a_goal_that_does_not_succeed(robot, motion, angle, stands, end):
+@pytest.mark.parametrize("end", ["cancelled", "failed"])
+def test_a_walk_that_goes_on_ends_with_a_goal_that_does_not_succeed(robot, motion, stands, end):
     later = {
         "cancelled": f("angleInterpolation", names=["LElbowYaw"], angles=[0.5], times=[8.0]),
         "failed": f("getData", str_param="nowhere"),
-        "cancelled while it waits for the end": f("waitUntilMoveIsFinished"),
     }[end]
     goal = motion.send(f("move", 0.5, values=[0.05, 0, 0]), later)
     robot.advance(1.5)
-    assert (goal.finish() if end == "failed" else goal.cancel()).state == {"failed": "aborted"}.get(end, "preempted")
+    assert (goal.finish() if end == "failed" else goal.cancel()).state == {
+        "failed": "aborted",
+        "cancelled": "preempted",
+    }[end]
     stands()
-    if end == "cancelled":
-        assert robot.ALMotion.getTaskList() == []
-        at = angle("LElbowYaw")
-        robot.advance(0.5)
-        assert angle("LElbowYaw") == pytest.approx(at, abs=0.03), "arms stop as well"
 
 
 def test_who_stops_it_on_the_way_is_not_taken_for_an_arrival(robot, motion, angle, stands, on_its_way):
@@ -219,28 +205,13 @@ def test_who_stops_it_on_the_way_is_not_taken_for_an_arrival(robot, motion, angl
     assert "the walk was stopped (another client, a protection of the robot or a limit did that)" in goal.text
     assert "the robot got to x 0.1" in goal.text and "instead of x 2.000 m" in goal.text
     stands()
-    goal = motion.send(f("move", values=[0.05, 0, 0], duration=20.0))
-    robot.advance(1.0)
-    robot.post("ALMotion", "stopMove")
-    goal.finish()
-    assert goal.state == "aborted" and "the walk was stopped" in goal.text
-
-
-def test_an_obstacle_on_the_way_is_told(robot, motion, stands):
-    wall = "{name: wall, box: [0.1, 2.0, 1.0], position: [0.85, 0.0, 0.5]}"
-    robot.NaoSimulation.placeObject(wall)
-    robot.ALMotion.setOrthogonalSecurityDistance(0.4)
-    goal = motion.play(walk(2.0))
-    assert goal.state == "aborted" and "the walk was stopped (" in goal.text and "obstacle" in goal.text
-    stands()
 
 
 def test_somebody_who_takes_the_walk_over_is_not_stopped(robot, motion, on_its_way):
     goal = motion.send(walk(2.0))
     on_its_way()
     robot.ALMotion.moveToward(0.5, 0.0, 0.0)
-    goal.finish()
-    assert goal.state == "aborted" and robot.ALMotion.moveIsActive()
+    assert goal.finish().state == "aborted" and robot.ALMotion.moveIsActive()
 
 
 def test_a_fall_on_the_way_ends_the_goal(robot, motion, angle, on_its_way):
@@ -253,34 +224,6 @@ def test_a_fall_on_the_way_ends_the_goal(robot, motion, angle, on_its_way):
     robot.advance_until(lambda: not robot.value("robotIsWakeUp"), 5.0)
     robot.advance(1.5)
     assert "the legs are limp: wakeUp first" in motion.refused(walk(0.1))
-
-
-def test_a_fall_ends_a_goal_that_only_waits_for_the_end_of_a_walk(robot, motion):
-    motion.succeed(f("move", values=[0.05, 0, 0]))
-    goal = motion.send(f("waitUntilMoveIsFinished"))
-    robot.advance(0.5)
-    robot.ALMemory.raiseEvent("ALMotion/RobotIsFalling", True)
-    goal.finish()
-    assert goal.state == "aborted" and "the robot fell" in goal.text
-
-
-def test_a_walk_outside_of_a_goal_ends_on_two_feet_as_well(robot, motion, stands):
-    motion.succeed(f("getAngles", names=["Head"]))
-    ended = []
-
-    def alone():
-        with pytest.raises(Preempted):
-            motion.module.run("moveTo", ([0.4, 0.0, 0.0], 0.0, (), ()), 0.0)
-        ended.append("preempted")
-
-    thread = threading.Thread(target=alone, daemon=True)
-    thread.start()
-    robot.advance_until(lambda: robot.ALMotion.moveIsActive(), 5.0)
-    robot.advance(1.0)
-    motion.module.interrupt.trigger()
-    robot.advance_until(lambda: not thread.is_alive(), 5.0)
-    assert ended == ["preempted"]
-    stands()
 
 
 @pytest.mark.parametrize("whose", ["a goal's", "somebody else's"])
@@ -301,36 +244,18 @@ def test_only_a_walk_that_a_goal_left_going_ends_with_the_node(robot, motion, wh
 BACK = {"names": ["LLeg"], "times": [1.0]}
 REFUSED = [
     (f("moveTo", values=[0.3, 0.0]), "field values: 2 numbers"),
-    (f("moveTo"), "field values: 0 numbers"),
-    (walk(math.nan), "x cannot be nan"),
-    (walk(300), "x cannot be 300: -100 to 100 m"),
     (walk(0, 0, 90), "theta cannot be 90: -3.1417 to 3.1417 rad"),
-    (walk(1, duration=-1.0), "field duration"),
     (f("moveTo", values=[1, 0, 0, 2, 0, 0], duration=5.0), "places on the way"),
     (walk(1, gait=["MaxStepx"], gait_values=[0.04]), "did you mean 'MaxStepX'"),
-    (walk(1, gait=["MinStepPeriod"], gait_values=[0.3]), "is no parameter of a walk"),
     (walk(1, gait=["LeftStepHeight"], gait_values=[0.02]), "for move and moveToward"),
     (walk(1, gait=["StepHeight"], gait_values=[0.05]), "StepHeight cannot be 0.05: 0.005 to"),
-    (walk(1, gait=["StepHeight"], gait_values=[math.nan]), "StepHeight cannot be nan"),
-    (walk(1, gait=["StepHeight"]), "0 values for 1 parameters"),
-    (f("move", values=[0.1, 0]), "x, y (m/s) and theta (rad/s)"),
     (f("move", values=[10.0, 0, 0]), "x cannot be 10"),
     (f("moveToward", values=[0, -1.1, 0]), "y cannot be -1.1: -1 to 1"),
-    (f("moveToward", values=[0, 0, 1], gait=["Frequency"], gait_values=[2.0]), "Frequency cannot be 2: 0 to 1"),
-    (f("walkTarget", values=[1, 0, 0, 2, 0, 0]), "6 numbers"),
     (f("walkTarget", values=[1, 0, 0], frame=3), "field frame"),
-    (f("walkPath", values=[1, 0, math.inf], frame=1), "theta cannot be inf"),
-    (f("setFootSteps", names=["LArm"], values=[0, 0.1, 0], times=[1.0]), "LLeg, RLeg"),
-    (f("setFootSteps", values=[0, 0.1], **BACK), "2 numbers for 1 steps"),
     (f("setFootSteps", names=["LLeg"] * 2, values=[0, 0.1, 0] * 2, times=[1.0, 2.0]), "cannot step twice"),
     (f("setFootSteps", values=[0, -0.1, 0], **BACK), "y of a step of LLeg cannot be -0.1"),
-    (f("setFootSteps", values=[0.1, 0.1, 0], **BACK), "x of a step of LLeg cannot be 0.1"),
-    (f("setFootSteps", names=["RLeg"], values=[0, -0.1, 0], times=[1.0, 2.0]), "2 times for 1 steps"),
-    (f("setFootStepsWithSpeed", names=["RLeg"], values=[0, -0.1, 0], speed=2.0), "above 0 to 1"),
-    (f("getMoveConfig", str_param="Mox"), "'Mox' is not known: did you mean 'Max'"),
     (f("setMoveArmsEnabled", names=["LLeg"]), "LArm, RArm"),
     (f("setOrthogonalSecurityDistance", values=[-0.1]), "0 to 2.5 m"),
-    (f("setTangentialSecurityDistance", values=[]), "0 to 2.5 m"),
 ]  # fmt: skip
 
 
@@ -346,11 +271,9 @@ def test_joints_of_a_walking_leg_are_not_moved(robot, motion):
     def plan(*between):
         return [f("move", values=[0.1, 0, 0]), *between, LEG, f("getTaskList", dry_run=True)]
 
-    for end in ("stopMove", "waitUntilMoveIsFinished", "killAll", "killMove", "wakeUp"):
+    for end in ("stopMove", "waitUntilMoveIsFinished", "killMove", "wakeUp"):
         motion.succeed(*plan(f(end)))
-    motion.succeed(*plan(f("goToPosture", str_param="Stand")))
-    for chain in (plan(), plan(LOOK)):
-        assert "the robot walks, and LHipRoll with it: stopMove" in motion.refused(*chain)
+    assert "the robot walks, and LHipRoll with it: stopMove" in motion.refused(*plan())
 
 
 def test_nobody_walks_on_limp_or_soft_legs_or_from_the_floor(robot, motion):
@@ -375,10 +298,3 @@ def test_a_dry_run_tells_how_long_walks_take(robot, motion, walked):
     forward, slowly, for_a_while = (float(e.values[0]) for e in motion.succeed(*functions).results)
     assert 5.0 < forward < 8.0 and (slowly, for_a_while) == (60.0, 3.0)
     walked(0.0)
-
-
-def test_arms_that_swing_again_after_their_motion_were_not_stopped(robot, motion):
-    robot.ALMotion.setMoveArmsEnabled(True, True)
-    robot.ALMotion.move(0.1, 0.0, 0.0)
-    robot.advance(1.0)
-    motion.succeed(f("setPose", names=["LShoulderPitch"], angles=[0.5], duration=1.0))

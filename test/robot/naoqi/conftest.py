@@ -1,7 +1,5 @@
 """What the modules of the robot are asked with: calls that take time, calls that are refused, modules of clients."""
 
-from __future__ import annotations
-
 import math  # noqa: F401  for the arguments of refused calls
 import queue
 import re

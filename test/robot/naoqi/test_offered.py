@@ -1,7 +1,5 @@
 """Which of NAOqi's methods the robot answers: each is called with sensible arguments and with hostile ones."""
 
-from __future__ import annotations
-
 import random
 import re
 import zlib

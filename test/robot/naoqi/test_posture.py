@@ -1,7 +1,5 @@
 """ALRobotPosture, ALRobotPose, ALRobotModel: changes of posture, what they answer, and the events about them."""
 
-from __future__ import annotations
-
 from xml.etree import ElementTree
 
 import pytest
@@ -37,14 +35,6 @@ def test_it_goes_to_a_posture_wakes_the_robot_and_tells_the_change(robot, begin,
     assert memory.getEventHistory("PostureChanged") == before
 
 
-def test_a_robot_that_was_pushed_over_gets_up(stiff_robot):
-    stiff_robot.server.push([60.0, 0.0, 0.0], 0.2, "torso")
-    stiff_robot.advance(2.5)
-    assert stiff_robot.ALRobotPosture.getPostureFamily() == "LyingBelly"
-    assert stiff_robot.finish(POSTURE, "goToPosture", "Stand", 1.0, after=15.0) is True
-    assert stiff_robot.ALRobotPosture.getPosture() == "Stand"
-
-
 @pytest.mark.parametrize("end", ["killAll", "stopMove", "cancel"])
 def test_a_change_can_be_ended(stiff_robot, begin, end):
     future = begin(POSTURE, "goToPosture", "Crouch", 0.3, after=1.0)
@@ -75,11 +65,8 @@ def test_another_motion_gives_way_and_apply_posture_wakes_nobody(robot, begin):
 def test_what_is_wrong_is_named(refuses):
     refuses(POSTURE, """
         goToPosture('Standing', 0.5) -> postureName is 'Standing', allowed is one of Crouch, LyingBack
-        applyPosture('Standing', 0.5) -> postureName is 'Standing', allowed is one of Crouch, LyingBack
         goToPosture('Stand', 0.0) -> maxSpeedFraction is 0.0, allowed is above 0 to 1
-        applyPosture('Stand', 0.0) -> maxSpeedFraction is 0.0, allowed is above 0 to 1
         goToPosture('Stand', 1.5) -> maxSpeedFraction is 1.5, allowed is 0 to 1
-        applyPosture('Stand', 1.5) -> maxSpeedFraction is 1.5, allowed is 0 to 1
         setMaxTryNumber(0) -> pMaxTryNumber is 0, allowed is 1 or more
     """)  # fmt: skip
 

@@ -1,12 +1,6 @@
 """ALSonar: sonars that fire while somebody is subscribed, keys and events."""
 
-from __future__ import annotations
-
-import threading
-from contextlib import contextmanager
-
 import pytest
-from simulator import PATIENCE
 
 from nao_sim_bridge.services.sonar import DETECTED, NOTHING
 from nao_sim_bridge.sim.settings import load_settings
@@ -51,27 +45,6 @@ def fires(robot):
     return lambda: robot.value("Device/SubDeviceList/US/Actuator/Value") == 68.0
 
 
-@contextmanager
-def within_a_tick(robot):
-    """Time runs, and has got into a tick when the sensors have been read; it goes on after the block."""
-    begun, go_on = threading.Event(), threading.Event()
-
-    def wait(_):
-        begun.set()
-        go_on.wait(PATIENCE)
-
-    looks = robot.server.simulation.after_tick
-    looks.insert(0, wait)
-    tick = robot.post("NaoSimulation", "advance", TICK)
-    try:
-        assert begun.wait(PATIENCE)
-        yield
-    finally:
-        go_on.set()
-        robot.answer(tick)
-        robot.server.runner.call(lambda: looks.remove(wait), PATIENCE)
-
-
 def test_they_fire_while_somebody_is_subscribed_and_keys_keep_what_was_last(robot, sonar, wall, keys, fires):
     wall(0.8)
     robot.advance(0.3)
@@ -88,44 +61,8 @@ def test_they_fire_while_somebody_is_subscribed_and_keys_keep_what_was_last(robo
     assert keys() == both(0.6) and not fires()
     sonar.subscribe("test")
     assert keys() == both(0.9)
-    sonar.unsubscribe("test")
-    robot.settled()
-    wall(0.5)
-    sonar.subscribe("test")  # again, and no time has passed
-    assert keys() == sonar.getFilteredValues() == both(0.5)
     assert sonar.getCurrentPeriod() == 100 and set(sonar.getEventList()) == {*DETECTED, *NOTHING}
     assert KEY.format("Left") in sonar.getMemoryKeyList()
-
-
-def test_who_subscribes_within_a_tick_sees_what_is_there_now_the_first_and_the_second(robot, sonar, wall, keys):
-    wall(0.9)
-    with within_a_tick(robot):
-        waiting = [robot.post("ALSonar", "subscribe", name) for name in ("one", "two")]
-        assert sonar.getSubscribersInfo() == [["one", 100, 0.0], ["two", 100, 0.0]]
-        assert not any(future.isFinished() for future in waiting)
-    robot.answer(waiting[1])
-    assert keys() == both(0.9)
-
-
-def test_who_subscribes_while_time_runs_sees_what_is_there_now(robot, sonar, wall, keys):
-    robot.server.runner.resume()
-    for distance in (0.9, 0.5) * 3:
-        wall(distance)
-        sonar.subscribe("test")
-        assert keys() == both(distance, 0.03)
-        sonar.unsubscribe("test")
-
-
-@pytest.mark.parametrize("device", ["Head/Touch/Rear", "US/Left"])
-def test_medians_are_those_of_shots_also_when_something_is_broken(robot, sonar, wall, keys, device):
-    robot.NaoSimulation.breakDevice(device)
-    wall(1.0)
-    sonar.subscribe("test")
-    robot.advance(0.6)
-    wall(0.4)
-    robot.advance(FIRST)
-    right, _ = sonar.getFilteredValues()
-    assert keys()[1] == pytest.approx(0.4, abs=0.02) and right == pytest.approx(1.0, abs=0.02)
 
 
 def test_they_fire_for_a_robot_that_walks(stiff_robot, sonar, wall, keys):
@@ -179,16 +116,3 @@ def test_values_come_in_steps_with_further_echoes_and_forget_a_slip(robot, sonar
     echoes = [robot.value(KEY.format("Left") + number) for number in ("", "1", "2")]
     assert echoes == pytest.approx([0.54, 1.2, 5.0], abs=0.02)
     assert robot.value("Device/SubDeviceList/US/Sensor/Value") == pytest.approx(min(keys()))
-    robot.NaoSimulation.removeObject("post")
-    wall(1.0)
-    robot.advance(0.6)
-    wall(0.4)
-    robot.advance(0.1)
-    wall(1.0)
-    robot.advance(0.1)
-    assert sonar.getFilteredValues() == both(1.0, 0.02)
-    wall(None)
-    robot.NaoSimulation.placeObject(POST)
-    robot.advance(0.6)
-    right, left = sonar.getFilteredValues()
-    assert right == 5.0 and left < 0.5

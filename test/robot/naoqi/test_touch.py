@@ -1,7 +1,5 @@
 """ALTouch, ALChestButton, ALTactileGesture: what a client of the robot hears of touches."""
 
-from __future__ import annotations
-
 import queue
 
 import pytest
@@ -71,21 +69,6 @@ def test_the_status_is_that_of_now(robot):
         assert [name for name, touched in touch.getStatus() if touched] == parts
 
 
-def test_an_arm_that_somebody_holds_is_touched(stiff_robot, told):
-    def hold():
-        stiff_robot.advance(0.8)
-        stiff_robot.NaoSimulation.push([12.0, 0.0, 0.0], 1.0, "l_wrist")
-        stiff_robot.advance(2.0)
-
-    assert values(told("TouchChanged", hold)) == [[["LArm", True]], [["LArm", False]]]
-
-
-def test_a_callback_gets_an_event_as_it_happens(robot, listener, press):
-    robot.ALMemory.subscribeToEvent("FrontTactilTouched", "Listener", "onEvent")
-    press(HEAD[0])
-    assert [listener.next()[:2] for _ in range(2)] == [("FrontTactilTouched", 1.0), ("FrontTactilTouched", 0.0)]
-
-
 def test_clicks_of_the_chest_button_are_counted_and_a_reset_forgets_them(robot, press):
     heard = []
     for event in CLICKS:
@@ -96,13 +79,9 @@ def test_clicks_of_the_chest_button_are_counted_and_a_reset_forgets_them(robot, 
         robot.advance(0.8)
         assert heard == [(event, None) for event in CLICKS[:count]]
     press(CHEST_BUTTON)
-    press(CHEST_BUTTON)
     robot.NaoSimulation.reset()
     robot.advance(0.8)
     assert len(heard) == 3
-    press(CHEST_BUTTON)
-    robot.advance(0.8)
-    assert heard[3:] == [(CLICKS[0], None)]
 
 
 @pytest.fixture
@@ -137,7 +116,6 @@ def test_a_gesture_of_ones_own_is_heard_and_times_can_be_changed(robot, press, g
     assert heard.get(timeout=PATIENCE) == "SingleFrontHold"
     refuses("ALTactileGesture", """
         setHoldTime(-1.0) -> hold time is -1.0, allowed is 0 to 10
-        setSettleTime('soon') -> a number of seconds
         createGesture(['000', '200']) -> sensor sequence is
     """)  # fmt: skip
 
@@ -155,8 +133,5 @@ def test_a_hand_touches_and_goes_or_stays_until_it_is_released(robot, told, refu
     assert robot.NaoSimulation.torsoPose()[2] == pytest.approx(height, abs=0.005)
     refuses("NaoSimulation", """
         touch('Head/Touch/Fron', 1.0) -> unknown touch sensor 'Head/Touch/Fron'
-        touch('Head/Touch/Front', -1.0) -> duration is -1.0
-        stroke(['Head/Touch/Front', 'ChestBoard/Button'], 1.0) -> sensors is .*sensors of one part of the robot
         stroke(['Head/Touch/Front', 'Head/Touch/Rear'], 0.0) -> duration is 0.0, allowed is above 0 for a stroke
-        release(['nose']) -> unknown touch sensor 'nose'
     """)  # fmt: skip

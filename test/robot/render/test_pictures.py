@@ -1,7 +1,5 @@
 """The picture process: what is where and what lights up, which engine draws, and what happens when it fails."""
 
-from __future__ import annotations
-
 import logging
 import math
 import os
@@ -36,10 +34,6 @@ def lit(name, channel, level=1.0):
     leds = load_leds()
     lamps = {index for index in leds.devices_of(name) if leds.channels[index] == channel}
     return tuple(level if index in lamps else 0.0 for index in range(89))
-
-
-def at(x, state=STATE):
-    return replace(state, base_position=(x, 0.0, 0.333))
 
 
 def shining(leds):
@@ -90,7 +84,7 @@ def test_other_lamps_light_up_as_bright_as_they_are(renderer):
     assert dark < half < full
 
 
-def test_an_arm_that_rises_is_seen_higher_and_a_robot_far_away_smaller(renderer):
+def test_an_arm_that_rises_is_seen_higher_and_the_robot_throws_a_shadow(renderer):
     angles = list(STATE.joint_positions)
     angles[MODEL.joint_index["LShoulderPitch"]] = -1.5
     raised = replace(STATE, joint_positions=tuple(angles))
@@ -98,9 +92,6 @@ def test_an_arm_that_rises_is_seen_higher_and_a_robot_far_away_smaller(renderer)
     changed = np.any(np.abs(before - after) > 40, axis=2)
     assert changed[:30, 80:].sum() > 20, "above the left shoulder, where nothing was"
     assert changed[:30, :60].sum() == 0
-    empty = renderer.render(at(50.0), FRONT).astype(int)
-    near, far = (np.any(np.abs(renderer.render(at(x), FRONT) - empty) > 40, axis=2).sum() for x in (0.0, -1.5))
-    assert near > 2 * far > 0
     darker = (renderer.render(STATE, replace(FRONT, shadows=False)).astype(int) - before).sum(axis=2) > 60
     assert darker[80:].sum() > 100, "the robot throws a shadow on the floor"
 
@@ -121,7 +112,6 @@ def test_objects_of_the_world_are_seen_where_they_are(world_file):
         before, after = own.render(STATE, FRONT), own.render(moved, FRONT)
         with pytest.raises(RenderError, match="unknown object 'bal': did you mean 'ball'"):
             own.render(replace(STATE, objects={"bal": moved.objects["ball"]}), FRONT)
-        assert np.array_equal(own.render(moved, FRONT), after), "a picture it cannot make is no reason to end"
     # Seen from the front, positive y is on the right.
     assert count(before[:, 80:], 1) > 30 and count(before[:, :80], 1) == 0
     assert count(after[:, :80], 1) > 30 and count(after[:, 80:], 1) == 0
@@ -140,8 +130,6 @@ def test_a_process_that_is_killed_or_hangs_is_started_again(caplog):
         assert np.array_equal(own.render(STATE, FRONT), before), "after a first picture nobody notices"
         assert warnings_of(caplog) == ["picture: the picture process ended with status -9; it is started again"]
         assert len({first, second, own.pid}) == 3
-        os.kill(own.pid, signal.SIGINT)  # Ctrl-C in the terminal goes to all processes in it
-        assert np.array_equal(own.render(STATE, FRONT), before) and len(warnings_of(caplog)) == 1
         os.kill(own.pid, signal.SIGSTOP)
         with pytest.raises(RenderError, match="no answer .* within 0.2 s"):
             own.render(STATE, FRONT, timeout=0.2)
@@ -167,23 +155,11 @@ def test_the_process_ends_with_its_parent():
 
 
 def test_what_cannot_start_says_why(monkeypatch):
-    with pytest.raises(RenderError, match="no world 'moon'"):
-        Renderer("moon").start()
     with pytest.raises(UnknownName, match="unknown renderer 'opengles': did you mean 'opengl'"):
         Renderer(engine="opengles")
     monkeypatch.delenv("DISPLAY", raising=False)
     with pytest.raises(RenderError, match="no display"):
         Viewer().start()
-    monkeypatch.setenv("DISPLAY", ":97")
-    with pytest.raises(RenderError, match="window: "):
-        Viewer().start()
-
-
-def test_opengl_draws_where_it_can_be_had(caplog):
-    caplog.set_level(logging.INFO)
-    with Renderer() as own:
-        assert own.engine is None and own.start().engine.startswith("OpenGL: ")
-    assert f"pictures are drawn by {own.engine}" in caplog.text and not warnings_of(caplog)
 
 
 def test_without_opengl_the_built_in_engine_draws_and_one_warning_says_how_to_get_it(monkeypatch, caplog):
@@ -200,52 +176,13 @@ def test_without_opengl_the_built_in_engine_draws_and_one_warning_says_how_to_ge
         Renderer(engine="opengl").start()
 
 
-def test_a_driver_that_takes_its_process_with_it_or_is_not_there_is_done_without(tmp_path, monkeypatch, caplog):
-    (tmp_path / "moderngl.py").write_text("import os\nos._exit(7)\n")
-    with monkeypatch.context() as broken:
-        broken.setenv("PYTHONPATH", str(tmp_path))
-        with Renderer() as own:
-            assert own.start().engine.startswith("the built-in renderer")
-        with pytest.raises(RenderError, match="ended with status 7"):
-            Renderer(engine="opengl").start()
-    (warning,) = warnings_of(caplog)
-    assert "ended with status 7" in warning
-    monkeypatch.setitem(sys.modules, "moderngl", None)
-    for name in ("opengl", "opengl.engine"):
-        monkeypatch.delitem(sys.modules, f"nao_sim_bridge.sim.render.{name}", raising=False)
-    drawing, complaint = open_engine("auto", load_world("empty"), "V6")
-    drawing.close()
-    assert drawing.name.startswith("the built-in renderer") and HELP in complaint
-
-
-@pytest.fixture(scope="module")
-def own():
-    with Renderer("empty") as started:
-        yield started.start()
-
-
-def test_a_capture_is_what_the_camera_makes_of_what_is_drawn(own):
+def test_a_capture_is_what_the_camera_makes_of_what_is_drawn():
     state, view = placed(BALL), shot(width=160, height=120)
     drawing, _ = open_engine("auto", load_world("empty"), "V6")
     expected = photograph(drawing.draw(state, View.of_shot(view)), view)
     drawing.close()
-    captured = own.capture(state, view)
+    with Renderer("empty") as own:
+        captured = own.capture(state, view)
     assert captured == expected
     pixels = np.frombuffer(read_photograph(captured).data, np.uint8).reshape(120, 160, 3)
     assert middle(clear(pixels, 1) > 0.3)[0] < 70
-
-
-def test_a_capture_that_cannot_be_made_is_an_error_and_what_was_placed_is_there_afterwards(own):
-    process, state = own.pid, placed(BALL)
-    with pytest.raises(RenderError, match="unknown object 'bal'"):
-        own.capture(placed(BALL, objects={"bal": Pose((0.0, 0.0, 0.0), UNTURNED)}), shot())
-    with pytest.raises(RenderError, match="colorSpace"):
-        own.capture(STATE, replace(shot(), color_space=99))
-    assert read_photograph(own.capture(STATE, shot())).data
-    with pytest.raises(RenderError):
-        own.render(replace(state, gone=frozenset(["nothing"])), AHEAD)
-    before = own.render(state, AHEAD)
-    assert np.count_nonzero(clear(before, 1)) > 50 and own.pid == process
-    os.kill(own.pid, signal.SIGKILL)
-    assert np.array_equal(own.render(state, AHEAD), before)
-    assert not np.array_equal(own.render(AWAY, AHEAD), before)

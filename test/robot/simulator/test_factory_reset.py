@@ -1,7 +1,5 @@
 """A factory reset: whatever clients have changed, the server is as one that has just been started."""
 
-from __future__ import annotations
-
 import os
 import queue
 import re

@@ -1,7 +1,5 @@
 """What only a simulator has: time, resets, pushes, fingers, ground truth, pictures, things that come and go."""
 
-from __future__ import annotations
-
 import io
 import json
 import re
@@ -52,19 +50,6 @@ def test_time_passes_as_it_is_asked_to(robot, simulation, refused):
     )
 
 
-def test_ticks_are_counted_beyond_a_factory_reset(robot):
-    runner = robot.server.runner
-    before = runner.ticks
-    robot.advance(0.1)
-    passed = runner.ticks - before
-    assert passed == robot.now.tick > 0 and runner.wait_for_tick(before, PATIENCE) is robot.now
-    robot.server.factory_reset()
-    assert robot.now.tick == 0 and runner.ticks == before + passed
-    assert runner.wait_for_tick(runner.ticks, 0.05) is None
-    robot.advance(0.1)
-    assert runner.ticks == before + 2 * passed
-
-
 def test_a_push_throws_it_over_and_a_reset_sets_it_up_and_ends_its_motions(stiff_robot, simulation):
     stiff_robot.advance(0.5)
     x, y, z, *orientation = simulation.torsoPose()
@@ -84,16 +69,6 @@ def test_a_push_throws_it_over_and_a_reset_sets_it_up_and_ends_its_motions(stiff
     assert simulation.torsoPose()[2] == pytest.approx(0.331, abs=0.005) and simulation.time() == before
     assert [stiff_robot.answer(call) for call in calls] == [None, None]
     assert stiff_robot.ALMotion.getAngles("HeadYaw", False) == [0.0]
-    simulation.push([8.0, 0.0, 0.0], 0.3, "r_wrist")
-    stiff_robot.advance(0.3)
-    assert stiff_robot.ALMotion.getAngles(["RShoulderPitch"], True)[0] < 1.2
-
-
-def test_it_stands_up_by_its_own_motors_and_stays(robot, simulation):
-    robot.finish("ALMotion", "wakeUp", after=2.5)
-    before = simulation.torsoPose()
-    robot.advance(6.0)
-    assert simulation.torsoPose()[:3] == pytest.approx(before[:3], abs=0.001)
 
 
 def test_fingers_pictures_and_what_cannot_be(robot, simulation, refused):
@@ -106,11 +81,7 @@ def test_fingers_pictures_and_what_cannot_be(robot, simulation, refused):
     refused(
         ("push", [1.0, 2.0], 0.1, "torso", r"force is .*, allowed is \[x, y, z\] in N"),
         ("push", [1.0, 2.0, 3.0], -0.1, "torso", "duration is -0.1.*, allowed is 0 to 60"),
-        ("push", [1.0, 2.0, 3.0], 100.0, "torso", "duration is 100.0, allowed is 0 to 60"),
-        ("push", [1.0, 2.0, float("nan")], 0.1, "torso", r"force\[2\] is nan, allowed is a finite number"),
-        ("push", [1.0, 2.0, 3.0], 0.1, "torsoo", "unknown link 'torsoo': did you mean 'torso'"),
         ("press", ["Head/Touch/Frnt"], "unknown touch sensor 'Head/Touch/Frnt': did you mean 'Head/Touch/Front'"),
-        ("picture", "front", 0, 100, r"picture size is \(0, 100\), allowed is 1 to 4096 pixels each way"),
         ("picture", "frnt", 64, 64, "unknown view 'frnt': did you mean 'front'"),
     )
 
@@ -176,19 +147,11 @@ def test_what_cannot_be_placed_or_moved_is_refused(simulation, refused):
     simulation.placeObject(BALL)
     before = simulation.objects()
     refused(
-        ("placeObject", "", "object: is None, not a mapping"),
         ("placeObject", "{name: b", "description is .*allowed is an entry of a world file: "),
-        ("placeObject", "[1, 2]", r"object: is \[1, 2\], not a mapping"),
         ("placeObject", "{name: c, bal: 1, position: [0, 0, 0]}", "unknown key 'bal', did you mean 'ball'"),
-        ("placeObject", "{name: c, landmark: 65, position: [0, 0, 0]}", "landmark is '65', allowed is one of 64"),
         ("placeObject", "{name: &a c, ball: 1, position: *a}", "aliases are not allowed here"),
-        ("placeObject", "a" * 20001, "20000 characters at most"),
-        ("placeObject", "{name: floor, ball: 0.03, position: [1, 0, 0]}", "name is 'floor', allowed is"),
-        ("placeObject", "{name: b, ball: 0.03, position: [1, 0, 0]}", "name is 'b', allowed is .*taken: b, floor"),
         ("placeObject", "{name: c, ball: 0.1, position: [0, 0, 0.3]}", "inside the robot"),
         ("moveObject", "bal", [1.0, 0.0, 0.0], [], 0.0, r"unknown object 'bal': .* \(there are: b\)"),
-        ("moveObject", "b", [1.0, 0.0], [], 0.0, "position is"),
         ("moveObject", "b", [1.0, 0.0, 0.0], [], -1.0, "duration is -1.0"),
-        ("removeObject", "ball", "unknown object 'ball'"),
     )
     assert simulation.objects() == before

@@ -1,7 +1,5 @@
 """Robots that really walk."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

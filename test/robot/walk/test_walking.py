@@ -1,7 +1,5 @@
 """A robot that really walks: where it gets to, and what its joints do meanwhile."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -25,7 +23,6 @@ def test_it_gets_where_it_was_told_to_go(walker, goal):
     walker.run(0.2)
     assert walker.stands
     x, y, yaw = walker.place().seen_from(start)
-    # By its odometry, which it walks by, it comes closer.
     bx, by, byaw = walker.locomotion.position(use_sensors=True).seen_from(believed)
     assert math.hypot(x - goal[0], y - goal[1]) < 0.008 and yaw == pytest.approx(goal[2], abs=0.008)
     assert math.hypot(bx - goal[0], by - goal[1]) < 0.004 and byaw == pytest.approx(goal[2], abs=0.008)
@@ -99,24 +96,6 @@ def test_before_it_walks_it_takes_its_stance_from_wherever_it_stands(walker_in, 
     angles = [walker.joint(name) for name in LEGS]
     walker.until(walker.locomotion.init())
     assert [walker.joint(name) for name in LEGS] == pytest.approx(angles, abs=0.03), "it has its stance already"
-    start = walker.place()
-    assert walker.until(walker.move_to((0.05, 0.0, 0.0))) is True and walker.stands
-    assert walker.place().seen_from(start).x == pytest.approx(0.05, abs=0.007)
-
-
-def test_told_to_walk_while_it_takes_its_stance_it_goes_straight_from_there(walker):
-    """It stands turned in the world of its odometry: nothing of that may show in its first step."""
-    walker.until(walker.move_to((0.0, 0.0, 0.5)))
-    begun = walker.place()
-    walker.locomotion.init()
-    walker.run(0.2)
-    task = walker.move_to((0.08, 0.0, 0.0))
-    while not walker.locomotion.steps().fixed:
-        walker.simulation.tick()
-    for step in (*walker.locomotion.steps().fixed, *walker.locomotion.steps().clearable):
-        assert abs(step.placement.yaw) < 0.05
-    assert walker.until(task) is True
-    assert walker.place().seen_from(begun)[:2] == pytest.approx((0.08, 0.0), abs=0.007)
 
 
 def test_planned_steps_are_told_before_they_are_made_and_leave_exactly_these_footprints(walker):
@@ -146,49 +125,6 @@ def test_planned_steps_are_told_before_they_are_made_and_leave_exactly_these_foo
     for side in (LEFT, RIGHT):
         x, y, yaw = made[side].seen_from(feet[side])
         assert math.hypot(x, y) < 0.003 and abs(yaw) < 0.018
-
-
-def test_steps_can_be_added_and_taken_back_on_the_way(walker):
-    def step(side, x):
-        return Placement(side, FootPose(x, side * 0.1, 0.0), 0.5)
-
-    start = walker.place()
-    first = walker.locomotion.set_steps([step(LEFT, 0.03), step(RIGHT, 0.03)], walker.GAIT, clear=False)
-    second = walker.locomotion.set_steps([step(LEFT, 0.03), step(RIGHT, 0.03)], walker.GAIT, clear=False)
-    assert second is first
-    while not walker.locomotion.steps().fixed:
-        walker.simulation.tick()
-    walker.locomotion.set_steps([step(RIGHT, 0.0)], walker.GAIT, clear=True)
-    assert walker.until(first) is True
-    assert walker.place().seen_from(start).x == pytest.approx(0.03, abs=0.004)
-
-
-def swing_of(now):
-    """How far the left arm is further back than the right one, rad."""
-    left, right = (now.positions[MODEL.joint_index[f"{side}ShoulderPitch"]] for side in "LR")
-    return left - right
-
-
-def test_the_head_is_free_and_arms_swing_against_the_legs_but_give_way_to_who_wants_them(walker):
-    joint = walker.model.joint_index["LShoulderPitch"]
-    walker.move(0.08)
-    walker.run(2.5)
-    walker.aim(HeadYaw=0.8, HeadPitch=-0.2)
-    strides = []
-    for _ in range(120):
-        feet, now = walker.feet(), walker.simulation.tick()
-        strides.append(feet[LEFT].seen_from(feet[RIGHT]).x * swing_of(now))
-    assert sum(strides) > 1.0, "the left arm is back when the left leg is ahead"
-    greeting = walker.robot.motion.follow("wave", [joint], lambda commands: {joint: Ramp(commands[joint], 0.5, 1.0)})
-    # Larger shoulder pitches point further back: the arm goes ahead as it is told, and not against it.
-    told = []
-    while not greeting.finished:
-        told.append(walker.simulation.tick().commands[joint])
-    assert len(told) > 60 and told == sorted(told, reverse=True)
-    assert told[-1] == pytest.approx(0.5)
-    assert max(swing_of(now) for now in walker.watch(1.5)) > 0.1, "it does not swing again"
-    assert (walker.joint("HeadYaw"), walker.joint("HeadPitch")) == pytest.approx((0.8, -0.2), abs=0.02)
-    assert walker.locomotion.active
 
 
 def test_a_walk_waits_for_what_moves_the_legs_and_that_for_a_walk(walker):

@@ -1,7 +1,5 @@
 """Several robots in one world: they see, hear and touch each other, time is one, and each has its own ground."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +9,7 @@ import pytest
 
 from nao_sim_bridge.sim.errors import NotAllowed
 from nao_sim_bridge.sim.places import on_circle, parse_places
-from nao_sim_bridge.sim.render.scene import Camera, preset_camera
+from nao_sim_bridge.sim.render.scene import preset_camera
 from nao_sim_bridge.sim.rotations import roll_pitch_yaw
 from nao_sim_bridge.sim.scene import Scene
 from nao_sim_bridge.sim.shared_world import SharedWorld
@@ -82,42 +80,6 @@ def test_robots_stand_on_a_circle_look_at_its_middle_and_reckon_from_their_own_s
         assert now.odometry.position[:2] == pytest.approx((0.0, 0.0), abs=0.02)
 
 
-def test_the_same_seed_is_the_same_run_and_each_robot_has_noise_of_its_own(company):
-    runs = []
-    for _ in range(2):
-        robots = company(sensor_noise=1.0, seed=5)
-        robots[0].robot.push((30.0, 10.0, 0.0), 0.1)
-        robots[0].sound.loudspeakers.play(burst(), "burst")
-        robots[0].run(0.5)
-        sensed = [(one.snapshot.positions, one.snapshot.torso, one.snapshot.imu) for one in robots]
-        runs.append((sensed, [one.sound.microphones.heard(0.2, 0.4).tobytes() for one in robots]))
-    assert runs[0] == runs[1]
-    sensed, sounds = runs[0]
-    assert len({repr(positions) for positions, _, _ in sensed}) == len(set(sounds)) == 3
-
-
-def test_a_robot_that_is_alone_does_not_notice_that_it_could_have_company(company, bench):
-    ((one,), alone) = company("0,0,0"), bench().simulation
-    for simulation in (one, alone):
-        simulation.robot.push((25.0, 5.0, 0.0), 0.2)
-        simulation.run(1.0)
-    assert one.snapshot == alone.snapshot
-    place(one, name="b", ball=0.04, position=[-1.5, 0.0, 0.04])
-    one.run(0.2)
-    one.reboot()
-    assert one.snapshot.objects == {} and one.time == pytest.approx(1.2), "its reboot is a reset"
-
-
-def test_time_waits_for_each_of_them(company):
-    robots, called = company(), []
-    shared = robots[0].shared
-    assert not shared.holds()
-    robots[2].holds.append(lambda: True)
-    shared.wake = lambda: called.append(True)
-    robots[1].wake()
-    assert shared.holds() and called == [True]
-
-
 def test_they_push_each_other_with_equal_forces_until_one_falls(company):
     standing, coming, third = company("0,0,0; 0.38,0,180; -2,0,0")
 
@@ -139,8 +101,7 @@ def test_they_push_each_other_with_equal_forces_until_one_falls(company):
 def test_a_foot_of_another_robot_presses_a_bumper_and_sonars_hear_it(company):
     one, other = company(FACE_TO_FACE)
     one.run(1.0)
-    for robot in (one, other):
-        assert robot.snapshot.sonars == pytest.approx((0.54, 0.54), abs=0.03)
+    assert [robot.snapshot.sonars for robot in (one, other)] == [pytest.approx((0.54, 0.54), abs=0.03)] * 2
     walls, feet = company("0,0,0; 0.36,-0.1,180")
     assert not walls.snapshot.touched
     for ankle in ("l_ankle", "r_ankle"):
@@ -175,28 +136,16 @@ def test_each_robot_sees_what_the_others_look_like_now(company):
     assert [look.base_position for look in seen] == [one.snapshot.torso.position for one in robots[1:]]
     assert [look.joint_positions for look in seen] == [one.snapshot.positions for one in robots[1:]]
     assert seen[0].led_values[0] == 0.25 and seen[0].led_values == robots[1].robot.leds.values
-    own = robots[1].render_state(robots[1].snapshot)
-    assert (own.base_position, own.led_values) == (seen[0].base_position, seen[0].led_values)
 
 
-@pytest.mark.parametrize("places", [FACE_TO_FACE, "3,1,0; -2,1,0; 0,5,0"])
-def test_one_view_has_all_robots_in_it(company, places):
-    robots = company(places)
+def test_one_view_has_all_robots_in_it(company):
+    robots = company("3,1,0; -2,1,0; 0,5,0")
     camera = preset_camera("robots", robots[0].model, robots[0].render_state(robots[0].snapshot), 640, 480)
     ahead = np.subtract(camera.target, camera.eye)
     for one in robots:
         way = np.subtract(one.snapshot.torso.position, camera.eye)
         angle = math.acos(np.dot(way, ahead) / np.linalg.norm(way) / np.linalg.norm(ahead))
         assert angle < camera.fov / 2.0
-
-
-def test_a_picture_shows_another_robot_where_it_is(company):
-    looks, _ = company("0,0,0; 0.8,0.25,180")
-    state = looks.render_state(looks.run(0.1))
-    camera = Camera(eye=(0.1, 0.0, 0.45), target=(1.0, 0.0, 0.35), width=160, height=120, fov=math.radians(50.0))
-    pictures = [looks.renderer.render(one, camera, 60.0).astype(int) for one in (state, replace(state, others=()))]
-    columns = np.flatnonzero(np.abs(pictures[0] - pictures[1]).max(axis=(0, 2)) > 60)
-    assert len(columns) > 10 and columns.max() < 80, "to the left of the middle"
 
 
 def test_a_voice_arrives_with_distance_delay_and_the_direction_of_the_head(company):
@@ -216,19 +165,6 @@ def test_a_voice_arrives_with_distance_delay_and_the_direction_of_the_head(compa
     assert left == right and front < left, "the speaker is ahead"
     left, right, _, _ = heard(turned, sound, began)[0]
     assert right < left, "the head looks to the left, so the speaker is to its right"
-    assert near.sound.sources is far.sound.sources and near.sound.sources.names() == []
-    assert not near.sound.loudspeakers.playing, "voices are not sounds of the world"
-
-
-def test_what_the_ears_hear_is_the_same_whenever_they_hear_it(company):
-    (speaker, listener), blocks = company(FACE_TO_FACE), []
-    ears = listener.sound.ears.listen("test", lambda block: blocks.append(block.samples), exact=True)
-    speaker.sound.loudspeakers.play(burst(seconds=0.4), "burst")
-    listener.robot.push((0.0, 30.0, 0.0), 0.3)
-    listener.run(0.6)
-    ears.close()
-    at_once, later = np.concatenate(blocks), listener.sound.microphones.heard(0.0, listener.time)
-    assert np.abs(at_once / 32768.0 - later).max() < 2.0 / 32768.0 and np.abs(later).max() > 0.01
 
 
 def test_a_reset_puts_all_back_and_kills_what_runs(company):
@@ -274,7 +210,3 @@ def test_a_robot_whose_place_is_taken_reboots_beside_it(company):
     assert one.inside() == {}
     x, y, _ = one.snapshot.torso.position
     assert 0.2 < math.hypot(x, y) < 0.9
-    before = one.run(0.1), other.snapshot
-    one.run(0.5)
-    for was, robot in zip(before, (one, other)):
-        assert math.dist(was.torso.position, robot.snapshot.torso.position) < 0.05, "nobody is hurled away"

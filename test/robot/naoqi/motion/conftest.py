@@ -1,7 +1,5 @@
 """A robot that walks, and sees how it stands."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """ALMotion moves joints: targets, interpolations, curves, hands, stiffness; and lists and kills what runs."""
 
-from __future__ import annotations
-
 import pytest
 
 from nao_sim_bridge.sim.model import load_model
@@ -67,12 +65,6 @@ def test_targets_come_in_all_shapes_and_stay_within_limits(robot, motion, comman
         assert commands() == pytest.approx(reached)
 
 
-def test_a_head_that_looks_aside_nods_less(play, commands, sensed):
-    play("angleInterpolationWithSpeed", HEAD, [1.5, 0.5], 0.5, after=2.0)
-    upper = MODEL.coupled_limits["HeadPitch"].limits_at(1.5)[1]
-    assert commands() == near(1.5, upper) and sensed() == near(1.5, upper, within=0.01)
-
-
 def test_an_interpolation_answers_when_it_has_arrived(robot, begin, play, commands, sensed):
     future = begin("ALMotion", INTERPOLATION, HEAD, [[0.5, 0.1], [-0.2]], [[1.0, 2.0], [1.0]], True, after=1.0)
     assert commands() == near(0.5, -0.2) and future.isRunning()
@@ -81,9 +73,6 @@ def test_an_interpolation_answers_when_it_has_arrived(robot, begin, play, comman
     assert commands() == near(0.1, -0.2) and sensed() == near(0.1, -0.2, within=0.01)
     play(INTERPOLATION, "HeadYaw", [0.1, -0.2], [0.5, 1.0], False, after=1.1)  # from the start of the motion
     assert commands("HeadYaw") == near(-0.1)
-    recorded = sensed("Body")  # the two hips share a motor, but their sensors differ in the last digits
-    recorded[MODEL.joint_index["RHipYawPitch"]] += 0.002
-    assert play(INTERPOLATION, "Body", recorded, 0.5, True, after=0.6) is None
 
 
 def test_with_speed_and_for_key_frames_too_fast_it_takes_the_time_that_is_needed(robot, motion, begin, commands):
@@ -141,15 +130,7 @@ def test_a_timeline_is_played_to_its_end_through_its_points(robot, begin, comman
     assert commands() == near(-0.2, 0.3) and sensed() == near(-0.2, 0.3, within=0.01)
 
 
-def test_flat_handles_are_slow_at_the_ends_linear_ones_are_not_and_shapes_vary(robot, motion, begin, play, commands):
-    reached = []
-    for handles in (FLAT, [[1, 0.0, 0.0]]):  # a tenth of the way into the time
-        future = begin("ALMotion", BEZIER, ["HeadYaw"], [[1.0]], [[[1.0, *handles]]], after=0.1)
-        reached.append(commands()[0])
-        motion.killAll()
-        robot.answer(future)
-        play(INTERPOLATION, "HeadYaw", 0.0, 0.5, True, after=0.6)
-    assert reached[0] < 0.05 < 0.09 < reached[1]
+def test_points_of_a_timeline_come_in_all_shapes(play, commands):
     for angle, (names, times, points) in enumerate([
         ("HeadYaw", [0.5], [[0.0, *FLAT]]),
         (["HeadYaw"], [[0.5]], [[[0.1, *FLAT]]]),
@@ -171,10 +152,6 @@ def test_a_hand_opens_and_closes_is_stiff_while_it_moves_and_limp_afterwards(rob
             robot.advance(2.0)
             assert robot.answer(future) is None
             assert motion.getStiffnesses(hand) == [0.0] and sensed(hand) == near(reached, within=0.05)
-    future = begin("ALMotion", "openHand", "RHand", after=0.1)
-    motion.killAll()
-    robot.answer(future)
-    assert motion.getStiffnesses("RHand") == [0.0]
 
 
 def test_stiffness_is_set_at_once_or_in_time(robot, motion, begin):
@@ -193,14 +170,9 @@ def test_stiffness_is_set_at_once_or_in_time(robot, motion, begin):
     assert motion.getStiffnesses("Head") == near(0.5, 0.25, within=0.01)
     robot.advance(1.51)
     assert robot.answer(future) is None and motion.getStiffnesses("Head") == [0.0, 0.5]
-    future = begin("ALMotion", "stiffnessInterpolation", "Body", 1.0, 5.0, after=0.5)
-    motion.setStiffnesses("Body", 0.25)
-    robot.answer(future)
-    robot.advance(0.5)
-    assert motion.getStiffnesses("Body") == [0.25] * 26
 
 
-def test_a_limp_joint_takes_commands_but_follows_none_and_does_not_jump(robot, motion, commands, sensed, play):
+def test_a_limp_joint_takes_commands_but_follows_none_and_does_not_jump(robot, motion, commands, sensed):
     motion.setStiffnesses("HeadYaw", 0.0)
     motion.setAngles("HeadYaw", 0.5, 1.0)
     robot.advance(1.0)
@@ -208,10 +180,6 @@ def test_a_limp_joint_takes_commands_but_follows_none_and_does_not_jump(robot, m
     motion.setStiffnesses("HeadYaw", 1.0)
     robot.advance(0.5)
     assert sensed("HeadYaw") == near(0.0, within=0.01)
-    play(INTERPOLATION, "HeadYaw", 0.5, 0.5, True, after=0.6)
-    motion.setStiffnesses("HeadYaw", 0.6)  # that of a stiff joint keeps its command
-    robot.advance(0.5)
-    assert commands("HeadYaw") == near(0.5)
 
 
 def test_tasks_are_listed_hold_their_joints_and_are_killed_by_number(robot, motion, begin, commands):
@@ -230,7 +198,7 @@ def test_tasks_are_listed_hold_their_joints_and_are_killed_by_number(robot, moti
     assert commands("HeadPitch") == near(0.4) and motion.areResourcesAvailable(["Head"]) is True
 
 
-def test_tasks_are_killed_by_what_they_move_all_or_by_the_number_of_their_post(robot, motion, begin, commands):
+def test_tasks_are_killed_by_what_they_move_or_all(robot, motion, begin, commands):
     head, arm = (begin("ALMotion", INTERPOLATION, name, 1.0, 2.0, True, after=0.2) for name in HEAD[:1] + ["LElbowYaw"])
     motion.killTasksUsingResources(["Head"])
     robot.answer(head)
@@ -242,12 +210,6 @@ def test_tasks_are_killed_by_what_they_move_all_or_by_the_number_of_their_post(r
     before = commands("Body")
     robot.advance(0.5)
     assert commands("Body") == before and motion.getTaskList() == []
-    number = motion.pCall(INTERPOLATION, "HeadYaw", 1.0, 2.0, True)
-    robot.advance(0.2)
-    assert motion.isRunning(number) is True
-    motion.stop(number)
-    robot.settled()
-    assert motion.isRunning(number) is False and motion.getTaskList() == []
 
 
 def test_wrong_arguments_name_what_is_allowed_and_move_nothing(refuses):
@@ -255,31 +217,15 @@ def test_wrong_arguments_name_what_is_allowed_and_move_nothing(refuses):
         getAngles('HeadYow', True) -> unknown joint or chain 'HeadYow': did you mean 'HeadYaw'
         setAngles(['HeadYaw', 'HeadYaw'], 0.1, 0.5) -> named twice: HeadYaw
         setAngles('Head', [0.1, 0.2, 0.3], 0.5) -> angles is .*, allowed is one number or 2, one for each joint
-        setAngles('HeadYaw', 'much', 0.5) -> angles is 'much', allowed is a finite number
         setAngles('HeadYaw', 0.5, 1.5) -> fractionMaxSpeed is 1.5, allowed is 0 to 1
-        setAngles('HeadYaw', 0.5, 0.0) -> fractionMaxSpeed is 0, allowed is above 0 to 1
-        changeAngles([], 0.5, 0.5) -> names is .*, allowed is a joint, a chain, or a list of them
-        angleInterpolation('Head', [0.1], 1.0, True) -> angleLists is .*, allowed is 2 entries
         angleInterpolation('HeadYaw', 0.1, 0.0, True) -> allowed is times that rise, the first above 0 s
         angleInterpolationWithSpeed('HeadYaw', 0.1, -0.5) -> fractionMaxSpeed is -0.5, allowed is 0 to 1
         openHand('LArm') -> unknown hand 'LArm'
         setStiffnesses('Head', 1.5) -> stiffnesses is 1.5, allowed is 0 to 1
-        setStiffnesses('Head', [0.1, 0.2, 0.3]) -> allowed is one number or 2, one for each joint
-        setStiffnesses('Had', 1.0) -> unknown joint or chain 'Had': did you mean 'Head'
-        getStiffnesses('Had') -> unknown joint or chain 'Had'
         stiffnessInterpolation('HeadYaw', -0.5, 1.0) -> stiffnessLists is -0.5, allowed is 0 to 1
-        stiffnessInterpolation('HeadYaw', [0.5, 1.0], 1.0) -> as many times as values for each joint: 2
-        angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5]], [[0.1], [0.1]]) -> times
         angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5], [0.5]], [[0.1, 0.2], [0.1]]) -> as many points as t
-        angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5], [0.0]], [[0.1], [0.1]]) -> the first above 0 s
-        angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5], [0.5, 0.4]], [[0.1], [0.1, 0.1]]) -> times that rise
         angleInterpolationBezier(['HeadYaw'], [[0.5]], [[[0.1, [7, 0.0, 0.0]]]]) -> type of a handle is 7
         angleInterpolationBezier(['HeadYaw'], [[0.5]], [[[0.1, [3, 0.2, 0.0], [3, 0.2, 0.0]]]]) -> dTime of 0 or less
-        angleInterpolationBezier(['HeadYaw'], [[0.5]], [[[0.1, [3, 0.2]]]]) -> with the handles before and after
-        angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5], [0.5]], [['far'], [0.1]]) -> controlPoints is 'far'
         animation(['HeadYaw'], [[0.3]], [[0.2]], True, [[0.1, 'LLeg']]) -> supportSequence
         areResourcesAvailable(['Hed']) -> unknown joint or chain 'Hed': did you mean 'Head'
-        killTasksUsingResources(['Hed']) -> unknown joint or chain 'Hed': did you mean 'Head'
-        rest('Hed') -> unknown joint or chain 'Hed': did you mean 'Head'
-        getBodyNames('Hed') -> unknown joint or chain 'Hed': did you mean 'Head'
     """)  # fmt: skip
