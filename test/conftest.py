@@ -51,6 +51,7 @@ def pytest_collection_modifyitems(config, items):
     seed = config.getoption("--shuffle")
     if seed:
         random.Random(seed).shuffle(items)
+    items.sort(key=lambda item: getattr(item.cls, "world", ""))  # the running stack starts once in each world
     for item in items:
         # The cases of the running stack share it, and those of a file what takes long to start. Whatever has processes
         # of its own, which go on in their own time, has the machine for itself.

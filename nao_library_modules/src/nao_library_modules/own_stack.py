@@ -12,7 +12,7 @@ from pathlib import Path
 
 START_LIMIT = 90.0
 PERIOD = 0.05
-LIMITS = ((signal.SIGINT, 15.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0))
+LIMITS = ((signal.SIGINT, 40.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0))
 
 
 class OwnStack:

@@ -8,7 +8,6 @@ import numpy as np
 import rospy
 import yaml
 from camera_fixture import LIMIT, Geometry, matrix
-from cases import case
 from services import answer, service
 from std_srvs.srv import Empty
 
@@ -147,30 +146,6 @@ class DriverVision(unittest.TestCase):
 
     def subscribers(self, kind):
         return [entry[0] for entry in self.robot.module(MODULES[kind]).getSubscribersInfo()]
-
-    def test_switching_on_and_off_twice_changes_nothing(self):
-        for kind in MODULES:
-            with case(kind=kind):
-                self.assertEqual(self.subscribers(kind), [])
-                for _ in range(2):
-                    self.switches[f"{kind}_detection/enable"]()
-                    self.assertEqual(self.subscribers(kind), ["ros_nao_vision"])
-                for _ in range(2):
-                    self.switches[f"{kind}_detection/disable"]()
-                    self.assertEqual(self.subscribers(kind), [])
-
-    def test_the_sensitivity_of_movement_is_that_of_the_robot(self):
-        movement = self.robot.module("ALMovementDetection")
-        for value in (0.25, 0.75):
-            self.assertEqual(answer(self.sensitivity, number(value)), "")
-            self.assertAlmostEqual(movement.getColorSensitivity(), value, places=5)
-        for value in (-0.1, 1.5, math.nan):
-            self.assertIn("0 to 1", answer(self.sensitivity, number(value)))
-        self.assertAlmostEqual(movement.getColorSensitivity(), 0.75, places=5)
-
-    def test_what_is_wrong_with_a_name_is_told(self):
-        self.assertIn("empty", answer(self.learn, name_of("  ")))
-        self.assertFalse(self.forget(name_of("nobody")).result.data)
 
 
 def name_of(text):

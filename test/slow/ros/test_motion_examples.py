@@ -61,6 +61,7 @@ class MotionExamples(ExampleTest):
         self.assertGreater(self.robot.true_pose().position.z, 0.28)
 
     def test_walk_square(self):
+        self.robot.module("ALMotion").wakeUp()
         text = self.run_example("walk_square.py", "--side", "0.3")
         self.assertEqual(text.count("corner"), 4)
         end = self.robot.true_pose().position

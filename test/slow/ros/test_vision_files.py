@@ -18,7 +18,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from camera_topics import number_of, numbered
 from sensor_msgs.msg import CompressedImage, Image
-from std_msgs.msg import Header, String
+from std_msgs.msg import Header
 
 from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
 from nao_library_msgs.msg import VisionFunction
@@ -58,9 +58,6 @@ class Camera:
     def run(self):
         self.size, self.encoding = SIZE, "bgr8"
         self._running.set()
-
-    def pause(self):
-        self._running.clear()
 
     def close(self):
         self._ended.set()
@@ -139,11 +136,6 @@ class Vision(unittest.TestCase):
         self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
         return run.result
 
-    def refused(self, *functions):
-        run = send(self.client, NaoVisionGoal(list(functions))).wait(60.0)
-        self.assertEqual(run.state, GoalStatus.ABORTED)
-        return run.text
-
     def thread(self, ident, client=None):
         (thread,) = self.play(f("listThreads", id=ident), client=client).threads
         return thread
@@ -201,36 +193,6 @@ class Vision(unittest.TestCase):
     def stamp_of(self, number, near):
         return min((s for n, s in list(self.top.stamps.items()) if n % 256 == number), key=lambda s: abs(s - near))
 
-    def test_pictures_are_newer_than_the_goal_and_stay(self):
-        asked = rospy.get_time()
-        result = self.play(
-            f("takePicture", str_param="one.png"), f("takePicture", camera="bottom", file_type="jpg", width=64)
-        )
-        one, two = result.pictures
-        self.assertEqual((one.path, one.width, one.height), (str(self.folder / "one.png"), *SIZE))
-        self.assertGreaterEqual(one.header.stamp.to_sec(), asked)
-        number = number_of(cv2.imread(one.path))
-        self.assertAlmostEqual(self.stamp_of(number, asked), one.header.stamp.to_sec(), places=6)
-        self.assertEqual(cv2.imread(two.path).shape, (48, 64, 3))
-        self.assertEqual((two.encoding, two.file_type), ("jpeg", "jpg"))
-        before = Path(one.path).read_bytes()
-        self.assertRegex(self.refused(f("takePicture", str_param="one.png")), "one.png is there already")
-        self.assertEqual(Path(one.path).read_bytes(), before)
-
-    def test_pictures_at_an_interval_end_with_their_goal(self):
-        self.play(f("subscribe", id="keep"))  # whose connection is there already
-        self.wait_for("keep", lambda thread: thread.frames >= 1, "frames")
-        result = self.play(f("takePictures", count=4, interval=0.4, file_type="jpg"))
-        stamps = [picture.header.stamp.to_sec() for picture in result.pictures]
-        for earlier, later in zip(stamps, stamps[1:]):
-            self.assertAlmostEqual(later - earlier, 0.4, delta=0.25)
-        run = send(self.client, NaoVisionGoal([f("takePictures", count=1000, interval=0.05, file_type="jpg")]))
-        wait_until(lambda: any(feedback.done >= 2 for _, feedback in run.feedback), LIMIT, "two pictures")
-        run.cancel()
-        run.wait(10.0)
-        self.assertEqual(run.state, GoalStatus.PREEMPTED)
-        self.assertTrue(2 <= len(run.result.pictures) < 1000)
-
     def test_ten_streams_and_ten_recordings_at_once(self):
         heard = [[] for _ in range(10)]
         listeners = [
@@ -260,68 +222,7 @@ class Vision(unittest.TestCase):
 
     # What goes wrong
 
-    def test_a_camera_that_stalls_is_told_and_may_come_back(self):
-        self.play(f("startRecording", id="walk"))
-        self.wait_for("walk", lambda thread: thread.frames >= 5, "frames")
-        self.top.pause()
-        self.wait_for("walk", lambda thread: thread.state == "stalled", "the stall")
-        self.assertEqual(self.thread("walk").frame_rate, 0.0)
-        text = self.refused(f("takePicture", timeout=0.5))
-        self.assertRegex(text, "no picture came from /webcam/image_raw within 0.5 s: is its camera running")
-        frames = self.thread("walk").frames
-        self.top.run()
-        self.wait_for("walk", lambda thread: thread.state == "running" and thread.frames > frames, "the camera")
-        (video,) = self.play(f("stopRecording", id="walk")).recordings
-        self.check_video(video, self.top)
-        self.assertGreater(video.duration, 2.0)
-
-    def test_a_camera_that_changes_does_not_end_a_recording(self):
-        self.play(f("startRecording", id="walk"))
-        self.wait_for("walk", lambda thread: thread.frames >= 5, "frames")
-        self.top.size = (640, 480)
-        before = self.thread("walk").frames
-        self.wait_for("walk", lambda thread: thread.frames >= before + 5, "frames of another size")
-        self.top.encoding = "32FC1"
-        self.wait_for("walk", lambda thread: "'32FC1' cannot be read: known are bgr8" in thread.error, "the error")
-        self.assertEqual(self.thread("walk").state, "running")
-        self.assertRegex(self.refused(f("takePicture")), "32FC1")
-        self.top.run()
-        self.wait_for("walk", lambda thread: thread.error == "", "the end of the error")
-        (video,) = self.play(f("stopRecording", id="walk")).recordings
-        self.assertEqual((video.width, video.height), SIZE)
-        self.check_video(video, self.top)
-
-    def test_topics_without_pictures_are_refused(self):
-        publisher = rospy.Publisher("talk", String, queue_size=1, latch=True)
-        publisher.publish("hello")
-        wait_until(lambda: ["/talk", "std_msgs/String"] in rospy.get_published_topics(), LIMIT, "the topic")
-        for function in (f("subscribe", id="s", topic="talk"), f("takePicture", topic="talk")):
-            self.assertRegex(self.refused(function), "field topic: /talk holds std_msgs/String: a topic of sensor_msgs")
-        publisher.unregister()
-
-    def test_without_a_robot_its_settings_fail_in_time(self):
-        began = time.monotonic()
-        text = self.refused(f("setParameter", str_param="brightness", values=[10]))
-        self.assertIn("function 1 (setParameter):", text)
-        self.assertIn("127.0.0.1:9", text)
-        text = self.refused(f("setResolution", resolution="VGA"))
-        self.assertRegex(text, "there is no service /nao_camera/top/set_parameters")
-        self.assertLess(time.monotonic() - began, 15.0)
-        self.assertEqual(self.play(f("setActiveCamera", camera="1"), f("getActiveCamera")).memList, ["bottom"])
-        self.play(f("setActiveCamera", camera="top"))
-
     # How it ends
-
-    def test_preemption_leaves_what_is_the_users(self):
-        wait = f("startRecording", id="walk")
-        wait.time = rospy.Duration(1000)
-        run = send(self.client, NaoVisionGoal([f("subscribe", id="s"), wait]))
-        run.wait_for_function(1)
-        run.cancel()
-        run.wait(10.0)
-        self.assertEqual(run.state, GoalStatus.PREEMPTED)
-        for ident in ("s", "walk"):
-            self.wait_for(ident, lambda thread: thread.frames >= 5, "frames after the goal")
 
     def start_server(self, name, largest_file=None):
         """A server of its own in a namespace; its process, client and folder."""

@@ -11,7 +11,6 @@ import numpy as np
 import rosnode
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from rospy import Duration
 from sensor_msgs.msg import CameraInfo, Image
 
 from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
@@ -109,62 +108,6 @@ class VisionRobot(unittest.TestCase):
         self.assertGreater(min(alike[:2]), 0.85)
         self.assertLess(max(alike[2:]), 0.7)
 
-    def test_a_cameras_parameters_count_and_go_back(self):
-        usual, _ = self.picture()
-        for value, brighter in ((150, 1), (-150, -1)):
-            change = f("setParameter", str_param="brightness", values=[value], revert=True)
-            change.time = Duration(1.0)
-            auto = f("setAutoExposure", enable=False, revert=True)
-            result = self.play(auto, change, f("getParameter", str_param="kCameraBrightnessID"))
-            self.assertEqual(result.memList, ["0"])
-            result = self.play(f("setParameter", str_param="0", values=[value]), f("getParameter", str_param="0"))
-            self.assertEqual(result.memList, [str(value)])
-            other, _ = self.picture()
-            self.assertGreater(brighter * (other.mean() - usual.mean()), 15.0)
-            self.play(f("setAllParametersToDefault"))
-        self.assertEqual(self.play(f("getParameterRange", str_param="brightness")).memList[:2], ["-255", "255"])
-        self.play(f("setParameter", str_param="HFlip", values=[1]))
-        mirrored, _ = self.picture()
-        self.assertGreater(likeness(mirrored[:, ::-1], usual), 0.9)
-        self.assertLess(likeness(mirrored, usual), 0.9)
-        run = self.play(f("setParameter", str_param="brightness", values=[1000]), state=GoalStatus.ABORTED)
-        self.assertIn("function 1 (setParameter):", run.text)
-        run = self.play(f("getParameter", str_param="63"), state=GoalStatus.ABORTED)
-        self.assertIn("63", run.text)
-
-    def test_resolution_and_rate_are_those_of_the_cameras_node(self):
-        change = f("setResolution", resolution="VGA", camera="bottom", revert=True)
-        result = self.play(
-            f("getResolution", camera="bottom"), change, f("getResolution", camera="bottom"), f("getFrameRate")
-        )
-        self.assertEqual(result.memList, ["QVGA", "QVGA", "15.0"])
-        picture, _ = self.picture("bottom", f("setResolution", resolution="640x480", camera="bottom"))
-        self.assertEqual(picture.shape, (480, 640, 3))
-        self.assertEqual(self.play(f("getResolution", camera="top")).memList, ["QVGA"])
-        self.play(f("setResolution", resolution="QVGA", camera="bottom"))
-        self.record(5.0, f("setFrameRate", rate=5.0), f("setFrameRate", rate=5.0, camera="bottom"))
-        self.record(15.0, f("setFrameRate", rate=15.0), f("setFrameRate", rate=15.0, camera="bottom"))
-
-    def record(self, rate, *before):
-        """Record both cameras for 4 s: every frame is there, at its time."""
-        self.play(*before, *(f("startRecording", id=camera, camera=camera) for camera in CAMERAS))
-        for camera in CAMERAS:
-            self.frames(camera, 2)
-        began = rospy.get_time()
-        self.robot.advance(4.0)
-        self.frames("top", int(2.0 * rate))
-        length = rospy.get_time() - began
-        videos = self.play(*(f("stopRecording", id=camera) for camera in CAMERAS)).recordings
-        for video in videos:
-            self.assertEqual((video.error, video.dropped), ("", 0))
-            self.assertGreater(video.duration, length - 1.0)
-            times = video_times(video.path)
-            self.assertEqual(len(times), video.frames)
-            # A tick of the simulation is 1/120 s. A computer that is too slow leaves frames out, but moves none.
-            steps = np.diff(times) * rate
-            self.assertLess(np.abs(steps - np.round(steps)).max(), 0.2, times)
-            self.assertEqual(np.round(steps).min(), 1.0)
-
     def frames(self, ident, count):
         wait_until(
             lambda: self.play(f("listThreads", id=ident)).threads[0].frames >= count,
@@ -226,12 +169,3 @@ class VisionRobot(unittest.TestCase):
         # On the way from left to right it looks ahead again.
         lowest = int(np.argmin(alike[: len(alike) // 2]))
         self.assertGreater(max(alike[lowest:]), min(alike) + 0.1)
-
-    def test_the_robots_active_camera_is_the_servers(self):
-        self.play(f("setActiveCamera", camera="bottom"))
-        self.assertEqual(self.device.getActiveCamera(), 1)
-        _, message = self.picture("")
-        self.assertEqual(message.header.frame_id, "CameraBottom_optical_frame")
-        back = f("setActiveCamera", camera="top")
-        self.play(back)
-        self.assertEqual(self.device.getActiveCamera(), 0)
