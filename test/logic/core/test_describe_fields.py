@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
-import pytest
-
 from nao_library_modules.describe_fields import NO_UNIT, FieldHelp, read_fields
-from nao_library_modules.describe_limits import limits, told_by, words
 
 DEFINITION = """\
 # A message. Fields that a function does not use are ignored.
@@ -59,21 +54,3 @@ def test_a_function_is_told_what_is_meant_for_it_only_and_its_unit():
         ("enable", "goTo", "", ""), ("pose", "goTo", "", ""),
     ):  # fmt: skip
         assert helps.unit(field, function, allowed) == unit
-
-
-def test_limits_and_choices_are_read_from_words():
-    for text, low, high in (
-        ("0..1", 0, 1), ("a whole number 0..100 (%)", 0, 100), ("-1 (left) .. 1 (right)", -1, 1),
-        ("50..400 %, or 0 for the robot's own", 0, 400), ("above 0 to 3600 s", 0, 3600),
-        ("up to 3600 s, or 0 for the default", 0, 3600), ("0 s or more", 0, math.nan), ("more than 0 s", 0, math.nan),
-        ("the name of a file", math.nan, math.nan), ("one of 16000, 22050 (Hz)", math.nan, math.nan),
-    ):  # fmt: skip
-        assert limits(text) == pytest.approx((low, high), nan_ok=True)
-    for text, expected in (
-        ("one of a, b", ("a", "b")), ("'#RRGGBB' or one of red, green", ("red", "green")),
-        ("for each step one of LLeg, RLeg", ("LLeg", "RLeg")), ("one of Left Arm, b", ()), ("anything", ()),
-    ):  # fmt: skip
-        assert words(text) == expected
-    told = told_by(["at least one", "0..1", "one of a, b"])
-    assert (told.text, told.choices) == ("at least one; 0..1; one of a, b", ("a", "b"))
-    assert (told.minimum, told.maximum) == (0.0, 1.0)

@@ -11,7 +11,6 @@ from genpy import Duration
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_modules import nao_basic
-from nao_library_modules.errors import RobotLost
 from nao_library_modules.first_contact import require_patience
 from nao_library_modules.launcher import BadLaunchPath
 from nao_library_modules.nao_basic import NaoBasic
@@ -146,36 +145,6 @@ def test_functions_that_need_no_robot_do_not_wait_unless_one_does(absent):
     assert module.feedback() == [("", 0, "look", 1)]
     module.play("look", "getData")
     assert module.feedback()[0] == (AWAITED, 0, "", 2)
-
-
-def test_a_robot_that_goes_away_ends_a_goal_that_only_waits():
-    connection = Connection("connected", 1)
-    module = Module(connection)
-    end = module.start("look", wait=60.0)
-    connection.become("lost", "no heartbeat")
-    server = end()
-    text = f"function 1 (look): the robot at {ADDRESS} went away: no heartbeat"
-    assert (server.end, server.text) == ("aborted", text)
-    connection.become("connected")
-    assert module.play("look").end == "succeeded"
-
-
-@pytest.mark.parametrize("noticed", ["by the call", "by the connection"])
-def test_the_function_that_a_robot_left_is_told_whoever_notices_first(noticed):
-    connection = Connection("connected", 1)
-    module = Module(connection)
-
-    def leave():
-        if noticed == "by the connection":
-            connection.become("lost", "no heartbeat")
-            module.interrupt.wait(LIMIT)
-        raise RobotLost(ADDRESS, "no heartbeat")
-
-    module.function_table["leave"] = leave
-    server = module.play("look", "leave", "look")
-    text = f"the robot at {ADDRESS} went away: no heartbeat"
-    assert (server.end, server.text) == ("aborted", f"function 2 (leave): {text}")
-    assert [(done.function, done.error) for done in server.result.results] == [("look", ""), ("leave", text)]
 
 
 class Supervisor:

@@ -5,52 +5,15 @@ from __future__ import annotations
 import threading
 
 import pytest
-from actionlib import CommState
 from actionlib import simple_action_client as of_actionlib
 from actionlib_msgs.msg import GoalStatus
 from fake_goals import FakeGoal
 
-from nao_library_modules.goal_watch import GoalWatch
 from nao_library_modules.simple_action_client import SimpleActionClient
 
 SENDING = 0.05
 """s that a busy computer takes from the server's answer to the end of `send_goal`."""
 LIMIT = 15.0
-
-
-@pytest.fixture
-def watch():
-    return GoalWatch()
-
-
-@pytest.fixture
-def goal(watch):
-    return FakeGoal(watch.look)
-
-
-def test_a_goal_that_is_over_is_neither_cancelled_nor_lost(watch, goal):
-    goal.end(GoalStatus.ABORTED, "no such light")
-    assert not watch.cancel(goal.handle)
-    goal.tell()  # told before the goal came to the server
-    assert (goal.cancelled, goal.handle.get_terminal_state()) == ([], GoalStatus.ABORTED)
-
-
-def test_a_goal_of_which_the_server_never_tells_is_cancelled_all_the_same(watch, goal):
-    assert watch.cancel(goal.handle, limit=0.01)
-    assert goal.cancelled == [CommState.WAITING_FOR_GOAL_ACK]
-
-
-def test_the_end_is_passed_on_once():
-    ends = []
-    watch = GoalWatch(lambda: ends.append("over"))
-    goal = FakeGoal(watch.look)
-    goal.tell(GoalStatus.ACTIVE)
-    assert watch.acknowledged.is_set() and not ends
-    goal.end(GoalStatus.SUCCEEDED)
-    assert ends == ["over"]
-
-
-# Servers that answer before `send_goal` has returned
 
 
 class Hasty:

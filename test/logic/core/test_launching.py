@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -18,7 +17,7 @@ from nao_library_modules.launcher import (
     launch_supervisor,
 )  # fmt: skip
 from nao_library_modules.node import launch_path, robot_address, robot_parser, run_module
-from nao_library_modules.own_stack import OwnStack, can_connect, free_port
+from nao_library_modules.own_stack import OwnStack
 from nao_library_modules.supervisor import State
 from naoqi.errors import NaoError
 
@@ -132,12 +131,6 @@ def test_a_launch_path_that_leads_nowhere_is_refused_and_making_a_supervisor_sta
 
 # A stack of one's own; a program stands in for roslaunch
 
-LISTENER = """#!/usr/bin/env python3
-import signal, socket, sys
-ports = [int(sys.argv[2]), *(int(word.split(":=")[1]) for word in sys.argv if word.startswith("nao_port"))]
-sockets = [socket.create_server(("127.0.0.1", port)) for port in ports]
-signal.pause()
-"""
 SILENT, BROKEN = "#!/bin/sh\nexec sleep 1000\n", "#!/bin/sh\necho begun\necho no such file: nao_sim.launch\n"
 
 
@@ -155,17 +148,6 @@ def own_stack(tmp_path, monkeypatch):
     yield make
     for one in made:
         one.stop()
-
-
-def test_master_and_robot_are_waited_for_and_are_gone_after_the_end(own_stack):
-    one = own_stack(LISTENER)
-    one.wait_for_master(LIMIT)
-    one.wait_for_robot(LIMIT)
-    assert one.alive() and can_connect(one.ros_port) and can_connect(one.nao_port)
-    one.stop()
-    assert not one.alive() and not can_connect(one.ros_port)
-    with socket.create_server(("127.0.0.1", free_port())):
-        pass
 
 
 def test_waiting_has_an_end_which_is_that_of_roslaunch_with_its_last_words(own_stack):

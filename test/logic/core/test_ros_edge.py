@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import logging
 import math
-import threading
 
 import pytest
 import rospy
 import tf2_ros
-from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import TransformStamped
 
-from nao_library_modules import diagnostics, robot_frames, ros_edge
-from nao_library_modules.health import Level, Report
+from nao_library_modules import robot_frames, ros_edge
 from naoqi.errors import NaoError
 
 
@@ -57,37 +54,6 @@ def test_records_reach_the_log_of_the_node_at_their_level(level):
         node_log.removeHandler(listen)
         node_log.setLevel(before)
     assert heard == [(level, "100 % of calls")]
-
-
-def test_reports_become_diagnostics_once_and_again_until_closed(monkeypatch):
-    statuses, twice = [], threading.Event()
-
-    class Updater:
-        def __init__(self):
-            self.tasks = {}
-
-        def setHardwareID(self, hardware_id):
-            self.hardware_id = hardware_id
-
-        def add(self, name, run):
-            self.tasks[name] = run
-
-        def force_update(self):
-            for name, run in self.tasks.items():
-                statuses.append((self.hardware_id, name, run(DiagnosticStatusWrapper())))
-            if len(statuses) >= 2:
-                twice.set()
-
-    monkeypatch.setattr(diagnostics, "Updater", Updater)
-    monkeypatch.setattr(diagnostics, "PERIOD", 0.001)
-    report = Report(Level.WARN, "connected, but slow", {"latency (ms)": "800.0"})
-    publisher = diagnostics.DiagnosticsPublisher("10.0.0.7:9559", {"robot": lambda: report})
-    assert twice.wait(15.0)
-    publisher.close()
-    hardware_id, name, status = statuses[0]
-    assert (hardware_id, name) == ("10.0.0.7:9559", "robot")
-    assert (status.level, status.message) == (1, "connected, but slow")
-    assert [(v.key, v.value) for v in status.values] == [("latency (ms)", "800.0")]
 
 
 # Frames

@@ -22,7 +22,7 @@ def interrupt():
     return Interrupt()
 
 
-def test_the_first_reason_counts_until_it_is_cleared(interrupt):
+def test_the_first_reason_counts_until_it_is_cleared_and_stop_outlives_that(interrupt):
     interrupt.check()
     interrupt.trigger(RobotLost(*LOST))
     interrupt.trigger()
@@ -30,12 +30,6 @@ def test_the_first_reason_counts_until_it_is_cleared(interrupt):
         interrupt.check()
     interrupt.clear()
     interrupt.check()
-    interrupt.trigger()
-    with pytest.raises(Preempted):
-        interrupt.check()
-
-
-def test_stop_outlives_clear(interrupt):
     interrupt.stop()
     interrupt.clear()
     with pytest.raises(Preempted):

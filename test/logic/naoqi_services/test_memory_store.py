@@ -161,15 +161,3 @@ def test_who_wants_to_know_is_told_of_keys_that_come_and_go_and_of_subscribers(s
     store.insert("key", 2)
     store.remove("key")
     assert [entry[1:3] for entry in heard] == [(KEY_ADDED, "key"), (KEY_REMOVED, "key")]
-
-
-def test_a_subscriber_may_use_the_memory(store, heard):
-    def pass_on(_name, value, _message):
-        store.raise_event("Second", value + 1)
-        store.unsubscribe("First", "Relay")
-
-    store.subscribe("First", "Relay", pass_on)
-    subscribe(store, heard, "Second")
-    store.raise_event("First", 1)
-    store.raise_event("First", 5)
-    assert [entry[2] for entry in heard] == [2]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
-from plan_tools import Beside, at_once, fails, forever, seen
+from plan_tools import Beside, fails, forever, seen
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import (
@@ -138,13 +138,6 @@ def test_partial_order_keeps_the_order_that_is_asked_for():
     assert done.index("shop") < done.index("cook") < done.index("serve") == 3
 
 
-def test_a_step_that_fails_leaves_what_waits_for_it_undone():
-    done = []
-    steps = {"a": p.do(done.append, "a"), "b": p.do(p.fail, "b broke"), "c": p.do(done.append, "c")}
-    fails(p.PlanFailure, "b broke", lambda: p.partial_order(steps, [("a", "b", "c")]))
-    assert done == ["a"]
-
-
 @pytest.mark.parametrize(
     "order, told",
     [([("a", "b"), ("b", "a")], "a, b wait for each other"), ([("a", "c")], "no branch 'c': there are a, b")],
@@ -157,15 +150,6 @@ def test_what_is_no_branch_is_an_error_and_nothing_to_do_is_done():
     fails(p.PlanError, "'walk' is no branch: give a function", lambda: p.seq("walk"))
     fails(p.PlanError, "pursue needs a branch", p.pursue)
     assert not p.top_level(p.seq) and not p.top_level(p.par)
-
-
-def test_plans_begin_with_top_level_once_in_each_thread():
-    with pytest.raises(p.PlanError, match="outside of a plan"):
-        p.seq(no_ball)
-    with pytest.raises(p.PlanError, match="outside of a plan"):
-        p.current_task()
-    fails(p.PlanError, "top_level inside of a plan", lambda: p.top_level(no_ball))
-    assert p.top_level(lambda: at_once(lambda: p.top_level(lambda: p.seq(lambda: "elsewhere")))) == ["elsewhere"]
 
 
 def test_a_branch_that_somebody_ends_is_a_failure_of_its_construct(stays):
@@ -187,19 +171,6 @@ def test_the_end_of_a_branch_is_not_caught_by_accident():
 
     assert p.top_level(lambda: p.pursue(careless, lambda: "over")) == "over"
     assert caught == []
-
-
-def test_the_tree_tells_what_came_of_everything(run_plan):
-    answer, root = run_plan(
-        lambda: p.par(p.do(int, "3", name="count"), lambda: p.subtask(p.do(len, "abc"))), name="plan"
-    )
-    assert answer == [3, 3]
-    assert [task.path for task in root] == ["plan", "plan/par", "plan/par/count", "plan/par/step", "plan/par/step/len"]
-    assert {task.state for task in root} == {p.TaskState.SUCCEEDED}
-    assert root.find("count").facts == {"arguments": "'3'"} and root.find("len").result == 3
-    assert all(task.created <= task.began <= task.ended for task in root)
-    with pytest.raises(p.PlanError, match="no task 'three' in plan: there are plan, par, count, step, len"):
-        root.find("three")
 
 
 def test_the_trace_tells_how_each_task_ended_within_its_parent_and_survives_json(run_plan, stays):

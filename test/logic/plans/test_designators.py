@@ -197,13 +197,6 @@ def test_rules_go_by_priority_then_by_what_they_say_then_by_age():
     assert list(rules.solutions(desig)) == ["first", "exact", "new", "old", "last of all"]
 
 
-def test_a_rule_of_the_same_name_takes_the_place_of_the_old_one(rules):
-    p.rule(p.action, rules=rules, called="opening", type="opening")(lambda: ["a", "b"])
-    assert solve(rules, type="opening", gripper="left") == ["a", "b"]
-    rules.remove(rules.of(p.action)[0])
-    assert len(rules.of(p.action)) == 1
-
-
 def test_a_rule_fails_with_its_own_failure_and_mistakes_in_rules_are_told(rules):
     p.rule(p.action, rules=rules, type="flying")(lambda: p.fail(NavigationGoalNotReached, "no wings"))
     with pytest.raises(NavigationGoalNotReached, match="no wings"):
@@ -259,18 +252,6 @@ def test_all_forms_of_actions_are_understood(given, module, name, arguments):
     solution = p.designator(given).reference()
     assert (solution.module, solution.name) == (module, name)
     assert {key: solution.arguments[key] for key in arguments} == arguments
-
-
-@pytest.mark.parametrize(
-    "given, told",
-    [
-        ({"type": "opening", "gripper": "middle"}, "gripper"), ({"type": "opening"}, "gripper"),
-        ({"type": "moving-gripper-joint", "gripper": "left", "joint_angle": 2}, "joint_angle"),
-    ],
-)  # fmt: skip
-def test_what_is_wrong_with_an_action_is_told_with_the_key(given, told):
-    with pytest.raises(DesignatorError, match=told):
-        p.an(p.action, **given).reference()
 
 
 @pytest.fixture
@@ -366,10 +347,3 @@ def test_users_give_places_and_judge_them_and_the_next_is_really_another_one():
     finally:
         register_location_validation_function(50, lambda *_: Verdict.UNKNOWN, "not_behind")
         register_location_validation_function(40, lambda *_: Verdict.UNKNOWN, "rather_far")
-
-
-def test_nobody_knows_what_is_meant():
-    with pytest.raises(DesignatorError, match="nobody knows which place is meant"):
-        a_place_where(cosy=True).reference()
-    with pytest.raises(DesignatorError, match="its near stands for .* which is no known object"):
-        a_place_where(near=a_place_where(pose=[0, 0, 0])).reference()

@@ -86,23 +86,6 @@ def test_whenever_runs_at_pulses_and_treats_missed_ones_as_it_is_told(missed, bo
     assert len(runs) == bodies
 
 
-def test_whenever_leaves_pulses_out_at_which_it_is_not_true():
-    fluent, end, values = p.Fluent("a", 0), p.Fluent("end", False), []
-
-    def body():
-        values.append(fluent.value)
-        fluent.value = 0
-        end.value = True
-
-    def pulse():
-        fluent.pulse()
-        fluent.value = 5
-        p.wait_for(end)
-
-    p.top_level(lambda: p.pursue(p.do(p.whenever, fluent, body), pulse))
-    assert values == [5]
-
-
 def test_nobody_listens_when_waits_have_ended_however_they_ended():
     a, b = Heard("a", 0), Heard("b", 0)
     both = p.fl_and(a, b)

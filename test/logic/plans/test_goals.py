@@ -80,17 +80,6 @@ def test_a_plan_that_does_not_reach_its_goal_fails_and_can_be_tried_again(is_ope
     assert len(tries) == 4
 
 
-def test_a_goal_that_nobody_can_check_is_always_done():
-    @p.declare_goal
-    def greeted(name):
-        """Somebody was greeted."""
-
-    said = []
-    p.def_goal(greeted)(said.append)
-    p.top_level(lambda: p.seq(p.do(p.achieve, greeted, "Anna"), p.do(p.achieve, greeted("Anna"))))
-    assert said == ["Anna", "Anna"] and not p.holds(greeted("Anna"))
-
-
 def test_mistakes_about_goals_are_told(is_open):
     for arguments, named in ((("left", 1.0, 2.0), {}), ((), {"sid": "left"})):
         with pytest.raises(p.PlanError, match=r"is_open takes \(side, share\)"):
@@ -226,13 +215,6 @@ def test_a_place_that_is_lost_is_found_again_and_the_body_begins_there_anew(walk
 
     assert p.top_level(walker.at(body)) == "done"
     assert walker.walks == [1.0] * 4 and begun == [Place(1.0, 0.0, 0.0)] * 4
-
-
-def test_a_place_is_lost_ten_times_and_not_more_often(walker):
-    body = lambda: (setattr(walker.here, "value", Place(5.0, 0.0, 0.0)), forever())  # noqa: E731
-    fails(NavigationHighLevelFailure, "lost 10 times", walker.at(body))
-    assert walker.walks == [1.0] * 10
-    fails(p.PlanError, "is no location", lambda: p.at_location(a_ball(), body, walker.here))
 
 
 def test_places_that_cannot_be_reached_give_way_to_the_next_ten(walker):

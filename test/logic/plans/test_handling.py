@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from plan_tools import Beside, fails, forever, seen
+from plan_tools import fails, forever
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import (
@@ -15,7 +15,6 @@ from nao_library_modules.process_modules.failures import (
     PlanTimedOut,
     PolicyCheckConditionMet,
     PolicyInitFailed,
-    TaskEvaporatedFailure,
 )
 
 
@@ -78,15 +77,6 @@ def test_what_a_handler_does_not_answer_goes_to_the_outer_ones():
     assert [str(failure) for failure in seen_failures] == ["try 1"]
     never = {PerceptionObjectNotFound: lambda failure: p.give()}
     fails(NavigationGoalNotReached, "try 1", handled(Stumbling(1), never))
-
-
-def test_the_end_of_a_task_is_no_failure_that_its_handlers_see(stays):
-    seen_failures = []
-    plan = Beside(handled(stays("a").call, {p.PlanFailure: lambda failure: seen_failures.append(failure) or p.give()}))
-    seen(stays.there)
-    plan.root.evaporate("over")
-    plan.fails(TaskEvaporatedFailure, "over")
-    assert seen_failures == []
 
 
 def test_only_failures_are_handled_and_retry_and_give_belong_into_handlers():
@@ -162,15 +152,3 @@ def test_a_policy_that_cannot_begin_does_not_let_the_body_begin():
     failure = "policy 'upright' could not begin"
     fails(PolicyInitFailed, failure, lambda: p.with_policy(policy, p.do(done.append, "body")))
     assert done == []
-
-
-def test_cleaning_up_happens_when_the_body_fails_and_when_the_plan_is_ended(stays):
-    done = []
-    policy = upright(p.Fluent("never", False), done)
-    fails(NavigationGoalNotReached, "try 1", lambda: p.with_policy(policy, Stumbling(1)))
-    assert done == ["clean_up"]
-    plan = Beside(lambda: p.with_policy(policy, stays("a")))
-    seen(stays.there)
-    plan.root.evaporate("over")
-    plan.fails(TaskEvaporatedFailure, "over")
-    assert done == ["clean_up"] * 2

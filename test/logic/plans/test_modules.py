@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
-from plan_tools import LIMIT, SHORT, Beside, Many, One, at_once, fails, seen, state_of, to
+from plan_tools import LIMIT, SHORT, Beside, One, at_once, fails, seen, state_of, to
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import (
@@ -14,7 +14,6 @@ from nao_library_modules.process_modules.failures import (
     NavigationGoalNotReached,
     NoMatchingProcessModule,
     ProcessModuleNotRunning,
-    ProcessModuleRunning,
     TaskEvaporatedFailure,
     UnknownProcessModule,
 )
@@ -130,17 +129,6 @@ def test_cancelling_a_module_ends_what_it_does_and_what_waits(one, log, begun):
     state_of(one, ModuleState.WAITING)
 
 
-@pytest.mark.parametrize("name", ["one", "many"])
-def test_who_waits_for_a_turn_and_is_ended_takes_the_place_back(name, request, log, begun):
-    module = request.getfixturevalue(name)
-    first = begun("a", name, needs=["left"])
-    second, third = (in_line(module, word, needs=["left"]) for word in "bc")
-    second.root.evaporate("changed my mind")
-    second.fails(TaskEvaporatedFailure, "changed my mind")
-    log.let("a", "b", "c")
-    assert (first.ended(), third.ended()) == ("a", "c") and log.words("begun") == ["a", "c"]
-
-
 def test_a_plan_that_ends_cancels_what_it_asked_for_and_sees_it_end(one, log):
     leave = lambda: (log.happened("begun", "a"), "left")[1]  # noqa: E731
     assert p.top_level(lambda: p.pursue(performing("wait", "a"), leave)) == "left"
@@ -192,15 +180,6 @@ def test_stopping_ends_what_runs_and_what_waits(log, begun):
         module.stop()
     with p.with_process_modules_running(module):
         assert perform("quick", "again") == "again"
-
-
-def test_modules_run_once_and_those_started_beside_one_that_cannot_are_stopped_again(one, log):
-    with pytest.raises(ProcessModuleRunning, match="one runs already"):
-        one.start()
-    other = Many(log)
-    with pytest.raises(ProcessModuleRunning, match="one runs already"), p.with_process_modules_running(other, One(log)):
-        pass
-    assert (other.state, one.state) == (ModuleState.OFFLINE, ModuleState.WAITING)
 
 
 def test_a_module_may_run_in_a_thread_of_ones_own_until_it_is_stopped(log):

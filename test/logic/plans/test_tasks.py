@@ -58,18 +58,6 @@ def test_a_step_that_somebody_ends_fails_and_its_plan_may_go_on(stays):
     assert plan.ended() == "skip it" and plan.root.state is p.TaskState.SUCCEEDED
 
 
-def test_ending_many_times_is_ending_once_and_the_first_reason_stays(stays):
-    plan = Beside(stays("a").call)
-    seen(stays.there)
-    plan.root.suspend("a pause")
-    plan.root.evaporate("why it ended")
-    plan.root.evaporate("why not")
-    plan.root.wake_up("woken too late")
-    plan.fails(TaskEvaporatedFailure, "why it ended")
-    plan.root.evaporate("much later")
-    assert stays.ended == ["a"] and plan.root.reason == "why it ended"
-
-
 def test_a_result_is_asked_for_when_it_is_there(stays):
     plan = Beside(stays("a").call)
     seen(stays.there)
@@ -81,15 +69,6 @@ def test_a_result_is_asked_for_when_it_is_there(stays):
     plan.fails(TaskEvaporatedFailure)
     with pytest.raises(TaskEvaporatedFailure, match="over"):
         plan.root.value()
-
-
-def test_a_task_waits_for_another_one_of_its_tree():
-    def waits():
-        task = p.current_task().tree.root.find("seven")
-        task.join()
-        return task.value()
-
-    assert p.top_level(lambda: p.par(p.do(lambda: (p.sleep(0.001), 7)[1], name="seven"), waits)) == [7, 7]
 
 
 def handler_waits(wait):

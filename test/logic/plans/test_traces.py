@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 from plan_tools import fails
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.process_modules import told_topic
 from nao_library_modules.process_modules.action_client import PlanActionClient
 from nao_library_modules.process_modules.chains import Chain
 from nao_library_modules.process_modules.failures import ActionlibActionTimedOut
@@ -107,11 +106,6 @@ def test_a_point_too_far_away_is_answered_with_the_nearest_and_one_that_is_reach
     assert [found.angles[name] for name in arm.joints] == pytest.approx(arm.rest, abs=1e-6)
 
 
-def test_what_is_no_chain_is_told():
-    with pytest.raises(NaoError, match="no chain from torso to tail: it ends at tail"):
-        Chain(URDF, "torso", "tail")
-
-
 @pytest.mark.parametrize("point", [(1.0, 0.0, 0.2), (0.5, 0.4, -0.2), (2.0, -1.0, 0.6), (0.3, 0.1, 0.0)])
 def test_the_camera_looks_at_the_point(point):
     camera = [load_settings().camera[key] for key in ("forward", "up", "neck", "tilt")]
@@ -144,43 +138,3 @@ def test_a_goal_that_takes_too_long_is_cancelled_when_the_server_knows_it_or_has
         assert (client.goals[0].cancelled, ends[0].status) == ([CommState.ACTIVE], GoalStatus.PREEMPTED)
     else:
         assert p.top_level(plan) == ends[0] and ends[0].succeeded and client.goals[0].cancelled == []
-
-
-class Listeners:
-    """Listeners that connect after a while, and what the master knows of them."""
-
-    resolved_name = "/speech"
-
-    def __init__(self, connects_at, known):
-        self.connects_at, self.known, self.now, self.told = connects_at, known, 0.0, []
-
-    def get_num_connections(self):
-        return sum(at <= self.now for at in self.connects_at)
-
-    def publish(self, message):
-        self.told.append((message, self.get_num_connections()))
-
-    def getSystemState(self):
-        return [], [["/other", ["/x"] * 9], ["/speech", [f"/node{i}" for i in range(self.known)]]], []
-
-    def sleep(self, duration):
-        self.now += duration
-
-
-@pytest.mark.parametrize(
-    "connects_at, known, told, after",
-    [
-        ([0.1, 1.0], 2, [("hello", 2), ("again", 2)], 1.0),
-        ([0.0], 2, [("hello", 1), ("again", 1)], told_topic.OTHERS_LIMIT),  # one was killed and never comes
-        ([0.0], 0, [("hello", 1), ("again", 1)], 0.0),  # the master does not know the topic yet
-    ],
-)
-def test_the_first_message_of_a_topic_reaches_all_who_listen(monkeypatch, connects_at, known, told, after):
-    world = Listeners(connects_at, known)
-    monkeypatch.setattr(told_topic, "sleep", world.sleep)
-    monkeypatch.setattr(told_topic.rospy, "Publisher", lambda *arguments, **options: world)
-    monkeypatch.setattr(told_topic.rospy, "get_name", lambda: "/plan")
-    monkeypatch.setattr(told_topic.rosgraph, "Master", lambda name: world)
-    topic = told_topic.ToldTopic("speech", str)
-    assert [topic.tell(message, 10.0) for message in ("hello", "again")] == [bool(told)] * 2
-    assert world.told == told and world.now == pytest.approx(after, abs=4 * told_topic.PERIOD)

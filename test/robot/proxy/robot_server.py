@@ -111,14 +111,6 @@ class Module:
     def fails(self):
         raise ValueError("too hot: 81 degrees")
 
-    def refusesTwo(self, *arguments):
-        if len(arguments) == 2:
-            raise RuntimeError(
-                "Arguments types did not match for refusesTwo (resolved to '(ll)'):\n"
-                "  Candidates:\n  refusesTwo::(l) (1)\n  refusesTwo::(lll) (1)\n"
-            )
-        return len(arguments)
-
     def begin(self):
         """Runs until `finish`, or until it is cancelled."""
 

@@ -232,19 +232,6 @@ class TestAfterALoss:
         eventually(lambda: caplog.text.count("1 event subscriptions made again") == 2, "ours and the other one")
         assert len(subscribers(memory)) == 2
 
-    def test_a_name_that_is_still_taken_is_tried_again(
-        self, robot, broker, buttons, raised, states, eventually, caplog
-    ):
-        caplog.set_level("INFO", "naoqi")
-        followed = states(broker.connection)
-        robot.kill()
-        followed.wait_for("lost")
-        robot.start(buttons.getName())  # as if the robot still knew our former session
-        eventually(lambda: "is still taken" in caplog.text, "the first attempt fails")
-        robot.proxy("Switch").leave(buttons.getName())
-        raised(7.0, [7.0])
-        assert buttons.heard == [(EVENT, 7.0, "")]
-
 
 def subscribers(memory):
     try:

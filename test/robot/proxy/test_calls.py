@@ -58,14 +58,6 @@ def test_a_call_object_tells_when_it_is_done(proxy, begun, patience):
     assert call.result() == "now"
 
 
-def test_a_callback_added_late_is_called_all_the_same(proxy, patience):
-    call = proxy.call_async("add", 1, 1)
-    call.result()
-    done = threading.Event()
-    call.add_done_callback(lambda _: done.set())
-    assert done.wait(patience)
-
-
 def test_a_failing_callback_is_logged(proxy, caplog, eventually):
     proxy.call_async("add", 1, 1).add_done_callback(lambda _: 1 / 0)
     eventually(lambda: "ZeroDivisionError" in caplog.text, "the trace is logged")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import logging
-import re
 import socket
 import time
 
@@ -11,8 +9,6 @@ import pytest
 
 import naoqi
 from naoqi import errors
-from naoqi.robot_connection import Connection
-from naoqi.state import Timing
 
 SOON = 10.0
 """More than any machine needs; the promise itself is of the settings, see Timing."""
@@ -126,34 +122,3 @@ def test_a_closed_connection_refuses_and_a_new_one_can_be_had(robot, states):
         proxy.add(1, 2)
     assert proxy.connection.wait_connected() is False
     assert robot.proxy().add(1, 2) == 3
-
-
-def test_a_removed_listener_hears_nothing(robot, states):
-    connection = robot.proxy().connection
-    heard = []
-    connection.add_listener(heard.append)
-    connection.remove_listener(heard.append)
-    followed = states(connection)
-    connection.close()
-    followed.wait_for("closed")
-    assert heard == []
-
-
-@pytest.mark.parametrize("patience, complaints", [(0.0, 1), (60.0, 0)])
-def test_a_robot_never_reached_is_complained_about_once_but_not_at_once(
-    robot, caplog, eventually, patience, complaints
-):
-    robot.kill()
-    timing = Timing(first_delay=0.01, longest_delay=0.01, patience=patience)
-    connection = Connection(*robot.address, timing=timing)
-    try:
-        eventually(lambda: attempts(connection) > 3, "four failed attempts")
-    finally:
-        connection.close()
-    said = [record for record in caplog.records if record.levelno >= logging.WARNING]
-    assert len(said) == complaints
-    assert all("trying on" in record.getMessage() for record in said)
-
-
-def attempts(connection):
-    return int(re.search(r"(\d+) failed attempts", str(connection.unreachable())).group(1))
