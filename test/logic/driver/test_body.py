@@ -10,7 +10,6 @@ from types import SimpleNamespace
 import pytest
 
 from nao_library_modules.driver import body_reports as reports
-from nao_library_modules.driver import touch_sensors
 from nao_library_modules.driver.blinking import Blinks
 from nao_library_modules.driver.body_reports import BATTERY_FLAGS, Thresholds, battery_report, network_reports
 from nao_library_modules.driver.foot_pressure import keys_of, read_foot
@@ -24,7 +23,7 @@ from nao_library_modules.errors import BadGoal
 from nao_library_modules.health import Level
 from nao_library_modules.joint_trajectory import H25_BODY
 from nao_library_modules.paths import config_file
-from nao_library_msgs.msg import Bumper, HandTouch, RobotInfo, TactileTouch
+from nao_library_msgs.msg import RobotInfo
 from naoqi.errors import NaoError
 
 LIMITS = Thresholds()
@@ -34,9 +33,6 @@ NAN, INFINITE = math.nan, math.inf
 def refused(words, function, *arguments, error=NaoError):
     with pytest.raises(error, match=words):
         function(*arguments)
-
-
-# Reports
 
 
 @pytest.mark.parametrize(
@@ -83,28 +79,18 @@ def test_the_battery_runs_down(charge, bits, level, message):
     assert [name for name in BATTERY_FLAGS if report.values[name] == "True"] == bits
 
 
-def test_a_robot_that_does_not_tell_is_unknown_and_a_head_gets_hot():
+def test_a_robot_that_does_not_tell_is_unknown_a_head_gets_hot_and_networks_are_told_by_their_kind():
     report = battery_report(None, None, LIMITS)
     assert report.level == Level.WARN and set(report.values.values()) == {"unknown"}
     assert reports.current_report(None).message == "unknown"
-    levels = [reports.head_report(temperature, LIMITS).level for temperature in (None, 99.0, 100.0, 105.0)]
-    assert levels == [Level.OK, Level.OK, Level.WARN, Level.ERROR]
-
-
-def test_networks_are_told_by_their_kind():
-    services = [
-        [["Type", "wifi"], ["Name", "lab"], ["State", "online"], ["Strength", 70]],
-        [["Type", "wifi"], ["Name", "other"], ["State", "idle"]],
-        "nonsense",
-    ]
-    found = network_reports(services)
+    wifi = [["Type", "wifi"], ["Name", "lab"], ["State", "online"], ["Strength", 70]]
+    found = network_reports([wifi, [["Type", "wifi"], ["Name", "other"], ["State", "idle"]], "nonsense"])
     wifi = found["nao_wlan: Status"]
     assert (wifi.message, wifi.values["Strength"]) == ("connected: lab", "70")
     assert found["nao_ethernet: Status"].message == "not connected"
-    assert {report.level for report in network_reports(None).values()} == {Level.OK}
+    levels = [reports.head_report(temperature, LIMITS).level for temperature in (None, 99.0, 100.0, 105.0)]
+    assert levels == [Level.OK, Level.OK, Level.WARN, Level.ERROR]
 
-
-# Poses
 
 POSE = {"joint_names": ["Head"], "positions": [0.1, 0.2], "time_from_start": 2}
 
@@ -119,23 +105,13 @@ def test_tables_of_nao_robot_and_libraries_of_choregraphe_hold_poses():
     assert "did you mean 'init'" in str(UnknownPose("inti", poses))
     arms = library(str(config_file("poses.xap")))["ArmsForward"]
     assert set(arms.joints) <= set(H25_BODY) and arms.time == 2.0
-
-
-@pytest.mark.parametrize(
-    "entry, problem",
-    [
-        ({**POSE, "speed": 1}, "it has joint_names, positions, time_from_start, speed"),
-        ("Head", "it has 'Head'"),
-        ({**POSE, "positions": ["far"]}, "'far' is no number"),
-        ({**POSE, "time_from_start": 0}, "0 s"),
-    ],
-)
-def test_what_is_no_pose_is_said(entry, problem):
-    refused(problem, pose_table, {"nod": entry}, error=BadPose)
-    refused("the table is", pose_table, [entry], error=BadPose)
-
-
-# Joints of a robot description, and what kind of robot it is
+    for change, problem in (
+        ({"speed": 1}, "it has joint_names, positions, time_from_start, speed"),
+        ({"positions": ["far"]}, "'far' is no number"),
+        ({"positions": []}, "0 positions"),
+        ({"time_from_start": 0}, "0 s"),
+    ):
+        refused(problem, pose_table, {"nod": {**POSE, **change}}, error=BadPose)
 
 
 def test_joints_that_are_fixed_or_follow_another_have_no_slider():
@@ -162,9 +138,6 @@ def test_a_robot_is_known_by_its_facts_and_joints():
     for name in ("Juliette", "Pepper"):
         info = RobotInfo(**info_fields(facts_of({KEYS["body type"]: name, KEYS["laser"]: "1"}), 20))
         assert (info.type, info.has_laser, info.number_of_legs) == (RobotInfo.PEPPER, True, 1)
-
-
-# Motors and sensors
 
 
 def test_every_joint_has_a_motor_whose_torque_constant_is_voltage_over_speed(tmp_path):
@@ -239,39 +212,23 @@ def test_forces_under_the_feet_are_newtons_and_a_foot_in_the_air_has_no_centre()
     assert keys_of("right")[-1] == "rightFootContact"
 
 
-def test_numbers_of_touch_sensors_are_those_of_the_messages():
-    numbers = {sensor.event: sensor.number for sensor in touch_sensors.SENSORS}
-    assert numbers["RearTactilTouched"] == TactileTouch.buttonRear
-    assert numbers["HandRightLeftTouched"] == HandTouch.RIGHT_LEFT
-    assert numbers["HandLeftBackTouched"] == HandTouch.LEFT_BACK
-    assert numbers["LeftBumperPressed"] == Bumper.left
-    assert len(touch_sensors.SENSORS) == 13 and len(touch_sensors.CLICKS) == 3
+RED, BLACK = (1.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
-
-# Blinks
 
 RED, BLACK = (1.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
 
-def test_pauses_are_cut_at_both_ends_and_a_deviation_of_nothing_is_allowed():
+def test_pauses_between_blinks_are_cut_at_both_ends_and_what_cannot_be_blinked_is_told():
     chance = random.Random(3)
     pauses = [Blinks([RED], BLACK, 0.3, 1.0, 2.0).pause(chance) for _ in range(2000)]
     assert min(pauses) == 0.0 and 6.9 < max(pauses) <= 7.0 and 1.0 < sum(pauses) / len(pauses) < 1.6
-    steady = Blinks([RED], BLACK, 0.3, 1.0, 0.0)
-    steady.check()
-    assert steady.pause(random.Random(0)) == 1.0
-
-
-@pytest.mark.parametrize(
-    "blinks, words",
-    [
-        (Blinks([], BLACK, 0.3, 1.0, 0.1), "colors"),
-        (Blinks([(0.0, 2.0, 0.0)], BLACK, 0.3, 1.0, 0.1), r"colors\[0\]"),
-        (Blinks([RED], (0.0, 0.0, -1.0), 0.3, 1.0, 0.1), "bg_color"),
-        (Blinks([RED], BLACK, 0.0, 1.0, 0.1), "blink_duration"),
-        (Blinks([RED], BLACK, 0.3, 0.0, 0.1), "blink_rate_mean"),
-        (Blinks([RED], BLACK, 0.3, 1.0, -0.1), "blink_rate_sd"),
-    ],
-)
-def test_what_cannot_be_blinked_is_told(blinks, words):
-    refused(words, blinks.check, error=BadGoal)
+    Blinks([RED], BLACK, 0.3, 1.0, 0.0).check()
+    for words, blinks in (
+        ("colors", Blinks([], BLACK, 0.3, 1.0, 0.1)),
+        (r"colors\[0\]", Blinks([(0.0, 2.0, 0.0)], BLACK, 0.3, 1.0, 0.1)),
+        ("bg_color", Blinks([RED], (0.0, 0.0, -1.0), 0.3, 1.0, 0.1)),
+        ("blink_duration", Blinks([RED], BLACK, 0.0, 1.0, 0.1)),
+        ("blink_rate_mean", Blinks([RED], BLACK, 0.3, 0.0, 0.1)),
+        ("blink_rate_sd", Blinks([RED], BLACK, 0.3, 1.0, -0.1)),
+    ):
+        refused(words, blinks.check, error=BadGoal)

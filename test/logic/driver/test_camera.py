@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -14,7 +13,7 @@ from sensor_msgs.msg import CameraInfo
 
 from nao_library_modules.driver.camera_calibration import Calibration, from_yaml, ideal, scaled, to_yaml
 from nao_library_modules.driver.camera_formats import Picture, read_picture
-from nao_library_modules.driver.camera_info_files import camera_name, path_of, read, write
+from nao_library_modules.driver.camera_info_files import camera_name, path_of, write
 from nao_library_modules.driver.camera_info_sender import parser, read_calibration
 from nao_library_modules.driver.camera_infos import CameraInfos
 from nao_library_modules.driver.camera_rate import RateMeter
@@ -55,9 +54,6 @@ def refused(told, function, *arguments):
         function(*arguments)
 
 
-# Pictures
-
-
 def image(space, width, height, layers, pixels, camera=0):
     return [width, height, layers, space, 7, 250000, pixels, camera, 0.49, 0.38, -0.49, -0.38]
 
@@ -73,22 +69,13 @@ def test_colour_spaces_are_encodings(space, encoding, layers):
     assert picture.pixels is pixels
 
 
-def test_yuv422_of_ros_has_colour_before_brightness():
+def test_yuv422_of_ros_has_colour_before_brightness_and_what_is_no_picture_is_told():
     picture = read_picture(image(9, 2, 2, 2, b"YUyVZWzX"), 0)
     assert (picture.encoding, picture.step, picture.pixels) == ("yuv422", 4, b"UYVyWZXz")
     assert read_picture(image(0, 2, 1, 1, b"ab")[:7], 1).camera == 1  # an answer without the camera
-
-
-@pytest.mark.parametrize(
-    "answer, text",
-    [
-        (None, "no picture but None"),
-        (image(17, 2, 1, 2, b"abcd"), "colour space 17"),
-        (image(13, 2, 2, 3, bytes(11)), "2x2 in bgr8 has 11 bytes, not 12"),
-    ],
-)
-def test_what_is_no_picture_is_told(answer, text):
-    refused(text, read_picture, answer, 0)
+    refused("no picture but None", read_picture, None, 0)
+    refused("colour space 17", read_picture, image(17, 2, 1, 2, b"abcd"), 0)
+    refused("2x2 in bgr8 has 11 bytes, not 12", read_picture, image(13, 2, 2, 3, bytes(11)), 0)
 
 
 def test_a_picture_is_a_message_without_a_copy_of_its_pixels():
@@ -127,9 +114,6 @@ def test_png_is_the_same_picture_and_jpeg_looks_the_same_and_quality_costs_bytes
         compressed("8UC3", SCENE, "jpeg", 80, 3)
 
 
-# Calibrations
-
-
 def test_the_ideal_camera_sees_its_field_of_view():
     found = ideal(640, 480, HFOV, VFOV)
     fx, _, cx, _, fy, cy = found.k[:6]
@@ -157,20 +141,15 @@ def test_calibrations_are_written_and_read():
     found = from_yaml(FILE[: FILE.index("rectification_matrix")])
     assert found.r == (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     assert found.p[:4] == (556.845, 0.0, 309.367, 0.0)  # that of its camera
-
-
-@pytest.mark.parametrize(
-    "text, problem",
-    [
-        ("just words", "no calibration"),
-        (FILE.replace("image_width: 640", ""), "no image_width"),
-        (FILE.replace("image_height: 480", "image_height: 0"), "640x0 pixels"),
-        (FILE.replace("556.845", "wide"), "something else than numbers"),
-        (FILE.replace("556.845", ".nan"), "K of a calibration has 9 finite numbers"),
-    ],
-)
-def test_what_is_no_calibration_is_told(text, problem):
-    refused(problem, from_yaml, text)
+    refused("no calibration", from_yaml, "just words")
+    for good, bad, problem in (
+        ("image_width: 640", "", "no image_width"),
+        ("image_height: 480", "image_height: 0", "640x0 pixels"),
+        ("556.845", "wide", "something else than numbers"),
+        ("556.845", "0", "focal lengths above 0"),
+        ("556.845", ".nan", "K of a calibration has 9 finite numbers"),
+    ):
+        refused(problem, from_yaml, FILE.replace(good, bad))
 
 
 def test_a_calibration_is_a_message_and_back():
@@ -184,9 +163,6 @@ def test_a_calibration_is_a_message_and_back():
     known = ideal(320, 240, *FOV)
     found = from_info(CameraInfo(width=320, height=240, K=list(known.k)))
     assert (found.p, found.r, found.model) == (known.p, known.r, "plumb_bob")
-
-
-# Which calibration holds, and where it is kept: the convention of camera_info_manager
 
 
 @pytest.fixture
@@ -241,22 +217,10 @@ def test_a_url_names_the_file_and_what_is_set_goes_there(infos, tmp_path):
     infos.set_url(f"file://{path}")
     refused(r"missing.yaml cannot be read", infos.set_url, f"file://{tmp_path}/missing.yaml")
     assert infos.of(320, 240).k == calibration(fov=FOV).k  # the one before holds
+    assert path_of("file://${ROS_HOME}/a%20b.yaml", NAME, str) == tmp_path / "home" / "a b.yaml"
+    assert camera_name("/robot 1/nao_camera_top") == "robot_1_nao_camera_top"
     for url in ("http://host/a.yaml", "/a.yaml", "file://a.yaml", "package://", "package://a"):
         refused("camera_info_url is", path_of, url, NAME, lambda package: "/")
-
-
-def test_places_and_names_by_the_convention(tmp_path, monkeypatch, caplog):
-    monkeypatch.delenv("ROS_HOME", raising=False)
-    assert path_of("", NAME, str) == Path.home() / ".ros" / "camera_info" / f"{NAME}.yaml"
-    monkeypatch.setenv("ROS_HOME", "/var/ros")
-    assert path_of("file://${ROS_HOME}/a%20b.yaml", NAME, str) == Path("/var/ros/a b.yaml")
-    assert camera_name("/robot 1/nao_camera_top") == "robot_1_nao_camera_top"
-    write(tmp_path / "a.yaml", replace(calibration(), name="webcam"))
-    assert read(tmp_path / "a.yaml", NAME).name == "webcam"
-    assert "'webcam'" in caplog.text
-
-
-# Options of send_camera_info
 
 
 def options(*words):
@@ -279,9 +243,6 @@ def test_a_file_is_sent_as_it_is_or_for_another_size_and_a_field_of_view_is_a_ca
     refused("camera.yaml is no calibration", options, path)
 
 
-# Settings and rates
-
-
 def values(**changes):
     return {**{field.name: field.default for field in fields_of(1, 15.0, True, 0, False)}, **changes}
 
@@ -292,25 +253,19 @@ def test_what_the_robot_is_asked_for():
     assert (alone["source"], alone["resolution"], alone["frame_rate"]) == (1, 2, 10.0)
     assert stream_settings(values(), 1) == StreamSettings(1, 1, 13, 15)
     assert stream_settings(values(source=0, frame_rate=7.6, color_space=9), 1) == StreamSettings(0, 1, 9, 8)
+    for change, automatic in (
+        ({"exposure": 100}, "auto_exposition"),
+        ({"gain": 100}, "auto_exposition"),
+        ({"white_balance": 4000}, "auto_white_balance"),
+    ):
+        after = settled(values(), values(**change))
+        assert after == values(**change, **{automatic: 0})  # a fixed value ends the automatic, unless that is asked for
+        assert changed_tunings(values(), after) == {**change, automatic: 0}
+        assert settled(values(**{automatic: 0}), values(**{automatic: 1}, **change))[automatic] == 1
     assert settled(values(), values(frame_rate=7.6))["frame_rate"] == 8.0
     refused("resolution is 5: one of 0 .160x120., 1 .320x240.", stream_settings, values(resolution=5), 0)
     refused("color_space is 14: one of 0 .Yuv", stream_settings, values(color_space=14), 0)
     refused("source is 2: one of 0 .top., 1 .bottom.", stream_settings, values(source=2), 0)
-
-
-@pytest.mark.parametrize(
-    "change, automatic",
-    [
-        ({"exposure": 100}, "auto_exposition"),
-        ({"white_balance": 4000}, "auto_white_balance"),
-    ],
-)
-def test_a_fixed_value_ends_the_automatic_unless_that_is_asked_for(change, automatic):
-    after = settled(values(), values(**change))
-    assert after == values(**change, **{automatic: 0})
-    assert changed_tunings(values(), after) == {**change, automatic: 0}
-    assert settled(values(**{automatic: 0}), values(**{automatic: 1}, **change))[automatic] == 1
-    assert settled({}, values(**change))[automatic] == 1
 
 
 def test_the_rate_is_that_of_the_last_seconds():
@@ -322,13 +277,8 @@ def test_the_rate_is_that_of_the_last_seconds():
         meter.note(99 / 30.0 + number / 15.0, 1 / 15.0)
     assert meter.rate == pytest.approx(15.0, abs=0.01)
     assert (meter.count, meter.missed) == (160, 0)
-
-
-@pytest.mark.parametrize(
-    "times, missed", [((0.0, 0.1, 0.4, 0.5, None, 9.0), 2), ((50.0, 50.1, 1.0, 1.1), 0)], ids=["gap", "set back"]
-)
-def test_gaps_are_missing_pictures_but_not_before_the_first_or_when_a_clock_is_set_back(times, missed):
-    meter = RateMeter()
-    for time in times:
-        meter.restart() if time is None else meter.note(time, 0.1)
-    assert meter.missed == missed
+    for times, missed in (((0.0, 0.1, 0.4, 0.5), 2), ((50.0, 50.1, 1.0, 1.1), 0)):  # set back, a clock misses none
+        meter = RateMeter()
+        for time in times:
+            meter.note(time, 0.1)
+        assert meter.missed == missed

@@ -5,21 +5,17 @@ from __future__ import annotations
 import threading
 
 import pytest
-from dynamic_reconfigure.encoding import decode_description, encode_description
 
 from nao_library_modules.clock import WallClock
 from nao_library_modules.driver import reconfigure
 from nao_library_modules.driver.goal_crowd import GoalCrowd, Outcome
 from nao_library_modules.driver.pacer import Pacer
-from nao_library_modules.driver.reconfigure import Field, description_of
+from nao_library_modules.driver.reconfigure import Field
 from nao_library_modules.errors import BadGoal, Preempted, RobotLost
 from nao_library_modules.interrupt import Interrupt
 from naoqi.errors import NaoError
 
 PATIENCE = 10.0
-
-
-# Goals side by side
 
 
 class Handle:
@@ -130,9 +126,6 @@ def test_goals_that_will_not_do_abort_with_their_text_and_feedback_goes_to_its_g
     assert handle.wait()[0] == "succeeded" and handle.feedback == ["half of HeadYaw"]
 
 
-# Pace
-
-
 class PassingClock:
     """Time that passes by waiting only, and by the test."""
 
@@ -171,17 +164,6 @@ def test_after_a_break_or_a_clock_set_back_it_begins_anew_until_an_interrupt(jum
     assert not pacer.wait()
 
 
-def test_fast_simulated_time_does_not_shorten_the_rest():
-    pacer, wall = Pacer(PassingClock(), 0.02, 0.01, Interrupt()), WallClock()
-    pacer.wait()
-    began = wall.now()
-    for _ in range(5):
-        pacer.wait()
-    assert wall.now() - began >= 0.049
-
-
-# Parameters that can change
-
 FIELDS = (
     Field("volume", -1, "how loud", -1, 100),
     Field("voice", "", "who speaks"),
@@ -189,26 +171,6 @@ FIELDS = (
     Field("speed", 1.5, "how fast"),
     Field("frequency", 16000, "samples a second", 16000, 48000, {16000: "one channel", 48000: "four channels"}),
 )
-
-
-def test_descriptions_are_what_the_tools_of_dynamic_reconfigure_understand():
-    group = decode_description(encode_description(description_of(FIELDS)))  # to a client and back
-    found = {each["name"]: each for each in group["parameters"]}
-    assert {name: (each["type"], each["default"]) for name, each in found.items()} == {
-        "volume": ("int", -1),
-        "voice": ("str", ""),
-        "beep": ("bool", True),
-        "speed": ("double", 1.5),
-        "frequency": ("int", 16000),
-    }
-    volume = found["volume"]
-    assert (volume["description"], volume["min"], volume["max"], volume["edit_method"]) == ("how loud", -1, 100, "")
-    assert found["speed"]["min"] == float("-inf") and found["speed"]["max"] == float("inf")
-    assert (found["beep"]["min"], found["beep"]["max"]) == (False, True)
-    assert len({each["level"] for each in found.values()}) == len(FIELDS)
-    enum = eval(found["frequency"]["edit_method"])["enum"]  # as the tools do
-    choices = [(entry["value"], entry["description"]) for entry in enum]
-    assert choices == [(16000, "one channel"), (48000, "four channels")]
 
 
 @pytest.mark.parametrize(
@@ -226,33 +188,3 @@ def test_what_a_parameter_cannot_be_is_told_when_the_node_begins(monkeypatch, na
     monkeypatch.setattr(reconfigure.rospy, "get_param", lambda key, default: value if key == f"~{name}" else default)
     with pytest.raises(NaoError, match=allowed):
         reconfigure.serve(FIELDS, lambda before, after: after)
-
-
-class Server:
-    """That of dynamic_reconfigure, as far as it calls back."""
-
-    def __init__(self, description, callback):
-        self._config, self._callback = dict(description.defaults), callback
-        self.update_configuration({})
-
-    def update_configuration(self, changes):
-        self._config = self._callback({**self._config, **changes}, 0)
-
-
-def test_what_is_refused_is_the_error_that_it_was(monkeypatch):
-    refused, seen = NaoError("not so loud"), []
-
-    def changed(before, after):
-        if after["volume"] > 50:
-            raise refused
-        seen.append((before.get("volume"), after["volume"]))
-        return after
-
-    monkeypatch.setattr(reconfigure, "Server", Server)
-    monkeypatch.setattr(reconfigure.rospy, "get_param", lambda key, default: default)
-    server = reconfigure.serve(FIELDS, changed)
-    with pytest.raises(NaoError) as caught:
-        reconfigure.update(server, {"volume": 80})
-    assert caught.value is refused
-    reconfigure.update(server, {"volume": 20})
-    assert seen == [(None, -1), (-1, 20)]

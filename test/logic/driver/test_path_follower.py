@@ -31,8 +31,8 @@ from nao_library_modules.interrupt import Interrupt
 from nao_library_modules.places import ORIGIN, Place
 from naoqi.errors import NaoError
 
-QUARTER = math.pi / 2
-SETTINGS = Settings()
+QUARTER, NAN = math.pi / 2, math.nan
+SETTINGS, LIMITED = Settings(), Settings(max_vel_x=0.8, max_vel_y=0.4, max_vel_yaw=0.5)
 WAYPOINTS = [Place(0.0, 0.0, 3.0), Place(1.0, 0.0, 3.0), Place(1.0, 1.0, 0.25)]
 CORNER = WalkPath(WAYPOINTS)
 SQUARE = WalkPath([Place(x, y, 0.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))])
@@ -41,9 +41,6 @@ SQUARE = WalkPath([Place(x, y, 0.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1),
 def refused(words, function, *arguments, error=NaoError):
     with pytest.raises(error, match=words):
         function(*arguments)
-
-
-# Paths
 
 
 def test_length_places_and_headings_of_a_path():
@@ -55,31 +52,16 @@ def test_length_places_and_headings_of_a_path():
     doubled = WalkPath([WAYPOINTS[0], WAYPOINTS[0], WAYPOINTS[1], WAYPOINTS[1], WAYPOINTS[2]])
     assert [doubled.index_at(along) for along in (0.0, 0.9, 1.1, 2.0)] == [3, 3, 4, 4]
     assert doubled.length == pytest.approx(2.0)
-    refused("1 pose", WalkPath, WAYPOINTS[:1], error=BadGoal)
-    refused("3 poses at one", WalkPath, [WAYPOINTS[0]] * 3, error=BadGoal)
-
-
-@pytest.mark.parametrize(
-    "robot, window, along, off",
-    [
+    for robot, window, along, off in (
         ((0.5, 0.1), (0.8, 1.5), 0.8, math.hypot(0.3, 0.1)),
         ((1.2, 1.4), (0.0, 5.0), 2.0, math.hypot(0.2, 0.4)),
         ((0.95, 0.2), (0.0, 1.5), 1.2, 0.05),
-    ],
-)
-def test_the_nearest_place_is_looked_for_within_a_window(robot, window, along, off):
-    found = CORNER.nearest(Place(*robot, 0.0), *window)
-    assert (found.along, found.off) == pytest.approx((along, off))
-
-
-def test_straight_is_what_keeps_near_a_line():
-    assert CORNER.straight(0.1, 0.9, 0.01) and CORNER.straight(1.1, 9.0, 0.01) and CORNER.straight(0.95, 1.0, 0.05)
-    assert not CORNER.straight(0.8, 1.2, 0.05)
-    back = WalkPath([Place(0.0, 0.0, 0.0), Place(1.0, 0.0, 0.0), Place(0.5, 0.0, 0.0)])
-    assert not back.straight(0.6, 1.3, 0.03)
-
-
-# Courses: where a robot that follows a path aims
+    ):
+        found = CORNER.nearest(Place(*robot, 0.0), *window)
+        assert (found.along, found.off) == pytest.approx((along, off))
+    assert CORNER.straight(0.1, 0.9, 0.01) and CORNER.straight(0.95, 1.0, 0.05) and not CORNER.straight(0.8, 1.2, 0.05)
+    refused("1 pose", WalkPath, WAYPOINTS[:1], error=BadGoal)
+    refused("3 poses at one", WalkPath, [WAYPOINTS[0]] * 3, error=BadGoal)
 
 
 @pytest.mark.parametrize(
@@ -122,32 +104,6 @@ def test_a_path_that_begins_elsewhere_is_refused_and_where_it_comes_back_it_does
     assert not reached(Place(0.06, 0.0, 0.0), SETTINGS) and not reached(Place(0.0, 0.0, -0.1), SETTINGS)
 
 
-# Settings and steering
-
-
-def test_names_of_parameters_are_those_of_the_settings():
-    given = {"~target_distance_threshold": 0.02, "~use_vel_ctrl": True, "~controller_frequency": 20}
-    read = Settings.read(lambda name, default: given.get(name, default))
-    assert read == Settings(target_distance_threshold=0.02, use_vel_ctrl=True, controller_frequency=20)
-
-
-@pytest.mark.parametrize(
-    "name, value",
-    [
-        ("controller_frequency", 0),
-        ("max_vel_x", 1.5),
-        ("step_freq", 2.0),
-        ("use_vel_ctrl", 1),
-        ("straight_offset", math.nan),
-    ],
-)
-def test_settings_that_will_not_do_are_named(name, value):
-    refused(f"~{name} is", lambda: Settings(**{name: value}))
-
-
-LIMITED = Settings(max_vel_x=0.8, max_vel_y=0.4, max_vel_yaw=0.5)
-
-
 @pytest.mark.parametrize(
     "way, speeds",
     [
@@ -162,6 +118,15 @@ def test_velocities_along_a_way(way, speeds):
     assert velocity(Place(*way), LIMITED) == pytest.approx(speeds)
 
 
+def test_names_of_parameters_are_those_of_the_settings_and_those_that_will_not_do_are_named():
+    given = {"~target_distance_threshold": 0.02, "~use_vel_ctrl": True, "~controller_frequency": 20}
+    read = Settings.read(lambda name, default: given.get(name, default))
+    assert read == Settings(target_distance_threshold=0.02, use_vel_ctrl=True, controller_frequency=20)
+    wrong = {"controller_frequency": 0, "max_vel_x": 1.5, "step_freq": 2.0, "use_vel_ctrl": 1, "straight_offset": NAN}
+    for name, value in wrong.items():
+        refused(f"~{name} is", lambda name=name, value=value: Settings(**{name: value}))
+
+
 def test_a_robot_that_gets_no_nearer_is_told_how_far_it_got():
     watch, never = StuckWatch(5.0), StuckWatch(0.0)
     for second in range(60):
@@ -173,8 +138,6 @@ def test_a_robot_that_gets_no_nearer_is_told_how_far_it_got():
     never.check(0.0, 1.0)
     never.check(1e6, 1.0)
 
-
-# Leading a robot along a course
 
 SPEED, TURN = 0.095, 0.83
 BY_POSES = Settings()
@@ -262,9 +225,9 @@ def test_a_target_is_reached_and_the_robot_stands(point, control, place):
     assert not point.walking() and point.time < 40.0
 
 
-def test_by_poses_it_is_told_once_and_walks_to_the_very_place(point):
+def test_by_poses_it_is_told_once_and_walks_to_the_very_place_and_who_is_there_does_not_walk(point):
     walk(point, target(0.01, 0.0, 0.0), BY_POSES)
-    assert (point.commands, point.stops) == ([], 0)  # who is there does not walk
+    assert point.commands == []
     walk(point, target(1.0, 0.3, 0.8), BY_POSES)
     assert point.commands == [Place(1.0, 0.3, 0.8)] and point.stops == 0
     assert point.place == pytest.approx((1.0, 0.3, 0.8))
@@ -338,8 +301,6 @@ def test_an_interrupt_ends_it_and_leaves_the_legs_as_they_are(point):
     assert point.stops == 0
 
 
-# Poses, paths and frames
-
 NOW = rospy.Time(100)
 
 
@@ -358,18 +319,6 @@ def path(*poses, frame="odom"):
     return message
 
 
-@pytest.mark.parametrize(
-    "message, words",
-    [
-        (pose(1.0, 0.0, frame="", yaw=0.0), r"goal\.header\.frame_id"),
-        (pose(1.0, 0.0), r"goal\.pose\.orientation.*\(0, 0, 0, 0\).*rotation"),
-        (pose(math.nan, 0.0, yaw=0.0), r"goal\.pose\.position\.x.*finite"),
-    ],
-)
-def test_what_is_no_place_is_told(message, words):
-    refused(words, read_place, "goal", message, error=BadGoal)
-
-
 def test_of_a_path_the_last_heading_counts_and_without_one_that_of_the_path():
     places, frame = read_path(path(pose(0, 0), pose(1, 0), pose(1, 1, yaw=0.25)))
     place = read_place("goal", pose_stamped(Place(1.0, -2.0, 0.5), "/map", NOW))
@@ -381,6 +330,9 @@ def test_of_a_path_the_last_heading_counts_and_without_one_that_of_the_path():
     mixed = path(pose(0, 0, "odom"), pose(1, 0, "map"), frame="map")
     refused("path.poses.*all in the frame of the path, map", read_path, mixed, error=BadGoal)
     refused("frame_id", read_path, path(pose(0, 0, ""), frame=""), error=BadGoal)
+    refused(r"goal\.header\.frame_id", read_place, "goal", pose(1.0, 0.0, frame="", yaw=0.0), error=BadGoal)
+    refused(r"goal\.pose\.orientation.*rotation", read_place, "goal", pose(1.0, 0.0), error=BadGoal)
+    refused(r"goal\.pose\.position\.x.*finite", read_place, "goal", pose(NAN, 0.0, yaw=0.0), error=BadGoal)
     no_number = path(pose(0, 0), pose(math.nan, 0))
     refused(r"path\.poses\[1\]\.pose\.position\.x", read_path, no_number, error=BadGoal)
 

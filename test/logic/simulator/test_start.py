@@ -20,9 +20,6 @@ from nao_sim_bridge.sim.simulation import Scene
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.task_success import success_of
 
-# --- command line -----------------------------------------------------------------------------------------------------
-
-
 def options(*arguments):
     return server_options(parse("nao_sim", arguments))
 
@@ -63,9 +60,6 @@ def test_wrong_arguments_end_the_program_with_what_is_allowed(capsys, arguments,
     with pytest.raises(SystemExit) as ended:
         options(*arguments.split())
     assert ended.value.code == 2 and message in capsys.readouterr().err
-
-
-# --- files of clients -------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -142,9 +136,6 @@ def test_what_modules_have_made_can_be_forgotten_and_nothing_else(files, tmp_pat
     files.forget()
     left = {path.relative_to(files.folder).as_posix() for path in files.folder.rglob("*") if path.is_file()}
     assert left == {"day/one.wav", "both.wav", "made/film.mp4"} and not (files.folder / "only").exists()
-
-
-# --- services of ROS --------------------------------------------------------------------------------------------------
 
 
 def ended(result=None, error=None):

@@ -36,9 +36,6 @@ def video(robot):
         device.resetCamera(camera)
 
 
-# Pictures
-
-
 @pytest.fixture
 def seen():
     return []
@@ -111,8 +108,6 @@ def test_pictures_come_again_after_a_loss_or_when_the_robot_has_ended_the_subscr
         until(lambda: stream.report().level is not Level.ERROR, step=1 / 15)
 
 
-# Tuning of the picture: NAOqi's numbers of the parameters
-
 BRIGHTNESS, CONTRAST, GAIN, AUTO_EXPOSITION, EXPOSURE = 0, 1, 6, 11, 17
 
 
@@ -168,9 +163,6 @@ def test_what_the_camera_lacks_is_left_out_with_one_warning(ask, video, caplog):
     told = [record.getMessage() for record in caplog.records]
     assert told == ["the robot's CameraTop has no brightness, which is left out"]
     assert video.getParameter(0, CONTRAST) == 40 and "brightness" not in tuning.read(0)
-
-
-# Modules that look for something
 
 
 @pytest.fixture

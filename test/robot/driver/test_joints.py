@@ -35,9 +35,6 @@ def angles(robot, *names):
     return robot.ALMotion.getAngles(list(names), True)
 
 
-# Joints
-
-
 @pytest.fixture
 def joints(stiff_robot, driver_robot):
     stiff_robot.ALMotion.setAngles(["HeadYaw", "HeadPitch"], [0.0, 0.0], 0.5)
@@ -138,9 +135,6 @@ def test_the_whole_body_gets_stiff_wakes_up_rests_and_lives(joints, robot, until
     assert joints.life_state() == "solitary"
 
 
-# Sensors
-
-
 def test_a_reading_is_what_the_robot_says_of_joints_inertial_unit_and_odometry(joints, robot, driver_robot):
     joints.set_angles(["HeadYaw"], [0.5], 1.0, relative=False)
     robot.advance(1.0)
@@ -210,9 +204,6 @@ def test_sonars_measure_only_while_somebody_listens_and_after_a_loss(robot, driv
     sonars = closing(Sonars(lacking, "ros_nao_sonar", 20.0, clock, told.append))
     sonars.want(True)
     until(lambda: "no module 'ALSonarX" in sonars.report().message)
-
-
-# Memory
 
 
 class Topics(dict):
@@ -322,9 +313,6 @@ def test_unwatching_closes_topics_and_too_many_keys_are_refused(robot, driver_ro
     assert watch.watched() == {} and watch.report().message == "nothing is watched"
 
 
-# Touch
-
-
 def test_every_change_of_every_touch_sensor_is_told_once(robot, driver_robot, closing, soon, monkeypatch):
     told = []
     monkeypatch.setattr(demand, "LOOK_PERIOD", 0.02)
@@ -352,8 +340,6 @@ def test_every_change_of_every_touch_sensor_is_told_once(robot, driver_robot, cl
     soon(lambda: (BUMPER, 1, True) in told)
     assert sensors.report().values["LeftBumperPressed"] == "touched" and told == [2, (BUMPER, 1, True)]
 
-
-# Lights, behaviours, life
 
 RED, GREEN, BLACK = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
 

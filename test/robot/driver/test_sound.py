@@ -31,9 +31,6 @@ def _impatient(monkeypatch):
         monkeypatch.setattr(demand, name, seconds)
 
 
-# Microphones
-
-
 @pytest.fixture
 def blocks():
     return []
@@ -87,9 +84,6 @@ def test_silence_of_a_robot_that_cannot_reach_us_is_told_and_tried_again(
     driver_robot.lose()
     blocks.clear()
     until(lambda: len(blocks) >= 2, limit=60.0, step=BLOCK)
-
-
-# Files, volume and directions
 
 
 @pytest.fixture
@@ -164,9 +158,6 @@ def test_sounds_are_located_only_while_somebody_listens_and_once_after_a_loss(ro
     soon(lambda: not subscribers())
     robot.ALMemory.raiseEvent("ALSoundLocalization/SoundLocated", event)
     assert [each.azimuth for each in found] == [0.5]
-
-
-# Speech
 
 
 @pytest.fixture
@@ -278,9 +269,6 @@ def test_there_is_an_end_to_the_queue_and_the_end_of_the_node_silences_everythin
     until(closed.done)
     assert all(isinstance(text.error, Preempted) for text in texts) and voice(robot) == before
     assert isinstance(speech.say("after the end").error, Preempted)
-
-
-# Recognition of words
 
 
 @pytest.fixture

@@ -54,9 +54,6 @@ def place(robot):
     return Place(*robot.ALMotion.getRobotPosition(True))
 
 
-# Walker
-
-
 def test_velocities_go_to_the_robot_with_frequency_and_gait(walker, robot):
     ways = []
     for frequency, gait in ((1.0, []), (0.0, [["MaxStepX", 0.02]])):
@@ -197,8 +194,6 @@ def test_without_a_limit_a_velocity_lasts_until_the_end_which_takes_no_orders(st
         done(steer(walker, FORWARD))
 
 
-# Sequences of footsteps
-
 STEPS = [
     Footstep(leg, Place(0.04, side * 0.1, 0.0)) for leg, side in (("LLeg", 1), ("RLeg", -1), ("LLeg", 1), ("RLeg", -1))
 ]
@@ -261,9 +256,6 @@ def test_sequences_are_of_left_and_right_in_turn_and_refusals_are_told(footsteps
         footsteps.walk(STEPS, 0.25, Interrupt(), lambda made: None)
 
 
-# Walks to one place after the other
-
-
 @pytest.fixture
 def moving(standing, driver_robot, closing):
     return closing(MoveToWalk(driver_robot))
@@ -317,9 +309,6 @@ def test_a_goal_nobody_can_find_leaves_the_walk_alone_and_refusals_are_told(movi
     soon(lambda: "nowhere: no such frame" in moving.report().message)
     robot.advance(0.3)
     assert walking(robot) and moving.report().level == Level.ERROR
-
-
-# The legs of the path follower: commands go by topics to whoever walks, questions to the robot
 
 
 class Ros:
