@@ -6,7 +6,7 @@ import math
 
 import numpy
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import almath
@@ -108,14 +108,6 @@ def test_cross_products_turn_to_the_left():
     refused("Position2D.distanceSquared takes a Position2D", Position2D().distance, Position3D())
 
 
-def test_unit_and_orthogonal_vectors_are_told_within_a_tolerance():
-    x = Position3D(1.00005, 0.0, 0.0)
-    assert x.isUnitVector() and not x.isUnitVector(0.00001)
-    assert not (x * 1.001).isUnitVector() and not almath.isUnitVector(x * 1.001)
-    assert x.isOrthogonal(Position3D(0.00005, 1.0, 0.0))
-    assert not x.isOrthogonal(Position3D(0.001, 1.0, 0.0)) and not almath.isOrthogonal(x, Position3D(0.001, 1.0, 0.0))
-
-
 # Footsteps. Corners of the feet of a NAO, in m: front left, front right, rear right, rear left.
 LEFT_FOOT = [Position2D(*c) for c in ((0.080, 0.050), (0.080, -0.038), (-0.047, -0.038), (-0.047, 0.050))]
 RIGHT_FOOT = [Position2D(*c) for c in ((0.080, 0.038), (0.080, -0.050), (-0.047, -0.050), (-0.047, 0.038))]
@@ -157,16 +149,6 @@ def test_a_step_that_turns_into_the_other_foot_is_turned_less(left_is_support, s
     pose = Pose2D(*step)
     assert almath.avoidFootCollision(LEFT_FOOT, RIGHT_FOOT, left_is_support, pose) is collides
     assert pose.isNear(Pose2D(*step[:2], theta), 1e-12)
-
-
-def test_corners_may_be_poses_and_any_sequence():
-    left, right = ([Pose2D(c.x, c.y, 0.0) for c in box] for box in (LEFT_FOOT, RIGHT_FOOT))
-    step, same = Pose2D(0.0, 0.085, 0.7), Pose2D(0.0, 0.085, 0.7)
-    almath.avoidFootCollision(almath.vectorPose2D(left), tuple(right), False, step)
-    almath.avoidFootCollision(LEFT_FOOT, RIGHT_FOOT, False, same)
-    assert step == same
-    told = r"avoidFootCollision takes a list of Position2D, got \(0, 1\) in it"
-    refused(told, almath.avoidFootCollision, [(0, 1)], right, False, step)
 
 
 @pytest.mark.parametrize(
@@ -229,28 +211,6 @@ def test_known_paths(target, checkpoints):
     assert len(path) == 3
     for pose, expected in zip(path, [*checkpoints, target]):
         assert pose.isNear(Pose2D(*expected), 1e-5)
-
-
-def driven(pose, turn, radius):
-    """Pose after an arc by the angle `turn`, to the left if it is positive."""
-    centre = pose * Position2D(0.0, math.copysign(radius, turn))
-    turned = Pose2D(0.0, 0.0, turn) * (almath.position2DFromPose2D(pose) - centre)
-    return Pose2D(centre.x + turned.x, centre.y + turned.y, pose.theta + turn)
-
-
-@settings(max_examples=40)
-@given(st.floats(0.05, 0.4), st.floats(4.01, 10.0), st.floats(-3.1, 3.1), st.floats(-3.1, 3.1))
-def test_driving_arc_straight_and_arc_leads_to_the_target(radius, radii, bearing, heading):
-    target = Pose2D.fromPolarCoordinates(radii * radius, bearing)
-    target.theta = heading
-    start, end, last = almath.getDubinsSolutions(target, radius)
-    assert last == target and abs(start.theta) <= 2.0 * math.pi
-    assume(abs(start.theta) > 1e-6 and abs(heading - end.theta) > 1e-6)  # the sign of no turn is no side
-    assert driven(Pose2D(), start.theta, radius).isNear(start, 1e-9)
-    straight = start * Pose2D(start.distance(end), 0.0, 0.0)
-    assert math.remainder(straight.theta - end.theta, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
-    assert straight.distance(end) < 1e-9
-    assert driven(end, target.theta - end.theta, radius).isNear(target, 1e-9)
 
 
 def test_straight_ahead_there_is_no_turn_and_targets_too_near_are_refused():

@@ -100,15 +100,6 @@ def test_rotation_about_an_axis_leaves_the_axis_and_turns_by_the_angle(axis, ang
     assert almath.axisRotationProjection(axis * 5.0, rotation).isNear(rotation, 1e-9)
 
 
-def test_a_rotation_is_made_row_by_row_or_from_the_list_of_a_transform():
-    transform = Transform.fromPosition(1.0, 2.0, 3.0, 0.1, 0.2, 0.3)
-    rotation = Rotation.from3DRotation(0.1, 0.2, 0.3)
-    assert Rotation(transform.toVector()) == Rotation(transform.toVector()[:12]) == rotation
-    assert Rotation(range(9)).r2_c3 == 5.0
-    refused("9, 12 or 16 numbers, got 10", Rotation, [0.0] * 10)
-    refused("length 1", Rotation.fromAngleDirection, 0.5, 1.0, 1.0, 0.0)
-
-
 @few
 @given(rotations, st.lists(st.floats(-0.01, 0.01), min_size=9, max_size=9))
 def test_normalizing_a_disturbed_rotation_keeps_the_third_column_and_is_idempotent(rotation, noise):
@@ -242,13 +233,6 @@ def test_quaternion_of_half_a_turn_is_its_axis(about):
     assert sorted(map(abs, axis)) == pytest.approx([0.0, 0.0, 1.0])
 
 
-def test_a_zero_quaternion_is_no_rotation():
-    zero = Quaternion(0.0, 0.0, 0.0, 0.0)
-    refused("other than zero", almath.rotationFromQuaternion, zero)
-    refused("turns nothing", lambda: zero * X)
-    refused("norm is zero", zero.normalize)
-
-
 # Transforms
 
 
@@ -303,27 +287,6 @@ def test_lists_of_12_and_16_numbers_make_the_transform_again_and_are_put_right(t
     repaired = Transform(numbers)
     assert repaired.isTransform(1e-9) and repaired.isNear(transform, 0.1)
     assert almath.position3DFromTransform(repaired) == almath.position3DFromTransform(transform)
-
-
-@pytest.mark.parametrize(
-    "arguments, told",
-    [
-        (([0.0] * 6,), "12 or 16 numbers, got 6"),
-        ((1.0, 2.0), "got 2 arguments"),
-    ],
-)
-def test_wrong_arguments_of_a_transform_are_refused_and_named(arguments, told):
-    refused(told, Transform, *arguments)
-
-
-def test_pairs_copy_their_parts_and_compare_them():
-    transform, velocity = Transform(1.0, 2.0, 3.0), Velocity6D(0.1)
-    pair = almath.TransformAndVelocity6D(transform, velocity)
-    transform.r1_c4 = 9.0
-    assert pair.T.r1_c4 == 1.0
-    assert pair.isNear(almath.TransformAndVelocity6D(Transform(1.0, 2.0, 3.0), velocity))
-    assert not pair.isNear(almath.TransformAndVelocity6D(Transform(1.0, 2.0, 3.0)))
-    assert not pair.isNear(almath.TransformAndVelocity6D(None, velocity))
 
 
 # From one kind to another

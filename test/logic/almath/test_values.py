@@ -103,21 +103,6 @@ def test_sums_and_multiples_go_component_by_component(kind):
     assert alias is value and alias == kind(2.0)
 
 
-@pytest.mark.parametrize("kind", [*LINEAR, Quaternion])
-def test_division_by_zero_is_an_error_that_names_the_value(kind):
-    refused(f"{kind.__name__}.*by zero", lambda: kind() / 0.0)
-
-
-def test_values_of_different_classes_do_not_mix_and_are_no_keys():
-    point, rotation = Position3D(1.0, 2.0, 3.0), almath.Rotation3D(1.0, 2.0, 3.0)
-    assert point != rotation
-    with pytest.raises(TypeError):
-        point + rotation
-    refused("isNear takes a Position3D", point.isNear, rotation)
-    with pytest.raises(TypeError, match="unhashable"):
-        {Pose2D(): 1}
-
-
 def test_equality_is_exact_and_nearness_is_not():
     pose, close = Pose2D(1.0, 2.0, 3.0), Pose2D(1.0, 2.0, 3.00009)
     assert pose == Pose2D(1.0, 2.0, 3.0) and pose != close
@@ -191,11 +176,3 @@ def test_every_public_function_and_class_is_exported_once_in_order():
             if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_"):
                 assert getattr(almath, node.name) is getattr(found, node.name)
                 assert node.name in almath.__all__
-
-
-def test_flat_names_are_the_static_methods():
-    flat = [name for name in almath.__all__ if "_from" in name]
-    assert len(flat) == 18
-    for name in flat:
-        kind, method = name.split("_")
-        assert getattr(almath, name) is getattr(getattr(almath, kind), method)

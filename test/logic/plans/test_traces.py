@@ -11,8 +11,6 @@ import pytest
 from actionlib import CommState
 from actionlib_msgs.msg import GoalStatus
 from fake_goals import FakeActionClient
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from plan_tools import fails
 
 import nao_library_modules.process_modules as p
@@ -83,16 +81,6 @@ def test_the_hand_is_where_the_tables_say_with_all_joints_at_zero(arm):
     names = ("ShoulderPitch", "ShoulderRoll", "ElbowYaw", "ElbowRoll", "WristYaw")
     assert arm.joints == tuple(f"{'L' if arm.sign > 0.0 else 'R'}{name}" for name in names)
     assert arm.tip([0.0] * 5)[:3, 3] == pytest.approx((0.2187, arm.sign * 0.113, 0.08769), abs=2e-4)
-
-
-@settings(max_examples=20)
-@given(shares=st.lists(st.floats(0.02, 0.98), min_size=5, max_size=5))
-def test_points_that_the_arm_can_reach_are_reached_within_the_limits(arm, shares):
-    target = arm.tip(np.array(arm.lower) + shares * (np.array(arm.upper) - arm.lower))[:3, 3]
-    found = arm.reach(target, arm.rest)
-    angles = [found.angles[name] for name in arm.joints]
-    assert found.distance < 0.002 and arm.tip(angles)[:3, 3] == pytest.approx(target, abs=0.002)
-    assert np.all(angles >= arm.lower) and np.all(angles <= arm.upper)
 
 
 def test_a_point_too_far_away_is_answered_with_the_nearest_and_one_that_is_reached_changes_nothing(arm):

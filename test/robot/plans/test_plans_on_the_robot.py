@@ -22,7 +22,6 @@ from nao_library_modules.process_modules.failures import (
     GripperClosedCompletely,
     GripperGoalNotReached,
     LightsLowLevelFailure,
-    ManipulationGoalNotReached,
     ManipulationPoseUnreachable,
     NavigationGoalNotReached,
     NavigationPoseUnreachable,
@@ -196,9 +195,6 @@ def test_hands_grip_what_is_there_and_tell_what_did_not_open(perform, robot, lin
     with pytest.raises(GripperGoalNotReached, match=r"the right hand is 0.\d\d open instead of 1.00") as caught:
         perform(to(type="opening", gripper="right"))
     assert (caught.value.side, caught.value.wanted) == ("right", 1.0)
-    link.answers["joint_trajectory"] = ActionEnd(GoalStatus.ABORTED, "the motors are off", None)
-    with pytest.raises(GripperGoalNotReached, match="LHand: the motors are off"):
-        perform(to(type="opening", gripper="left"))
 
 
 def test_the_head_turns_by_words_but_not_backwards(perform, robot, link, angle):
@@ -209,8 +205,6 @@ def test_the_head_turns_by_words_but_not_backwards(perform, robot, link, angle):
         perform(to(type="looking", target=[-1.0, 0.0]))
     assert caught.value.nearest[0] == pytest.approx(2.0857, abs=1e-3)
     assert angle("HeadYaw") == pytest.approx(before, abs=0.02)
-    with pytest.raises(p.PlanFailure, match="it looks at 'somewhere': not one of forward, left, right"):
-        perform(to(type="looking", target="somewhere"))
     limp(robot, "HeadYaw")
     with pytest.raises(PtuGoalNotReached, match="the head is at yaw .* instead of yaw 0.00"):
         perform(to(type="looking", direction="forward"))
@@ -236,34 +230,12 @@ def low_level_call(perform, function, *arguments):
     return perform(action)
 
 
-def test_an_arm_that_does_not_get_there_fails(perform, robot):
-    limp(robot, "LElbowRoll", "LElbowYaw")
-    with pytest.raises(ManipulationGoalNotReached, match="the left hand is at .* instead of") as caught:
-        perform(to(type="reaching", side="left", target=[0.18, 0.12, 0.1]))
-    assert caught.value.side == "left" and caught.value.reached.distance_to((0.18, 0.12, 0.1)) > 0.02
-
-
 def test_arms_go_by_words_and_point_with_the_nearer_one(perform, link):
     forward = {"left_target": "forward"}, {"right_target": "forward"}
     left, right = perform(*(p.an(p.motion, type="moving-tcp", **each) for each in forward))
     assert (left.x, left.y) == pytest.approx((right.x, -right.y), abs=0.01)
     hand = perform(to(type="pointing", at=[1.0, -1.0, 0.1]))
     assert hand.y < -0.2 and link.goals["joint_trajectory"][-1].trajectory.joint_names[0] == "RShoulderPitch"
-
-
-def test_functions_move_joints_by_name_and_take_the_stable_pose(perform, link, angle):
-    assert perform(to(type="moving-joints", angles={"HeadYaw": 0.5}))["HeadYaw"] == pytest.approx(0.5, abs=0.02)
-    with pytest.raises(p.PlanError, match="no joint Tail"):
-        perform(to(type="moving-joints", angles={"Tail": 0.5}))
-    assert len(low_level_call(perform, low_level.go_stable)) == 26
-    assert angle("LShoulderPitch") == pytest.approx(link.settings.stable["LShoulderPitch"], abs=0.05)
-    assert low_level_call(perform, low_level.open_gripper, "left") > 0.9
-    assert low_level_call(perform, low_level.close_gripper, "left") < 0.1
-    assert low_level_call(perform, low_level.move_head, 1.0, 0.5)[0] == pytest.approx(math.atan2(0.5, 1.0), abs=0.03)
-    with pytest.raises(p.PlanError, match="side is 'middle': left or right"):
-        low_level_call(perform, low_level.open_gripper, "middle")
-    with pytest.raises(p.PlanError, match="'there' is not"):
-        low_level_call(perform, low_level.walk_to, "there")
 
 
 @pytest.fixture
@@ -310,16 +282,10 @@ def test_a_walk_that_misses_its_target_or_is_refused_fails(perform, walking, rob
         perform(to(type="going", target=[0.5, 0.0, 0.0, "mars"]))
 
 
-def test_a_plan_that_ends_or_fails_leaves_the_robot_standing(walking, robot):
+def test_a_plan_that_ends_leaves_the_robot_standing(walking, robot):
     plan = walking(p.do(p.perform, to(type="looking", target="left")))
     plan.root.evaporate("enough")
     plan.fails(TaskEvaporatedFailure, "enough")
-    robot.advance(1.0)
-    assert stands(robot) and robot.now.torso.position[0] < 1.0
-    dark = p.Fluent("dark", False)
-    plan = walking(lambda: (p.wait_for(dark), p.fail("too dark")))
-    dark.value = True
-    plan.fails(p.PlanFailure, "too dark")
     robot.advance(1.0)
     assert stands(robot) and robot.now.torso.position[0] < 1.0
 
@@ -334,12 +300,6 @@ def test_a_suspended_walk_stops_and_goes_on_when_it_is_woken(begin, robot, on_it
     assert robot.now.torso.position[0] == pytest.approx(stopped, abs=0.02) and stopped < 0.25
     plan.root.wake_up()
     assert plan.ended().x == pytest.approx(0.3, abs=0.05)
-
-
-def test_a_robot_that_falls_on_the_way_is_a_failure(walking, robot):
-    plan = walking()
-    robot.server.simulation.robot.push((0.0, 150.0, 0.0), 0.1, "torso")
-    plan.fails(NavigationGoalNotReached)
 
 
 def test_lights_have_a_colour_and_an_intensity_and_are_told_wrong_names(perform, robot, link):

@@ -135,30 +135,3 @@ def eventually():
             pause.wait(0.01)
 
     return wait
-
-
-@pytest.fixture
-def in_thread():
-    """Runs a function in a thread; calling what is returned waits for its result or raises its error."""
-
-    def start(function):
-        outcome = {}
-
-        def run():
-            try:
-                outcome["value"] = function()
-            except Exception as error:
-                outcome["error"] = error
-            outcome["ended"] = time.monotonic()
-
-        thread = threading.Thread(target=run)
-        thread.start()
-
-        def finish():
-            thread.join(PATIENCE)
-            assert not thread.is_alive(), "the call never came back"
-            return outcome
-
-        return finish
-
-    return start

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import socket
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -20,11 +21,9 @@ def robot(fragile_robot):
 
 
 @pytest.fixture
-def call_under_way(proxy, in_thread, begun):
-    """A call that waits for its answer in another thread; has arrived at the robot."""
-    finish = in_thread(proxy.begin)
-    begun()
-    return finish
+def pool():
+    with ThreadPoolExecutor() as pool:
+        yield pool
 
 
 def test_a_connection_knows_how_it_is(robot, eventually):
@@ -35,41 +34,25 @@ def test_a_connection_knows_how_it_is(robot, eventually):
     assert (connection.generation, connection.last_error) == (1, "")
 
 
-def test_a_killed_robot_fails_the_calls_under_way_at_once(robot, proxy, call_under_way):
-    task = proxy.post.begin()
-    start = time.monotonic()
-    robot.kill()
-    outcome = call_under_way()
-    with pytest.raises(errors.NaoError):
-        proxy.wait(task, 0)
-    assert type(outcome["error"]) is errors.ConnectionLost
-    assert outcome["error"].call == "ALTest.begin"
-    assert outcome["ended"] - start < SOON
-
-
-def test_a_silent_robot_fails_the_call_under_way_by_its_heartbeat(robot, call_under_way):
-    robot.silence()
-    start = time.monotonic()
-    outcome = call_under_way()
-    assert type(outcome["error"]) is errors.ConnectionLost
-    assert outcome["ended"] - start < SOON
-    assert "heartbeat" in naoqi.connection(*robot.address, wait=False).last_error
-    robot.speak()
-
-
 @pytest.mark.parametrize("harm, repair", [("kill", "start"), ("silence", "speak")])
-def test_the_same_proxy_works_again_when_the_robot_is_back(robot, states, harm, repair):
-    proxy = robot.proxy()
-    method = proxy.add
-    followed = states(proxy.connection)
+def test_a_loss_fails_the_call_under_way_in_time_and_the_same_proxy_works_again(
+    robot, proxy, pool, begun, states, harm, repair
+):
+    method, followed = proxy.add, states(proxy.connection)
+    call = pool.submit(proxy.begin)
+    begun()
+    start = time.monotonic()
     getattr(robot, harm)()
+    error = call.exception(SOON)
+    assert type(error) is errors.ConnectionLost and error.call == "ALTest.begin"
+    assert time.monotonic() - start < SOON
     followed.wait_for("lost")
+    assert ("heartbeat" in proxy.connection.last_error) is (harm == "silence")
     with pytest.raises(errors.RobotUnreachable, match="lost .* s ago .*reconnecting"):
         proxy.add(1, 2)
     getattr(robot, repair)()
     followed.wait_for("lost", "connected")
-    assert proxy.add(1, 2) == 3
-    assert method(3, 4) == 7
+    assert proxy.add(1, 2) == 3 and method(3, 4) == 7
     assert proxy.connection.generation == 2
 
 
@@ -102,15 +85,15 @@ def test_a_lazy_proxy_may_be_there_before_the_robot(robot):
     assert proxy.add(2, 2) == 4
 
 
-def test_a_module_may_appear_a_moment_after_the_robot(robot, states, in_thread):
+def test_a_module_may_appear_a_moment_after_the_robot(robot, states, pool):
     robot.kill()
     connection = naoqi.connection(*robot.address, wait=False)
     followed = states(connection)
     robot.start()
     followed.wait_for("connected")
-    finish = in_thread(lambda: robot.proxy("Visitor").add(1, 1))
+    answer = pool.submit(lambda: robot.proxy("Visitor").add(1, 1))
     robot.proxy("Switch").arrive("Visitor")
-    assert finish().get("value") == 2
+    assert answer.result(SOON) == 2
 
 
 def test_a_closed_connection_refuses_and_a_new_one_can_be_had(robot, states):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -92,15 +91,3 @@ def test_a_program_of_the_sdk_runs_with_python_3_syntax_only(robot):
 def test_a_program_ends_quietly_whatever_is_still_open(robot, last):
     result = run(USE_AND_LEAVE.format(last=last), robot)  # libqi, too, says nothing
     assert (result.returncode, result.stderr) == (0, "")
-
-
-def test_ctrl_c_ends_a_call_that_waits_and_cancels_it_on_the_robot(robot, proxy, eventually):
-    before, running = proxy.cancellations(), proxy.begun()
-    last = "import naoqi.calls; naoqi.calls.FIRST_SLICE_MS = 0; test.begin()"  # to be in the long wait at once
-    command = [sys.executable, "-c", USE_AND_LEAVE.format(last=last), str(robot.port)]
-    program = subprocess.Popen(command, env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
-    eventually(lambda: proxy.begun() == running + 1, "the call arrives")
-    program.send_signal(signal.SIGINT)
-    _, stderr = program.communicate(timeout=10.0)
-    assert "KeyboardInterrupt" in stderr
-    eventually(lambda: proxy.cancellations() == before + 1, "the robot hears of it")
