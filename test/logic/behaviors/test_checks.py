@@ -103,7 +103,6 @@ CHAIN = ", ".join(f"{{wait: 0.5, at: s{i}.end, label: s{i + 1}}}" for i in range
         ("- parallel: [{wait: 1}, [{wait: 1}, {wait: 2}]]", 3.0), ("- {repeat: 4, do: [{wait: 0.5}]}", 2.0),
         ("- {repeat: 0, do: [{wait: 0.5}]}", 0.0), ("- {wait: 10, for: 3}", 3.0),
         ("- timeline: [{wait: 1, at: 0.5, label: a}, {wait: 1, at: a.end + 0.25}, {wait: 0.5, at: a}]", 2.75),
-        ("- timeline: [{wait: 1, at: b}, {wait: 2, at: 3, label: b}]", 5.0),
         ("- timeline: [{wait: 1, at: 2}, {barrier: all}, {wait: 0.5, at: all + 1}]", 4.5),
         (f"- timeline: [{{wait: 1, at: 0, label: s0}}, {CHAIN}]", 501.0),
     ],

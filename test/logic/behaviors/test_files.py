@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import textwrap
 from pathlib import Path
 
 import genpy
@@ -18,7 +17,6 @@ from nao_library_modules.behaviors import (
     BehaviorStore,
     NoSuchBehavior,
     bind,
-    check,
     from_goal,
     problems_of,
     read,
@@ -46,7 +44,7 @@ from nao_library_modules.paths import config_file
 from nao_library_msgs.msg import LedFunction, MotionFunction
 
 GUIDE = (Path(__file__).parents[3] / "docs" / "behaviors.md").read_text(encoding="utf-8")
-SHOWN, TIMELINE = re.findall(r"```yaml\n(.*?)```", GUIDE, re.DOTALL)
+SHOWN = re.findall(r"```yaml\n(.*?)```", GUIDE, re.DOTALL)[0]
 EVERYTHING = """
 help: Waves and
   says hello.
@@ -152,12 +150,9 @@ def test_what_is_wrong_is_told(text, told):
     assert told in "; ".join(map(str, told_of(text)))
 
 
-def test_all_that_is_wrong_is_told_with_path_and_line():
+def test_all_that_is_wrong_is_told_with_path_and_line_and_a_few_lines_cannot_stand_for_endless_values():
     found = told_of("help: x\ndo:\n  - {wait: -1}\n  - parallel:\n      - {wait: 1}\n      - {waitt: 2}\n")
     assert [(each.where, each.line) for each in found] == [("step 1", 3), ("step 2.2", 6)]
-
-
-def test_a_few_lines_cannot_stand_for_endless_values():
     doubled = [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]\n" for i in range(1, 9)]
     assert "values" in str(told_of("a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n" + "".join(doubled))[0])
     assert "levels" in str(told_of("[" * 60 + "]" * 60)[0])
@@ -213,8 +208,6 @@ def test_escaped_values_stay_as_they_are(text):
 def test_fields_of_the_wrong_kind_are_refused(fields, told):
     with pytest.raises(BadGoal, match=re.escape(told)):
         message_of(LedFunction, fields)
-    with pytest.raises(BadGoal, match=r"trajectory\.points\[0\]\.position"):
-        message_of(MotionFunction, {"trajectory": {"points": [{"position": [1]}]}})
 
 
 def test_fields_become_what_they_are_in_the_message():
@@ -225,6 +218,16 @@ def test_fields_become_what_they_are_in_the_message():
     assert message.time == genpy.Duration(1, 300000000)
     assert message.trajectory.points[0].time_from_start == genpy.Duration(0, 700000000)
     assert message_of(MotionFunction, load(dump(fields_of(message)), "test")) == message
+    with pytest.raises(BadGoal, match=r"trajectory\.points\[0\]\.position"):
+        message_of(MotionFunction, {"trajectory": {"points": [{"position": [1]}]}})
+
+
+def test_what_comes_with_the_library_and_what_the_guide_shows_can_be_run(tmp_path, tables):
+    store = BehaviorStore(tmp_path, config_file("behaviors"))
+    store.save("shown", SHOWN)
+    names = store.names()
+    found = {name: problems_of(lambda name=name: store.load(name), store.load, tables) for name in names}
+    assert len(names) == 11 and found == {name: [] for name in names}
 
 
 @pytest.fixture
@@ -242,17 +245,14 @@ def test_what_is_saved_is_there_and_replaced_only_when_that_is_said(store):
         store.save("a", LONGER)
     assert store.text("a") == WAITS
     store.save("a", LONGER, overwrite=True)
-    assert store.text("a") == LONGER and [path.name for path in store.folder.iterdir()] == ["a.yaml"]
-
-
-def test_those_of_the_library_stay_and_can_be_put_behind(store):
     for change in (lambda: store.delete("hello"), lambda: store.rename("hello", "b")):
         with pytest.raises(BadGoal, match="comes with the library"):
             change()
     store.save("hello", LONGER)
-    assert (store.text("hello"), store.shipped_text("hello"), store.names()) == (LONGER, WAITS, ["hello"])
+    assert (store.text("hello"), store.shipped_text("hello"), store.names()) == (LONGER, WAITS, ["a", "hello"])
     store.delete("hello")
     assert store.text("hello") == WAITS
+    assert store.text("a") == LONGER and [path.name for path in store.folder.iterdir()] == ["a.yaml"]
 
 
 def test_names_change_and_users_of_a_box_are_known(store):
@@ -326,13 +326,3 @@ def test_recorded_goals_come_again_at_their_times_and_are_cut_short_again():
     assert [entry.get("on_error") for entry in entries] == [None, "skip", None]
     with pytest.raises(BadGoal, match="nothing was sent"):
         recorded(("NaoLights", RED, 1.0), servers=["NaoMotion"])  # other servers do not count
-
-
-def test_what_the_guide_shows_and_what_comes_with_the_library_can_be_run(tmp_path, tables):
-    store = BehaviorStore(tmp_path, config_file("behaviors"))
-    check(read(SHOWN, "shown"), store.load, {"tempo": 2.0, "colour": "red"}, tables)
-    text = "help: x\nparameters: {tempo: {default: 1.0, help: x}}\ndo:\n" + textwrap.indent(TIMELINE, "  ")
-    check(read(text, "shown"), store.load, None, tables)
-    names = store.names()
-    found = {name: problems_of(lambda name=name: store.load(name), store.load, tables) for name in names}
-    assert len(names) == 10 and found == {name: [] for name in names}

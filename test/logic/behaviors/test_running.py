@@ -32,18 +32,6 @@ def test_a_list_is_a_sequence_and_what_happens_is_told_in_order(start, clients):
     assert len(run.events) == len(times)
 
 
-def test_branches_run_at_once_and_all_have_to_end(start, clients):
-    branches = (
-        "[{NaoLights.x: {str_param: hold a}}, [{NaoMotion.x: {str_param: hold b}}, {NaoMotion.x: {str_param: c}}]]"
-    )
-    run = start(f"- parallel: {branches}\n- NaoVision.x: {{str_param: d}}")
-    clients.hold(2)
-    clients.of("hold b").over()
-    assert clients.hold()[-1].text == "c"
-    clients.of("hold a").over()
-    assert set(run.states().values()) == {"ended"} and clients.texts()[-1] == "d"
-
-
 def test_entries_of_a_timeline_begin_at_their_times(start, clients, clock):
     run = start(
         """
@@ -183,14 +171,11 @@ def test_an_interrupt_ends_all_goals_and_one_that_came_before_lets_nothing_begin
     execution = Execution(program("- NaoLights.x: {str_param: a}"), clients, WallClock(), lambda event: None)
     with pytest.raises(PlanFailure):
         execution.run(interrupt)
+    clients.missing.add("NaoMotion")  # told before anything moves
+    missing = start("- NaoLights.x: {str_param: a}\n- NaoMotion.x: {str_param: b}")
+    assert set(missing.states().values()) == {"not run"}
+    assert isinstance(missing.error, ActionlibActionTimedOut) and "NaoMotion" in str(missing.error)
     assert len(clients.goals) == 3 and [record.state for record in execution.report.records()] == ["not run"]
-
-
-def test_a_server_that_is_not_there_is_told_before_anything_moves(start, clients):
-    clients.missing.add("NaoMotion")
-    run = start("- NaoLights.x: {str_param: a}\n- NaoMotion.x: {str_param: b}")
-    assert set(run.states().values()) == {"not run"} and clients.goals == []
-    assert isinstance(run.error, ActionlibActionTimedOut) and "NaoMotion" in str(run.error)
 
 
 def test_what_a_server_tells_meanwhile_is_passed_on(start, clients):

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
 
 import click
 import pytest
@@ -13,7 +11,7 @@ from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoAudioInFeedback, NaoBehaviorFeedback, NaoLedFeedback
 from nao_library_modules.command_line.app import COMMANDS, nao
-from nao_library_modules.command_line.bash_completion import LineComplete, split_line
+from nao_library_modules.command_line.bash_completion import LineComplete
 from nao_library_modules.command_line.chain_text import build_message, read_chain, read_value
 from nao_library_modules.command_line.output import plain, say_json, say_result, table, words
 from nao_library_modules.command_line.progress import Progress
@@ -233,22 +231,17 @@ def test_functions_have_fields_and_a_comma_or_then_between_them():
     points = "trajectory:={joint_names: [HeadYaw], points: [{positions: [0.1]}]}"
     message = build_message(read_chain(["setTrajectory", "time:=1.5", points])[0], MotionFunction)
     assert message.time.to_sec() == 1.5 and message.trajectory.points[0].positions == [0.1]
+    for typed, complaint in (
+        (["on", ","], "function 2 has no name"),
+        (["lights:=a"], "function 1 has no name"),
+        (["on", "lights"], "'lights' is no field:=value"),
+        (["on", "lights:=a", "lights:=b"], "lights is there twice"),
+    ):
+        with pytest.raises(click.UsageError, match=complaint):
+            read_chain(typed)
     for field, complaint in (("light:=a", "no field 'light': did you mean 'lights'"), ("function:=on", "no field")):
         with pytest.raises(click.UsageError, match=complaint):
             build_message(read_chain(["on", field])[0], LedFunction)
-
-
-@pytest.mark.parametrize(
-    "typed, complaint",
-    [
-        ([], "function 1 has no name"), (["on", ","], "function 2 has no name"),
-        (["lights:=a"], "function 1 has no name"), (["on", "lights"], "'lights' is no field:=value"),
-        (["on", "lights:=a", "lights:=b"], "lights is there twice"),
-    ],
-)  # fmt: skip
-def test_what_is_no_chain_is_told(typed, complaint):
-    with pytest.raises(click.UsageError, match=complaint):
-        read_chain(typed)
 
 
 @pytest.mark.parametrize(
@@ -263,20 +256,17 @@ def test_values_are_read_by_their_type(kind, text, value):
     assert read_value(kind, text) == value
 
 
-@pytest.mark.parametrize(
-    "kind, text, complaint",
-    [
-        ("float64", "one", "'one' is no number"), ("int32", "1.5", "'1.5' is no whole number"),
-        ("int32[]", "[.inf]", "inf is no whole number"), ("duration", "nan", "'nan' is no time"),
-        ("duration", "1e300", "'1e300' is no time"), ("bool", "perhaps", "neither true nor false"),
-        ("float64[]", "1,,2", "'' is no number"), ("string[]", "[a", "is no YAML"),
-        ("trajectory_msgs/JointTrajectory", "5", "is no trajectory_msgs/JointTrajectory"),
+def test_values_of_another_type_are_refused():
+    for kind, text, complaint in (
+        ("float64", "one", "'one' is no number"),
+        ("int32[]", "[.inf]", "inf is no whole number"),
+        ("duration", "nan", "'nan' is no time"),
+        ("bool", "perhaps", "neither true nor false"),
+        ("string[]", "[a", "is no YAML"),
         ("trajectory_msgs/JointTrajectory", "{joint_name: [a]}", "joint_name"),
-    ],
-)  # fmt: skip
-def test_values_of_another_type_are_refused(kind, text, complaint):
-    with pytest.raises(ValueError, match=complaint):
-        read_value(kind, text)
+    ):
+        with pytest.raises(ValueError, match=complaint):
+            read_value(kind, text)
 
 
 def test_messages_become_plain_values_and_words(capsys):
@@ -327,22 +317,13 @@ def offered(monkeypatch):
     return offered
 
 
-@pytest.mark.parametrize(
-    "line, typed, last",
-    [
-        ("nao ", ["nao"], ""), ("nao call", ["nao"], "call"), ("nao say 'good mor", ["nao", "say"], "good mor"),
-        ("nao call NaoLights on lights:=Br", ["nao", "call", "NaoLights", "on"], "lights:=Br"), ("", [], ""),
-    ],
-)  # fmt: skip
-def test_a_line_is_split_as_a_shell_splits_it(line, typed, last):
-    assert split_line(line) == (typed, last)
-
-
-def test_commands_are_offered_without_a_stack_and_names_from_the_servers(offered, graph):
+def test_commands_are_offered_without_a_stack_and_names_from_the_servers(offered, graph, run):
     assert offered("nao ") == list(COMMANDS) and offered("nao st") == ["status", "stop"]
     assert "--robot" in offered("nao say --")
     for line in ("nao call NaoL", "nao pose St", "nao run ", "nao get Dev", "nao help s"):
         assert offered(line) == []
+    script = run("completion", "bash").stdout
+    assert "_NAO_COMPLETE" in script and "COMP_LINE" in script and "nao" in run("completion", "fish").stdout
     graph()
     for line, among in (
         ("nao list Nao", "NaoLights"),
@@ -358,18 +339,3 @@ def test_commands_are_offered_without_a_stack_and_names_from_the_servers(offered
         assert among in offered(line), line
     fields = offered("nao call NaoLights setIntensity lights:=Brain0 ")
     assert "lights:=" not in fields and "i_values:=" in fields
-
-
-def test_shells_get_their_scripts_and_bash_puts_words_behind_a_colon(run, tmp_path):
-    for shell in ("zsh", "fish"):
-        text = run("completion", shell).stdout
-        assert "_NAO_COMPLETE" in text and "nao" in text
-    program = tmp_path / "nao"
-    program.write_text('#!/bin/sh\n[ "$_NAO_COMPLETE" = bash_complete ] && echo "got-$NAO_LINE"\n')
-    program.chmod(0o755)
-    script = run("completion", "bash").stdout + (
-        'COMP_LINE="nao call a:=b more" COMP_POINT=13\n_nao_completion nao\nprintf "%s\\n" "${COMPREPLY[@]}"\n'
-    )
-    environment = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"}
-    done = subprocess.run(["bash", "-c", script], env=environment, capture_output=True, text=True, timeout=60)
-    assert (done.stdout, done.returncode) == ("got-nao call a:=b\n", 0), done.stderr

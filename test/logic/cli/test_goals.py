@@ -15,7 +15,6 @@ from fake_goals import FakeGoal
 from nao_library_modules.command_line import goals
 from nao_library_modules.command_line.errors import CommandFailed, Interrupted
 from nao_library_modules.command_line.goals import GoalRun
-from nao_library_modules.command_line.progress import Progress
 from nao_library_modules.command_line.settings import Settings
 from nao_library_msgs.msg import LedFunction
 
@@ -68,33 +67,15 @@ def test_ctrl_c_while_a_goal_is_sent_cancels_it_as_soon_as_the_server_knows_it(b
     assert run.last.state == "preempted" and sent[0].cancelled == [CommState.ACTIVE]
 
 
-def test_ctrl_c_once_more_does_not_lose_the_goal(begin, monkeypatch):
-    _, go, sent = begin(lambda goal: (press(), active(goal)), press)
-    with pytest.raises(KeyboardInterrupt):
-        go()
-    assert len(sent[0].cancelled) == 1
-    monkeypatch.setattr(Progress, "note", lambda *_: press())  # while it says that it stops
-    _, go, sent = begin(lambda goal: (press(), active(goal)))
-    with pytest.raises(KeyboardInterrupt):
-        go()
-    assert len(sent[1].cancelled) == 1
-
-
 def test_ctrl_c_when_the_goal_is_over_cancels_nothing(begin):
     run, go, sent = begin(lambda goal: (press(), goal.end(GoalStatus.SUCCEEDED), goal.tell()))
     with pytest.raises(Interrupted, match="the goal was over before: succeeded"):
         go()
     assert (run.last.state, sent[0].cancelled) == ("succeeded", [])
-
-
-@pytest.mark.parametrize("when", ["at once", "while it is to be cancelled"])
-def test_a_goal_that_is_over_when_the_time_is_up_has_its_end(begin, when):
-    def on_sent(goal):
-        end = lambda: goal.end(GoalStatus.SUCCEEDED)  # noqa: E731
-        end() if when == "at once" else (active(goal), goal.just_before_the_cancel(end))
-
-    _, go, sent = begin(on_sent, timeout=1e-9)
-    assert go().succeeded and sent[0].cancelled == []
+    end = lambda goal: goal.end(GoalStatus.SUCCEEDED)  # noqa: E731
+    for on_sent in (end, lambda goal: (active(goal), goal.just_before_the_cancel(lambda: end(goal)))):
+        _, go, sent = begin(on_sent, timeout=1e-9)
+        assert go().succeeded and sent[-1].cancelled == []
 
 
 def test_a_goal_that_takes_too_long_is_cancelled_in_spite_of_ctrl_c(begin, capsys):

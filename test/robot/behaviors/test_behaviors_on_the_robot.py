@@ -206,40 +206,6 @@ def test_a_chain_may_use_what_it_stores(behaviors):
     assert "function 2 (runBehavior): step 1 (NaoLights.on): " in goal.text
 
 
-def test_behaviours_are_shown_and_listed(behaviors):
-    result = behaviors.succeed(f("listBehaviors"))
-    shown = {info.name: info for info in result.behaviors}
-    lights = shown["lights"]
-    assert (lights.help, lights.tags, lights.servers, lights.shipped) == ("Lights up.", ["light"], ["NaoLights"], False)
-    assert [(each.name, each.type, each.default, each.unit) for each in lights.parameters] == [
-        ("light", "text", "Brain0", ""), ("n", "number", "1", "times"),
-    ]  # fmt: skip
-    assert shown["hello"].shipped and set(result.memList) == set(shown) >= {*TEXTS}
-    assert behaviors.succeed(f("describeBehavior", "lights")).memList == [TEXTS["lights"]]
-    behaviors.module.store.save("broken", "help: x\ndo: [{wat: 1}]")
-    listed = lambda name: behaviors.edge.services["NaoBehavior/list"](SimpleNamespace(name=name)).behaviors  # noqa: E731
-    problems = {info.name: info.problem for info in listed("")}
-    assert "did you mean 'wait'" in problems["broken"] and problems["lights"] == ""
-    (asked,) = listed("lights")
-    assert list(asked.steps) == ["1 repeat 1 times", "1#1.1 NaoLights.setIntensity: lights [Brain0], i_values [0.25]"]
-    assert not any(info.steps for info in listed(""))
-
-
-def test_a_check_tells_problems_what_would_be_done_and_what_only_the_robot_knows(behaviors):
-    wrong = ", ".join(["{NaoLights.on: {lights: [FaceLeds], time: x}}"] * 15)
-    result = behaviors.succeed(
-        f("checkBehavior", "lights", parameters=["light=Brain1"]),
-        f("checkBehavior", text=f"help: x\ndo: [{wrong}]"),
-        f("checkBehavior", "lights", parameters=["n=9"]),
-    )
-    assert [len(each.values) for each in result.results] == [0, 15, 1]
-    lights, wrong, _ = result.behaviors
-    assert (lights.problem, lights.servers, lights.shipped) == ("", ["NaoLights"], False)
-    step = "1#1.1 NaoLights.setIntensity: lights [Brain1], i_values [0.25]"
-    assert (list(lights.steps), list(lights.unchecked)) == (["1 repeat 1 times", step], [step])
-    assert "and 5 more" in wrong.problem and not (wrong.steps or wrong.shipped)
-
-
 def test_a_recording_goes_on_until_it_is_stopped_and_plays_the_same_again(behaviors, to_lights, robot):
     behaviors.succeed(f("recordBehavior", "taken"))
     robot.advance(1.0)
@@ -273,3 +239,27 @@ def test_a_recording_that_is_preempted_or_that_the_node_ends_keeps_what_came(beh
     behaviors.succeed(f("storeBehavior", "last", server="NaoLights"))
     behaviors.module.shut_down()
     assert all("setColor" in behaviors.module.store.text(name) for name in ("other", "last"))
+
+
+def test_behaviours_are_listed_described_and_checked(behaviors):
+    shown = {info.name: info for info in behaviors.succeed(f("listBehaviors")).behaviors}
+    lights = shown["lights"]
+    assert (lights.help, lights.tags, lights.servers, lights.shipped) == ("Lights up.", ["light"], ["NaoLights"], False)
+    n = lights.parameters[1]
+    assert (n.name, n.type, n.default, n.unit) == ("n", "number", "1", "times")
+    assert shown["hello"].shipped and behaviors.succeed(f("describeBehavior", "lights")).memList == [TEXTS["lights"]]
+    behaviors.module.store.save("broken", "help: x\ndo: [{wat: 1}]")
+    listed = lambda name: behaviors.edge.services["NaoBehavior/list"](SimpleNamespace(name=name)).behaviors  # noqa: E731
+    problems = {info.name: info.problem for info in listed("") if not info.steps}
+    assert "did you mean 'wait'" in problems["broken"] and problems["lights"] == ""
+    assert list(listed("lights")[0].steps)[0] == "1 repeat 1 times"
+    result = behaviors.succeed(
+        f("checkBehavior", "lights", parameters=["light=Brain1"]),
+        f("checkBehavior", text="help: x\ndo: [{NaoLights.on: {lights: [FaceLeds], time: x}}]"),
+        f("checkBehavior", "lights", parameters=["n=9"]),
+    )
+    assert [len(each.values) for each in result.results] == [0, 1, 1]
+    step = "1#1.1 NaoLights.setIntensity: lights [Brain1], i_values [0.25]"
+    lights, wrong, _ = result.behaviors
+    assert (lights.problem, list(lights.steps), list(lights.unchecked)) == ("", ["1 repeat 1 times", step], [step])
+    assert wrong.problem and not wrong.steps
