@@ -1,4 +1,4 @@
-"""Arguments of nodes, launch files and the commands that start them, and waiting for a stack of one's own."""
+"""Arguments of nodes, launch files and the commands that start them."""
 
 from __future__ import annotations
 
@@ -17,14 +17,12 @@ from nao_library_modules.launcher import (
     launch_supervisor,
 )  # fmt: skip
 from nao_library_modules.node import launch_path, robot_address, robot_parser, run_module
-from nao_library_modules.own_stack import OwnStack
 from nao_library_modules.supervisor import State
 from naoqi.errors import NaoError
 
 ROOT = Path(__file__).parents[3]
 FILES = sorted((ROOT / "launch" / "launch").glob("*.launch"))
 PATH = ("nao_library", "nao.launch")
-LIMIT = 20.0
 
 
 def parsed(name):
@@ -127,32 +125,3 @@ def test_a_launch_path_that_leads_nowhere_is_refused_and_making_a_supervisor_sta
         with pytest.raises(BadLaunchPath, match=r"it is \(package, launchfile\)"):
             launch_supervisor(path, "10.0.0.7", 9559, "/")
     assert launch_supervisor(PATH, "10.0.0.7", 9559, "/robot1/").status.state is State.STOPPED
-
-
-# A stack of one's own; a program stands in for roslaunch
-
-SILENT, BROKEN = "#!/bin/sh\nexec sleep 1000\n", "#!/bin/sh\necho begun\necho no such file: nao_sim.launch\n"
-
-
-@pytest.fixture
-def own_stack(tmp_path, monkeypatch):
-    made = []
-
-    def make(program):
-        (tmp_path / "roslaunch").write_text(program)
-        (tmp_path / "roslaunch").chmod(0o755)
-        monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
-        made.append(OwnStack(tmp_path / "log", {}))
-        return made[-1]
-
-    yield make
-    for one in made:
-        one.stop()
-
-
-def test_waiting_has_an_end_which_is_that_of_roslaunch_with_its_last_words(own_stack):
-    for wait, what in (("wait_for_master", "the ROS master"), ("wait_for_robot", "the simulated robot")):
-        with pytest.raises(TimeoutError, match=f"{what} does not come up: roslaunch has ended: no such file: nao_sim"):
-            getattr(own_stack(BROKEN), wait)(LIMIT)
-    with pytest.raises(TimeoutError, match="the ROS master does not come up: not there within 0.2 s"):
-        own_stack(SILENT).wait_for_master(0.2)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import threading
 
 import pytest
-from plan_tools import Beside, fails, forever, seen
+from plan_tools import fails, forever
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import (
     NavigationGoalNotReached,
     ObjectUnreachable,
-    TaskEvaporatedFailure,
 )
 
 
@@ -150,14 +149,6 @@ def test_what_is_no_branch_is_an_error_and_nothing_to_do_is_done():
     fails(p.PlanError, "'walk' is no branch: give a function", lambda: p.seq("walk"))
     fails(p.PlanError, "pursue needs a branch", p.pursue)
     assert not p.top_level(p.seq) and not p.top_level(p.par)
-
-
-def test_a_branch_that_somebody_ends_is_a_failure_of_its_construct(stays):
-    plan = Beside(lambda: p.par(stays("a"), stays("b")))
-    seen(stays.there >= 2)
-    plan.root.find("a").evaporate("no time for a")
-    plan.fails(TaskEvaporatedFailure, r"the task .*/par/a was evaporated: no time for a")
-    assert sorted(stays.ended) == ["a", "b"]
 
 
 def test_the_end_of_a_branch_is_not_caught_by_accident():

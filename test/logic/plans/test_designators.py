@@ -10,7 +10,6 @@ import nao_library_modules.process_modules as p
 from nao_library_modules.places import Place
 from nao_library_modules.process_modules import action_rules  # noqa: F401  the rules of the library
 from nao_library_modules.process_modules.action_rules.values import a_place, a_point, a_position
-from nao_library_modules.process_modules.designators.designator import newest_effective_designator
 from nao_library_modules.process_modules.designators.locations import (
     Candidate,
     Verdict,
@@ -80,18 +79,6 @@ def test_a_generator_that_fails_fails_with_its_failure():
     assert desig.reference() == 1
 
 
-def test_equated_designators_are_one_chain():
-    one, two, three = (p.a(p.object_, type="ball", place=place) for place in ("shelf", "table", "floor"))
-    p.equate(one, two)
-    p.equate(one, three)
-    assert p.current_desig(one) is three and p.first_desig(three) is one
-    assert newest_effective_designator(one) is None
-    p.equate(three, one)
-    assert p.current_desig(one) is three
-    with pytest.raises(DesignatorError, match="the kinds differ"):
-        p.equate(one, a_place_where(near=one))
-
-
 def test_copies_and_merges():
     ball = p.the(p.object_, type="ball", colour="red")
     assert ball.copy(colour=None, size=0.05).description == {"type": "ball", "size": 0.05}
@@ -104,19 +91,6 @@ def test_copies_and_merges():
         ball["size"]
     desig = p.an(p.action, type="looking", target=a_place_where(near=p.the(p.object_, type="ball")))
     assert str(desig) == "an action (type='looking', target=(a location (near=(the object (type='ball')))))"
-
-
-@pytest.mark.parametrize(
-    "given",
-    [
-        {"type": "action", "name": "to open", "side": "left"},
-        [("type", "action"), ("name", "to open"), ("side", "left")],
-        "{type: action, name: to open, side: left}",
-    ],
-)
-def test_the_form_of_keys_and_values(given):
-    desig = p.designator(given)
-    assert desig.kind == p.action and desig.description == {"name": "to open", "side": "left"}
 
 
 def test_designators_inside_of_designators():

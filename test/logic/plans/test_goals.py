@@ -91,28 +91,6 @@ def test_mistakes_about_goals_are_told(is_open):
         p.def_goal(is_open, p.ANY, p.ANY, p.ANY)
 
 
-def test_plans_are_tasks_wherever_they_are_called_and_top_level_plans_begin_a_tree_or_join_one(run_plan):
-    @p.def_plan
-    def nod(times):
-        return times
-
-    @p.def_plan
-    def greet(name):
-        return nod(2)
-
-    @p.def_top_level_plan
-    def count(to):
-        return to
-
-    _, root = run_plan(lambda: p.par(p.do(greet, "Anna"), lambda: greet("Bert")), name="plan")
-    assert sorted(task.path for task in root)[2:] == [
-        "plan/par/greet", "plan/par/greet/nod", "plan/par/step", "plan/par/step/greet", "plan/par/step/greet/nod",
-    ]  # fmt: skip
-    with pytest.raises(p.PlanError, match="outside of a plan"):
-        nod(1)
-    assert count(3) == 3 and p.top_level(lambda: count(4)) == 4
-
-
 class Eyes(p.ProcessModule):
     """Sees what the test says."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from plan_tools import LIMIT, Beside, seen, stays_false
+from plan_tools import Beside, seen, stays_false
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import TaskEvaporatedFailure
@@ -56,19 +56,6 @@ def test_a_step_that_somebody_ends_fails_and_its_plan_may_go_on(stays):
     seen(stays.there)
     plan.root.find("step").evaporate("skip it")
     assert plan.ended() == "skip it" and plan.root.state is p.TaskState.SUCCEEDED
-
-
-def test_a_result_is_asked_for_when_it_is_there(stays):
-    plan = Beside(stays("a").call)
-    seen(stays.there)
-    with pytest.raises(p.PlanError, match="is running: it has no result yet"):
-        plan.root.value()
-    assert plan.root.join(timeout=0.001) is False
-    plan.root.evaporate("over")
-    assert plan.root.join(timeout=LIMIT)
-    plan.fails(TaskEvaporatedFailure)
-    with pytest.raises(TaskEvaporatedFailure, match="over"):
-        plan.root.value()
 
 
 def handler_waits(wait):
@@ -165,26 +152,6 @@ def test_as_often_as_it_is_suspended_it_has_to_be_woken():
         plan.root.wake_up()
     go.value = True
     assert plan.ended() == [True] * 3
-
-
-def test_a_branch_alone_is_suspended_and_its_siblings_go_on():
-    reached, go, counted = p.Fluent("reached", False), p.Fluent("go", False), p.Fluent("counted", 0)
-
-    def counts():
-        for _ in range(10):
-            p.sleep(0.001)
-            counted.update(lambda count: count + 1)
-
-    pauses = p.do(lambda: (setattr(reached, "value", True), p.wait_for(go)), name="pauses")
-    plan = Beside(lambda: p.par(pauses, lambda: (p.wait_for(go), counts())))
-    seen(reached)
-    branch = plan.root.find("pauses")
-    branch.suspend()
-    go.value = True
-    seen(counted >= 10)
-    assert not branch.state.over and plan.root.state is p.TaskState.RUNNING
-    branch.wake_up()
-    plan.ended()
 
 
 def test_what_cannot_pause_is_ended_and_begun_again():

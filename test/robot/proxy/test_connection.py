@@ -10,6 +10,7 @@ import pytest
 
 import naoqi
 from naoqi import errors
+from naoqi.state import Timing
 
 SOON = 10.0
 """More than any machine needs; the promise itself is of the settings, see Timing."""
@@ -105,3 +106,8 @@ def test_a_closed_connection_refuses_and_a_new_one_can_be_had(robot, states):
         proxy.add(1, 2)
     assert proxy.connection.wait_connected() is False
     assert robot.proxy().add(1, 2) == 3
+
+
+def test_a_silent_robot_is_given_up_within_two_seconds():
+    timing = Timing()
+    assert timing.heartbeat_period + timing.heartbeat_limit < 2.0
