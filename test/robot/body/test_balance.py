@@ -94,17 +94,6 @@ def test_swings_to_left_and_right_are_answered_alike_and_within_the_limit(law):
     assert max(map(abs, found.values())) == pytest.approx(load_balance(MODEL).limit, abs=1e-3)
 
 
-def test_where_the_body_has_come_to_rest_it_belongs(law):
-    law.corrections(body(0.05), STAND, DT)
-    assert law.acting
-    for _ in range(600):
-        found = law.corrections(body(0.05), STAND, DT)
-    assert found == {}, "a place where it stays is learned"
-    law.settle()
-    assert law.corrections(body(0.1), STAND, DT) == law.corrections(body(0.1), STAND, DT) == {}
-    assert law.corrections(body(0.2), STAND, DT)[index("LAnklePitch")] > 0.0
-
-
 @pytest.mark.parametrize(
     "name, side", [("Stand", "front"), ("StandInit", "back"), ("Stand", "left"), ("StandInit", "right")]
 )
@@ -216,15 +205,6 @@ def test_a_push_is_noticed_once_with_where_it_went_and_how_hard_it_was(pushes, a
     assert len(found) == 2 and found[1].energy > 1.3 * found[0].energy
     for push in found:
         assert abs(math.remainder(push.angle - turn, 2.0 * math.pi)) < 0.4 and 0.003 < push.energy < 1.0
-
-
-def test_a_slight_touch_and_its_own_motion_are_no_push(pushes):
-    one, found = pushes
-    one.push((2.0, 0.0, 0.0), 0.1)
-    one.run(1.0)
-    one.aim(3.0, LShoulderPitch=0.0, HeadYaw=1.0)
-    one.run(2.0)
-    assert found == []
 
 
 def held(one, seconds):

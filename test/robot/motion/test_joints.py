@@ -6,7 +6,6 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from nao_library_msgs.msg import MotionFunction
 
-ARM = ["RShoulderPitch", "RShoulderRoll", "RElbowYaw", "RElbowRoll", "RWristYaw", "RHand"]
 NEAR = 0.03
 """What a joint under load may be off its target, rad."""
 YAW = {"names": ["HeadYaw"], "stiffness": 1.0}
@@ -39,14 +38,6 @@ def at(angle):
             assert angle(joint) == pytest.approx(wanted, abs=NEAR), joint
 
     return check
-
-
-def test_angles_are_told_with_their_names_in_one_order(robot, motion):
-    result = motion.succeed(f("getAngles", names=["RArm", "HeadYaw"]))
-    assert result.name == [*ARM, "HeadYaw"]
-    assert list(result.position) == pytest.approx(robot.ALMotion.getAngles(result.name, True), abs=1e-3)
-    assert result.memList == [], "the answers have fields of their own"
-    assert list(map(float, result.results[0].values)) == pytest.approx(list(result.position), abs=1e-3)
 
 
 def test_angles_go_out_change_and_come_back(stiff_robot, motion, at):
@@ -106,7 +97,7 @@ def test_trajectories_with_and_without_velocities(robot, motion, angle, at):
     at(motion.succeed(f("setTrajectory", trajectory=further, relative=True)), HeadYaw=-0.3)
 
 
-def test_poses_of_chains_as_points_and_by_name(stiff_robot, motion, at, tmp_path):
+def test_poses_of_chains_as_points_and_by_name(stiff_robot, motion, at):
     left, right = [1.0, 0.3, -1.0, -0.5, 0.2, 0.5], [1.2, -0.4, 1.1, 0.6, -0.2, 0.3]
     result = motion.succeed(f("setPose", names=["LArm", "RArm"], angles=left + right, duration=1.5))
     at(result, LShoulderPitch=1.0, LShoulderRoll=0.3, LElbowRoll=-0.5, RShoulderRoll=-0.4, RElbowRoll=0.6)
@@ -118,13 +109,6 @@ def test_poses_of_chains_as_points_and_by_name(stiff_robot, motion, at, tmp_path
     result = motion.succeed(f("setPose", str_param="ArmsForward", names=["LArm"], duration=1.5))
     at(result, LShoulderPitch=0.2, LElbowYaw=-1.2)
     assert all(name.startswith("L") for name in result.name)
-    (tmp_path / "mine.xap").write_text(
-        "<poses><position><name>Look</name><version>2</version><Motors>"
-        "<Motor><name>HeadYaw</name><value>0.7</value></Motor>"
-        "<Motor><name>Tail</name><value>0.1</value></Motor></Motors></position></poses>"
-    )
-    at(motion.succeed(f("setPose", str_param="mine.xap:Look")), HeadYaw=0.7)
-    assert "Look" in motion.refused(f("setPose", str_param="mine.xap:Luck"))
 
 
 def test_hands_open_and_close(robot, motion, angle):

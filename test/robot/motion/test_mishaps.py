@@ -5,7 +5,6 @@ from genpy import Duration
 
 from nao_library_msgs.msg import MotionFunction
 
-FALLING = "ALMotion/RobotIsFalling"
 DISABLED = "ALMotion/Protection/DisabledDevicesChanged"
 STANDING, LYING = 0.28, 0.2
 """Height of the torso, m."""
@@ -41,19 +40,6 @@ def test_a_fall_ends_the_motion_and_leaves_the_robot_limp_until_a_goal_gets_it_u
     assert "no stiffness in HeadYaw" in motion.refused(f("setAngles", **HEAD))
     assert motion.succeed(GET_UP, f("getPosture")).memList == ["Stand"]
     assert height() > STANDING
-
-
-def test_only_what_moves_is_ended_by_the_news_of_a_fall(stiff_robot, motion):
-    robot = stiff_robot
-    motion.succeed(f("getAngles", names=["Head"]))
-    robot.ALMotion.setAngles("HeadYaw", 0.1, 0.5)
-    robot.ALMemory.raiseEvent(FALLING, True)
-    robot.settled()
-    motion.succeed(f("getAngles", names=["Head"]))
-    goal = motion.send(f("getAngles", 2.0, names=["Head"]))
-    robot.advance(0.5)
-    robot.ALMemory.raiseEvent(FALLING, True)
-    assert goal.finish().state == "succeeded", "a chain that only asks goes on"
 
 
 @pytest.mark.parametrize("chain", ["Head", "Body"])

@@ -44,17 +44,6 @@ def test_what_somebody_else_moves_is_recorded_until_a_cancel_and_replayed_and_mi
     assert angle("HeadYaw") == pytest.approx(-0.6, abs=0.06)
 
 
-def test_a_recording_for_a_time_samples_at_its_rate(stiff_robot, motion, store):
-    goal = motion.send(record(duration=1.0, rate=4.0))
-    stiff_robot.post("ALMotion", "angleInterpolation", ["HeadYaw"], [0.8], [1.0], True)
-    goal.finish()
-    assert goal.state == "succeeded" and goal.result.results[0].elapsed.to_sec() == pytest.approx(1.0, abs=0.3)
-    turn = store.load("turn")
-    assert turn.times[0] == 0.0 and len(turn.times) in (5, 6)
-    assert turn.times[:5] == pytest.approx((0.0, 0.25, 0.5, 0.75, 1.0), abs=0.15)
-    assert [row[0] for row in turn.angles[:4]] == sorted(row[0] for row in turn.angles[:4])
-
-
 @pytest.mark.parametrize("end", ["over", "cancelled"])
 def test_joints_that_are_taught_by_hand_are_limp_meanwhile_and_stiff_again_where_they_are(robot, motion, store, end):
     robot.ALMotion.setStiffnesses(["HeadYaw", "HeadPitch"], [0.8, 0.0])

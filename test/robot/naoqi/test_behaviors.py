@@ -138,13 +138,6 @@ def test_frames_play_timelines_files_and_what_choregraphe_has_sent(stiff_robot):
     assert frames.getBehaviorPath(number) == "mine/behavior.xar"
     stiff_robot.finish("ALFrameManager", "completeBehavior", number, after=1.2)
     assert not frames.isBehaviorRunning(number)
-    for stop in ("exitBehavior", "stopTimeline", "deleteBehavior"):
-        number = frames.newBehaviorFromFile("mine/behavior.xar", "nod")
-        frames.playBehavior(number)
-        stiff_robot.advance(0.2)
-        frames.call(stop, number)
-        stiff_robot.settled()
-        assert stiff_robot.ALBehaviorManager.getRunningBehaviors() == []
     stiff_robot.ALBehaviorManager.installBehavior("mine/behavior.xar", ".lastUploadedChoregrapheBehavior/a", True)
     assert frames.getMotionLength(frames.newBehaviorFromChoregraphe()) == 1.0
     frames.cleanBehaviors()

@@ -32,13 +32,6 @@ def test_lights_at_once_and_those_of_the_start(robot, leds, shown):
     assert set(shown("FaceLeds")) == {1.0} and set(shown("EarLeds")) == {0.0}
 
 
-def test_a_fade_passes_through_the_middle_and_answers_at_its_end(robot, begin, shown):
-    future = begin("ALLeds", "fade", "FaceLeds", 0.0, 2.0, after=1.0)
-    assert shown("FaceLeds") == pytest.approx([0.5] * 48, abs=0.01) and future.isRunning()
-    robot.advance(1.01)
-    assert robot.answer(future) is None and set(shown("FaceLeds")) == {0.0}
-
-
 def test_colours_in_all_ways_at_once_or_in_time(robot, leds, shown):
     for color, wanted in (
         ((1.0, 0.5, 0.0), [1.0, 0.5, 0.0]),
@@ -55,16 +48,6 @@ def test_colours_in_all_ways_at_once_or_in_time(robot, leds, shown):
     assert (shown("LeftEarLed1"), shown("Brain0")) == pytest.approx((0.75, 0.75))
 
 
-def test_a_list_of_colours_is_met_at_its_times(robot, begin, shown):
-    future = begin("ALLeds", "fadeListRGB", "FaceLeds", [0xFF0000, 0x0000FF], [1.0, 2.0], after=1.0)
-    assert shown() == pytest.approx([1.0, 0.0, 0.0], abs=0.02)
-    robot.advance(0.5)
-    assert shown() == pytest.approx([0.5, 0.0, 0.5], abs=0.02)
-    robot.advance(0.51)
-    robot.answer(future)
-    assert shown() == [0.0, 0.0, 1.0]
-
-
 def test_a_newer_call_takes_over_its_leds_and_a_cancelled_one_leaves_the_light_there(robot, begin, leds, shown):
     future = begin("ALLeds", "fade", "FaceLeds", 0.0, 2.0)
     leds.on(EYE)
@@ -75,13 +58,18 @@ def test_a_newer_call_takes_over_its_leds_and_a_cancelled_one_leaves_the_light_t
     assert shown() == [1.0] * 3 and shown("RightFaceLed1") == pytest.approx([0.5] * 3, abs=0.01)
 
 
-@pytest.mark.parametrize("stays", [True, False])
-def test_ears_show_an_angle(robot, begin, shown, stays):
-    future = begin("ALLeds", "earLedsSetAngle", 90, 1.0, stays, after=0.5)
-    assert shown("LeftEarLed3") == pytest.approx(1.0) and shown("LeftEarLed8") == 0.0
+def test_rasta_colours_the_whole_body_and_eyes_rotate_segment_by_segment(robot, begin, shown):
+    rasta = begin("ALLeds", "rasta", 1.0, after=0.1)
+    assert shown() == shown("ChestLeds") == [0.0, 1.0, 0.0]
+    robot.advance(0.4)
+    assert shown("LeftFootLeds") == [1.0, 1.0, 0.0]
     robot.advance(0.6)
-    robot.answer(future)
-    assert shown("RightEarLed3") == pytest.approx(1.0 if stays else 0.0)
+    assert robot.answer(rasta) is None
+    lit, _ = [], begin("ALLeds", "rotateEyes", 0x00FF00, 0.8, 1.6)
+    for _ in range(8):
+        robot.advance(0.1)
+        lit.append([n for n in range(1, 9) if any(shown(f"LeftFaceLed{n}"))])
+    assert sorted(lit) == [[n] for n in range(1, 9)]
 
 
 def test_groups_and_lists_of_names(leds, shown):

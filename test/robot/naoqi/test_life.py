@@ -91,20 +91,6 @@ def test_the_eyes_blink_now_and_then_and_only_the_eyes(alive, robot):
     assert all(values[i] == before[i] for values in seen[::20] for i in range(len(before)) if i not in eyes)
 
 
-def test_abilities_and_plugins_work_while_they_are_enabled(alive, robot):
-    for enabled in (False, True):
-        alive.setAutonomousAbilityEnabled("AutonomousBlinking", enabled)
-        entries = [list(entry) for entry in alive.getAutonomousAbilitiesStatus()]
-        assert ["AutonomousBlinking", enabled, enabled] in entries
-        assert not alive.getAutonomousAbilityEnabled("All")  # awareness is off
-    assert "Posture" in alive.getEnabledLaunchpadPlugins() == alive.getLaunchpadPluginsForGroup("All")
-    alive.setLaunchpadPluginEnabled("Posture", False)
-    assert "Posture" not in alive.getEnabledLaunchpadPlugins()
-    alive.setLaunchpadPluginEnabled("Posture", True)
-    robot.advance(1.1)
-    assert robot.value("Launchpad/PostureFamily") == "Standing"
-
-
 def test_it_falls_gets_up_and_lives_on_unless_that_safeguard_is_off(alive, robot):
     robot.server.push([60.0, 0.0, 0.0], 0.2, "torso")
     robot.advance_until(lambda: alive.getState() == "safeguard", 3.0, 0.25)
@@ -114,14 +100,6 @@ def test_it_falls_gets_up_and_lives_on_unless_that_safeguard_is_off(alive, robot
         alive.setSafeguardEnabled(safeguard, False)
     robot.server.push([60.0, 0.0, 0.0], 0.2, "torso")
     assert states(robot, alive, 3.0) == ["solitary"]
-
-
-def test_a_critical_diagnosis_keeps_it_in_safeguard_until_it_is_over(alive, robot):
-    robot.ALMemory.raiseEvent("PassiveDiagnosisErrorChanged", [2, ["LArm"]])
-    robot.settled()
-    assert alive.getState() == "safeguard"
-    robot.ALMemory.raiseEvent("PassiveDiagnosisErrorChanged", [0, []])
-    assert states(robot, alive, WAKES_UP)[-1] == "solitary"
 
 
 def test_two_clicks_on_the_chest_button_begin_and_end_life(life, robot):
@@ -247,15 +225,6 @@ def test_a_face_is_told_and_followed_until_it_is_lost(aware, robot, tell):
     assert stimuli.get(timeout=PATIENCE) == "People"
     assert [tracked.get(timeout=PATIENCE) for _ in range(2)] == [3, -1]
     lost.get(timeout=PATIENCE)
-
-
-def test_a_sound_makes_it_look_there_and_back_a_doubtful_one_does_not(aware, robot, tell):
-    stimuli = robot.heard("ALBasicAwareness/StimulusDetected")
-    assert abs(tell(SOUND, sound(0.6, 0.1), 1.0)[0]) < 0.02 and stimuli.empty()
-    assert tell(SOUND, sound(0.6), 1.0)[0] == pytest.approx(0.6, abs=0.1)
-    assert stimuli.get(timeout=PATIENCE) == "Sound"
-    robot.advance(2.5)
-    assert abs(robot.ALMotion.getAngles("HeadYaw", True)[0]) < 0.05
 
 
 @pytest.mark.parametrize("offset, up", [(0.0, 0.2), (0.7, -0.1)])

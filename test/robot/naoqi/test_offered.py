@@ -135,21 +135,6 @@ def test_a_module_answers_all_its_methods_with_values_of_their_types(robot, list
     assert wrong == []
 
 
-def test_the_common_methods_are_answered_in_every_module(robot):
-    for name in CALLS:
-        module = getattr(robot, name)
-        posted = module.pCall("ping")
-        answers = {
-            "ping": True, "version": "2.8.5", "getBrokerName": "nao_sim", "isStatsEnabled": False,
-            "isTraceEnabled": False, "clearStats": None,
-        }  # fmt: skip
-        assert {method: module.call(method) for method in answers} == answers
-        assert (module.isRunning(posted), module.stop(posted), module.wait(posted, 0)) == (False, None, False)
-        assert module.getMethodHelp("ping")[:3] == ["ping", [], "bool"] and module.getUsage("ping") == "bool ping()"
-        methods = module.getMethodList()
-        assert {"ping", "exit"} <= set(methods) and methods == sorted(methods) and name in module.getModuleHelp()[0]
-
-
 NAN, INF = float("nan"), float("inf")
 HOSTILE = [
     *("", "x", "Body", "HeadYaw", "nan", "\n", "../..", "\u00e9\u4e16", "a" * 3000),

@@ -63,6 +63,13 @@ def test_it_drains_by_itself_and_is_charged_until_it_is_full(robot, health, read
     assert read("BatteryChargingFlagChanged") is False
 
 
+def test_voltages_follow_the_charge(robot, health):
+    cell = "Device/SubDeviceList/Battery/Charge/Sensor/CellVoltageMin"
+    for charge, low, high in ((0.9, 3900, 4200), (0.1, 3300, 3500)):
+        health("setBatteryCharge", charge)
+        assert low < robot.value(cell) < high
+
+
 def test_low_nearly_empty_and_empty_are_told_once_each(health, read, told):
     since = told("ALBattery/BatteryLow", "BatteryLowDetected", "BatteryNearlyEmpty", "BatteryEmpty")
     health("setBatteryCharge", 0.11)
@@ -143,15 +150,9 @@ def test_a_hot_joint_is_told_with_its_severity_until_it_has_cooled_down(robot, h
         "TemperatureDiagnosisErrorChanged": [0, ["LLeg"]],
     }
     health("setTemperature", "HeadYaw", 76.0)
-    assert diagnosis() == [1, ["Head"]]
-    health("setTemperature", "RElbowRoll", 72.0)
-    since()
+    assert diagnosis() == [1, ["Head"]] and since()["TemperatureStatusChanged"] == [2, ["HeadYaw"]]
     health("setTemperature", "LKneePitch", 40.0)
-    assert since() == {
-        "DeviceNoLongerHotDetected": ["LKneePitch"],
-        "TemperatureStatusChanged": [2, ["HeadYaw"]],
-        "TemperatureDiagnosisErrorChanged": [1, ["Head", "RArm"]],
-    }
+    assert since() == {"DeviceNoLongerHotDetected": ["LKneePitch"]}
 
 
 def test_head_and_battery_can_be_hot_and_nothing_is_told_without_notifications(robot, health, told):
@@ -210,18 +211,6 @@ def test_a_broken_motor_is_found_when_the_robot_wakes_up_and_its_chain_stays_lim
     health("repairDevice", "HeadYaw")
     motion.setStiffnesses("Head", 1.0)
     assert motion.getStiffnesses("Head") == [1.0, 1.0] and diagnosis.getDiagnosisStatus() == [0, []]
-
-
-def test_with_a_broken_leg_the_robot_does_not_wake_up_until_it_is_repaired(robot, begin, health):
-    health("breakDevice", "LHipRoll")
-    begin("ALMotion", "wakeUp", after=3.5)
-    assert robot.ALDiagnosis.getDiagnosisStatus() == [2, ["LHipRoll"]]
-    assert set(robot.ALMotion.getStiffnesses("Body")) == {0.0}
-    with pytest.raises(RuntimeError, match="a motor of the legs is broken, the robot wakes up when it is repaired"):
-        robot.ALMotion.wakeUp()
-    health("repairDevice", "LHipRoll")
-    robot.finish("ALMotion", "wakeUp", after=4.0)
-    assert robot.ALMotion.robotIsWakeUp()
 
 
 def test_a_health_that_cannot_be_is_refused(robot, refuses):

@@ -8,7 +8,6 @@ from simulator import PATIENCE
 from nao_sim_bridge.sim.touch_names import CHEST_BUTTON, EVENTS, HEAD, SENSORS
 
 TICK = 1.0 / 120.0
-CLICKS = [f"ALChestButton/{word}ClickOccurred" for word in ("Simple", "Double", "Triple")]
 
 
 @pytest.fixture
@@ -58,30 +57,6 @@ def test_bumpers_are_told_as_one_and_changes_by_part_and_by_sensor(robot, press,
     heard = told("TouchChanged", lambda: press(HEAD[1], "LHand/Touch/Back", CHEST_BUTTON))
     parts = ["Head", "LHand", HEAD[1], "LHand/Touch/Back"]
     assert values(heard) == [[[name, True] for name in parts], [[name, False] for name in parts]]
-
-
-def test_the_status_is_that_of_now(robot):
-    touch = robot.ALTouch
-    assert touch.getSensorList() == list(SENSORS) == [name for name, _ in touch.getStatus()[7:]]
-    for sensors, parts in (([HEAD[0]], ["Head", HEAD[0]]), ([], [])):
-        robot.NaoSimulation.press(sensors)
-        robot.advance(0.05)
-        assert [name for name, touched in touch.getStatus() if touched] == parts
-
-
-def test_clicks_of_the_chest_button_are_counted_and_a_reset_forgets_them(robot, press):
-    heard = []
-    for event in CLICKS:
-        robot.server.memory.listen(event, lambda value, event=event: heard.append((event, value)))
-    for count in (1, 2, 3):
-        for _ in range(count):
-            press(CHEST_BUTTON)
-        robot.advance(0.8)
-        assert heard == [(event, None) for event in CLICKS[:count]]
-    press(CHEST_BUTTON)
-    robot.NaoSimulation.reset()
-    robot.advance(0.8)
-    assert len(heard) == 3
 
 
 @pytest.fixture

@@ -4,29 +4,20 @@ import logging
 import math
 import os
 import signal
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from seen import AWAY, GREEN, MODEL, STATE, UNTURNED, clear, middle, placed, shot
+from seen import AWAY, MODEL, STATE
 
-from nao_sim_bridge.paths import data_root
-from nao_sim_bridge.sim.cameras.photograph import photograph, read_photograph
 from nao_sim_bridge.sim.errors import UnknownName
 from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.render import PRESETS, Camera, Renderer, RenderError, RenderState, Viewer, preset_camera
-from nao_sim_bridge.sim.render.engines import open_engine
-from nao_sim_bridge.sim.render.view import View
-from nao_sim_bridge.sim.world import load_world
 
 SMALL = {"width": 160, "height": 120, "supersampling": 1}
 FRONT = preset_camera("front", MODEL, STATE, **SMALL)
 AHEAD = Camera((0.0, 0.0, 0.5), (1.0, 0.0, 0.5), width=160, height=120)
-BALL = {"name": "ball", "sphere": 0.05, "position": [1.0, 0.2, 0.5], "color": list(GREEN)}
 HELP = "install the packages libegl1, libgl1 and libgl1-mesa-dri"
 
 
@@ -105,18 +96,6 @@ def test_every_view_shows_the_robot_also_when_it_lies(renderer, view):
     assert int(np.sum((red > 100) & (green < 0.75 * red) & (blue < 0.45 * red))) > 20, "orange"
 
 
-def test_objects_of_the_world_are_seen_where_they_are(world_file):
-    entry = "{name: ball, sphere: 0.1, position: [0.3, 0.22, 0.1], mass: 0.1, color: [0, 1, 0]}"
-    moved = replace(STATE, objects={"ball": Pose((0.3, -0.22, 0.1), UNTURNED)})
-    with Renderer(world_file(entry)) as own:
-        before, after = own.render(STATE, FRONT), own.render(moved, FRONT)
-        with pytest.raises(RenderError, match="unknown object 'bal': did you mean 'ball'"):
-            own.render(replace(STATE, objects={"bal": moved.objects["ball"]}), FRONT)
-    # Seen from the front, positive y is on the right.
-    assert count(before[:, 80:], 1) > 30 and count(before[:, :80], 1) == 0
-    assert count(after[:, :80], 1) > 30 and count(after[:, 80:], 1) == 0
-
-
 def test_a_process_that_is_killed_or_hangs_is_started_again(caplog):
     with Renderer() as own:
         first = own.start().pid
@@ -140,20 +119,6 @@ def test_a_process_that_is_killed_or_hangs_is_started_again(caplog):
         os.kill(process, 0)
 
 
-def test_the_process_ends_with_its_parent():
-    program = (
-        "import os, signal\nfrom nao_sim_bridge.sim.render import Renderer\n"
-        "print(Renderer().start().pid, flush=True)\nos.kill(os.getpid(), signal.SIGKILL)\n"
-    )
-    environment = {**os.environ, "PYTHONPATH": str(data_root() / "src")}
-    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL, "text": True}
-    parent = subprocess.Popen([sys.executable, "-c", program], env=environment, **streams)
-    assert int(parent.stdout.readline()) != parent.pid
-    # The picture process holds the other end of its parent's output: it closes when both have ended.
-    parent.communicate(timeout=60.0)
-    assert parent.returncode == -signal.SIGKILL
-
-
 def test_what_cannot_start_says_why(monkeypatch):
     with pytest.raises(UnknownName, match="unknown renderer 'opengles': did you mean 'opengl'"):
         Renderer(engine="opengles")
@@ -174,15 +139,3 @@ def test_without_opengl_the_built_in_engine_draws_and_one_warning_says_how_to_ge
     assert HELP in help_once and "is started again" in again
     with pytest.raises(RenderError, match=f"OpenGL: .*{HELP}"):
         Renderer(engine="opengl").start()
-
-
-def test_a_capture_is_what_the_camera_makes_of_what_is_drawn():
-    state, view = placed(BALL), shot(width=160, height=120)
-    drawing, _ = open_engine("auto", load_world("empty"), "V6")
-    expected = photograph(drawing.draw(state, View.of_shot(view)), view)
-    drawing.close()
-    with Renderer("empty") as own:
-        captured = own.capture(state, view)
-    assert captured == expected
-    pixels = np.frombuffer(read_photograph(captured).data, np.uint8).reshape(120, 160, 3)
-    assert middle(clear(pixels, 1) > 0.3)[0] < 70

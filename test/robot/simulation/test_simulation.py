@@ -1,6 +1,5 @@
 """A simulation as a whole: its clock, its reset, equal runs, plain snapshots; and the thread that runs it."""
 
-import dataclasses
 import math
 import threading
 import time
@@ -15,47 +14,7 @@ from nao_sim_bridge.sim.runner import FASTEST, SimulationRunner
 from nao_sim_bridge.sim.simulation import Scene, Simulation
 
 PATIENCE = 30.0
-DERIVED = ("left_foot", "right_foot", "touched", "currents", "velocity_in_torso", "turn_in_torso")
 BALL = "{name: ball, sphere: 0.04, position: [0.3, 0.02, 0.3], mass: 0.2}"
-
-
-def state(snapshot, *without):
-    """All values of a snapshot, of fields and of what follows from them, by name."""
-    names = [field.name for field in dataclasses.fields(snapshot) if field.compare]
-    return {name: getattr(snapshot, name) for name in [*names, *DERIVED] if name not in without}
-
-
-def story(bench):
-    """Wakes up, sways, is pushed, twinkles; the states of every tick."""
-    robot = bench.robot
-    sequences.wake_up(robot, lambda: bench.now, lambda: None)
-    seen = bench.watch(0.6)
-    bench.aim(0.5, HeadYaw=0.8, LShoulderPitch=0.2)
-    bench.push((12.0, 4.0, 0.0), 0.2)
-    animation = led_animations.random_eyes(bench.simulation.led_layout, 1.0, robot.random)
-    robot.leds.animate("eyes", animation, robot.time, step=True)
-    seen += bench.watch(0.3)
-    robot.press(["Head/Touch/Front"])
-    seen += bench.watch(0.3)
-    return seen, robot.leds.values
-
-
-def test_equal_commands_at_equal_ticks_give_equal_snapshots_also_after_a_reset(bench, world_file):
-    path = world_file(BALL)
-    one, other = (bench("Crouch", 0.0, world=path, seed=5) for _ in range(2))
-    start = one.now
-    (first, lights), (second, same_lights) = story(one), story(other)
-    assert first == second and lights == same_lights
-    assert [state(snapshot) for snapshot in first] == [state(snapshot) for snapshot in second]
-    one.simulation.reset()
-    assert state(one.now, "tick", "time") == state(start, "tick", "time")
-    again, same_lights = story(one)
-    assert [state(s, "tick", "time") for s in again] == [state(s, "tick", "time") for s in first]
-    assert lights == same_lights and bench(seed=1).robot.random.random() != bench(seed=2).robot.random.random()
-    # The clock counts ticks and never goes back.
-    tick_s = one.simulation.settings.tick_s
-    assert [s.tick for s in (*first, *again)] == list(range(1, 1 + len(first) + len(again)))
-    assert all(snapshot.time == pytest.approx(snapshot.tick * tick_s) for snapshot in again)
 
 
 def test_a_reset_brings_robot_objects_and_lights_back_and_kills_tasks(bench, world_file):

@@ -218,14 +218,6 @@ def test_a_defect_is_logged_with_its_place_and_what_python_says_of_its_objects_i
     assert str(caught.value).strip() == f"ALMotion::getMass {DEFECT}"
 
 
-def test_blocking_calls_answer_when_their_tasks_end_and_hold_up_nobody(proxy, motion):
-    futures = [proxy.wakeUp(_async=True) for _ in range(40)]
-    assert proxy.ping() is True and len(motion.tasks) == 40 and all(future.isRunning() for future in futures)
-    for number, task in enumerate(motion.tasks):  # a killed one as if it had ended
-        task.kill() if number % 2 else task.finish()
-    assert [ended(future) for future in futures] == [None] * 40
-
-
 @pytest.mark.parametrize("when", ["runs", "command has run", "command waits"])
 def test_cancelling_the_call_kills_what_it_leads_to(proxy, motion, when):
     future = begun(proxy, "wakeUp" if when == "runs" else "moveInit")
@@ -248,11 +240,6 @@ def test_a_module_tells_about_itself_and_leaves_when_it_is_told_to(proxy, sessio
     assert proxy.getUsage("getMass") == "float getMass(string pName)"
     with pytest.raises(RuntimeError, match="unknown method 'rets': did you mean 'rest'"):
         proxy.pCall("rets")
-    assert (proxy.call("isStatsEnabled"), proxy.call("isTraceEnabled"), proxy.call("clearStats")) == (
-        False,
-        False,
-        None,
-    )
     # Whether the answer or the news of the end comes first is up to libqi.
     proxy.exit(_async=True).wait(int(1000 * PATIENCE))
     with pytest.raises(RuntimeError, match="ALMotion"):
@@ -267,9 +254,8 @@ def test_posted_calls_are_checked_have_numbers_and_run_until_their_tasks_end(pro
     ):
         with pytest.raises(RuntimeError, match=f"ALMotion::pCall {told}"):
             proxy.pCall(*call)
-    number, others = proxy.pCall("moveInit"), {proxy.pCall("rest") for _ in range(4)}
-    assert number > 0 and len(others - {number}) == 4
-    assert not any(proxy.isRunning(other) or proxy.wait(other) for other in others)
+    number, other = proxy.pCall("moveInit"), proxy.pCall("rest")
+    assert number > 0 and number != other and not proxy.isRunning(other) and not proxy.wait(other)
     assert proxy.isRunning(number) is True
     task = motion.run_command()
     assert proxy.isRunning(number) is True and proxy.wait(number, 1) is True  # the time is up
@@ -279,15 +265,11 @@ def test_posted_calls_are_checked_have_numbers_and_run_until_their_tasks_end(pro
         proxy.isRunning(4711)
 
 
-@pytest.mark.parametrize("begins", ["before", "after"])
-def test_a_posted_call_can_be_stopped_and_waited_for_before_and_after_it_began(proxy, motion, begins):
+def test_a_posted_call_can_be_stopped_and_waited_for_before_it_began(proxy, motion):
     stopped, waited = proxy.pCall("moveInit"), proxy.pCall("moveInit")
-    if begins == "before":
-        motion.run_command(), motion.run_command()
     proxy.stop(stopped)
     future = begun(proxy, "wait", waited, 0)
-    if begins == "after":
-        motion.run_command(), motion.run_command()
+    motion.run_command(), motion.run_command()
     assert motion.tasks[0].killed and proxy.isRunning(stopped) is False
     assert proxy.ping() and future.isRunning()
     motion.tasks[1].finish()

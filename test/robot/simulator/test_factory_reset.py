@@ -269,9 +269,8 @@ def test_pending_calls_and_posted_calls_end(robot):
     assert [call.wait(int(1000 * PATIENCE)) for call in calls] != [1] * len(calls)
     assert not any(call.isRunning() for call in calls)
     assert robot.answer(advance) <= 0.5  # time that was asked for goes on
-    assert robot.ALMotion.getTaskList() == [] and robot.ALMotion.getAngles("HeadYaw", True)[0] == pytest.approx(
-        0, abs=0.01
-    )
+    assert robot.ALMotion.getTaskList() == []
+    assert robot.ALMotion.getAngles("HeadYaw", True) == pytest.approx([0.0], abs=0.01)
 
 
 def test_speed_and_pause_are_of_whoever_runs_it_and_his_time_goes_on(robot):

@@ -7,7 +7,6 @@ import pytest
 
 from nao_sim_bridge.services.tracker.looking import robot_position
 from nao_sim_bridge.services.tracker.targets import TARGETS, Parameters
-from nao_sim_bridge.sim.errors import SimulationError
 from nao_sim_bridge.sim.frames import frame_of
 from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
 
@@ -35,28 +34,6 @@ def test_balls_faces_and_marks_are_as_far_as_their_size_says_the_nearest_first()
     assert front.distance == side.distance == pytest.approx(1.0), "from the side it is as far as from the front"
     assert read("LandMarks", value, 0.1, (80,)) == []
     assert [read(target, [], 0.1) for target in TARGETS] == [[]] * 6
-
-
-def test_a_sound_has_a_direction_and_counts_when_it_is_sure():
-    value = [[1, 0], [math.pi / 2.0 - 0.2, 0.3, 0.6, 0.0], CAMERA, CAMERA]
-    (sound,) = read("Sound", value, 2.0, (), 0.5)
-    assert math.dist(sound.place, CAMERA[:3]) == pytest.approx(2.0)
-    assert sound.place[1] > 1.5 and sound.place[2] > 0.5
-    assert read("Sound", value, 2.0, (), 0.7) == []
-
-
-@pytest.mark.parametrize(
-    "target, given, wanted",
-    [("RedBall", 0.06, (0.06,)), ("Face", [0.2], (0.2,)), ("LandMark", [0.1, [64, 80]], (0.1, (64, 80)))]
-    + [("Sound", [1.5, 0.4], (1.5, (), 0.4)), ("People", [3, 4], (0.15, (3, 4))), ("RedBall", "big", None)]
-    + [("LandMark", 0.1, None), ("Sound", [1.0], None), ("People", [-1], None), ("RedBall", 5.1, None)],
-)
-def test_parameters_are_as_naoqi_takes_them(target, given, wanted):
-    if wanted is None:
-        with pytest.raises(SimulationError):
-            TARGETS[target].parameters(given)
-    else:
-        assert TARGETS[target].parameters(given) == Parameters(*wanted)
 
 
 def test_two_known_marks_tell_where_the_robot_is():
@@ -127,19 +104,6 @@ def test_it_follows_the_places_of_an_event_and_takes_no_nonsense(tracker, stiff_
     assert not tracker.isTargetLost()
 
 
-def test_what_is_too_far_does_not_count(tracker, stiff_robot):
-    tracker.registerTarget("Sound", [3.0, 0.5])
-    tracker.setMaximumDistanceDetection(2.0)
-    tracker.track("Sound")
-    value = [[1, 0], [0.5, 0.0, 0.9, 0.0], CAMERA, CAMERA]
-    for distance, lost in ((2.0, True), (4.0, False)):
-        tracker.setMaximumDistanceDetection(distance)
-        stiff_robot.ALMemory.raiseEvent("ALSoundLocalization/SoundLocated", value)
-        stiff_robot.advance(0.7)
-        assert tracker.isTargetLost() is lost
-    assert stiff_robot.ALMotion.getAngles("HeadYaw", True)[0] == pytest.approx(0.5, abs=0.02)
-
-
 def test_it_walks_to_the_place_beside_the_target(tracker, stiff_robot):
     reached = stiff_robot.heard("ALTracker/TargetReached")
     tracker.setMode("Move")
@@ -154,19 +118,6 @@ def test_it_walks_to_the_place_beside_the_target(tracker, stiff_robot):
     tracker.setMode("Head")
     tell(stiff_robot, [[0.6, 0.3, 0.45], WORLD], 0.7)
     assert off(stiff_robot, [0.6, 0.3, 0.45]) < 2.0, "the world stays where it is"
-
-
-def test_it_looks_around_for_what_is_lost(tracker, stiff_robot):
-    tracker.setTimeOut(0)
-    tracker.toggleSearch(True)
-    tracker.setSearchFractionMaxSpeed(1.0)
-    tracker.trackEvent(EVENT)
-    assert tracker.isSearchEnabled()
-    yaws = []
-    for _ in range(20):
-        stiff_robot.advance(0.1)
-        yaws += stiff_robot.ALMotion.getAngles("HeadYaw", True)
-    assert max(yaws) > 0.6
 
 
 def test_looking_and_pointing_end_when_the_robot_does(tracker, stiff_robot):
