@@ -13,7 +13,6 @@ from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.render.scene import RenderState
-from nao_sim_bridge.sim.tasks import Task
 
 TICK = 1.0 / 120.0
 MANUAL = {11: 0, 12: 0}
@@ -25,23 +24,12 @@ class PlainPictures:
 
     Attributes:
         paint: Makes a picture of (height, width, 3) from the time, s, and that shape.
-        shots: What was asked for.
-        free: Cleared to let drawing wait.
-        error: Raised instead of a picture.
     """
 
     def __init__(self):
         self.paint = lambda time, shape: np.full(shape, 120, np.uint8)
-        self.shots = []
-        self.free = threading.Event()
-        self.free.set()
-        self.error = None
 
     def capture(self, state, shot, timeout=10.0):
-        self.free.wait(timeout)
-        self.shots.append(shot)
-        if self.error is not None:
-            raise self.error
         return photograph(self.paint(state.led_values[0], (shot.height, shot.width, 3)), shot)
 
 
@@ -94,14 +82,7 @@ class Head:
             for number, value in MANUAL.items():
                 self.cameras.set_parameter(camera, number, value)
 
-    def execute(self, command, name=""):
-        """As the thread of a simulation does it: at once."""
-        task = Task(name, 0)
-        task.finish(command())
-        return task
-
     def close(self):
-        self.pictures.free.set()
         self.cameras.close()
 
     @staticmethod

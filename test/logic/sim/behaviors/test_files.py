@@ -1,4 +1,4 @@
-"""Behaviours in files, of Choregraphe, and installed: what they become, which one a name means, what is refused."""
+"""Behaviours in files and of Choregraphe: what they become, and what is refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Postures: recognised from readings, ways between them, and moves of the file. Looking, pointing and stroking."""
+"""Postures: recognised from readings, ways between them, and moves of the file. Gestures on the head."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ import math
 import random
 from math import radians
 
+import numpy as np
 import pytest
 
 from nao_sim_bridge.sim.errors import ConfigError
+from nao_sim_bridge.sim.frames import frame_of
+from nao_sim_bridge.sim.kinematics import link_transforms
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.posture_graph import path_to
 from nao_sim_bridge.sim.posture_moves import FILE, Ground, KeyFrame, Move, direct, moves_of
@@ -32,7 +35,7 @@ from nao_sim_bridge.sim.touch_gestures import (
     Times,
 )
 from nao_sim_bridge.sim.tracking.approach import Relative, goal_beside
-from nao_sim_bridge.sim.tracking.geometry import distance_of, seen_place, turn_to
+from nao_sim_bridge.sim.tracking.geometry import HEAD, arm_angles, distance_of, head_angles, seen_place, turn_to
 from nao_sim_bridge.sim.walk.footsteps import FootPose
 
 MODEL = load_model()
@@ -100,9 +103,6 @@ def test_families_go_beyond_the_predefined_postures(angles, readings, recognitio
     assert found.family == family and name in (None, found.posture)
 
 
-# --- ways
-
-
 def move(start, goal, duration=5.0, certainty=1.0):
     return Move(start, goal, (KeyFrame(duration, dict(enumerate(posture(MODEL, goal)))),), certainty=certainty)
 
@@ -145,8 +145,6 @@ def test_ways_between_postures(goal, seen, like, moves, way):
     found = path_to(goal, seen, posture(MODEL, like), 1.0, MODEL, moves)
     assert (found and [str(one) for one in found]) == way
 
-
-# --- moves
 
 HEAD_YAW, KNEE = MODEL.joint_index["HeadYaw"], MODEL.joint_index["LKneePitch"]
 FRAME = {"time": 0.5, "angles": {"HeadYaw": 0.1}}
@@ -202,9 +200,6 @@ def test_a_straight_move_takes_the_slowest_joint_its_time_and_what_is_safe():
     assert dynamic.duration == 4.0, "moves of the file are played as they are"
 
 
-# --- looking and pointing
-
-
 def test_what_a_camera_sees_is_where_its_ray_goes():
     place = seen_place((0.1, 0.2, 0.5, 0.0, 0.3, 0.7), 0.0, 0.0, 2.0)
     assert math.dist(place, (0.1, 0.2, 0.5)) == pytest.approx(2.0)
@@ -216,8 +211,6 @@ def test_what_a_camera_sees_is_where_its_ray_goes():
     assert (goal.yaw, math.hypot(1.0 - goal.x, 1.0 - goal.y)) == pytest.approx((math.pi / 4.0, 0.5))
     assert math.hypot(goal.x, goal.y) == pytest.approx(math.sqrt(2.0) - 0.5), "on the robot's side"
 
-
-# --- gestures on the head
 
 TICK = 1.0 / 120.0
 
@@ -244,3 +237,36 @@ def test_a_gesture_is_recognised_when_it_is_over_and_what_is_held_again_and_agai
         assert [seen for _, seen in news] == [Seen(name), Seen(name), Seen(released=True)]
         times = [begin + HOLD_TIME, begin + 2 * HOLD_TIME, begin + 2.0]
         assert [when for when, _ in news] == pytest.approx(times, abs=3 * TICK)
+
+
+def test_arms_that_make_way_go_aside_first_and_come_down_from_above():
+    start, goal = posture(MODEL, "Sit"), posture(MODEL, "SitRelax")
+    move = direct(MODEL, "Sit", "SitRelax", start, 1.0, Ground((), 0.5, arms_aside=True))
+    aside, over, above, there = (frame.angles for frame in move.frames)
+    shoulders, elbows = ([MODEL.joint_index[side + name] for side in "LR"] for name in ("ShoulderRoll", "ElbowRoll"))
+    assert [aside[i] for i in shoulders] == [over[i] for i in shoulders] == [0.9, -0.9]
+    assert [above[i] for i in elbows] == [-1.5, 1.5] and aside[KNEE] == start[KNEE]
+    assert over[KNEE] == above[KNEE] == there[KNEE] == goal[KNEE] and there == dict(enumerate(goal))
+
+
+def off(name, angles, place):
+    """Angle between the X axis of a frame for joint angles by name, others 0, and the way from it to a place, rad."""
+    frame = frame_of(MODEL, name)
+    body = [angles.get(joint.name, 0.0) for joint in MODEL.joints]
+    way = np.linalg.inv(link_transforms(MODEL, body)[frame.link] @ frame.offset) @ np.array((*place, 1.0))
+    return math.acos(way[0] / np.linalg.norm(way[:3]))
+
+
+def test_cameras_and_arms_turn_to_a_place():
+    for place in ((1.0, 0.0, 0.2), (1.0, 0.6, 0.5), (0.5, -0.4, 0.1), (2.0, 1.5, -0.3)):
+        assert off("CameraTop", dict(zip(HEAD, head_angles(MODEL, place))), place) < 1e-6
+    place = (1.0, 0.2, -0.2)
+    yaw, pitch = head_angles(MODEL, place, camera=1)
+    assert pitch < head_angles(MODEL, place)[1] - 0.5, "for the other camera the head is higher"
+    assert off("CameraBottom", dict(zip(HEAD, (yaw, pitch))), place) < 1e-6
+    for arm, side in (("LArm", 1.0), ("RArm", -1.0)):
+        for place in ((1.0, 0.4 * side, height) for height in (-0.3, 0.1, 0.6)):
+            assert off(arm, arm_angles(MODEL, arm, place), place) < math.radians(4.0)
+    for place in ((0.0, 0.0, 0.1265), (-1.0, 0.1, 0.2), (0.1, 0.0, -1.0), (0.0, 0.0, 5.0)):
+        for name, angle in zip(HEAD, head_angles(MODEL, place)):
+            assert MODEL.joint(name).lower <= angle <= MODEL.joint(name).upper, "out of reach"

@@ -7,19 +7,7 @@ from plain_cameras import Head
 
 
 @pytest.fixture
-def head_of():
-    """Makes cameras; they are closed after the test."""
-    made = []
-
-    def make(**options):
-        made.append(Head(**options))
-        return made[-1]
-
-    yield make
-    for head in made:
-        head.close()
-
-
-@pytest.fixture
-def head(head_of):
-    return head_of()
+def head():
+    made = Head()
+    yield made
+    made.close()

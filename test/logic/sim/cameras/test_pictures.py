@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import replace
 
@@ -11,14 +10,12 @@ import numpy as np
 import pytest
 
 import vision_definitions
-from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim.cameras import parameters as names
 from nao_sim_bridge.sim.cameras.color_spaces import encode
-from nao_sim_bridge.sim.cameras.optics import CameraOptics
+from nao_sim_bridge.sim.cameras.optics import CameraOptics, Optics
 from nao_sim_bridge.sim.cameras.sensor import develop
-from nao_sim_bridge.sim.cameras.settings import FILE, load_cameras, parse_cameras
+from nao_sim_bridge.sim.cameras.settings import load_cameras
 from nao_sim_bridge.sim.cameras.shot import Shot
-from nao_sim_bridge.sim.errors import ConfigError
 
 BRIGHTNESS, CONTRAST, SATURATION, HUE, GAIN, H_FLIP, V_FLIP, AUTO_WHITE = 0, 1, 2, 3, 6, 7, 8, 12
 EXPOSURE, ALGORITHM, WHITE = 17, 22, 33
@@ -163,16 +160,12 @@ def test_names_and_numbers_are_those_of_the_sdk(version):
     assert set(tables.parameters) <= known
 
 
-def test_mistakes_in_the_file_are_told():
-    content = json.loads(config_file(FILE).read_text())
-    content["versions"]["V6"]["parameters"]["kCameraHueID"]["default"] = 400
-    with pytest.raises(ConfigError, match=r"kCameraHueID: default 400 is not within -180..180"):
-        parse_cameras(content, "V6")
-    with pytest.raises(ConfigError, match="no cameras of version 'V7'"):
-        parse_cameras(content, "V7")
-    content["versions"]["V5"]["sensor"]["zoom"] = 1
-    with pytest.raises(ConfigError, match="zoom"):
-        parse_cameras(content, "V5")
-    del content["resolutions"]["kVGA"]
-    with pytest.raises(ConfigError, match="resolutions.kVGA: is None, not 3 whole numbers"):
-        parse_cameras(content, "V5")
+def test_signs_are_those_of_naoqi_and_angles_lead_back_to_the_place():
+    optics = Optics(1.0, 0.8)
+    assert optics.angles(0.5, 0.5) == (0.0, 0.0)
+    assert optics.angles(0.0, 0.0) == pytest.approx((0.5, -0.4))  # upper left corner
+    assert optics.angles(1.0, 1.0) == pytest.approx((-0.5, 0.4))
+    assert optics.angular_size(1.0, 1.0) == pytest.approx(optics.fov)
+    for x, y in [(0.1, 0.9), (0.5, 0.25), (0.98, 0.02)]:
+        assert optics.place(*optics.angles(x, y)) == pytest.approx((x, y))
+        assert optics.image_size(*optics.angular_size(x, y)) == pytest.approx((x, y))

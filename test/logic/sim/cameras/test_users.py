@@ -1,4 +1,4 @@
-"""Who uses the cameras: subscribers that come and go, series of photos, films, disks that are full."""
+"""Who uses the cameras: subscribers that come and go, series of photos, disks that are full."""
 
 from __future__ import annotations
 

@@ -28,16 +28,10 @@ def chance():
     return np.random.default_rng(11)
 
 
-# --- the geometry of the four microphones -----------------------------------------------------------------------------
-
-
 def test_directions_are_counted_from_ahead_to_the_left_and_upwards():
     assert direction(0.0, 0.0) == pytest.approx([1.0, 0.0, 0.0])
     assert direction(math.pi / 2, 0.0) == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
     assert direction(0.3, math.pi / 2) == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)
-
-
-# --- directions -------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("azimuth, elevation", [(0, 0), (0, -20), (30, 10), (-120, 0), (180, 25), (150, -10)])
@@ -86,9 +80,6 @@ def test_a_steady_sound_becomes_background_and_does_not_hide_a_voice(chance, loc
     voice = heard(harmonics(chance), direction(-0.5, 0.0), level_db=50.0)
     both = localiser.feed(rounded(fan[0] + voice + background(chance)), 100 * BLOCK_S)
     assert both.azimuth == pytest.approx(-0.5, abs=0.06)
-
-
-# --- begins and ends --------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture

@@ -8,8 +8,9 @@ from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.hearing import grammar as g
 from nao_sim_bridge.sim.hearing.bnf import GrammarError, parse_bnf
 from nao_sim_bridge.sim.hearing.contexts import ContextError, Contexts
-from nao_sim_bridge.sim.hearing.network import build, spoken_word
+from nao_sim_bridge.sim.hearing.network import MOST_ARCS, build, spoken_word
 from nao_sim_bridge.sim.hearing.phrases import spoken_words
+from nao_sim_bridge.sim.hearing.pronunciation import Pronouncer, phones_of_ipa
 
 HOUSE = """#BNF+EM V2.1;
 !grammar House; // of a flat
@@ -71,9 +72,6 @@ def test_a_phrase_without_words_is_refused(phrase):
         spoken_words(phrase)
 
 
-# --- grammar files ----------------------------------------------------------------------------------------------------
-
-
 def test_a_grammar_says_what_it_describes(contexts):
     assert not [s for s in sentences(contexts.get("house").root()) if " in the" in s]  # the slot is empty
     contexts.put("house", contexts.get("house").with_slot("room", ["kitchen"]))
@@ -121,9 +119,6 @@ def test_contexts_are_put_aside_saved_and_taken_back(contexts):
         contexts.pop()
     with pytest.raises(ContextError, match="already exists"):
         contexts.add("house", parse_bnf(HOUSE))
-
-
-# --- networks ---------------------------------------------------------------------------------------------------------
 
 
 def word(text):
@@ -175,3 +170,17 @@ def test_parts_are_repeated_and_loops_are_left_only_where_they_end(least, most, 
     assert said(made(g.Repeat(word("no"), least, most)), most=3) == wanted
     loop = made(g.Sequence((word("a"), g.Repeat(word("no"), least, most), word("c"))))
     assert said(loop, most=5) == {" ".join(f"a {w} c".split()) for w in wanted}
+
+
+def test_too_large_a_grammar_is_refused():
+    with pytest.raises(BadValue, match="smaller"):
+        made(g.Repeat(word("no"), MOST_ARCS, MOST_ARCS))
+
+
+def test_pronunciations_are_those_of_the_dictionary(tmp_path):
+    (tmp_path / "words.dict").write_text("read R IY D\nread(2) R EH D\nrobot R OW B AA T\n")
+    pronouncer = Pronouncer(tmp_path / "words.dict")
+    assert pronouncer.phones("read") == ["R IY D", "R EH D"]
+    assert pronouncer.phones("robot's") == ["R OW B AA T S"]
+    for ipa, phones in [("nˈaʊ", "N AW"), ("tʃˈɜːtʃ", "CH ER CH"), ("(en)bˈeɪkə(fr)", "B EY K AH"), ("ʘ", "")]:
+        assert phones_of_ipa(ipa) == phones

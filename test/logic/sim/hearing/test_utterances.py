@@ -13,6 +13,7 @@ from nao_sim_bridge.sim.hearing.evidence import Evidence, evidence
 from nao_sim_bridge.sim.hearing.noise_reduction import FRAME, noise_spectrum, reduce_noise
 from nao_sim_bridge.sim.hearing.phone_distance import difference, distance
 from nao_sim_bridge.sim.hearing.settings import ConfidenceSettings, load_recognition
+from nao_sim_bridge.sim.hearing.speech_likeness import likeness
 from nao_sim_bridge.sim.hearing.voice_activity import RATE, SpeechChange, Utterance, VoiceActivity
 
 TIMES = np.arange(RATE) / RATE
@@ -55,9 +56,6 @@ def test_silence_clicks_and_steady_noise_are_no_utterance(parts):
     assert utterances(heard(stream(*parts))) == []
 
 
-# --- noise is taken out -----------------------------------------------------------------------------------------------
-
-
 def noise(seconds, seed):
     return 0.01 * np.random.default_rng(seed).standard_normal(round(seconds * RATE)).astype(np.float32)
 
@@ -77,8 +75,6 @@ def test_steady_noise_is_lowered_to_about_the_least_gain_and_a_loud_tone_stays()
     inside = slice(2 * FRAME, -2 * FRAME)
     assert level(found[inside] - tone[inside]) < level(alone) - 6.0
 
-
-# --- what speaks for a phrase -----------------------------------------------------------------------------------------
 
 SETTINGS = ConfidenceSettings(bias=0.0, difference=3.0, everyday=1.0, sounds=1.0, same=1.0, length=1.0, least=0.4)
 
@@ -149,3 +145,16 @@ def test_the_cheapest_changes_count_in_both_directions(one, other, wanted):
 @pytest.mark.parametrize("one, other, wanted", [("S", "S", 0.0), ("S", "Z", 0.5), ("AA", "IY", 0.6), ("S", "AA", 1.0)])
 def test_phones_that_are_alike_differ_less(one, other, wanted):
     assert difference(one, other) == difference(other, one) == wanted
+
+
+def test_tones_hums_and_noise_of_any_colour_are_no_speech():
+    bounds = load_recognition().speech_likeness
+    tone = likeness(np.sin(2.0 * np.pi * 440.0 * TIMES))
+    assert tone.tone > bounds.most_tone and tone.change < 0.1
+    assert likeness(sum(np.sin(2.0 * np.pi * 150.0 * k * TIMES) / k for k in range(1, 9))).change < bounds.least_change
+    for power in (0.0, 0.5, 1.0):
+        for seed in range(20):
+            random = np.random.default_rng(seed)
+            frames = round(random.uniform(0.2, 2.0) * RATE)
+            spectrum = np.fft.rfft(random.standard_normal(frames)) / np.arange(1.0, frames // 2 + 2.0) ** power
+            assert likeness(np.fft.irfft(spectrum, frames)).voice < bounds.least_voice, (power, seed)

@@ -1,15 +1,15 @@
-"""LEDs: names, groups and lamps; values over time, where who comes last has the say; named animations."""
+"""LEDs: names, groups and lamps; named animations."""
 
 from __future__ import annotations
+
+import random
 
 import pytest
 
 from nao_sim_bridge.sim import led_animations
 from nao_sim_bridge.sim.errors import UnknownName
-from nao_sim_bridge.sim.leds import LedBank
 from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.model import VERSIONS
-from nao_sim_bridge.sim.tasks import TaskIds
 
 LEDS = load_leds()
 
@@ -60,16 +60,6 @@ def test_lamps_have_angles_and_the_colours_of_their_devices():
     assert shown["RightFaceLed1"] == (0.0, 0.0, 0.0)
 
 
-@pytest.fixture
-def bank():
-    return LedBank(4, TaskIds())
-
-
-def shown(bank, now):
-    bank.tick(now)
-    return bank.values
-
-
 def lit(frame, part, side):
     """Names of the lamps of a part that a frame lights."""
     return [lamp.name for lamp in LEDS.lamps_of(part, side) if any(frame.values.get(i) for i in lamp.devices)]
@@ -104,3 +94,14 @@ def test_ears_point_at_an_angle_and_stay_on_only_when_asked(degrees, number):
     between = led_animations.ear_angle(LEDS, 27, 1.0, leave_on=True)[0].values
     shared = [between[LEDS.short_names[f"LeftEarLed{number}"][0]] for number in (1, 2)]
     assert shared == pytest.approx([0.75, 0.25])
+
+
+def test_random_eyes_change_all_eye_leds_by_chance_for_the_time_asked():
+    frames, again, other = (led_animations.random_eyes(LEDS, 1.0, random.Random(seed)) for seed in (3, 3, 4))
+    assert frames == again != other
+    assert [frame.time for frame in frames] == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    for frame in frames[:-1]:
+        assert set(frame.values) == set(LEDS.devices_of("FaceLeds")) and all(
+            0.0 <= value <= 1.0 for value in frame.values.values()
+        )
+    assert frames[0].values != frames[1].values

@@ -156,3 +156,10 @@ def test_lamps_sit_on_their_side_at_their_angle_and_both_sides_look_alike():
             assert (at[lamp.name][1] > 0.0) == (lamp.side == "Left"), lamp.name
     left = [name for name in shapes if name.startswith("L")]
     assert left and all(len(shapes["R" + name[1:]]) == len(shapes[name]) for name in left)
+
+
+def test_the_right_sole_is_the_mirror_image_and_counter_clockwise():
+    left, right = MODEL.sole_polygon("L"), MODEL.sole_polygon("R")
+    assert sorted(map(tuple, right)) == sorted((x, -y) for x, y in left)
+    for x, y in (left.T, right.T):
+        assert np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)) > 0.0

@@ -1,4 +1,4 @@
-"""Inverse kinematics, paths of effectors as curves of the joints, and the aims of whole body control."""
+"""Inverse kinematics, and the aims of whole body control."""
 
 from __future__ import annotations
 

@@ -21,8 +21,6 @@ STAND, AHEAD = posture(MODEL, "Stand"), posture(MODEL, "StandZero")
 # The left forearm across the chest.
 CHEST = {"LShoulderPitch": 0.8, "LShoulderRoll": -0.3, "LElbowYaw": -0.3, "LElbowRoll": -1.5}
 
-# --- arms and the body
-
 
 def test_distances_of_capsules():
     zero, x, y = np.zeros(3), *np.eye(3)[:2]
@@ -70,8 +68,6 @@ def test_an_arm_stops_before_the_chest_may_leave_it_and_the_other_arm_goes_on(gu
     assert walk(guard, posed(**CHEST), STAND)[-1] == pytest.approx(STAND)
 
 
-# --- arms and obstacles
-
 FAR = 5.0
 
 
@@ -103,8 +99,6 @@ def test_a_protected_arm_slows_down_as_it_comes_near():
     external.enabled.clear()
     assert external.speed_shares(AHEAD, (near, near)) == {}
 
-
-# --- idle chains
 
 DT = 0.05
 
@@ -157,9 +151,6 @@ def test_only_the_chains_asked_for_breathe_both_arms_alike_and_only_while_it_sta
     for kind, sign in (("ShoulderPitch", 1), ("ShoulderRoll", -1), ("ElbowRoll", -1)):
         left, right = (wishes[-1][INDEX[side + kind]] - STAND[INDEX[side + kind]] for side in "LR")
         assert left == pytest.approx(sign * right, abs=1e-3) and left != 0.0
-
-
-# --- smart stiffness
 
 
 def test_a_static_posture_gets_what_it_needs_and_some_to_spare_until_something_moves():

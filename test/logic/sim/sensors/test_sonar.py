@@ -1,4 +1,4 @@
-"""Sonars: what echoes, how strong, and when they measure."""
+"""Sonars: what echoes, and how strong."""
 
 from __future__ import annotations
 
@@ -24,10 +24,9 @@ class Points:
     """Surfaces at places in world, all as large as a wall unless told otherwise."""
 
     def __init__(self, *places, extents=LARGE, hidden=()):
-        self.places, self.size, self.hidden, self.asked = list(places), extents, set(hidden), 0
+        self.places, self.size, self.hidden = list(places), extents, set(hidden)
 
     def surfaces(self, place, ahead, reach):
-        self.asked += 1
         return [Surface(point, body) for body, point in enumerate(self.places)]
 
     def extents(self, surface, sight):

@@ -66,12 +66,6 @@ class Room:
         return round(self._tick * TICK * RATE)
 
 
-@pytest.fixture(scope="session")
-def patience():
-    """Longest wait for something that must happen, in s; passing tests do not come near it."""
-    return 15.0
-
-
 @pytest.fixture
 def room():
     """Makes rooms; the settings of sound can be changed by name."""

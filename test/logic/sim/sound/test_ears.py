@@ -1,4 +1,4 @@
-"""Blocks of what is heard, for listeners in threads of their own; and followers of time."""
+"""Blocks of what is heard, and followers of time."""
 
 from __future__ import annotations
 

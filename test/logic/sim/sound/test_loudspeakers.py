@@ -1,4 +1,4 @@
-"""What loudspeakers play: unchanged, exact in time, without clicks; and it never changes afterwards."""
+"""What loudspeakers play: exact in time and without clicks."""
 
 from __future__ import annotations
 

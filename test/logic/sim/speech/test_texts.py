@@ -26,9 +26,6 @@ def spoken(pieces):
     return "".join(piece.text for piece in pieces if isinstance(piece, Spoken))
 
 
-# --- tags -------------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     "tag, expected",
     [
@@ -93,9 +90,6 @@ def test_any_text_is_read(text):
     assert "\\" not in spoken(TagReader(lambda _: None).read(text))
 
 
-# --- sentences --------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     "text, expected",
     [
@@ -114,9 +108,6 @@ def test_any_text_is_read(text):
 )
 def test_sentences_end_where_a_reader_would_end_them(text, expected):
     assert [item.text for item in sentences(TagReader().read(text))] == expected
-
-
-# --- pronunciations ---------------------------------------------------------------------------------------------------
 
 
 def test_whole_words_are_replaced_and_places_lead_back_to_the_text_as_it_is_written():

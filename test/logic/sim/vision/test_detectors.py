@@ -186,3 +186,15 @@ def test_a_ball_that_rolls_by_is_found_where_it_is(room, pixels):
         assert 0.0 < left < middle / 320 < left + width < 1.0 and top < 0.5 < top + height
         assert width * 320 <= 24 + 2 * pixels + 8 and height * 240 <= 32
         assert 0.0 < cluster.share_of_picture < 0.03 < cluster.share_of_rectangle <= 1.0
+
+
+def test_the_lower_the_sensitivity_the_more_it_takes_and_slow_pictures_are_compared_with_the_one_before(room):
+    def faint(step):
+        picture = room(noise=2.0).astype(np.int16)
+        picture[100:140, 100 + 8 * step : 150 + 8 * step] += 30
+        return np.clip(picture, 0, 255).astype(np.uint8)
+
+    pictures = [faint(step) for step in range(6)]
+    assert all(watch(pictures, sensitivity=0.9)[2:]) and not any(watch(pictures, sensitivity=0.3))
+    found = watch([room(ball=(80 + 10 * k, 120)) for k in range(4)], period=1.0)
+    assert found[0] is None and all(found[1:])

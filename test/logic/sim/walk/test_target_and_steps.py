@@ -124,3 +124,19 @@ def test_between_two_steps_of_one_foot_the_other_one_comes_beside_it(walked):
     assert made[1].placement == pytest.approx((0.0, -0.1, 0.0))
     assert made[2].placement == pytest.approx((0.04, 0.1, 0.0))
     assert made[2].robot.x == pytest.approx(0.06)
+
+
+def test_steps_can_be_added_or_take_the_place_of_those_to_come(walked):
+    one = planned(*PLAN[:2])
+    made = walked(one, 1)
+    one.add(PLAN[2:], clear=False)
+    assert one.left == tuple(PLAN[1:])
+    made += walked(one, 1, after=made[-1])
+    back = step(LEFT, -0.03)
+    one.add([back], clear=True)
+    assert [m.placement for m in walked(one, after=made[-1])] == [pytest.approx(back.beside)]
+    assert walked(planned()) == []
+    one = planned(*PLAN)
+    made = walked(one, 2)
+    one.add([], clear=True)
+    assert walked(one, after=made[-1]) == []

@@ -13,7 +13,6 @@ from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.faces import load_faces
 from nao_sim_bridge.sim.landmarks import load_landmarks
 from nao_sim_bridge.sim.painting import names
-from nao_sim_bridge.sim.painting.canvas import Canvas
 from nao_sim_bridge.sim.world_pictures import ASPECTS, WorldPicture, aspect, barcode, paint
 
 EAN = "4006381333931"
@@ -98,16 +97,3 @@ def test_sectors_follow_clockwise_from_the_top():
     assert tuple(bool(picture[int(row), int(column), 0] > 128) for row, column in places) == table.marks[119]
     assert picture[2, 2, 0] > 200, "the card is white"
     assert picture[int(middle - 0.9 * radius), int(middle), 0] < 60, "the rim is black"
-
-
-@pytest.fixture
-def canvas():
-    return Canvas(80, 60, 20.0, (40.0, 30.0), (0.5, 0.5, 0.5))
-
-
-def column(canvas, x):
-    return np.argmin(np.abs(canvas.x[0] - x))
-
-
-def row(canvas, y):
-    return np.argmin(np.abs(canvas.y[:, 0] - y))
