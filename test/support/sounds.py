@@ -71,5 +71,5 @@ def until(robot, future, limit=30.0):
     robot.settled()
     while future.isRunning() and robot.now.time < began + limit:
         robot.advance(0.05)
-        robot.answer(future)
+    robot.answer(future)
     return robot.now.time - began
