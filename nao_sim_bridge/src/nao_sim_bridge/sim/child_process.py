@@ -84,7 +84,7 @@ class ChildProcess:
         try:
             self.pipe.send((kind, content))
         except OSError as error:
-            raise self._failure(what) from error
+            raise self._failure(what, error) from error
 
     def receive(self, timeout: float, what: str) -> Any:
         """The content of the next answer; an error it reports is raised.
@@ -100,7 +100,7 @@ class ChildProcess:
                 raise self._failed(f"{what}: no answer of the {self._name} within {timeout:g} s")
             kind, content = self.pipe.recv()
         except (EOFError, OSError) as error:
-            raise self._failure(what) from error
+            raise self._failure(what, error) from error
         if kind == "error":
             raise self._refused(f"{what}: {content}")
         return content
@@ -114,7 +114,7 @@ class ChildProcess:
         try:
             return self.pipe.recv_bytes()
         except (EOFError, OSError) as error:
-            raise self._failure(what) from error
+            raise self._failure(what, error) from error
 
     def ask(self, kind: str, content: Any, timeout: float, what: str) -> Any:
         """Send a request and wait for its answer; see `send` and `receive`."""
@@ -144,9 +144,11 @@ class ChildProcess:
         self.process.kill()
         self.process.wait()
 
-    def _failure(self, what: str) -> SimulationError:
+    def _failure(self, what: str, error: Exception) -> SimulationError:
         """The error for a process that has gone; what may be left of it is ended."""
         words = self.last_words()
+        if self.process.poll() is None:
+            words += f" ({error!r})"
         self.kill()
         return self._failed(f"{what}: {words}")
 
