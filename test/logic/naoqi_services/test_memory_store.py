@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.services.memory_store import HISTORY_LENGTH, KEY_ADDED, KEY_REMOVED, MemoryStore
+from nao_sim_bridge.services.memory_store import KEY_ADDED, KEY_REMOVED, MemoryStore
 from nao_sim_bridge.sim.errors import UnknownName
 
 
@@ -88,14 +88,6 @@ def test_a_live_key_is_computed_when_it_is_read_and_written_by_its_writer_only(s
     assert heard == [0.5]
 
 
-def test_who_waits_for_a_change_hears_of_the_next_one_only(store, heard):
-    store.on_next_change("key", heard.append)
-    store.insert("other", 5)
-    store.insert("key", 2)
-    store.insert("key", 3)
-    assert heard == [2]
-
-
 def test_all_subscribers_hear_until_they_leave_also_when_one_fails(store, heard):
     store.subscribe("Happened", "Deaf", lambda *_: 1 / 0)
     subscribe(store, heard, message="old")
@@ -134,17 +126,6 @@ def test_a_listener_may_come_before_its_event_is_known_and_all_are_gone_in_the_e
     store.close()
     store.raise_event("Later", 2)
     assert heard == [1]
-
-
-def test_the_history_keeps_the_last_values_with_their_times(store, clock):
-    for n in range(HISTORY_LENGTH + 3):
-        clock.now = float(n)
-        store.raise_event("Happened", n)
-    history = store.history("Happened")
-    assert len(history) == HISTORY_LENGTH
-    assert (history[0], history[-1]) == ((3, 3.0), (HISTORY_LENGTH + 2, HISTORY_LENGTH + 2.0))
-    with pytest.raises(UnknownName, match="unknown event"):
-        store.history("nothing")
 
 
 def test_who_wants_to_know_is_told_of_keys_that_come_and_go_and_of_subscribers(store, heard):

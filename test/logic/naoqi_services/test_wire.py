@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from nao_sim_bridge.services.api import FILE, Method, Overload, module_methods, qi_type
+from nao_sim_bridge.services.api import FILE, Method, Overload, qi_type
 from nao_sim_bridge.services.arguments import number, numbers, per_item
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.wire_types import fitted, fitted_to
@@ -29,17 +29,6 @@ def test_types_become_codes_of_libqi_and_unknown_ones_are_refused():
     for name in ("text", "list<text>", "list<>", "map<string>", "tuple<>", "pair<int>", ""):
         with pytest.raises(ConfigError, match=f"{FILE}: unknown type"):
             qi_type(name)
-
-
-def test_an_overload_is_a_signature_and_a_text():
-    overload = Overload(("string", "list<float>"), ("name", "values"))
-    assert (overload.signature, str(overload)) == ("(s[f])", "string name, list<float> values")
-    assert Overload((), ()).signature == "()"
-    assert module_methods("ALLeds")["fadeRGB"].usage().splitlines() == [
-        "void fadeRGB(string name, float red, float green, float blue, float duration)",
-        "void fadeRGB(string name, string colorName, float duration)",
-        "void fadeRGB(string name, int rgb, float duration)",
-    ]
 
 
 def method(*overloads):

@@ -10,7 +10,6 @@ from plan_tools import LIMIT, SHORT, Beside, One, at_once, fails, seen, state_of
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import (
     DesignatorError,
-    GoalNotAchieved,
     NavigationGoalNotReached,
     NoMatchingProcessModule,
     ProcessModuleNotRunning,
@@ -84,19 +83,6 @@ def test_what_goes_wrong_in_a_module_goes_wrong_in_the_plan_and_can_be_tried_oth
     desig = p.Designator(p.action, {"type": "either"}, resolve=lambda _: commands)
     other = lambda: p.perform(desig.next_solution())  # noqa: E731
     assert p.top_level(lambda: p.try_in_order(p.do(p.perform, desig), other)) == "near"
-
-
-def test_a_goal_of_an_action_holds_before_or_afterwards(one, log):
-    there = p.Fluent("there", False)
-
-    @p.declare_goal
-    def at_table():
-        return there.value
-
-    going = p.Designator(p.action, {"goal": at_table()}, resolve=lambda desig: [p.Command("one", "quick")])
-    fails(GoalNotAchieved, r"at_table\(\) does not hold after", p.do(p.perform, going))
-    there.value = True
-    assert p.top_level(p.do(p.perform, going)) is None and len(log.words("begun")) == 1
 
 
 def test_one_thing_at_a_time_or_all_at_once(one, many, log):
@@ -222,33 +208,7 @@ def test_what_cannot_be_performed_is_told(one):
     fails(DesignatorError, "", lambda: p.perform(p.an(p.action, type="juggling with knives")))
 
 
-def watched(module):
-    """How many watch a module."""
-    count = p.Fluent("watching", 0)
-
-    class Noted(list):
-        def append(self, watcher):
-            super().append(watcher)
-            count.value += 1
-
-    module.watchers = Noted(module.watchers)
-    return count
-
-
-def test_monitors_see_results_failures_and_cancels(one, log):
-    log.let("far", "a")
-    monitor = p.do(p.monitor_process_module, one)
-
-    def watch(*desig):
-        count = watched(one)
-        return p.par(monitor, monitor, lambda: (p.wait_for(count >= 2), p.perform(to(*desig))))
-
-    assert p.top_level(lambda: watch("wait", "a"))[:2] == ["a", "a"]
-    assert fails(NavigationGoalNotReached, "far", lambda: watch("stumble", "far")).word == "far"
-    count = watched(one)
-    watching, plan = Beside(monitor.call), Beside(lambda: (p.wait_for(count), p.perform(to("wait", "never"))))
-    log.wait("begun", "never")
-    p.pm_cancel(one)
-    watching.fails(TaskEvaporatedFailure)
-    plan.fails(TaskEvaporatedFailure)
-    assert list(one.watchers) == []
+def test_a_monitor_answers_what_its_module_has_done(one):
+    asked = p.do(p.monitor_process_module, one)
+    seen_by = lambda: (p.wait_until(lambda: bool(one.watchers)), p.perform(to("quick", "a")))[1]  # noqa: E731
+    assert p.top_level(lambda: p.par(asked, seen_by)) == ["a", "a"] and list(one.watchers) == []

@@ -25,8 +25,6 @@ from nao_library_modules.process_modules.failures import (
     ManipulationPoseUnreachable,
     NavigationGoalNotReached,
     NavigationPoseUnreachable,
-    PerceptionLowLevelFailure,
-    PerceptionObjectNotFound,
     PtuGoalNotReached,
     PtuGoalUnreachable,
     SpeechLowLevelFailure,
@@ -290,18 +288,6 @@ def test_a_plan_that_ends_leaves_the_robot_standing(walking, robot):
     assert stands(robot) and robot.now.torso.position[0] < 1.0
 
 
-def test_a_suspended_walk_stops_and_goes_on_when_it_is_woken(begin, robot, on_its_feet):
-    plan = begin(p.do(p.perform, to(type="going", target=[0.3, 0.0])))
-    robot.advance_until(robot.ALMotion.moveIsActive, 3.0)
-    plan.root.suspend("a child runs by")
-    robot.advance_until(lambda: not robot.ALMotion.moveIsActive(), 5.0)
-    stopped = robot.now.torso.position[0]
-    robot.advance(1.0)
-    assert robot.now.torso.position[0] == pytest.approx(stopped, abs=0.02) and stopped < 0.25
-    plan.root.wake_up()
-    assert plan.ended().x == pytest.approx(0.3, abs=0.05)
-
-
 def test_lights_have_a_colour_and_an_intensity_and_are_told_wrong_names(perform, robot, link):
     perform(to(type="lighting", color="green", lights="ChestLeds"))
     function = link.goals["NaoLights"][0].functions[0]
@@ -342,16 +328,3 @@ def test_what_is_seen_is_perceived_where_it_is(begin, link):
     assert [(f.function, f.str_param, f.camera, f.size) for f in asked] == [
         ("detectBall", "", "bottom", 0.05), ("lookFor", "ball", "", 0.0),
     ]  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    "desc, end, failure, told",
-    [
-        ({"type": "face", "name": "Anna"}, GoalStatus.SUCCEEDED, PerceptionObjectNotFound, "no face Anna was seen"),
-        ({"type": "cup"}, GoalStatus.SUCCEEDED, PerceptionLowLevelFailure, "nobody detects 'cup': there are detectors"),
-        ({"type": "ball"}, GoalStatus.ABORTED, PerceptionLowLevelFailure, "detectBall: it ended aborted"),
-    ],
-)  # fmt: skip
-def test_what_is_not_seen_is_a_failure(begin, link, desc, end, failure, told):
-    link.answers["NaoVision"] = ActionEnd(end, "", SimpleNamespace(objects=[]))
-    begin(lambda: p.perceive(p.a(p.object_, **desc))).fails(failure, told)

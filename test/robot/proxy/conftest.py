@@ -26,9 +26,9 @@ class Robot:
         self._process = None
         self.start()
 
-    def start(self, *more_modules):
-        """Start it, on the port it had before; with more modules than it always has."""
-        command = [sys.executable, str(SERVER), str(self.port), *more_modules]
+    def start(self):
+        """Start it, on the port it had before."""
+        command = [sys.executable, str(SERVER), str(self.port)]
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, stderr=subprocess.DEVNULL
         )

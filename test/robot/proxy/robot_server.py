@@ -1,6 +1,6 @@
 """A small robot for the tests of the proxy layer: a libqi server in a process of its own.
 
-Run as a program with a port (0 takes a free one) and names of more modules; it prints `ready PORT`. It speaks
+Run as a program with a port (0 takes a free one); it prints `ready PORT`. It speaks
 libqi as a robot does, so that the tests meet libqi's real texts, threads and losses.
 """
 
@@ -13,9 +13,6 @@ import sys
 import threading
 
 import qi
-
-BOOTING = "--booting"
-"""Among the names of more modules: ALMemory is not there yet."""
 
 
 class Memory:
@@ -159,14 +156,12 @@ class Nao(Module):
 class Switch:
     """Makes modules come and go."""
 
-    def __init__(self, session, memory):
-        self._session = session
-        self._memory = memory  # qi publishes callables only
+    def __init__(self, session):
+        self._session = session  # qi publishes callables only
         self._ids = {}
 
     def arrive(self, name):
-        module = self._memory if name == "ALMemory" else Module()
-        self._ids[name] = self._session.registerService(name, module)
+        self._ids[name] = self._session.registerService(name, Module())
 
     def leave(self, name):
         self._session.unregisterService(self._ids.pop(name))
@@ -196,14 +191,10 @@ def main():
     session.listenStandalone(f"tcp://127.0.0.1:{sys.argv[1]}")
     free_the_port_at_death()
     memory = qi.multiThreaded()(Memory)(session)
-    if BOOTING not in sys.argv:
-        session.registerService("ALMemory", memory)
+    session.registerService("ALMemory", memory)
     session.registerService("ALTest", Module())
     session.registerService("ALNao", Nao())
-    switch = Switch(session, memory)
-    session.registerService("Switch", switch)
-    for name in set(sys.argv[2:]) - {BOOTING}:
-        switch.arrive(name)
+    session.registerService("Switch", Switch(session))
     print("ready", session.endpoints()[0].rsplit(":", 1)[1], flush=True)
     sys.stdin.read()  # until the tests close it, or die
 
