@@ -69,22 +69,6 @@ def at_once(*bodies):
     return answers
 
 
-class Heard(Fluent):
-    """A fluent that knows who listens."""
-
-    def __init__(self, name, value):
-        super().__init__(name, value)
-        self.listeners = []
-
-    def listen(self, listener):
-        self.listeners.append(listener)
-        super().listen(listener)
-
-    def unlisten(self, listener):
-        self.listeners.remove(listener)
-        super().unlisten(listener)
-
-
 class Stays:
     """Branches that stay until they are ended; `there` counts them, `ended` has their names."""
 

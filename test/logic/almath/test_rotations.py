@@ -140,18 +140,6 @@ def test_named_turns_have_no_rounding_and_mirrors_and_stretched_matrices_are_no_
 # Rotations about a given axis
 
 
-@settings(max_examples=8)
-@given(axes, rotations)
-def test_projection_is_nearer_than_any_other_rotation_about_the_axis(axis, rotation):
-    projected = almath.axisRotationProjection(axis, rotation)
-    distance = numpy.linalg.norm(matrix_of(projected) - matrix_of(rotation))
-    others = (almath.rotationFromAngleDirection(a, axis.normalize()) for a in numpy.linspace(-math.pi, math.pi, 181))
-    nearest = min(numpy.linalg.norm(matrix_of(other) - matrix_of(rotation)) for other in others)
-    assert (projected * axis).isNear(axis, 1e-9)
-    assert distance <= nearest + 1e-9
-    assert distance == pytest.approx(nearest, abs=0.05)
-
-
 def test_projection_of_transforms_keeps_the_origin_and_works_in_place():
     assert almath.axisRotationProjection(Z, almath.transformFromRotX(0.2)).isNear(Transform(), 1e-12)
     transform = Transform.fromPosition(1.0, 2.0, 3.0, 0.2, 0.3, 0.4)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ast
-import importlib
 from pathlib import Path
 
 import numpy
@@ -162,17 +160,3 @@ def test_a_vector_has_the_methods_of_cpp():
     assert numbers == [0.5, 0.5, 0.5]
     numbers.clear()
     assert numbers.empty()
-
-
-# The public surface
-
-
-def test_every_public_function_and_class_is_exported_once_in_order():
-    assert almath.__all__ == sorted(set(almath.__all__))
-    assert all(hasattr(almath, name) for name in almath.__all__)
-    for path in PACKAGE.glob("[!_]*.py"):
-        found = importlib.import_module(f"almath.{path.stem}")
-        for node in ast.parse(path.read_text()).body:
-            if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_"):
-                assert getattr(almath, node.name) is getattr(found, node.name)
-                assert node.name in almath.__all__

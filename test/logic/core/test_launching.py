@@ -75,21 +75,6 @@ def test_a_module_gets_its_patience_only_where_it_is_set(monkeypatch, parameters
 # Launch files
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda path: path.name)
-def test_launch_files_document_their_arguments_and_have_relative_names_and_programs(file):
-    launch = parsed(file.name)
-    for argument in launch.findall("arg"):
-        assert argument.get("default") is not None and argument.get("doc"), argument.attrib
-    elements = [element for element in launch.iter() if element.tag in ("node", "param", "remap")]
-    names = [element.get(key, "") for element in elements for key in ("name", "from", "to", "ns")]
-    # ROS knows one time for all robots of a master.
-    assert {name for name in names if name.startswith("/")} <= {"/use_sim_time"}
-    assert all(not element.get("ns", "").startswith("/") for element in launch.iter())
-    for each in launch.iter("node"):
-        if (ROOT / each.get("pkg")).is_dir():
-            assert (ROOT / each.get("pkg") / "nodes" / each.get("type")).is_file(), each.attrib
-
-
 def test_parts_of_the_driver_can_be_left_out_and_the_action_servers_share_few_heaps():
     assert {"nao.launch", "nao_sim.launch", "two_robots.launch"} <= {path.name for path in FILES}
     for name, included in (("nao.launch", "nao_driver.launch"), ("nao_sim.launch", "nao.launch")):

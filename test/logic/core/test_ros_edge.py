@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import math
 
 import pytest
@@ -33,27 +32,6 @@ def test_events_are_published_with_name_value_and_type(monkeypatch):
     assert [event.type for event in published] == [*types, "list"]
     event = published[5]
     assert (event.name, event.value, event.header.stamp.to_sec()) == ("FrontTactilTouched", '[1.0, "x"]', 5.0)
-
-
-@pytest.mark.parametrize("level", [logging.DEBUG, logging.ERROR])
-def test_records_reach_the_log_of_the_node_at_their_level(level):
-    heard = []
-
-    class Listen(logging.Handler):
-        def emit(self, record):
-            heard.append((record.levelno, record.getMessage()))
-
-    node_log, listen = logging.getLogger("rosout"), Listen()
-    node_log.addHandler(listen)
-    before = node_log.level
-    node_log.setLevel(logging.DEBUG)
-    try:
-        record = logging.LogRecord("naoqi", level, __file__, 1, "100 %% of %s", ("calls",), None)
-        ros_edge.RosoutHandler().emit(record)
-    finally:
-        node_log.removeHandler(listen)
-        node_log.setLevel(before)
-    assert heard == [(level, "100 % of calls")]
 
 
 # Frames

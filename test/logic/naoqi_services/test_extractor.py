@@ -15,10 +15,9 @@ from nao_sim_bridge.services.memory_store import EVENT, MemoryStore
 from nao_sim_bridge.services.switch import Switch
 from nao_sim_bridge.services.time_zone import TimeZone
 from nao_sim_bridge.services.walk_events import FAILED, MoveFailures
-from nao_sim_bridge.sim.errors import BadValue, SimulationError, UnknownName
+from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.tasks import TaskIds
 
 LEDS = load_leds()
 
@@ -95,24 +94,6 @@ def test_who_is_a_stranger_nameless_or_asks_for_what_cannot_be_is_refused(extrac
             with pytest.raises(RuntimeError, match=f"'stranger' is not subscribed; subscribed is {known}"):
                 getattr(extractor, name)("stranger", *more)
         extractor.subscribe("friend")
-
-
-def test_those_who_subscribe_before_the_start_is_done_wait_for_it_and_hear_when_it_fails(memory):
-    ids, tasks = TaskIds(), []
-    extractor = Extractor("ALTest", memory, lambda: tasks.append(ids.make("start")) or tasks[-1], lambda: None)
-    assert [extractor.subscribe(name) for name in ("one", "two")] == [tasks[0], tasks[0]]
-    tasks[0].finish()
-    assert extractor.subscribe("late") is None
-    for name in ("one", "two", "late"):
-        extractor.unsubscribe(name)
-    waiting = [extractor.subscribe(name) for name in ("one", "two")]
-    assert waiting[0] is tasks[1] is not tasks[0]
-    tasks[1].finish(error=SimulationError("no ears"))
-    for task in waiting:
-        with pytest.raises(SimulationError, match="no ears"):
-            task.result(0.0)
-    assert extractor.subscribe("late") is None
-    assert [name for name, _, _ in extractor.getSubscribersInfo()] == ["one", "two", "late"]
 
 
 def test_a_switch_works_while_it_is_wanted_and_not_paused():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from plan_tools import Heard, fails, seen
 
 import nao_library_modules.process_modules as p
 
@@ -84,36 +83,3 @@ def test_whenever_runs_at_pulses_and_treats_missed_ones_as_it_is_told(missed, bo
 
     p.top_level(lambda: p.pursue(p.do(p.whenever, fluent, body, missed), lambda: p.wait_for(end)))
     assert len(runs) == bodies
-
-
-def test_nobody_listens_when_waits_have_ended_however_they_ended():
-    a, b = Heard("a", 0), Heard("b", 0)
-    both = p.fl_and(a, b)
-    networks = [a > 5, (a + b) > 5, both, p.fl_or(a, p.fl_not(b)) & p.Fluent("never", False), p.fl_eq(a, b) & both]
-    stay = [p.do(p.wait_for, network) for network in networks]
-
-    def quick():
-        p.wait_for((a + 1) > 0)
-        assert p.wait_for(a > 100, timeout=0.001) is False
-        assert a.listeners and b.listeners
-        return "over"
-
-    assert p.top_level(lambda: p.pursue(*stay, lambda: (p.sleep(0.005), quick())[1])) == "over"
-    fails(p.PlanFailure, "over", lambda: p.par(*stay, lambda: (p.sleep(0.002), p.fail("over"))))
-    fails(ZeroDivisionError, "", lambda: p.wait_for(1 / (a - 0)))
-    too_hot = p.do(p.whenever, a, p.do(p.fail, "too hot").call)
-    fails(p.PlanFailure, "too hot", lambda: p.par(too_hot, lambda: (p.sleep(0.002), setattr(a, "value", 1))))
-    assert a.listeners == b.listeners == []
-
-
-def test_a_value_is_handed_on_in_a_ring():
-    """Each waits for its number and gives the next one; one lost wake-up would leave all waiting."""
-    token, players, rounds = p.Fluent("token", 0), 5, 30
-
-    def player(number):
-        for turn in range(rounds):
-            p.wait_for(token.eq(turn * players + number))
-            token.value = turn * players + number + 1
-
-    p.top_level(lambda: p.par(*(p.do(player, number) for number in range(players))))
-    assert seen(token) == players * rounds

@@ -10,7 +10,6 @@ from nao_library_modules.places import Place
 from nao_library_modules.process_modules import action_rules, perception  # noqa: F401  the rules of the library
 from nao_library_modules.process_modules.designators.locations import Candidate, register_location_generator
 from nao_library_modules.process_modules.failures import (
-    AmbiguousPerception,
     GoalNotAchieved,
     NavigationGoalNotReached,
     NavigationHighLevelFailure,
@@ -127,13 +126,6 @@ def test_what_is_perceived_is_known_and_examined(eyes):
     second = p.top_level(lambda: p.perceive(desig))
     assert p.desig_equal(first, second) and p.desig_equal(desig, second)
     assert p.current_desig(desig).reference().position.x == 1.1 and second.reference().name == "ball"
-
-
-def test_the_best_of_several_is_taken_and_all_of_them_when_that_is_asked(eyes):
-    eyes.balls = [(1.0, 0.3), (3.0, 0.9), (None, 1.0)]
-    assert p.top_level(lambda: p.perceive(a_ball())).reference().position.x == 3.0
-    assert len(p.top_level(lambda: p.perceive(a_ball(), "all"))) == 2
-    fails(AmbiguousPerception, "2 were seen that fit", lambda: p.perceive(p.the(p.object_, type="ball")))
 
 
 def test_what_is_not_seen_fails_and_can_be_looked_for_elsewhere(eyes):

@@ -14,7 +14,6 @@ from nao_library_modules.process_modules.failures import (
     PerceptionObjectNotFound,
     PlanTimedOut,
     PolicyCheckConditionMet,
-    PolicyInitFailed,
 )
 
 
@@ -144,11 +143,3 @@ def test_a_function_is_asked_again_and_again_and_what_it_raises_breaks_the_plan(
     fails(PolicyCheckConditionMet, "third time", lambda: p.with_policy(third, forever))
     assert len(asked) == 3
     fails(ZeroDivisionError, "", lambda: p.with_policy(p.Policy("broken", lambda: 1 / 0, period=0.001), forever))
-
-
-def test_a_policy_that_cannot_begin_does_not_let_the_body_begin():
-    done = []
-    policy = upright(p.Fluent("never", False), done, init=lambda: False)
-    failure = "policy 'upright' could not begin"
-    fails(PolicyInitFailed, failure, lambda: p.with_policy(policy, p.do(done.append, "body")))
-    assert done == []

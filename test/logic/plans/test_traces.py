@@ -17,7 +17,7 @@ import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.action_client import PlanActionClient
 from nao_library_modules.process_modules.chains import Chain
 from nao_library_modules.process_modules.failures import ActionlibActionTimedOut
-from nao_library_modules.process_modules.projection import ProjectionFailed, compare, run_program
+from nao_library_modules.process_modules.projection import compare
 from nao_library_modules.process_modules.settings import load_settings
 from nao_library_modules.process_modules.space import head_angles
 from nao_library_modules.process_modules.trace_picture import COLORS, draw, main
@@ -54,19 +54,6 @@ def test_what_came_out_otherwise_is_told_with_its_path(trace):
         "plan/seq/par/par/bad: failed (SimplePlanFailure) -> succeeded",
         "plan/seq/par/par/two[2]: not there -> failed (SimplePlanFailure)",
     ]
-
-
-def test_a_program_of_a_plan_runs_with_another_master(trace, tmp_path):
-    program = tmp_path / "plan.py"
-    program.write_text(
-        "import os, sys\n"
-        "assert os.environ['ROS_MASTER_URI'] == 'http://127.0.0.1:1'\n"
-        f"open(sys.argv[-1], 'w').write({trace.to_json()!r} if sys.argv[1] == 'good' else '')\n"
-        "sys.exit('it is dark')\n"
-    )
-    assert run_program(program, ["good"], "http://127.0.0.1:1", tmp_path) == trace
-    with pytest.raises(ProjectionFailed, match="plan.py kept no trace: it is dark"):
-        run_program(program, ["bad"], "http://127.0.0.1:1", tmp_path)
 
 
 @pytest.fixture(scope="module", params=["left", "right"])

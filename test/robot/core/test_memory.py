@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 
-import pytest
-
 from nao_library_modules.memory_functions import parse_assignment
 from nao_library_msgs.msg import LedFunction
 
@@ -29,15 +27,6 @@ def test_data_goes_in_and_out_with_its_type(robot, lights):
     assert json.loads(value) == [1, 2.5, "three"] and int(seconds) >= 0 and 0 <= int(microseconds) < 1e6
     ask(lights, ("removeData", "Test/Answer"))
     assert ask(lights, ("getDataList", "Test/An")) == []
-
-
-def test_answers_come_in_the_order_of_the_chain(robot, lights):
-    robot.advance(0.1)
-    result = lights.succeed(f("getListData", f"{ACCELEROMETER}, Nothing,RobotConfig/Body/Type"), f("ping"))
-    down, nothing, body, ping = result.memList
-    assert float(down) == pytest.approx(9.81, abs=0.4)
-    assert (nothing, body, ping) == ("None", "Nao", "True")
-    assert [(each.function, len(each.values)) for each in result.results] == [("getListData", 3), ("ping", 1)]
 
 
 def test_events_raised_through_a_goal_reach_the_robot(robot, lights):

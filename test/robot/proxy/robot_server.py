@@ -137,22 +137,6 @@ class Module:
         return self._cancelled
 
 
-class Nao(Module):
-    """Like a module of the robot itself: with the methods that every NAOqi module has."""
-
-    def ping(self):
-        return "pong"
-
-    def getMethodList(self):
-        return ["from", "the", "robot"]
-
-    def getBrokerName(self):
-        return "naoqi"
-
-    def stop(self, task):
-        return f"stopped {task}"
-
-
 class Switch:
     """Makes modules come and go."""
 
@@ -193,7 +177,6 @@ def main():
     memory = qi.multiThreaded()(Memory)(session)
     session.registerService("ALMemory", memory)
     session.registerService("ALTest", Module())
-    session.registerService("ALNao", Nao())
     session.registerService("Switch", Switch(session))
     print("ready", session.endpoints()[0].rsplit(":", 1)[1], flush=True)
     sys.stdin.read()  # until the tests close it, or die

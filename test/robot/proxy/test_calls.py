@@ -79,7 +79,3 @@ def test_errors_come_with_the_result(proxy):
         proxy.call_async("fails").result()
     with pytest.raises(errors.UnknownMethod):
         proxy.call_async("subtract")
-
-
-def test_methods_hidden_by_the_face_of_the_proxy_can_be_called_by_name(robot):
-    assert robot.proxy("ALNao").call_async("stop", 1).result() == "stopped 1"

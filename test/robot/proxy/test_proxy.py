@@ -33,15 +33,6 @@ def test_raw_data_arrive_as_bytes(proxy):
     assert proxy.sizeOfRaw(b"\xff\x00\xfe") == 3
 
 
-def test_a_signal_is_handed_on_as_libqi_gives_it(robot, eventually):
-    memory = robot.proxy("ALMemory")
-    heard = []
-    subscriber = memory.subscriber("FrontTactilTouched")
-    subscriber.signal.connect(heard.append)
-    memory.raiseEvent("FrontTactilTouched", 1.0)
-    eventually(lambda: heard == [1.0], "the signal arrives")
-
-
 def test_unknown_method_is_named_with_what_comes_close(proxy):
     with pytest.raises(errors.UnknownMethod, match="did you mean 'setIntensity'") as caught:
         proxy.setIntensty("Face", 1.0)
@@ -96,14 +87,6 @@ def test_what_a_module_lacks_is_derived_from_its_description(proxy):
     ]
     assert "setColor(string, string) -> nothing" in proxy.getUsage("setColor").splitlines()
     assert "Add two numbers." in proxy.getUsage("add")
-
-
-def test_what_a_module_has_is_asked_of_it(robot):
-    nao = robot.proxy("ALNao")
-    assert nao.ping() == "pong"
-    assert nao.getMethodList() == ["from", "the", "robot"]
-    assert nao.getBrokerName() == "naoqi"
-    assert nao.stop(12345) == "stopped 12345"
 
 
 def test_a_module_that_left_and_came_back_is_found_again(robot):
