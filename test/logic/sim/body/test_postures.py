@@ -9,18 +9,12 @@ from math import radians
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.frames import frame_of
 from nao_sim_bridge.sim.kinematics import link_transforms
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.posture_graph import path_to
-from nao_sim_bridge.sim.posture_moves import FILE, Ground, KeyFrame, Move, direct, moves_of
-from nao_sim_bridge.sim.posture_recognition import (
-    FAMILIES,
-    UNKNOWN,
-    Recognition,
-    recognise_readings,
-)
+from nao_sim_bridge.sim.posture_moves import Ground, KeyFrame, Move, direct, moves_of
+from nao_sim_bridge.sim.posture_recognition import FAMILIES, UNKNOWN, Recognition, recognise_readings
 from nao_sim_bridge.sim.postures import load_postures, posture
 from nao_sim_bridge.sim.start_lean import start_pitch
 from nao_sim_bridge.sim.touch_gestures import (
@@ -164,25 +158,6 @@ def test_a_move_is_read_and_is_as_certain_as_it_was_found():
     assert (move.duration, move.goal_family, str(move), move.certainty) == (1.5, "Standing", "LyingBelly -> Stand", 1.0)
     (tried,) = moves_of(content(checked={"runs": 20, "reached": 5}))
     assert tried.certainty == 0.25 and tried.expected_duration == 4 * tried.duration
-
-
-@pytest.mark.parametrize(
-    "wrong, text",
-    [
-        ({"movs": []}, "unknown key 'movs', did you mean 'moves'"),
-        (content(**{"from": "Lying"}), r"moves\[0\].from: is 'Lying', allowed is .*LyingBelly"),
-        (content(to=None), "missing 'to'"),
-        (content(checked={"runs": 20, "reached": 0}), "checked: reached is 0 of 20 runs, allowed is above 0 to all"),
-        (content(frames=[]), "frames: is no list of key frames, at least one"),
-        (
-            content(frames=[FRAME, {"time": 1, "angles": {"HedYaw": 0.1}}]),
-            r"frames\[1\].angles.*'HedYaw', did you mean",
-        ),
-    ],
-)
-def test_what_is_wrong_in_the_file_is_named(wrong, text):
-    with pytest.raises(ConfigError, match=f"{FILE}.*{text}"):
-        moves_of(wrong)
 
 
 def test_a_straight_move_takes_the_slowest_joint_its_time_and_what_is_safe():

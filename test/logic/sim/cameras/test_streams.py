@@ -5,7 +5,6 @@ from __future__ import annotations
 import queue
 from fractions import Fraction
 
-import numpy as np
 import pytest
 
 from nao_sim_bridge.sim.cameras import stream as streams
@@ -13,8 +12,7 @@ from nao_sim_bridge.sim.cameras.rate import Shutter
 from nao_sim_bridge.sim.cameras.stream import CameraClosed
 from nao_sim_bridge.sim.errors import BadValue
 
-TOP, BOTTOM = 0, 1
-AUTO_EXPOSURE, EXPOSURE, GAIN, LUMINANCE = 11, 17, 6, 39
+TOP = 0
 TICKS = Fraction(120)
 
 
@@ -110,20 +108,3 @@ def test_every_frame_counts_for_those_who_say_so_and_a_finished_stream_gives_wha
     assert head.cameras.rate(TOP) == 0.0
     with pytest.raises(BadValue, match="keep is 0"):
         head.open(every=True, keep=0)
-
-
-def test_automatics_tell_what_they_chose_and_leave_it_behind(head):
-    head.pictures.paint = lambda _, shape: np.full(shape, 60, np.uint8)
-    stream = head.open()
-    head.run()
-    head.take(stream)
-    exposure, gain = head.cameras.parameter(TOP, EXPOSURE), head.cameras.parameter(TOP, GAIN)
-    assert exposure == 128 and gain > 16
-    assert head.cameras.parameter(TOP, LUMINANCE) == pytest.approx(135, abs=3)
-    assert head.cameras.parameter(BOTTOM, EXPOSURE) == 32
-    head.cameras.set_parameter(TOP, AUTO_EXPOSURE, 0)
-    assert (head.cameras.parameter(TOP, EXPOSURE), head.cameras.parameter(TOP, GAIN)) == (exposure, gain)
-    head.run(4)
-    assert head.take(stream).array().mean() == pytest.approx(135, abs=3)
-    head.cameras.reset_parameters(TOP)
-    assert head.cameras.parameter(TOP, AUTO_EXPOSURE) == 1 and head.cameras.parameter(TOP, LUMINANCE) == 0

@@ -6,12 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.services.vision.photo_capture_files import picture_files, save
+from nao_sim_bridge.services.vision.photo_capture_files import save
 from nao_sim_bridge.services.vision.photo_capture_series import Photographer, PhotoSettings
 from nao_sim_bridge.services.vision.video_device_subscribers import IDLE, VideoSubscribers, View
-from nao_sim_bridge.sim.errors import BadValue
 
 TOP, BOTTOM = View(0, 1, 11), View(1, 0, 13)
 
@@ -95,17 +93,3 @@ def test_a_full_disk_ends_the_series_and_leaves_no_half_picture_but_what_was_the
     with pytest.raises(NaoqiError, match="a.png' cannot be written: No space left on device"):
         task.result(head.patience)
     assert path.read_bytes() == b"old" and list(tmp_path.iterdir()) == [path]
-
-
-@pytest.mark.parametrize(
-    "folder, name, count, expected",
-    [("day", "a", 1, ["day/a.jpg"]), ("/home/nao/day/", "a.jpg", 1, ["day/a.jpg"]), ("", "a.png", 1, ["a.png.jpg"])]
-    + [("day", "a.JPG", 2, ["day/a_0.jpg", "day/a_1.jpg"]), *(("", name, 1, None) for name in ("", "folder/", ".jpg"))],
-)
-def test_names_of_the_files(tmp_path, folder, name, count, expected):
-    if expected is None:
-        with pytest.raises(BadValue, match="the name of a file"):
-            picture_files(ClientFiles(tmp_path), folder, name, "jpg", count, True)
-    else:
-        paths = picture_files(ClientFiles(tmp_path), folder, name, "jpg", count, True)
-        assert [str(path.relative_to(tmp_path)) for path in paths] == expected

@@ -132,3 +132,10 @@ def test_a_soft_sound_needs_a_sensitive_ear(chance):
         detector = SoundDetector(RATE)
         detector.sensitivity = sensitivity
         assert len(edges(detector, samples)) == count, sensitivity
+
+
+def test_the_own_voice_is_nobody_else(chance, localiser):
+    samples = rounded(heard(noise(chance), direction(0.5, 0.0)) + background(chance))
+    power = float(np.mean(samples.astype(float) ** 2))
+    assert localiser.feed(samples, 0.0, own_power=lambda: 0.5 * power) is None
+    assert localiser.feed(samples, BLOCK_S, own_power=lambda: 0.02 * power) is not None

@@ -8,8 +8,10 @@ import pytest
 
 from nao_sim_bridge.sim import led_animations
 from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.leds import LedBank, LedKeyframe
 from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.model import VERSIONS
+from nao_sim_bridge.sim.tasks import TaskIds
 
 LEDS = load_leds()
 
@@ -105,3 +107,16 @@ def test_random_eyes_change_all_eye_leds_by_chance_for_the_time_asked():
             0.0 <= value <= 1.0 for value in frame.values.values()
         )
     assert frames[0].values != frames[1].values
+
+
+def test_a_fade_runs_evenly_through_its_colours_and_ends_its_task():
+    bank = LedBank(4, TaskIds())
+    bank.set({0: 0.2})
+    task = bank.animate("fade", [LedKeyframe(2.0, {0: 1.0, 1: 0.5}), LedKeyframe(4.0, {0: 0.0})], now=10.0)
+    for now, values in ((10.5, (0.4, 0.125)), (11.75, (0.9, 0.4375)), (12.0, (1.0, 0.5)), (13.0, (0.5, 0.5))):
+        bank.tick(now)
+        assert bank.values[:2] == pytest.approx(values)
+        assert not task.finished
+    bank.tick(14.0 - 1e-12)
+    assert bank.values[:2] == (0.0, 0.5), "exactly, though its end is a rounding away"
+    assert task.finished and not task.killed

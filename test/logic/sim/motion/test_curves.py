@@ -101,3 +101,11 @@ def test_linear_and_constant_segments():
     assert (jump.value(0.999), jump.value(1.0), jump.extremes, jump.peak_speed()) == (0.0, 1.0, (0.0, 1.0), 0.0)
     half = rise(Handle(BEZIER, 1 / 3, 0.0), Handle(LINEAR, -1 / 3, 7.0))
     assert 0.0 < half.value(0.5) < 1.0 == max(half.extremes), "a segment may end without a handle"
+
+
+def test_segments_follow_each_other_and_the_ends_hold():
+    first, last = KeyPoint(0.0, 0.5, after=Handle(LINEAR)), KeyPoint(3.0, -1.0, before=Handle(BEZIER, -1 / 3, 0.0))
+    both = BezierCurve([first, KeyPoint(1.0, 1.0, after=Handle(BEZIER, 1 / 3, 0.0)), last])
+    assert both.duration == 3.0
+    found = [both.value(t) for t in (-1.0, 0.0, 0.5, 1.0, 2.0, 3.0, 9.0)]
+    assert found == pytest.approx([0.5, 0.5, 0.75, 1.0, 0.0, -1.0, -1.0])

@@ -14,6 +14,7 @@ from nao_sim_bridge.sim.sensors.contacts import Press, in_link_frames
 from nao_sim_bridge.sim.sensors.feet import FootSensors
 from nao_sim_bridge.sim.sensors.inertial import InertialUnit
 from nao_sim_bridge.sim.sensors.touch import TouchSensors
+from nao_sim_bridge.sim.touch_clicks import LONGEST_CLICK, LONGEST_PAUSE, ClickCounter
 
 MODEL = load_model()
 LINKS = {link.name: number for number, link in enumerate(MODEL.links)}
@@ -78,7 +79,7 @@ def test_a_bumper_is_the_shell_round_its_half_of_the_toes(touch, y, felt):
         assert touch.read({LINKS["LAnkleRoll"]: [nothing]}) == frozenset()
 
 
-DT = 0.01
+DT, TICK = 0.01, 1.0 / 120.0
 
 
 def body(pose=UPRIGHT, velocity=STILL, turning=STILL):
@@ -120,3 +121,25 @@ def test_it_feels_how_its_place_speeds_up(unit, moved, felt):
     unit.reset()
     assert unit.read(body(), DT).accelerometer == pytest.approx((0.0, 0.0, 9.81)), "the old velocity is forgotten"
     assert unit.read(body(TURNED, turning=(1.0, 0.0, 2.0)), DT).gyroscope == pytest.approx((0.0, -1.0, 2.0))
+
+
+def clicks_of(*presses):
+    """[(time, clicks)] that are told, for presses (from, to) in s."""
+    counter = ClickCounter()
+    told = [(t, counter.feed(any(a <= t < b for a, b in presses), t)) for t in (k * TICK for k in range(720))]
+    return [(time, clicks) for time, clicks in told if clicks]
+
+
+def test_clicks_that_belong_together_are_counted():
+    one, two, three, four = (1.0, 1.1), (1.3, 1.4), (1.6, 1.7), (1.9, 2.0)
+    for presses, count in (([one], 1), ([one, two], 2)):
+        ((when, clicks),) = clicks_of(*presses)
+        assert clicks == count and when == pytest.approx(presses[-1][1] + LONGEST_PAUSE, abs=2 * TICK)
+    (when, clicks), *more = clicks_of(one, two, three, four)
+    assert (clicks, when) == (3, pytest.approx(1.7, abs=TICK)), "the third is told at once, the fourth begins anew"
+    assert [clicks for _, clicks in more] == [1]
+    pause = LONGEST_PAUSE + 0.05
+    assert [clicks for _, clicks in clicks_of(one, (1.1 + pause, 1.2 + pause))] == [1, 1]
+    # The pause counts, not the time from press to press.
+    assert [clicks for _, clicks in clicks_of((1.0, 1.6), (2.0, 2.6))] == [2]
+    assert clicks_of() == clicks_of((1.0, 1.1 + LONGEST_CLICK)) == clicks_of(one, (1.3, 1.4 + LONGEST_CLICK)) == []

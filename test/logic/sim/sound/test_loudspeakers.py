@@ -95,3 +95,21 @@ def test_sounds_in_a_row_have_no_gap_even_when_one_ends_between_two_ticks(room):
     one.loudspeakers.play(Sound(RISING.samples[5000:9001]), "send", after=first)
     one.run(0.3)
     assert np.array_equal(one.loudspeakers.played(0.0, 9001 / RATE).samples[:, 0], RISING.samples[:9001, 0])
+
+
+def test_volumes_multiply_pan_takes_from_the_other_side_and_stereo_keeps_its_sides(room):
+    one = room()
+    two_sided = Sound(np.array([[0.1, 0.2]] * RATE, np.float32))
+    for sound, options, sides in [
+        (STEADY, {"volume": 0.5}, [0.125, 0.125]),
+        (STEADY, {"pan": 0.25}, [0.1875, 0.25]),
+        (STEADY, {"pan": -1.0}, [0.25, 0.0]),
+        (two_sided, {}, [0.05, 0.1]),
+    ]:
+        one.loudspeakers.volume = 50.0
+        one.run(0.1)
+        playing = one.loudspeakers.play(sound, "play", **options)
+        one.run(0.1)
+        assert one.loudspeakers.played(one.time - 0.02, one.time).samples[0].tolist() == pytest.approx(sides)
+        playing.stop()
+        one.run(0.1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import random
 
 import numpy as np
@@ -10,11 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.motion.self_collision import SelfCollision
 from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.speech.animations import load_animations, read_animations
+from nao_sim_bridge.sim.speech.animations import load_animations
 from nao_sim_bridge.sim.speech.body_language import CONTEXTUAL, QUICKEST, RANDOM, SLOWEST, plan
 
 GESTURES = "animations/Stand/Gestures/"
@@ -54,25 +52,6 @@ def test_no_arm_comes_too_near_on_the_way(library, start):
                 angles[index] = curve.value(time)
             distances = collision.distances(angles)
             assert not (distances < nearest).any(), f"{name}: {distances.min():.3f} m at {time:.2f} s"
-
-
-@pytest.mark.parametrize(
-    "change, problem",
-    [
-        ({"joints": {"LKneePitch": {"times": [1.0], "angles": [0.0]}}}, "no joint of arms, hands or head"),
-        ({"joints": {"LHand": {"times": [2.5], "angles": [0.0]}}}, "do not rise between 0 and 2 s"),
-        ({"joints": {"LElbowRoll": {"times": [1.0], "angles": [0.5]}}}, "not all within"),
-    ],
-)
-def test_files_with_errors_are_refused_with_the_place(tmp_path, change, problem):
-    entry = {"length": 2.0, "joints": {"LHand": {"times": [1.0], "angles": [1.0]}}}
-    path = tmp_path / "mine.json"
-    path.write_text(json.dumps({"animations": {"mine/Wave": entry}}))
-    assert read_animations(path)["mine/Wave"].length == 2.0
-    path.write_text(json.dumps({"animations": {"mine/Wave": {**entry, **change}}}))
-    with pytest.raises(ConfigError, match=problem) as error:
-        read_animations(path)
-    assert "mine.json: mine/Wave" in str(error.value)
 
 
 WORDS = [(0.1, "Hello"), (0.6, "my"), (1.0, "name"), (4.5, "maybe"), (5.0, "not")]

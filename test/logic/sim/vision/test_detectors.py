@@ -198,3 +198,10 @@ def test_the_lower_the_sensitivity_the_more_it_takes_and_slow_pictures_are_compa
     assert all(watch(pictures, sensitivity=0.9)[2:]) and not any(watch(pictures, sensitivity=0.3))
     found = watch([room(ball=(80 + 10 * k, 120)) for k in range(4)], period=1.0)
     assert found[0] is None and all(found[1:])
+
+
+def test_a_moving_head_is_no_movement_and_afterwards_it_goes_on(room):
+    poses = [POSE] * 4 + [(*POSE[:5], 0.02 * k) for k in range(1, 6)] + [(*POSE[:5], 0.1)] * 5
+    shifts = [0] * 4 + [6 * k for k in range(1, 6)] + [30] * 5
+    found = watch([room(shift=shift) for shift in shifts], poses=poses)
+    assert found[2:4] == [[], []] and found[4:9] == [None] * 5 and found[-2:] == [[], []]
