@@ -35,20 +35,30 @@ def refused(words, function, *arguments, error=NaoError):
         function(*arguments)
 
 
-@pytest.mark.parametrize(
-    "temperature, limits, level, message",
-    [
+def test_joints_get_hot():
+    for temperature, limits, level, message in (
         (38.04, LIMITS, Level.OK, "Normal: 38.0 C"),
         (68.0, LIMITS, Level.WARN, "Hot: 68.0 C"),
         (74.0, LIMITS, Level.ERROR, "Too hot: 74.0 C"),
         (41.0, Thresholds(warm=40.0, hot=50.0), Level.WARN, "Hot: 41.0 C"),
-        (None, LIMITS, Level.OK, "No temperature sensor"),
-    ],
-)
-def test_joints_get_hot(temperature, limits, level, message):
-    values = {reports.TEMPERATURE.format("HeadYaw"): temperature, reports.STIFFNESS.format("HeadYaw"): 0.6}
-    report = reports.joint_report("HeadYaw", values, limits)
-    assert (report.level, report.message, report.values["Stiffness"]) == (level, message, "0.6")
+        (NAN, LIMITS, Level.OK, "No temperature sensor"),
+    ):
+        values = {reports.TEMPERATURE.format("HeadYaw"): temperature, reports.STIFFNESS.format("HeadYaw"): 0.6}
+        report = reports.joint_report("HeadYaw", values, limits)
+        assert (report.level, report.message, report.values["Stiffness"]) == (level, message, "0.6")
+
+
+def test_the_battery_runs_down():
+    for charge, bits, level, message in (
+        (1.0, ["Full Charge Flag"], Level.OK, "Fully charged (100.0 %)"),
+        (0.31, [], Level.OK, "OK (31.0 % left)"),
+        (0.3, ["Discharging flag"], Level.WARN, "Low (30.0 % left)"),
+        (0.1, [], Level.ERROR, "Almost empty (10.0 % left)"),
+        (0.9, ["Discharge Temperature Alarm"], Level.ERROR, "Discharge Temperature Alarm (90.0 % left)"),
+    ):
+        report = battery_report(charge, sum(1 << BATTERY_FLAGS.index(bit) for bit in bits), LIMITS)
+        assert (report.level, report.message, len(report.values)) == (level, message, 18)
+        assert [name for name in BATTERY_FLAGS if report.values[name] == "True"] == bits
 
 
 def test_every_part_of_the_body_has_a_report():
@@ -61,22 +71,6 @@ def test_every_part_of_the_body_has_a_report():
     assert found["nao_joint: RHipYawPitch"].message == "No temperature sensor"
     assert found["nao_power: Current"].message == "-1.20 A (discharging)"
     assert [reports.part_of(name) for name in found][2:] == ["RHipYawPitch", "battery", "power", "cpu"]
-
-
-@pytest.mark.parametrize(
-    "charge, bits, level, message",
-    [
-        (1.0, ["Full Charge Flag"], Level.OK, "Fully charged (100.0 %)"),
-        (0.31, [], Level.OK, "OK (31.0 % left)"),
-        (0.3, ["Discharging flag"], Level.WARN, "Low (30.0 % left)"),
-        (0.1, [], Level.ERROR, "Almost empty (10.0 % left)"),
-        (0.9, ["Discharge Temperature Alarm"], Level.ERROR, "Discharge Temperature Alarm (90.0 % left)"),
-    ],
-)
-def test_the_battery_runs_down(charge, bits, level, message):
-    report = battery_report(charge, sum(1 << BATTERY_FLAGS.index(bit) for bit in bits), LIMITS)
-    assert (report.level, report.message, len(report.values)) == (level, message, 18)
-    assert [name for name in BATTERY_FLAGS if report.values[name] == "True"] == bits
 
 
 def test_a_robot_that_does_not_tell_is_unknown_a_head_gets_hot_and_networks_are_told_by_their_kind():

@@ -114,7 +114,7 @@ def test_png_is_the_same_picture_and_jpeg_looks_the_same_and_quality_costs_bytes
         compressed("8UC3", SCENE, "jpeg", 80, 3)
 
 
-def test_the_ideal_camera_sees_its_field_of_view():
+def test_the_ideal_camera_sees_its_field_of_view_and_scaling_keeps_distortion_and_the_last_rows():
     found = ideal(640, 480, HFOV, VFOV)
     fx, _, cx, _, fy, cy = found.k[:6]
     assert (fx, fy) == (pytest.approx(598.05, abs=0.1), pytest.approx(598.53, abs=0.1))
@@ -124,9 +124,6 @@ def test_the_ideal_camera_sees_its_field_of_view():
     assert cy - fy * math.tan(VFOV / 2) == pytest.approx(0.0)
     assert found.p == (fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0)
     assert found.d == (0.0,) * 5
-
-
-def test_scaling_keeps_distortion_and_the_last_rows():
     found = scaled(MEASURED, 320, 240)
     assert found.k == pytest.approx((278.4225, 0, 154.6835, 0, 277.9495, 115.296, 0, 0, 1))
     assert found.p == pytest.approx((275.795, 0, 154.48, 0, 0, 275.645, 114.355, 0, 0, 0, 1, 0))
@@ -196,16 +193,6 @@ def test_what_was_set_holds_in_later_runs_and_is_scaled_to_other_sizes(infos, ho
     assert caplog.text.count("scaled to 640x480") == 1
     assert infos.set(calibration(640, 480, FOV)).name == f"{NAME}_640x480.yaml"  # every size may have its own
     assert infos.of(640, 480).k == calibration(640, 480, FOV).k and infos.of(320, 240).k == calibration().k
-
-
-def test_a_broken_file_is_told_and_computed_values_take_its_place(infos, home, caplog):
-    infos.set(calibration())
-    (home / "camera_info" / f"{NAME}.yaml").write_text("nothing", encoding="utf-8")
-    infos.set_fov(*FOV)
-    assert infos.of(320, 240).k == ideal(320, 240, *FOV).k
-    assert "is no calibration" in caplog.text
-    infos.set(calibration())
-    assert infos.of(320, 240).k == calibration().k
 
 
 def test_a_url_names_the_file_and_what_is_set_goes_there(infos, tmp_path):

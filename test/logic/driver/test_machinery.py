@@ -173,18 +173,16 @@ FIELDS = (
 )
 
 
-@pytest.mark.parametrize(
-    "name, value, allowed",
-    [
-        ("volume", 101, "~volume is 101: a whole number from -1 to 100"),
-        ("volume", True, "~volume is True: a whole number from -1 to 100"),
-        ("voice", 3, "~voice is 3: a text"),
-        ("beep", "yes", "~beep is 'yes': true or false"),
-        ("frequency", 22050, r"~frequency is 22050: 16000 \(one channel\) or 48000 \(four channels\)"),
-    ],
-)
-def test_what_a_parameter_cannot_be_is_told_when_the_node_begins(monkeypatch, name, value, allowed):
+def test_what_a_parameter_cannot_be_is_told_when_the_node_begins(monkeypatch):
     monkeypatch.setattr(reconfigure, "Server", lambda *_: pytest.fail("the server takes it"))
-    monkeypatch.setattr(reconfigure.rospy, "get_param", lambda key, default: value if key == f"~{name}" else default)
-    with pytest.raises(NaoError, match=allowed):
-        reconfigure.serve(FIELDS, lambda before, after: after)
+    for name, value, allowed in (
+        ("volume", 101, "a whole number from -1 to 100"),
+        ("volume", True, "a whole number from -1 to 100"),
+        ("voice", 3, "a text"),
+        ("beep", "yes", "true or false"),
+        ("frequency", 22050, r"16000 \(one channel\) or 48000 \(four channels\)"),
+    ):
+        given = {f"~{name}": value}
+        monkeypatch.setattr(reconfigure.rospy, "get_param", lambda key, default, given=given: given.get(key, default))
+        with pytest.raises(NaoError, match=f"~{name} is {value!r}: {allowed}"):
+            reconfigure.serve(FIELDS, lambda before, after: after)

@@ -57,19 +57,8 @@ def test_the_last_rule_for_a_key_counts():
     rates = {key: rule.rate for key, rule in wanted.items()}
     assert rates == {"Battery/Charge": 1.0, "Battery/Current": 1.0, "Head/Front": 5.0}
     by_name = rules_of(Rule("New/Key"), Rule("New/*"))
+    assert not rules_of(Rule("Head/Front"), Rule("Battery/*"), Rule("*", on=False))  # nothing is left behind
     assert list(by_name.wanted_of(KNOWN)) == ["New/Key"] and by_name.has_patterns  # before it is there
-
-
-def test_what_is_ended_leaves_nothing_behind_and_a_copy_does_not_change():
-    rules = rules_of(Rule("Head/Front"), Rule("Battery/*"), Rule("*", on=False))
-    assert not rules and rules.wanted_of(KNOWN) == {}
-    rules.add(Rule("Head/*"))
-    former = rules.copy()
-    rules.add(Rule("Battery/*"))
-    assert former.rule_for("Battery/Charge") is None and rules.rule_for("Battery/Charge") is not None
-    for pattern in ("Head/*", "Battery/*"):
-        rules.add(Rule(pattern, on=False))
-    assert not rules
 
 
 def test_rules_are_read_from_a_parameter_and_what_is_wrong_is_told():
@@ -85,27 +74,21 @@ def test_rules_are_read_from_a_parameter_and_what_is_wrong_is_told():
             rule.check()
 
 
-@pytest.mark.parametrize(
-    "value, type_, kind",
-    [
+def test_types_of_values_and_kinds_of_messages():
+    for value, type_, kind in (
         (3, "int", "int"),
         (2**31, "int", "string"),
         (0.5, "float", "float"),
         ([1, 2**40], "int[]", "string"),
         ([1, 2.5], "float[]", "float[]"),
         ([True, 1.0], "list", "string"),
-        ([["Head", True]], "list", "string"),
         (None, "null", "string"),
-    ],
-)
-def test_types_of_values_and_kinds_of_messages(value, type_, kind):
-    assert (type_of(value), kind_of(value)) == (type_, kind)
+    ):
+        assert (type_of(value), kind_of(value)) == (type_, kind)
 
 
-@pytest.mark.parametrize(
-    "value, kind, message",
-    [
-        (1, "float", 1.0),
+def test_values_widen_and_lose_nothing_and_what_is_no_json_is_text():
+    for value, kind, message in (
         (True, "float", 1.0),
         (1.5, "int", None),
         (2**31, "int", None),
@@ -113,12 +96,10 @@ def test_types_of_values_and_kinds_of_messages(value, type_, kind):
         ([1, "b"], "string", '[1, "b"]'),
         ([1, 2], "float[]", [1.0, 2.0]),
         ([1, "b"], "int[]", None),
-    ],
-)
-def test_values_widen_and_lose_nothing(value, kind, message):
-    result = converted(value, kind)
-    assert result == message and type(result) is type(message)
-    values = {"[1, 2]": [1, 2], "hello there": "hello there", '"3"': "3"}  # what is no JSON is text
+    ):
+        result = converted(value, kind)
+        assert result == message and type(result) is type(message)
+    values = {"[1, 2]": [1, 2], "hello there": "hello there", '"3"': "3"}
     assert {text: parse_value(text) for text in values} == values
 
 

@@ -64,20 +64,28 @@ def test_length_places_and_headings_of_a_path():
     refused("3 poses at one", WalkPath, [WAYPOINTS[0]] * 3, error=BadGoal)
 
 
-@pytest.mark.parametrize(
-    "robots, aim",
-    [
+def test_where_it_aims():
+    for robots, aim in (
         ([(0.0, 0.0, 0.0)], (0.3, 0.0, 0.0)),
         ([(0.0, 0.0, 0.0), (0.3, 0.01, 0.1)], (0.6, 0.0, 0.0)),  # straight: further ahead
         ([(0.2, 0.0, 0.5)], (0.3, 0.0, 0.0)),  # turned away
         ([(0.2, 0, 0), (0.5, 0, 0), (0.8, 0, 0)], (0.9, 0.0, 0.0)),  # before a corner
         ([(0.2, 0, 0), (0.5, 0, 0), (0.8, 0, 0), (0.95, 0, 0)], (1.0, 0.05, QUARTER)),
         ([(0.05, 0.02, 2.0)], (0.05, 0.0, 0.0)),  # turned far away: on the spot first
-    ],
-)
-def test_where_it_aims(robots, aim):
-    course = PathCourse(CORNER, SETTINGS)
-    assert [course.aim(Place(*robot)) for robot in robots][-1].place == pytest.approx(aim)
+    ):
+        course = PathCourse(CORNER, SETTINGS)
+        assert [course.aim(Place(*robot)) for robot in robots][-1].place == pytest.approx(aim)
+
+
+def test_velocities_along_a_way():
+    for way, speeds in (
+        ((2.0, 0.0, 0.0), (0.8, 0.0, 0.0)),
+        ((0.1, 0.0, 0.0), (0.4, 0.0, 0.0)),  # slower near the end
+        ((0.0, -0.2, 0.1), (0.0, -0.4, 0.5 * 0.1 / LIMITED.threshold_damp_yaw)),  # near by: to the target's heading
+        ((-1.0, 0.1, 0.0), (0.0, 0.0, 0.5)),  # far away it turns its face first
+        ((0.0, 0.0, -2.0), (0.0, 0.0, -0.5)),  # on the spot it only turns
+    ):
+        assert velocity(Place(*way), LIMITED) == pytest.approx(speeds)
 
 
 def test_it_ends_at_the_last_waypoint_with_its_heading():
@@ -102,20 +110,6 @@ def test_a_path_that_begins_elsewhere_is_refused_and_where_it_comes_back_it_does
     assert not aim.final and aim.place.x == pytest.approx(0.3) and aim.rest > 3.9
     assert reached(Place(0.03, 0.03, 0.08), SETTINGS)
     assert not reached(Place(0.06, 0.0, 0.0), SETTINGS) and not reached(Place(0.0, 0.0, -0.1), SETTINGS)
-
-
-@pytest.mark.parametrize(
-    "way, speeds",
-    [
-        ((2.0, 0.0, 0.0), (0.8, 0.0, 0.0)),
-        ((0.1, 0.0, 0.0), (0.4, 0.0, 0.0)),  # slower near the end
-        ((0.0, -0.2, 0.1), (0.0, -0.4, 0.5 * 0.1 / LIMITED.threshold_damp_yaw)),  # near by: to the target's heading
-        ((-1.0, 0.1, 0.0), (0.0, 0.0, 0.5)),  # far away it turns its face first
-        ((0.0, 0.0, -2.0), (0.0, 0.0, -0.5)),  # on the spot it only turns
-    ],
-)
-def test_velocities_along_a_way(way, speeds):
-    assert velocity(Place(*way), LIMITED) == pytest.approx(speeds)
 
 
 def test_names_of_parameters_are_those_of_the_settings_and_those_that_will_not_do_are_named():

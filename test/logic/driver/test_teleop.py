@@ -89,72 +89,11 @@ def test_settings_assign_axes_and_buttons_and_those_that_are_missing_rest(joy):
     assert joy.missing() == ["axis_head_yaw 4", "axis_head_pitch 5", "btn_crouch 9"]
 
 
-class Clients:
-    """What the node sends and asks for, in lists."""
-
-    def __init__(self, tell):
-        self.velocities, self.heads, self.asked = [], [], []
-        self.walk, self.turn_head = self.velocities.append, self.heads.append
-
-    def say(self, text):
-        self.asked.append(text)
-
-    def call(self, service, done=""):
-        self.asked.append(service)
-
-    def take_pose(self, name, then=""):
-        self.asked.append((name, then))
-
-    def close(self):
-        self.asked.append("close")
-
-
 @pytest.fixture
 def parameters(monkeypatch):
     parameters = {"~motion_publish_rate": 20.0}
     monkeypatch.setattr(teleop_nao_joy.rospy, "get_param", lambda name, default: parameters.get(name, default))
     return parameters
-
-
-@pytest.fixture
-def gamepad(monkeypatch, parameters):
-    """Starts the node with control; `move` is what a person does, `publishers` how many send messages."""
-    pads = []
-
-    def start():
-        pad = SimpleNamespace(publishers=1)
-        pads.append(pad)
-
-        def subscribe(topic, kind, callback, **options):
-            pad.tell = callback
-            return SimpleNamespace(get_num_connections=lambda: pad.publishers, resolved_name="/joy")
-
-        def clients(tell):
-            pad.clients = Clients(tell)
-            return pad.clients
-
-        monkeypatch.setattr(teleop_nao_joy.rospy, "Subscriber", subscribe)
-        monkeypatch.setattr(teleop_nao_joy, "TeleopClients", clients)
-        pad.node = teleop_nao_joy.TeleopNaoJoy()
-        pad.move = lambda pressed=(), **values: pad.tell(
-            SimpleNamespace(axes=axes(**values), buttons=buttons(*pressed))
-        )
-        for pressed in ([], [ENABLE], []):
-            pad.move(pressed)
-        return pad
-
-    yield start
-    for pad in pads:
-        pad.node.close()
-
-
-def soon(condition):
-    pause = threading.Event()
-    for _ in range(int(PATIENCE / 0.005)):
-        if condition():
-            return
-        pause.wait(0.005)
-    raise AssertionError("it did not come about")
 
 
 def test_wrong_parameters_are_told(parameters):
@@ -172,42 +111,49 @@ def test_wrong_parameters_are_told(parameters):
         del parameters[name]
 
 
-def test_a_velocity_is_repeated_a_standstill_sent_once_and_buttons_ask_for_what_they_are_for(gamepad):
-    pad = gamepad()
-    sent = pad.clients.velocities
+@pytest.fixture
+def pad(monkeypatch, parameters):
+    """The node with control: `move` is what a person does, the lists are what it sends."""
+    parameters["~joy_timeout"] = 0.2
+    pad = SimpleNamespace(publishers=1, velocities=[], heads=[], asked=[], close=lambda: None)
+    pad.walk, pad.turn_head, pad.say = pad.velocities.append, pad.heads.append, lambda text: None
+    pad.call = lambda service, done="": pad.asked.append(service)
+    pad.take_pose = lambda name, then="": pad.asked.append((name, then))
+
+    def subscribe(topic, kind, callback, **options):
+        pad.tell = callback
+        return SimpleNamespace(get_num_connections=lambda: pad.publishers, resolved_name="/joy")
+
+    monkeypatch.setattr(teleop_nao_joy.rospy, "Subscriber", subscribe)
+    monkeypatch.setattr(teleop_nao_joy, "TeleopClients", lambda tell: pad)
+    pad.node = teleop_nao_joy.TeleopNaoJoy()
+    pad.move = lambda pressed=(), **values: pad.tell(SimpleNamespace(axes=axes(**values), buttons=buttons(*pressed)))
+    for pressed in ([], [ENABLE], []):
+        pad.move(pressed)
+    yield pad
+    pad.node.close()
+
+
+def test_a_velocity_is_repeated_until_the_gamepad_is_silent_or_goes_away(pad):
+    def soon(condition):
+        pause = threading.Event()
+        assert any(condition() or pause.wait(0.005) for _ in range(int(PATIENCE / 0.005)))
+
+    sent = pad.velocities
     pad.move(x=0.5)
-    soon(lambda: len(sent) >= 3)
-    assert set(sent) == {Velocity(0.5, 0.0, 0.0)}
-    pad.move()
-    count = len(sent)
-    assert sent[-1].is_zero
+    soon(lambda: len(sent) >= 3 and sent[-1].is_zero)  # it fell silent
+    assert set(sent[:-1]) == {Velocity(0.5, 0.0, 0.0)}
+    assert pad.node.report().message == "control is enabled"
     pad.move([HEAD], yaw=0.5)
-    soon(lambda: len(pad.clients.heads) >= 2)  # rounds in which no velocity is sent
-    assert len(sent) == count
-    assert pad.clients.heads[-1] == pytest.approx((0.5 * 2.0943, 0.0))
+    soon(lambda: len(pad.heads) >= 2)
+    assert pad.heads[-1] == pytest.approx((0.5 * 2.0943, 0.0)) and sum(each.is_zero for each in sent) == 1
+    pad.move(x=1.0)
+    pad.publishers = 0
+    soon(lambda: "nobody publishes /joy" in pad.node.report().message and sent[-1].is_zero)
     for button in (INIT, CROUCH, ENABLE):
         pad.move([button])
         pad.move()
-    asked = ["body_stiffness/enable", "Gamepad control enabled", ("init", ""), ("crouch", "body_stiffness/disable")]
-    assert pad.clients.asked == [*asked, "stop_walk_srv", "Gamepad control disabled"]
-
-
-def test_a_gamepad_that_goes_away_falls_silent_or_ends_stops_the_robot(gamepad, parameters):
-    gone = gamepad()
-    parameters["~joy_timeout"] = 0.2
-    silent = gamepad()
-    for pad in (gone, silent):
-        pad.move(x=0.5)
-        soon(lambda pad=pad: pad.clients.velocities)
-    gone.publishers = 0
-    for pad in (gone, silent):
-        soon(lambda pad=pad: pad.clients.velocities[-1].is_zero)
-    assert "nobody publishes /joy" in gone.node.report().message
-    assert silent.node.report().message == "control is enabled"
-    silent.move(x=0.5)
-    soon(lambda: not silent.clients.velocities[-1].is_zero)
-    silent.node.close()
-    assert silent.clients.velocities[-1].is_zero and silent.clients.asked[-1] == "close"
+    assert pad.asked == ["body_stiffness/enable", ("init", ""), ("crouch", "body_stiffness/disable"), "stop_walk_srv"]
 
 
 @pytest.fixture
@@ -251,21 +197,13 @@ def test_speed_changes_in_steps_and_has_limits_while_it_walks(keyboard):
         assert keyboard.speed == limit
 
 
-@pytest.mark.parametrize(
-    "key, request_",
-    [
-        ("1", Request(Kind.POSE, "init")),
-        ("3", Request(Kind.UNKNOWN, "3")),
-        (" ", Request(Kind.STOP)),
-        ("m", Request(Kind.WAKE_UP)),
-        ("n", Request(Kind.REST)),
-        ("?", Request(Kind.HELP)),
-    ],
-)
-def test_other_keys_end_a_walk_and_ask_for_something(keyboard, key, request_):
-    keyboard.press("w", 10.0)
-    assert keyboard.press(key, 10.0) == request_
-    assert keyboard.velocity(10.1).is_zero
+def test_other_keys_end_a_walk_and_ask_for_something(keyboard):
+    asked = {"1": (Kind.POSE, "init"), "3": (Kind.UNKNOWN, "3"), " ": (Kind.STOP,), "m": (Kind.WAKE_UP,)}
+    asked.update({"n": (Kind.REST,), "?": (Kind.HELP,), "x": (Kind.QUIT,), "escape": (Kind.QUIT,)})
+    for key, request in asked.items():
+        keyboard.press("w", 10.0)
+        assert keyboard.press(key, 10.0) == Request(*request)
+        assert keyboard.velocity(10.1).is_zero
     for word in ("1 init   2 crouch", "forward", "turn to the left", "stop", "speed", "motors on", "end"):
         assert word in keyboard.help
 

@@ -91,18 +91,6 @@ def test_one_move_of_the_file_is_replaced_or_added_and_the_others_stay(tools, tm
     assert changed.frames[0].angles == pytest.approx(goal.angles, abs=1e-4)
 
 
-@pytest.mark.parametrize("reached, impact, kept", [(20, 100.0, 1), (19, 50.0, 0), (20, 300.0, 0), (0, 1.0, 0)])
-def test_only_a_better_move_is_written(tools, monkeypatch, reached, impact, kept):
-    tool, written = tools.find_posture_moves, []
-    before, after = move_named("Sit", "LyingBack"), move_named("Stand", "Sit")
-    tallies = {str(before): tool.Tally(20, 20, (), 1.0, 200.0, 0.5, 1.0)}
-    tallies[str(after)] = tool.Tally(20, reached, (), 1.0, impact, 0.5, 1.0)
-    monkeypatch.setattr(tool, "tally", lambda move, *_: tallies[str(move)])
-    monkeypatch.setattr(tool, "put", lambda model, *arguments: written.append(arguments))
-    assert tool.settle(before, after, tool.parse(["search", "Sit", "LyingBack", "--write"])) == 1 - kept
-    assert written == [(after, 20, 20)] * kept
-
-
 def test_nothing_but_the_named_joints_moves_and_what_cannot_be_is_refused(tools):
     choreographer = tools.choreography.Choreographer(MODEL)
     joints, samples = choreographer.samples({"HeadYaw": [(0.0, 0.0), (0.35, 0.5)]})

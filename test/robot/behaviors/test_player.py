@@ -77,20 +77,7 @@ def test_steps_follow_each_other_branches_run_beside_each_other_and_repeats_are_
     assert said == [(0.0, "one"), (1.0, "two"), (1.5, "three"), (2.0, "again"), (2.5, "again")]
 
 
-def test_joints_get_to_their_key_frames_in_time_and_a_posture_comes_before_what_follows(stage):
-    task = stage.play({"frames": [{"time": 0.5, "angles": {"HeadYaw": 0.5}}, nod()["frames"][0]]})
-    stage.bench.run(0.5)
-    assert stage.bench.joint("HeadYaw") == pytest.approx(0.5, abs=0.03)
-    stage.until_over(task)
-    stage.bench.run(0.2)
-    assert stage.bench.joint("HeadPitch") == pytest.approx(0.1, abs=0.02)
-    task = stage.play({"posture": "Crouch", "speed": 1.0}, {"say": "down"})
-    assert stage.until_over(task) > 1.0 and task.error is None
-    assert recognise(stage.bench.model, stage.bench.now).posture == "Crouch"
-    assert [text for _, text in stage.said] == ["down"]
-
-
-def test_stopping_ends_everything_at_once_and_brings_gestures_and_lights_back(stage):
+def test_stopping_ends_everything_at_once_and_brings_gestures_and_lights_back(stage, bench):
     home, before = stage.command("RShoulderPitch"), stage.leds.values
     gesture, red = (
         {"gesture": "animations/Stand/Gestures/Hey_1"},
@@ -105,6 +92,13 @@ def test_stopping_ends_everything_at_once_and_brings_gestures_and_lights_back(st
     stage.bench.run(2.0)
     assert stage.command("HeadPitch") == pitch and stage.command("RShoulderPitch") == pytest.approx(home, abs=1e-6)
     assert stage.simulation.robot.motion.tasks() == []
+    limp = Stage(bench(stiffness=0.0)).play({"together": [{"wait": 5.0}, nod()]})
+    assert limp.finished and "HeadPitch are limp, wakeUp" in str(limp.error)
+    task = stage.play({"posture": "Crouch", "speed": 1.0}, {"say": "down"}, {"wait": 30.0})
+    stage.bench.run(6.0)
+    assert recognise(stage.bench.model, stage.bench.now).posture == "Crouch" and stage.said[0][1] == "down"
+    stage.simulation.reset()
+    assert task.finished
 
 
 def test_lights_show_afterwards_what_they_showed_before_unless_somebody_else_has_changed_them(stage):
@@ -116,18 +110,6 @@ def test_lights_show_afterwards_what_they_showed_before_unless_somebody_else_has
     stage.leds.set({eye: 0.25})
     stage.until_over(task)
     assert stage.leds.values == tuple(0.25 if i == eye else value for i, value in enumerate(before))
-
-
-def test_limp_joints_a_kill_of_its_motion_and_a_reset_end_a_behaviour(stage, bench):
-    limp = Stage(bench(stiffness=0.0)).play({"together": [{"wait": 5.0}, nod()]})
-    assert limp.finished and "HeadPitch are limp, wakeUp" in str(limp.error)
-    task = stage.play(nod(2.0), {"say": "never"})
-    stage.bench.run(0.5)
-    stage.simulation.robot.motion.kill_all()
-    assert task.killed and stage.said == []
-    task = stage.play({"wait": 30.0})
-    stage.simulation.reset()
-    assert task.finished
 
 
 LEGS = {"LHipPitch", "LHipRoll"}

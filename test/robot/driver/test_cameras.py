@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from dataclasses import replace
 
 import pytest
@@ -152,19 +151,6 @@ def test_what_was_chosen_is_set_on_a_robot_that_comes_later_and_on_the_next_one(
         video.resetCamera(0)
 
 
-def test_what_the_camera_lacks_is_left_out_with_one_warning(ask, video, caplog):
-    def lacking(method, camera, number, *value):
-        return ask(method, camera, 9999 if number == BRIGHTNESS else number, *value)
-
-    tuning = CameraTuning(lacking, {})
-    with caplog.at_level(logging.WARNING):
-        for value in (9, 10):
-            tuning.choose(0, {"brightness": value, "contrast": 40}, connected=True)
-    told = [record.getMessage() for record in caplog.records]
-    assert told == ["the robot's CameraTop has no brightness, which is left out"]
-    assert video.getParameter(0, CONTRAST) == 40 and "brightness" not in tuning.read(0)
-
-
 @pytest.fixture
 def make(robot, driver_robot, closing):
     seen = []
@@ -222,13 +208,3 @@ def test_a_lost_robot_looks_again_once_and_without_one_it_is_not_switched_on(mak
     with pytest.raises(NaoError, match="no camera"):
         refusing.enable()
     assert refusing.report().message == "off" and not robot.ALMovementDetection.getSubscribersInfo()
-
-
-def test_an_event_without_a_value_is_read_from_the_memory(make, robot, soon):
-    robot.ALMemory.insertData(MOVEMENT.key, [[1, 0], ["cluster"]])
-    movement = make(MOVEMENT)
-    movement.enable()
-    robot.ALMemory.raiseEvent(MOVEMENT.event, None)
-    soon(lambda: movement.seen == [[[1, 0], ["cluster"]]])
-    robot.ALMemory.raiseEvent(MOVEMENT.event, [[2, 0], ["other"]])
-    soon(lambda: movement.seen[1:] == [[[2, 0], ["other"]]])

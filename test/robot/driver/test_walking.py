@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import pytest
-import rospy
 
-from nao_library_modules.driver import path_follower_legs
 from nao_library_modules.driver.footsteps_walk import FootstepWalk
 from nao_library_modules.driver.footsteps_walk import Step as Footstep
 from nao_library_modules.driver.moveto_walk import Goal, MoveToWalk
-from nao_library_modules.driver.path_follower_legs import WalkTopics
 from nao_library_modules.driver.walk_commands import Step, Target, Velocity
 from nao_library_modules.driver.walk_orders import Overtaken, Stop, WalkEnded
 from nao_library_modules.driver.walker import Walker
@@ -309,79 +304,3 @@ def test_a_goal_nobody_can_find_leaves_the_walk_alone_and_refusals_are_told(movi
     soon(lambda: "nowhere: no such frame" in moving.report().message)
     robot.advance(0.3)
     assert walking(robot) and moving.report().level == Level.ERROR
-
-
-class Ros:
-    """Publishers and services without a ROS master: what is published, and the services that are offered."""
-
-    def __init__(self):
-        self.listeners, self.published, self.offered, self.called = 1, [], set(), []
-
-    def publisher(self, topic, kind, subscriber_listener, **options):
-        if self.listeners:
-            subscriber_listener.peer_subscribe(topic, None, None)
-        return SimpleNamespace(
-            get_num_connections=lambda: self.listeners, publish=lambda message: self.published.append((topic, message))
-        )
-
-    def service(self, name, kind):
-        def call():
-            if name not in self.offered:
-                raise rospy.ServiceException(f"service {name} unavailable")
-            self.called.append(name)
-
-        call.resolved_name = name
-        return call
-
-
-@pytest.fixture
-def ros(monkeypatch):
-    ros = Ros()
-    monkeypatch.setattr(path_follower_legs.rospy, "Publisher", ros.publisher)
-    monkeypatch.setattr(path_follower_legs.rospy, "ServiceProxy", ros.service)
-    monkeypatch.setattr(path_follower_legs, "LISTENER_LIMIT", 0.05)
-    return ros
-
-
-def test_the_path_follower_gets_ready_and_commands_by_its_topics(standing, driver_robot, ros, until, begin):
-    poses, speeds = (WalkTopics(driver_robot, use_velocities) for use_velocities in (False, True))
-    ready = begin(poses.prepare, Interrupt())
-    until(ready.done)
-    ready.result()
-    assert not poses.walking()
-    poses.go_to(Place(0.5, -0.25, 0.75))
-    speeds.go_at(0.5, -0.25, 0.75)
-    (topic, pose), (other, twist) = ros.published
-    assert (topic, pose.x, pose.y, pose.theta) == ("cmd_pose", 0.5, -0.25, 0.75)
-    assert (other, twist.linear.x, twist.linear.y, twist.angular.z) == ("cmd_vel", 0.5, -0.25, 0.75)
-    ros.offered = {"inhibit_walk", "uninhibit_walk"}
-    poses.reserve()
-    poses.release()
-    assert ros.called == ["inhibit_walk", "uninhibit_walk"]
-    ros.offered = set()
-    poses.reserve()  # nobody can: no error
-    standing.ALMotion.setStiffnesses("Body", 0.0)
-    with pytest.raises(NaoError, match="stiff"):
-        poses.prepare(Interrupt())
-    ros.listeners = 0
-    with pytest.raises(NaoError, match="nobody listens to .*cmd_pose: does nao_walker run"):
-        poses.prepare(Interrupt())
-
-
-def test_the_path_follower_knows_why_a_walk_failed_and_stops_it(standing, driver_robot, ros, until, begin):
-    legs = WalkTopics(driver_robot, use_velocities=False)
-    standing.ALMotion.moveToward(1.0, 0.0, 0.0)
-    standing.advance(0.5)
-    legs.prepare(Interrupt())  # a walking robot has the pose already
-    assert legs.walking() and legs.why_stopped() == ""
-    standing.ALMemory.raiseEvent("ALMotion/MoveFailed", ["an obstacle 0.39 m ahead", 1, [0.9, 0.0, 0.3]])
-    assert legs.why_stopped() == "an obstacle 0.39 m ahead"
-    legs.prepare(Interrupt())
-    assert legs.why_stopped() == ""  # that was before
-    stop = begin(legs.stop)  # nobody offers the service: the robot itself is asked
-    until(stop.done)
-    stop.result()
-    assert not legs.walking()
-    ros.offered = {"stop_walk_srv"}
-    legs.stop()
-    assert ros.called == ["stop_walk_srv"]
