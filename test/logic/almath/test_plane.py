@@ -48,15 +48,6 @@ def test_poses_are_a_group_that_agrees_with_transforms(a, b, c):
     assert a.inverse() == almath.pose2DInverse(a) == almath.pinv(a) == out == turned
 
 
-def test_in_place_product_is_a_product_or_a_multiple():
-    pose = Pose2D(1.0, 2.0, math.pi)
-    pose *= Pose2D(1.0, 0.0, 0.5)
-    assert pose.isNear(Pose2D(0.0, 2.0, math.pi + 0.5), 1e-12)
-    pose *= 2.0
-    assert pose.isNear(Pose2D(0.0, 4.0, 2.0 * math.pi + 1.0), 1e-12)
-    refused("would not leave a Pose2D", pose.__imul__, Position2D(1.0, 0.0))
-
-
 def test_length_and_direction_of_a_pose_ignore_the_heading():
     assert Pose2D(3.0, 4.0, 9.0).norm() == 5.0
     assert Pose2D(1.0, 1.0, 0.0).distance(Pose2D(4.0, 5.0, 2.0)) == 5.0

@@ -142,6 +142,8 @@ def test_named_turns_have_no_rounding_and_mirrors_and_stretched_matrices_are_no_
 
 def test_projection_of_transforms_keeps_the_origin_and_works_in_place():
     assert almath.axisRotationProjection(Z, almath.transformFromRotX(0.2)).isNear(Transform(), 1e-12)
+    turned = Rotation.fromRotZ(0.5) * Rotation.fromRotX(0.2)
+    assert almath.axisRotationProjection(Z, turned).isNear(Rotation.fromRotZ(0.5), 1e-12)
     transform = Transform.fromPosition(1.0, 2.0, 3.0, 0.2, 0.3, 0.4)
     projected = almath.axisRotationProjection(Y, transform)
     assert almath.position3DFromTransform(projected) == Position3D(1.0, 2.0, 3.0)

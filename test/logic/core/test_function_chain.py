@@ -87,19 +87,3 @@ def test_a_check_sees_the_fields_it_names_of_its_module_or_of_what_stands_in_for
     assert context == {"checked": 0.75}
     with pytest.raises(BadGoal):
         binding.run_check(Message(speed=0.75), context)
-
-
-def test_a_check_knows_what_earlier_functions_of_the_same_chain_define_and_of_no_other():
-    def check_define(str_param, context):
-        context.setdefault("defined", set()).add(str_param)
-
-    def check_use(str_param, context):
-        if str_param not in context.get("defined", ()):
-            raise BadGoal("str_param", str_param, "a name defined before")
-
-    functions = {"define": check_define, "use": check_use}
-    chain = FunctionChain({name: checked_by(check)(lambda str_param: None) for name, check in functions.items()})
-    define, use = (Message(function=name, str_param="a") for name in functions)
-    chain.read([define, use])
-    with pytest.raises(FunctionFailed, match=r"function 1 \(use\)"):
-        chain.read([use, define])

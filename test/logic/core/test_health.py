@@ -1,4 +1,4 @@
-"""What a module reports about itself, and memory that long messages leave behind."""
+"""What a module reports about itself."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from types import SimpleNamespace
 import pytest
 
 from nao_library_modules.health import GoalCounter, Level, connection_report, launch_report
-from nao_library_modules.heap import PERIOD, Heap
 from nao_library_modules.supervisor import State, Status
 
 
@@ -50,11 +49,3 @@ def test_launch_file(status, level, text):
     report = launch_report(SimpleNamespace(status=status))
     assert (report.level, report.message) == (level, text)
     assert launch_report(None).level is Level.OK, "one that the module has not started is no problem"
-
-
-def test_memory_is_returned_at_once_and_then_now_and_then():
-    time, done = [100.0], []
-    heap = Heap(lambda: done.append(time[0]), lambda: time[0])
-    for time[0] in (100.0, 101.0, 100.0 + PERIOD - 0.1, 100.0 + PERIOD, 101.0 + PERIOD):
-        heap.tidy()
-    assert done == [100.0, 100.0 + PERIOD]

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ElementTree
-from pathlib import Path
-
 import pytest
-import rospy
 
-from nao_library_modules import node
 from nao_library_modules.launcher import (
     BadLaunchPath,
     declared_arguments,
@@ -16,17 +11,11 @@ from nao_library_modules.launcher import (
     launch_command,
     launch_supervisor,
 )  # fmt: skip
-from nao_library_modules.node import launch_path, robot_address, robot_parser, run_module
+from nao_library_modules.node import launch_path, robot_address, robot_parser
 from nao_library_modules.supervisor import State
 from naoqi.errors import NaoError
 
-ROOT = Path(__file__).parents[3]
-FILES = sorted((ROOT / "launch" / "launch").glob("*.launch"))
 PATH = ("nao_library", "nao.launch")
-
-
-def parsed(name):
-    return ElementTree.parse(ROOT / "launch" / "launch" / name).getroot()
 
 
 # Nodes
@@ -53,38 +42,7 @@ def test_a_launch_path_is_a_text_or_a_list():
             launch_path(value)
 
 
-@pytest.mark.parametrize(
-    ("parameters", "status", "options"),
-    [({}, 0, {}), ({"~patience": 60}, 0, {"patience": 60.0}), ({"~patience": "long"}, 1, None)],
-)
-def test_a_module_gets_its_patience_only_where_it_is_set(monkeypatch, parameters, status, options):
-    made = []
-    for name in ("init_node", "spin", "logfatal"):
-        monkeypatch.setattr(rospy, name, lambda *_: None)
-    monkeypatch.setattr(rospy, "get_param", parameters.get)
-    monkeypatch.setattr(rospy, "has_param", parameters.__contains__)
-    monkeypatch.setattr(node, "forward_logs", lambda *_: None)
-
-    def module(ip, port, autostart, launchpath, **more):
-        made.append(more)
-
-    assert run_module(module, "module", "A module.", ["module"]) == status
-    assert made == ([] if options is None else [options])
-
-
 # Launch files
-
-
-def test_parts_of_the_driver_can_be_left_out_and_the_action_servers_share_few_heaps():
-    assert {"nao.launch", "nao_sim.launch", "two_robots.launch"} <= {path.name for path in FILES}
-    for name, included in (("nao.launch", "nao_driver.launch"), ("nao_sim.launch", "nao.launch")):
-        (include,) = [each for each in parsed(name).iter("include") if each.get("file").endswith(f"/{included}")]
-        passed = {each.get("name"): each.get("value") for each in include.findall("arg")}
-        assert all(passed[part] == f"$(arg {part})" for part in ("cameras", "senses", "apps"))
-    root = list(parsed("nao.launch"))
-    (env,) = [each for each in root if each.tag == "env" and each.get("name") == "MALLOC_ARENA_MAX"]
-    servers = [each for each in root if each.tag == "node"]
-    assert env.get("value") == "2" and root.index(env) < root.index(servers[0])
 
 
 def test_the_robot_is_passed_on_to_a_file_that_asks_for_it(tmp_path):

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from nao_library_modules.process_tree import descendants, identify, kill_survivors
+from nao_library_modules.process_tree import descendants, identify
 from nao_library_modules.supervisor import State, Supervisor, Timing
 
 LIMIT = 15.0
@@ -105,8 +105,3 @@ def test_stopping_during_the_delay_does_not_start_it_again(supervise, pipe):
     pipe.line()
     supervisor.stop()
     assert (supervisor.status.state, supervisor.status.restarts) == (State.STOPPED, 0)
-
-
-def test_another_process_with_the_same_number_is_left_alone():
-    me = identify(os.getpid())
-    assert kill_survivors([type(me)(me.pid, me.started - 1)]) == []

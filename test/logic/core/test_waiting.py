@@ -36,17 +36,6 @@ def test_the_first_reason_counts_until_it_is_cleared_and_stop_outlives_that(inte
         interrupt.check()
 
 
-def test_wakers_are_called_once_each_and_not_after_their_block(interrupt):
-    woken = []
-    with interrupt.waking(lambda: woken.append("inner")):
-        interrupt.trigger()
-    interrupt.clear()
-    interrupt.trigger()
-    assert woken == ["inner"]
-    with interrupt.waking(lambda: woken.append("late")):
-        assert woken == ["inner", "late"], "one that comes late is called at once"
-
-
 # Clocks
 
 

@@ -12,7 +12,6 @@ from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.extractor import Extractor, Subscription
 from nao_sim_bridge.services.led_names import LedNames
 from nao_sim_bridge.services.memory_store import EVENT, MemoryStore
-from nao_sim_bridge.services.switch import Switch
 from nao_sim_bridge.services.time_zone import TimeZone
 from nao_sim_bridge.services.walk_events import FAILED, MoveFailures
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
@@ -94,22 +93,6 @@ def test_who_is_a_stranger_nameless_or_asks_for_what_cannot_be_is_refused(extrac
             with pytest.raises(RuntimeError, match=f"'stranger' is not subscribed; subscribed is {known}"):
                 getattr(extractor, name)("stranger", *more)
         extractor.subscribe("friend")
-
-
-def test_a_switch_works_while_it_is_wanted_and_not_paused():
-    class Lamp(Switch):
-        shone = ()
-
-        def _update(self):
-            self.shone += (self._works,)
-
-    lamp = Lamp()
-    lamp.start()
-    lamp.pause(True)
-    assert lamp.paused
-    lamp.pause(False)
-    lamp.stop()
-    assert lamp.shone == (True, False, True, False)
 
 
 # --- keys, walks ------------------------------------------------------------------------------------------------------

@@ -118,16 +118,6 @@ def test_plain_data_notifies_nobody_until_it_becomes_an_event_and_a_removed_one_
     assert heard == [3]
 
 
-def test_a_listener_may_come_before_its_event_is_known_and_all_are_gone_in_the_end(store, heard):
-    store.listen("Later", heard.append, declare=False)
-    assert store.names() == []
-    store.raise_event("Later", 1)
-    subscribe(store, heard, "Later")
-    store.close()
-    store.raise_event("Later", 2)
-    assert heard == [1]
-
-
 def test_who_wants_to_know_is_told_of_keys_that_come_and_go_and_of_subscribers(store, heard):
     seen = []
     store.watch_subscribers("Watched", lambda name, modules: seen.append((name, modules)))

@@ -145,12 +145,6 @@ def test_an_order_that_cannot_be_is_an_error(order, told):
     fails(p.PlanError, told, lambda: p.partial_order({"a": no_ball, "b": no_ball}, order))
 
 
-def test_what_is_no_branch_is_an_error_and_nothing_to_do_is_done():
-    fails(p.PlanError, "'walk' is no branch: give a function", lambda: p.seq("walk"))
-    fails(p.PlanError, "pursue needs a branch", p.pursue)
-    assert not p.top_level(p.seq) and not p.top_level(p.par)
-
-
 def test_the_end_of_a_branch_is_not_caught_by_accident():
     caught = []
 

@@ -35,13 +35,6 @@ def test_a_value_that_is_set_pulses_unless_it_is_equal():
     assert picture.pulses == 1
 
 
-def test_mistakes_are_told():
-    with pytest.raises(p.PlanError, match="the fluent door is neither true nor false"):
-        bool(p.Fluent("door", True))
-    with pytest.raises(p.PlanError, match="missed is 'twice': never, once or always"):
-        p.pulsed(p.Fluent("a"), "twice")
-
-
 def test_wait_for_answers_the_value_or_false_when_the_time_is_over():
     fluent = p.Fluent("a", 0)
     assert p.top_level(lambda: p.par(lambda: p.wait_for(fluent), lambda: setattr(fluent, "value", 7))) == [7, None]

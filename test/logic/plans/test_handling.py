@@ -78,13 +78,6 @@ def test_what_a_handler_does_not_answer_goes_to_the_outer_ones():
     fails(NavigationGoalNotReached, "try 1", handled(Stumbling(1), never))
 
 
-def test_only_failures_are_handled_and_retry_and_give_belong_into_handlers():
-    fails(p.PlanError, "<class 'ValueError'> is no class of PlanFailure", handled(Stumbling(1), {ValueError: p.give}))
-    fails(ZeroDivisionError, "", handled(lambda: 1 / 0, {p.PlanFailure: lambda failure: p.give()}))
-    for wrong in (p.retry, p.give):
-        fails(p.PlanError, "", lambda wrong=wrong: p.seq(wrong))
-
-
 def test_failures_carry_facts():
     failure = fails(NavigationGoalNotReached, "too far", p.do(p.fail, NavigationGoalNotReached, "too far", distance=3))
     assert failure.distance == 3 and failure.details == {"distance": 3}

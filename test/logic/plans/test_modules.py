@@ -133,7 +133,7 @@ def test_a_failure_ends_what_runs_beside_it_also_where_that_fails_while_it_is_en
     fails(NavigationGoalNotReached, "first", lambda: p.par(performing("stumble at the end", "a"), second))
 
 
-def test_a_suspension_takes_commands_back_and_sends_them_again(one, many, log, begun):
+def test_a_suspension_takes_commands_back_and_sends_them_again(one, many, log):
     handlers = {p.PlanFailure: lambda failure: p.give(p.perform(to("wait", "b", "many")))}
     in_handler = lambda: p.with_failure_handling(p.do(p.fail, "no"), handlers)  # noqa: E731
     plan = Beside(lambda: p.par(performing("wait", "a"), in_handler))
@@ -145,12 +145,6 @@ def test_a_suspension_takes_commands_back_and_sends_them_again(one, many, log, b
     log.let("a", "b")
     plan.root.wake_up()
     assert plan.ended() == ["a", "b"] and sorted(log.words("begun")) == ["a", "a", "b", "b"]
-    ended = begun("c")
-    ended.root.suspend()
-    log.wait("over", "c")
-    ended.root.evaporate("over")
-    ended.fails(TaskEvaporatedFailure, "over")
-    assert log.words("begun").count("c") == 1
 
 
 def test_stopping_ends_what_runs_and_what_waits(log, begun):

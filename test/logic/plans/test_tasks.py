@@ -9,22 +9,6 @@ import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import TaskEvaporatedFailure
 
 
-def test_a_plan_is_ended_where_it_waits_and_puts_things_right(stays):
-    done = []
-
-    def put_right():
-        with p.uninterrupted():
-            p.sleep(0.001)
-            done.append("put right")
-
-    plan = Beside(lambda: p.par(stays("a", put_right), stays("b", put_right)))
-    seen(stays.there >= 2)
-    plan.root.evaporate("enough")
-    plan.fails(TaskEvaporatedFailure, "enough")
-    assert done == ["put right"] * 2
-    assert {task.state for task in plan.root} == {p.TaskState.EVAPORATED}
-
-
 def test_an_end_in_the_middle_of_a_protected_part_counts_afterwards():
     inside, go, after = p.Fluent("inside", False), p.Fluent("go", False), []
 
@@ -68,22 +52,6 @@ def retried_after(wait):
         p.with_failure_handling(once, {p.PlanFailure: lambda failure: p.do_retry("tries", before=wait)})
 
 
-def run_whenever(wait):
-    fluent, ended = p.Fluent("once", True), p.Fluent("ended", False)
-
-    def body():
-        wait()
-        fluent.value = False
-        ended.value = True
-
-    def keep_pulsing():
-        while True:
-            fluent.pulse()
-            p.sleep(0.002)
-
-    p.pursue(p.do(p.whenever, fluent, body), p.do(p.wait_for, ended), keep_pulsing)
-
-
 WAITS = {
     "plain": lambda wait: wait(),
     "par": lambda wait: p.par(wait, wait),
@@ -92,7 +60,6 @@ WAITS = {
     "before a retry": retried_after,
     "policy": lambda wait: p.with_policy(p.timeout_policy(1000.0), wait),
     "retry_after_suspension": p.retry_after_suspension,
-    "whenever": run_whenever,
 }
 KINDS = {
     "wait_for": p.wait_for,

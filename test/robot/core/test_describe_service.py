@@ -36,13 +36,6 @@ def test_it_tells_those_that_are_asked_for_and_which_are_unknown(ask, lights):
     (function,) = ask("setColor", without_arguments=True).functions
     assert function.help and not function.arguments
 
-    def wink(lights: list) -> None:
-        """Close one eye."""
-
-    lights.module.function_table["wink"] = wink
-    (function,) = ask("wink").functions
-    assert (function.help, [a.name for a in function.arguments]) == ("Close one eye.", ["lights"])
-
 
 def test_it_tells_the_goal_that_runs(ask, lights, robot):
     goal = lights.send(LedFunction(function="listGroups"), LedFunction(function="listLEDs", time=Duration(100)))

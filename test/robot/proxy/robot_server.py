@@ -21,7 +21,6 @@ class Memory:
     def __init__(self, session):
         self._session = session
         self._subscribers = {}
-        self._signals = {}
 
     def subscribeToEvent(self, *arguments):
         event, module, method = arguments[0], arguments[1], arguments[-1]
@@ -39,20 +38,10 @@ class Memory:
         for (name, module), (method, message) in list(self._subscribers.items()):
             if name == event:
                 calls.append(self._session.service(module).call(method, event, value, message, _async=True))
-        if event in self._signals:
-            self._signals[event].signal(value)
         promise = qi.Promise()
         waiting = threading.Thread(target=lambda: promise.setValue([answer_of(call) for call in calls]))
         waiting.start()
         return promise.future()
-
-    def subscriber(self, event):
-        return self._signals.setdefault(event, Subscriber())
-
-
-class Subscriber:
-    def __init__(self):
-        self.signal = qi.Signal("(m)")
 
 
 def answer_of(call):
@@ -72,10 +61,6 @@ class Module:
     def add(self, first, second):
         """Add two numbers."""
         return first + second
-
-    @qi.bind("s", ["m"])
-    def kindOf(self, value):
-        return f"{type(value).__name__} {value!r}"
 
     @qi.bind("m", ["m"])
     def echo(self, value):

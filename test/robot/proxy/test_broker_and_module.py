@@ -137,11 +137,11 @@ def test_events_call_the_module_in_order(buttons, memory):
     assert buttons.heard[-1] == (EVENT, 1.0, "head")
 
 
-@pytest.mark.parametrize("method, heard", [("two", (EVENT, 1.0)), ("none", ())])
-def test_callbacks_may_take_fewer_arguments(buttons, memory, method, heard):
-    memory.subscribeToEvent(EVENT, buttons.getName(), method)
-    memory.raiseEvent(EVENT, 1.0)
-    assert buttons.heard == [heard]
+def test_callbacks_may_take_fewer_arguments(buttons, memory):
+    for method in ("two", "none"):
+        memory.subscribeToEvent(EVENT, buttons.getName(), method)
+        memory.raiseEvent(EVENT, 1.0)
+    assert buttons.heard == [(EVENT, 1.0), ()]
 
 
 def test_a_failing_callback_is_logged_and_kills_nothing(buttons, memory, caplog):
@@ -195,15 +195,12 @@ class TestAfterALoss:
     def robot(self, fragile_robot):
         return fragile_robot
 
-    @pytest.fixture(autouse=True)
-    def subscribed(self, buttons, memory):
-        memory.subscribeToEvent(EVENT, buttons.getName(), "on_touch")
-        memory.subscribeToEvent("Gone", buttons.getName(), "on_touch")
-        memory.unsubscribeToEvent("Gone", buttons.getName())
-
     def test_modules_and_subscriptions_come_back(
         self, robot, broker, buttons, memory, raised, states, eventually, caplog
     ):
+        for event in (EVENT, "Gone"):
+            memory.subscribeToEvent(event, buttons.getName(), "on_touch")
+        memory.unsubscribeToEvent("Gone", buttons.getName())
         memory.subscribeToEvent("Other", "ALTest", "add")
         followed = states(broker.connection)
         robot.kill()

@@ -79,12 +79,7 @@ def test_a_time_limit_ends_the_call_on_both_sides(robot, eventually):
 def test_what_a_module_lacks_is_derived_from_its_description(proxy):
     assert proxy.ping() is True
     assert len(proxy.getMethodList()) == len(set(proxy.getMethodList()))
-    assert proxy.getMethodHelp("setIntensity") == [
-        "setIntensity",
-        [["string", ""], ["float", ""]],
-        "nothing",
-        "",
-    ]
+    assert proxy.getMethodHelp("setIntensity")[:3] == ["setIntensity", [["string", ""], ["float", ""]], "nothing"]
     assert "setColor(string, string) -> nothing" in proxy.getUsage("setColor").splitlines()
     assert "Add two numbers." in proxy.getUsage("add")
 
