@@ -7,7 +7,6 @@ import pytest
 from nao_library_actions.msg import NaoLedFeedback
 from nao_library_modules.behaviors import StepFailed
 from nao_library_modules.behaviors.execution import Execution
-from nao_library_modules.behaviors.report import MOST_NOT_RUN
 from nao_library_modules.behaviors.servers import NAMES
 from nao_library_modules.clock import WallClock
 from nao_library_modules.errors import RobotLost
@@ -192,21 +191,5 @@ def test_rounds_behind_a_failure_are_not_run_and_told_apart(start, texts):
     texts["bow"] = "help: Bows.\ndo: [{wait: 0}]"
     states = start("- {repeat: 3, do: [{NaoLights.x: {str_param: fail}}, {behavior: bow}]}").states()
     assert [states[path] for path in ("1#1.1", "1#1.2", "1#2.1", "1#3.2/1")] == ["failed", *["not run"] * 3]
-    run = start(
-        "- {repeat: 2, on_error: skip, do: [{NaoLights.x: {str_param: fail}}]}\n- {repeat: 0, do: [{wait: 9}]}"
-    )
+    run = start("- {repeat: 2, on_error: skip, do: [{NaoLights.x: {str_param: fail}}]}\n- {repeat: 0, do: [{wait: 9}]}")
     assert run.states() == {"1": "skipped", "1#1.1": "failed", "1#2.1": "not run", "2": "ended"}
-
-
-def test_of_very_many_rounds_some_are_told_and_of_those_that_a_limit_left_over_none(start, clients, clock):
-    many = "{repeat: 10000, do: [{repeat: 10000, do: [{wait: 0}]}]}"
-    run = start(f"- NaoLights.x: {{str_param: hold}}\n- {many}\n- {{repeat: 3, do: [{{wait: 0}}]}}")
-    clients.hold()
-    run.interrupt.trigger()
-    paths = list(run.states())
-    assert len([path for path in paths if path.startswith("2#") and "#1.1#1.1" not in path]) == MOST_NOT_RUN + 1
-    assert [path for path in paths if path.startswith("3#")] == ["3#1.1", "3#2.1", "3#3.1"]
-    run = start("- {repeat: 9, for: 2, do: [{NaoLights.x: {str_param: hold}}, {NaoMotion.x: {str_param: b}}]}", clock)
-    clock.somebody_waits(2.0)
-    clock.advance(2.0)
-    assert run.states() == {"1": "ended", "1#1.1": "preempted", "1#1.2": "not run"} and run.error is None

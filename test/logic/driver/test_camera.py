@@ -14,7 +14,6 @@ from sensor_msgs.msg import CameraInfo
 from nao_library_modules.driver.camera_calibration import Calibration, from_yaml, ideal, scaled, to_yaml
 from nao_library_modules.driver.camera_formats import Picture, read_picture
 from nao_library_modules.driver.camera_info_files import camera_name, path_of, write
-from nao_library_modules.driver.camera_info_sender import parser, read_calibration
 from nao_library_modules.driver.camera_infos import CameraInfos
 from nao_library_modules.driver.camera_rate import RateMeter
 from nao_library_modules.driver.camera_settings import changed_tunings, fields_of, settled, stream_settings
@@ -208,26 +207,6 @@ def test_a_url_names_the_file_and_what_is_set_goes_there(infos, tmp_path):
     assert camera_name("/robot 1/nao_camera_top") == "robot_1_nao_camera_top"
     for url in ("http://host/a.yaml", "/a.yaml", "file://a.yaml", "package://", "package://a"):
         refused("camera_info_url is", path_of, url, NAME, lambda package: "/")
-
-
-def options(*words):
-    return read_calibration(parser().parse_args(["top", *map(str, words)]))
-
-
-def test_a_file_is_sent_as_it_is_or_for_another_size_and_a_field_of_view_is_a_calibration(tmp_path):
-    known, path = ideal(640, 480, *OTHER_FOV), tmp_path / "camera.yaml"
-    path.write_text(to_yaml(known), encoding="utf-8")
-    assert options(path) == known
-    small = options(path, "--size", "320x240")
-    assert (small.width, small.k[0]) == (320, known.k[0] / 2)
-    assert options("--fov", 60.9, 47.6).k == pytest.approx(known.k)
-    assert options("--fov", 60.9, 47.6, "--size", "320x240").width == 320
-    refused("either a file or --fov", options, path, "--fov", 60, 47)
-    refused("missing.yaml cannot be read", options, "missing.yaml")
-    for fov in ((0, 47), (60, 200)):
-        refused("above 0 and below 180 degrees", options, "--fov", *fov)
-    path.write_text("nothing", encoding="utf-8")
-    refused("camera.yaml is no calibration", options, path)
 
 
 def values(**changes):

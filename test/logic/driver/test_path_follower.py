@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import time
 
 import pytest
 import rospy
@@ -273,17 +272,6 @@ def test_a_robot_that_does_not_get_there_says_why(point, control, monkeypatch):
     assert halfway.time < 6.0
 
 
-@BOTH
-def test_a_robot_that_stops_before_an_obstacle_is_not_sent_nearer(point, control):
-    def see(place, aim):
-        if place.x > 0.4 and not point.cause:
-            point.cause = "an obstacle 0.39 m ahead"
-            point.stop()
-
-    refused("the robot stopped: an obstacle 0.39 m ahead", walk, point, target(1.0, 0, 0), control, None, see)
-    assert point.place.x < 0.42
-
-
 def test_an_interrupt_ends_it_and_leaves_the_legs_as_they_are(point):
     interrupt = Interrupt()
 
@@ -370,16 +358,7 @@ def test_a_pose_is_turned_before_it_is_laid_flat_and_a_late_one_counts_as_of_now
     ahead = pose(1.0, 0.0, "CameraTop", yaw=0.0)
     assert frames.place_in("odom", ahead, 0.0) == pytest.approx((1.0, 2.1 + math.cos(math.radians(60.0)), QUARTER))
     assert frames.place_in("base_link", pose(3.0, 0.0, yaw=0.0), 0.0) == pytest.approx((-2.0, -2.0, -QUARTER))
+    refused("base_link cannot be found in odom", PlanarFrames(Buffer()).locate, "base_link", "odom", 0.0)
     late = pose(0.5, 0.0, "base_link", yaw=0.0)
     late.header.stamp = rospy.Time(NOW.secs + 50)
     assert frames.place_in("odom", late, 0.0) == pytest.approx((1.0, 2.5, QUARTER))
-
-
-def test_a_robot_that_is_not_heard_of_any_more_is_told(frames, monkeypatch):
-    monkeypatch.setattr(planar_frames.rospy.Time, "now", lambda: rospy.Time(NOW.secs + 4))
-    frames.locate("base_link", "odom", 0.0)  # simulated time may have run on; in real time it was just now
-    refused("base_link cannot be found in odom", PlanarFrames(Buffer()).locate, "base_link", "odom", 0.0)
-    real = time.monotonic
-    monkeypatch.setattr(time, "monotonic", lambda: real() + 3.0)
-    words = r"base_link is in odom was told 4\.0 s ago: does nao_joint_states run"
-    refused(words, frames.locate, "base_link", "odom", 0.0)

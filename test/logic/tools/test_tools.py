@@ -21,22 +21,6 @@ def move_named(start, goal):
     return next(move for move in load_moves() if (move.start, move.goal) == (start, goal))
 
 
-@pytest.mark.parametrize(
-    "name, options, status, text",
-    [
-        ("check_detection", ["balls"], 2, "no part balls"),
-        ("check_localisation", ["--sounds", "0"], 2, "--sounds is 0"),
-        ("check_posture_graph", ["--start", "Handstand"], 2, "Handstand"),
-        ("check_recognition", ["word"], 2, "no part 'word'; there are words, second"),
-        ("check_walk", ["--jobs", "0"], 2, "--jobs is 0"),
-        ("find_posture_moves", ["search", "LyingBack", "LyingBelly"], 2, "not the same left and right"),
-    ],
-)
-def test_options_are_explained_and_wrong_ones_refused(run, name, options, status, text):
-    assert run(name, *options)[0] == status
-    assert text in run(name, *options)[1]
-
-
 @pytest.mark.parametrize("good, mark, status", [(True, "  ok", 0), (None, "", 0), (np.bool_(False), "  MISSED", 1)])
 def test_a_figure_that_misses_its_bound_is_told_and_makes_the_status(tools, capsys, good, mark, status):
     class Checks(tools.measurement.StageChecks):
@@ -48,17 +32,6 @@ def test_a_figure_that_misses_its_bound_is_told_and_makes_the_status(tools, caps
     first, *misses = capsys.readouterr().out.splitlines()
     assert first.endswith(f"found 0.90{mark}")
     assert misses == ["misses its bound: faces"] * status
-
-
-@pytest.mark.parametrize("falls, missed", [(0, 0), (2, 0), (3, 4)])
-def test_nine_of_ten_walks_must_survive_a_push_and_a_fall_is_told_with_its_seed(tools, capsys, falls, missed):
-    tool = tools.check_walk
-    made = [tools.walk_runs.Fall(index < falls, None, False, True) for index in range(20)]
-    assert tool.measure(["push"], tool.Extent(None, 60.0, 5.0, 1), lambda run, jobs: made) == missed
-    assert capsys.readouterr().out.count("MISSED") == missed
-    runs = [(True, 300.0, ""), (False, 12.0, "fell")]
-    assert tool.measure(["wander"], tool.Extent(2, 60.0, 5.0, 7), lambda run, jobs: runs) == 1
-    assert "seed 8: fell at 12 s" in capsys.readouterr().out
 
 
 def test_a_search_finds_the_bottom_of_a_valley_and_goes_on_where_it_was_stored(tools):

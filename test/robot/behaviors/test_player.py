@@ -101,17 +101,6 @@ def test_stopping_ends_everything_at_once_and_brings_gestures_and_lights_back(st
     assert task.finished
 
 
-def test_lights_show_afterwards_what_they_showed_before_unless_somebody_else_has_changed_them(stage):
-    before, eye = stage.leds.values, stage.simulation.led_layout.devices_of("FaceLeds")[0]
-    stage.until_over(stage.play({"lights": "FaceLeds", "color": "red", "duration": 0.2}, {"wait": 0.1}))
-    assert stage.leds.values == before
-    task = stage.play({"lights": "FaceLeds", "color": "green", "duration": 0.2}, {"wait": 0.3})
-    stage.bench.run(0.3)
-    stage.leds.set({eye: 0.25})
-    stage.until_over(task)
-    assert stage.leds.values == tuple(0.25 if i == eye else value for i, value in enumerate(before))
-
-
 LEGS = {"LHipPitch", "LHipRoll"}
 
 

@@ -187,7 +187,7 @@ def test_settings_that_the_robot_refuses_are_an_error_and_change_nothing(speech,
     assert text.error is None
 
 
-def test_a_text_is_silenced_at_once_or_before_it_begins(speech, robot, settings, soon, until):
+def test_a_text_is_silenced_at_once_or_before_it_begins(speech, robot, settings, soon, until, begin):
     settings[0] = SpeechSettings(volume=0.6)
     before, started = voice(robot), []
     first, second, third = (
@@ -203,6 +203,13 @@ def test_a_text_is_silenced_at_once_or_before_it_begins(speech, robot, settings,
     until(third.ended.is_set)
     assert third.error is None and len(started) == 2 and voice(robot) == before
     assert speech.report().values["interrupted"] == "2"
+    texts = [speech.say(str(n)) for n in range(LONGEST_QUEUE)]
+    with pytest.raises(NaoError, match="100 texts are waiting"):
+        for n in range(2):
+            texts.append(speech.say(str(n)))
+    closed = begin(speech.close)
+    until(closed.done)
+    assert all(isinstance(text.error, Preempted) for text in texts) and voice(robot) == before
 
 
 def test_texts_for_a_lost_robot_fail_and_later_ones_are_said_in_its_own_voice(
@@ -221,23 +228,6 @@ def test_texts_for_a_lost_robot_fail_and_later_ones_are_said_in_its_own_voice(
     second = speech.say("two", on_start=lambda: started.append(2))
     until(second.ended.is_set)
     assert second.error is None and started == [1, 2] and voice(robot) == before
-
-
-def test_there_is_an_end_to_the_queue_and_the_end_of_the_node_silences_everything(
-    robot, driver_robot, clock, settings, until, begin
-):
-    settings[0] = SpeechSettings(volume=0.6)
-    before, speech = voice(robot), Speech(driver_robot, clock, lambda: settings[0])
-    started = []
-    texts = [speech.say("first and foremost", lambda: started.append(1))]
-    until(lambda: started)
-    texts += [speech.say(str(n)) for n in range(LONGEST_QUEUE)]
-    with pytest.raises(NaoError, match="100 texts are waiting"):
-        speech.say("one too many")
-    closed = begin(speech.close)
-    until(closed.done)
-    assert all(isinstance(text.error, Preempted) for text in texts) and voice(robot) == before
-    assert isinstance(speech.say("after the end").error, Preempted)
 
 
 @pytest.fixture

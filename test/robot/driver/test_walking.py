@@ -286,21 +286,7 @@ def test_a_walk_that_is_cancelled_or_stopped_by_others_is_told(moving, robot, un
         until(lambda words=words: words in moving.report().message)
         assert moving.report().level == level
         until(lambda: not walking(robot))
-
-
-def test_a_goal_nobody_can_find_leaves_the_walk_alone_and_refusals_are_told(moving, robot, soon):
-    def nowhere():
-        raise NaoError("no such frame")
-
     robot.ALMotion.setStiffnesses("Body", 0.0)
     moving.go(goal("window", 1.0, 0.0, 0.0))
     soon(lambda: "window: " in moving.report().message and "stiff" in moving.report().message)
     assert moving.report().level == Level.ERROR
-    robot.ALMotion.setStiffnesses("Body", 1.0)
-    moving.go(goal("door", 1.0, 0.0, 0.0))
-    soon(lambda: "walks to door" in moving.report().message)
-    robot.advance(0.3)
-    moving.go(Goal("nowhere", nowhere))
-    soon(lambda: "nowhere: no such frame" in moving.report().message)
-    robot.advance(0.3)
-    assert walking(robot) and moving.report().level == Level.ERROR
