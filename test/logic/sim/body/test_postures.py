@@ -13,7 +13,7 @@ from nao_sim_bridge.sim.frames import frame_of
 from nao_sim_bridge.sim.kinematics import link_transforms
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.posture_graph import path_to
-from nao_sim_bridge.sim.posture_moves import Ground, KeyFrame, Move, direct, moves_of
+from nao_sim_bridge.sim.posture_moves import Ground, KeyFrame, Move, direct, load_moves, moves_of
 from nao_sim_bridge.sim.posture_recognition import FAMILIES, UNKNOWN, Recognition, recognise_readings
 from nao_sim_bridge.sim.postures import load_postures, posture
 from nao_sim_bridge.sim.start_lean import start_pitch
@@ -245,3 +245,12 @@ def test_cameras_and_arms_turn_to_a_place():
     for place in ((0.0, 0.0, 0.1265), (-1.0, 0.1, 0.2), (0.1, 0.0, -1.0), (0.0, 0.0, 5.0)):
         for name, angle in zip(HEAD, head_angles(MODEL, place)):
             assert MODEL.joint(name).lower <= angle <= MODEL.joint(name).upper, "out of reach"
+
+
+def test_the_moves_of_the_file_end_in_their_postures():
+    legs = [MODEL.joint_index[name] for chain in ("LLeg", "RLeg") for name in MODEL.chains[chain]]
+    assert load_moves()
+    for move in load_moves():
+        final = posture(MODEL, move.goal)
+        reached = {index: angle for frame in move.frames for index, angle in frame.angles.items()}
+        assert {i: reached[i] for i in legs} == pytest.approx({i: final[i] for i in legs}, abs=0.01), str(move)

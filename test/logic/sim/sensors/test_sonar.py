@@ -83,3 +83,12 @@ def test_a_wall_is_heard_as_far_as_they_reach_and_small_things_near_by_only():
     assert spread(FARTHEST, math.radians(22.6)) < sonar.BUDGET < spread(FARTHEST, math.radians(25.0))
     assert heard((0.6, 0.0, 0.39), extents=pole) != SILENCE == heard((1.5, 0.0, 0.39), extents=pole)
     assert sonar.smallness(1.0, LARGE) == 0.0 < sonar.smallness(1.0, pole) < sonar.smallness(2.0, pole)
+
+
+def test_they_measure_ten_times_a_second_and_keep_the_reading_in_between():
+    around = Points((0.5, 0.0, 0.39))
+    sonars = Sonars(MODEL, around)
+    first = sonars.read(0.0, STANDING)
+    around.places = [(1.0, 0.0, 0.39)]
+    assert sonars.read(0.05, STANDING) == first
+    assert sonars.read(0.1, STANDING) == pytest.approx((0.995, 0.995), abs=0.001)

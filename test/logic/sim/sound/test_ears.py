@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -71,6 +73,18 @@ def test_an_exact_listener_hears_from_its_first_to_its_last_moment(loud, wants, 
     assert sum(len(block.samples) for block in blocks) == rate
     for first, second in zip(blocks, blocks[1:]):
         assert first.end == pytest.approx(second.time)
+
+
+def test_ears_lag_behind_a_slow_listener_and_ask_time_to_wait(loud):
+    entered, go_on = threading.Event(), threading.Event()
+    loud.ears.listen("slow", lambda block: entered.set() or go_on.wait(15.0))
+    loud.run(0.2)
+    assert entered.wait(15.0) and not loud.ears.holds()
+    loud.run(0.3)
+    assert loud.ears.lag == pytest.approx(0.34) and loud.ears.holds()
+    go_on.set()
+    loud.ears.catch_up(15.0)
+    assert loud.ears.lag == 0.0 and not loud.ears.holds()
 
 
 def test_a_follower_is_told_of_all_time_from_its_beginning_to_its_end(room):

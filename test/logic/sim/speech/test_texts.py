@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from nao_sim_bridge.sim.speech.dictionary import Pronunciations
 from nao_sim_bridge.sim.speech.parameters import Prosody
@@ -83,11 +81,6 @@ def test_what_cannot_be_followed_is_never_spoken(read, text):
     pieces = read(text)
     assert spoken(pieces).split() == ["very", "good"]
     assert all(piece.prosody == Prosody() for piece in pieces)
-
-
-@given(st.text("ab \\=1rst.", max_size=40))
-def test_any_text_is_read(text):
-    assert "\\" not in spoken(TagReader(lambda _: None).read(text))
 
 
 @pytest.mark.parametrize(
