@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy
 import pytest
 
 import almath
 from almath import AlmathError, Pose2D, Position2D, Position3D, Quaternion, Rotation, Transform, vectorFloat
 
-PACKAGE = Path(almath.__file__).parent
 NAMES = {
     almath.Pose2D: "x y theta",
     almath.Position2D: "x y",

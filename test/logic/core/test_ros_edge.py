@@ -66,10 +66,3 @@ def test_a_frame_is_seen_from_the_robot(frames):
     assert frames.locate("/odom") == pytest.approx((0.0, 1.0, -math.pi / 2))
     with pytest.raises(NaoError, match="the frame chair cannot be found from base_footprint"):
         frames.locate("chair")
-
-
-def test_frames_of_one_of_several_robots_have_its_prefix(frames, monkeypatch):
-    monkeypatch.setattr(robot_frames.rospy, "search_param", lambda name: "/robot1/tf_prefix")
-    monkeypatch.setattr(robot_frames.rospy, "get_param", lambda name: "/robot1/")
-    with pytest.raises(NaoError, match="robot1/base_footprint"):
-        frames.locate("table")

@@ -7,13 +7,11 @@ import enum
 import numpy as np
 import pytest
 
-import naoqi
 from naoqi import errors, wire
 from naoqi.signatures import mentions_raw, readable_call, readable_type
-from naoqi.translate import CallSite, call_error, closest_names, connect_reason
+from naoqi.translate import CallSite, call_error, connect_reason
 
 METHODS = ["setIntensity", "getIntensity", "fade"]
-SDK_NAMES = {"ALBroker", "ALModule", "ALProxy"}
 FADE = "Arguments types did not match for fade (resolved to '(s)'):\n  Candidates:\n  fade::(sff) (1)\n"
 TRACE = "\n\nAt:\n  /x.py(3): fade\n"
 
@@ -159,17 +157,3 @@ def test_reasons_of_failed_connections_come_with_advice():
     ):
         reason, check = connect_reason(text)
         assert word in reason and check
-
-
-def test_closest_names_ignore_case_and_come_best_first():
-    assert closest_names("setintensity", METHODS)[0] == "setIntensity"
-    assert closest_names("walk", METHODS) == []
-
-
-def test_what_is_promised_is_there():
-    assert SDK_NAMES <= set(naoqi.__all__) and naoqi.__all__ == sorted(naoqi.__all__)
-    assert all(hasattr(naoqi, name) for name in naoqi.__all__)
-    assert issubclass(errors.NaoError, RuntimeError)
-    names = {}
-    exec("from naoqi import *", names)
-    assert set(names) >= SDK_NAMES

@@ -90,14 +90,6 @@ def test_copies_and_merges():
     assert str(desig) == "an action (type='looking', target=(a location (near=(the object (type='ball')))))"
 
 
-def test_designators_inside_of_designators():
-    desig = p.designator("{name: to walk, goal: {location: {near: {type: object, name: table}}, speed: 1}}")
-    assert desig["goal"]["speed"] == 1 and desig["goal"]["location"]["near"].kind == p.object_
-    desig = p.designator("{type: going, target: {location: {near: {object: {type: ball}}}}}")
-    assert desig.kind == p.action and desig["type"] == "going"
-    assert desig["target"].kind == p.location and desig["target"]["near"]["type"] == "ball"
-
-
 @pytest.mark.parametrize("given", ["open the gripper", "", "[1, 2]", "{a: ", {1: 2}, 7])
 def test_what_has_no_keys_is_an_error(given):
     with pytest.raises(p.PlanError, match="designator: "):

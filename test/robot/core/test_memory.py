@@ -7,8 +7,6 @@ import json
 from nao_library_modules.memory_functions import parse_assignment
 from nao_library_msgs.msg import LedFunction
 
-ACCELEROMETER = "Device/SubDeviceList/InertialSensor/AccelerometerZ/Sensor/Value"
-
 
 def f(function, str_param=""):
     return LedFunction(function=function, str_param=str_param)

@@ -107,11 +107,6 @@ class States:
 
 
 @pytest.fixture
-def patience():
-    return PATIENCE
-
-
-@pytest.fixture
 def begun(proxy, eventually):
     """Waits until a call of `begin` has arrived at the robot."""
     return lambda: eventually(lambda: proxy.begun() > 0, "the call arrives")
