@@ -45,11 +45,6 @@ def over(bench):
     return make
 
 
-def raise_leg(one, foot):
-    angles = {"HipPitch": -0.9, "KneePitch": 1.4, "AnklePitch": -0.5}
-    one.aim(0.4, **{foot[0] + name: angle for name, angle in angles.items()})
-
-
 @pytest.mark.parametrize("foot", FEET)
 def test_it_stands_on_one_foot(over, foot):
     one = over(foot)
@@ -62,20 +57,6 @@ def test_it_stands_on_one_foot(over, foot):
     held = one.watch(2.5)
     assert all(load(snapshot, OTHER[foot]) == 0.0 for snapshot in held) and upright(held[-1])
     assert np.abs(np.subtract(held[-1].torso.position, held[0].torso.position)).max() < 2e-3
-
-
-def test_a_leg_that_is_raised_by_its_joints_and_arms_that_move_tip_only_a_robot_without_control_over(over, bench):
-    one, alone = over("RLeg"), bench("StandInit")
-    raise_leg(one, "LLeg")
-    one.run(1.5)
-    assert load(one.now, "LLeg") == 0.0
-    one.aim(speed=1.0, LShoulderRoll=1.2, LShoulderPitch=0.5, RShoulderPitch=-0.5)
-    one.run(1.5)
-    assert upright(one.now) and load(one.now, "LLeg") == 0.0
-    assert one.joint("LShoulderRoll") == pytest.approx(1.2, abs=0.05)
-    alone.run(0.2)
-    raise_leg(alone, "RLeg")
-    assert not upright(alone.run(5.0))
 
 
 def test_a_robot_before_a_wall_stretches_its_arm_slowly(bench, world_file):

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import NotAllowed, UnknownName
-from nao_sim_bridge.sim.faults import CRITICAL, NEGLIGIBLE, SERIOUS, severity
+from nao_sim_bridge.sim.errors import NotAllowed
 from nao_sim_bridge.sim.hand_path import AWAY
 from nao_sim_bridge.sim.hands import COME_TIME, LEAVE_TIME
 from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
@@ -15,12 +14,10 @@ from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.rotations import roll_pitch_yaw
 from nao_sim_bridge.sim.sensors.sonar import NO_ECHO
 from nao_sim_bridge.sim.touch_names import CHEST_BUTTON, HEAD, SENSORS
-from nao_sim_bridge.sim.walk.gait import feet_gait
 from nao_sim_bridge.sim.world_objects import read_object
 
 MODEL = load_model()
 YAW = MODEL.joint_index["HeadYaw"]
-SILENCE = (NO_ECHO, NO_ECHO)
 ALL = (*SENSORS, CHEST_BUTTON)
 
 
@@ -67,18 +64,6 @@ def test_a_slanting_wall_is_heard_by_the_sonar_that_it_faces(bench, side):
         assert far == NO_ECHO
 
 
-@pytest.mark.parametrize("world", ["empty", "uneven"])
-def test_only_who_lies_hears_the_floor(bench, world):
-    for posture in ("Stand", "StandInit", "Crouch", "Sit"):
-        assert bench(posture, world=world).run(0.3).sonars == SILENCE
-    if world == "empty":
-        assert max(bench("LyingBelly").run(0.5).sonars) < 0.3
-        one = bench("StandInit")
-        one.run(0.3)
-        one.robot.locomotion.move(0.06, 0.0, 0.0, feet_gait({}))
-        assert {snapshot.sonars for snapshot in one.watch(2.0)} == {SILENCE}
-
-
 def test_a_robot_with_noise_feels_errors_of_its_seed_but_the_truth_stays_true(bench):
     noisy, same, other = (bench("Crouch", sensor_noise=1.0, seed=seed).run(0.4) for seed in (1, 1, 2))
     true = bench("Crouch").run(0.4)
@@ -87,16 +72,6 @@ def test_a_robot_with_noise_feels_errors_of_its_seed_but_the_truth_stays_true(be
     assert noisy.imu.angles != true.imu.angles and noisy.odometry != true.odometry
     assert roll_pitch_yaw(noisy.torso.orientation) == pytest.approx(true.imu.angles, abs=2e-3)
     assert max(map(abs, noisy.angular_velocity)) < 0.01 < max(map(abs, noisy.imu.gyroscope))
-
-
-def test_how_bad_a_broken_device_is():
-    devices = {
-        CRITICAL: ["LHipYawPitch", "RAnkleRoll"],
-        SERIOUS: ["HeadYaw", "LHand", "InertialSensor", "LFoot/FSR/RearLeft"],
-        NEGLIGIBLE: ["US/Left", "Head/Touch/Rear", "LFoot/Bumper/Left", "ChestBoard/Button"],
-    }
-    for how, names in devices.items():
-        assert [severity(name) for name in names] == [how] * len(names)
 
 
 def test_a_broken_motor_gives_no_torque_until_it_is_repaired_and_only_stiff_ones_are_found(bench):
@@ -112,9 +87,6 @@ def test_a_broken_motor_gives_no_torque_until_it_is_repaired_and_only_stiff_ones
     faults.repair("HeadYaw")
     one.run(1.0)
     assert one.joint("HeadYaw") == pytest.approx(0.8, abs=0.02) and faults.found == frozenset()
-    for call in (faults.break_device, faults.repair):
-        with pytest.raises(UnknownName, match="unknown device 'US/Middle'"):
-            call("US/Middle")
 
 
 def test_broken_sensors_read_an_error_beside_others_that_work(bench):
@@ -200,12 +172,10 @@ def test_hands_stay_until_they_are_released_are_seen_and_go_with_a_robot_that_mo
     assert sum(felt) > 0.98 * len(felt)
     with pytest.raises(NotAllowed, match="a hand touches Head/Touch/Middle already: release it first"):
         one.simulation.hands.touch(HEAD, 1.0)
-    for sensor in (HEAD[0], CHEST_BUTTON):
-        one.simulation.hands.touch([sensor], 0.0)
-    assert one.run(0.6).touched == {HEAD[0], HEAD[1], CHEST_BUTTON}
-    assert set(one.now.objects) == {"hand", "hand_2", "hand_3"}
+    one.simulation.hands.touch([CHEST_BUTTON], 0.0)
+    assert one.run(0.6).touched == {HEAD[1], CHEST_BUTTON} and set(one.now.objects) == {"hand", "hand_2"}
     one.simulation.hands.release([HEAD[1]])
-    assert one.run(LEAVE_TIME + 0.02).touched == {HEAD[0], CHEST_BUTTON}
+    assert one.run(LEAVE_TIME + 0.02).touched == {CHEST_BUTTON}
     one.simulation.hands.release()
     assert one.run(0.3).touched == frozenset() and one.now.placed == ()
 

@@ -11,11 +11,11 @@ import pytest
 
 from nao_sim_bridge.paths import data_root, urdf_file
 from nao_sim_bridge.sim.appearance import load_appearance
-from nao_sim_bridge.sim.collision import LOAD_FLAGS, apart
+from nao_sim_bridge.sim.collision import LOAD_FLAGS
 from nao_sim_bridge.sim.kinematics import center_of_mass, link_transforms, quaternion_matrix
 from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.postures import load_postures, posture
+from nao_sim_bridge.sim.postures import posture
 from nao_sim_bridge.sim.urdf import full_urdf, mesh_files, physics_urdf
 
 MODEL = load_model()
@@ -62,13 +62,6 @@ class Loaded:
         for joint, value in zip(MODEL.joints, posture(MODEL, name)):
             self.put(joint.name, (value - 1.0) * TRAVEL if joint.is_hand else value)
 
-    def self_contacts(self):
-        """Pairs of links that touch."""
-        self.of("performCollisionDetection")
-        names = {index: name for name, index in self.links.items()}
-        points = self.of("getContactPoints", self.body, self.body)
-        return {tuple(sorted((names.get(p[3], "torso"), names.get(p[4], "torso")))) for p in points if p[8] < 0.0}
-
     def torso_position(self):
         base = self.of("getBasePositionAndOrientation", self.body)
         return np.array(pybullet.multiplyTransforms(*base, *pybullet.invertTransform(*self.dynamics(-1)[3:5]))[0])
@@ -82,24 +75,10 @@ class Loaded:
 
 
 @pytest.fixture
-def load(tmp_path):
-    made = []
-
-    def make(text):
-        made.append(Loaded(text, tmp_path))
-        return made[-1]
-
-    yield make
-    for loaded in made:
-        loaded.of("disconnect")
-
-
-@pytest.fixture
-def physics(load):
-    loaded = load(physics_urdf(MODEL))
-    for pair in apart(MODEL):
-        loaded.of("setCollisionFilterPair", loaded.body, loaded.body, *(loaded.links.get(link, -1) for link in pair), 0)
-    return loaded
+def physics(tmp_path):
+    loaded = Loaded(physics_urdf(MODEL), tmp_path)
+    yield loaded
+    loaded.of("disconnect")
 
 
 def test_physics_has_26_joints_with_limits_and_motors(physics):
@@ -130,22 +109,6 @@ def test_masses_and_frames_in_the_engine_are_those_of_the_tables(physics):
     for hand in ("LHand", "RHand"):
         physics.put(hand, 0.0)  # the finger body meets the tables where the tables have it: open
     assert physics.center_of_mass() == pytest.approx(center_of_mass(MODEL, posture(MODEL, "Crouch")), abs=1e-6)
-
-
-def test_no_posture_touches_itself_and_limbs_that_meet_do_touch(physics):
-    for name in load_postures().by_name:
-        physics.pose(name)
-        assert physics.self_contacts() == set(), name
-    for joint in MODEL.joints:
-        physics.put(joint.name, 0.0)
-    for name, angle in (("ShoulderPitch", 1.5), ("ElbowYaw", 0.0), ("ElbowRoll", -1.5)):
-        physics.put(f"L{name}", angle)
-    belly = {("l_wrist", "torso"), ("LForeArm", "torso"), ("LFingers", "torso")}
-    assert physics.self_contacts() & belly
-    for side, sign in (("L", 1.0), ("R", -1.0)):
-        for name, angle in (("ShoulderPitch", 0.0), ("ShoulderRoll", -0.3 * sign), ("ElbowRoll", -0.6 * sign)):
-            physics.put(side + name, angle)
-    assert ("l_wrist", "r_wrist") in physics.self_contacts()
 
 
 def test_the_full_urdf_is_one_tree_with_every_frame_that_clients_know_and_a_link_for_every_lamp():

@@ -70,9 +70,8 @@ def test_effectors_go_where_they_are_told(stiff_robot, motion):
 
     back = {"values": here, "times": [1.0]}
     step = [0.03, 0, 0, 0, 0, 0]
-    assert moved("positionInterpolation", values=step, times=[1.0], relative=True) == pytest.approx(
-        [0.03, 0, 0], abs=0.01
-    )
+    there = moved("positionInterpolation", values=step, times=[1.0], relative=True)
+    assert there == pytest.approx([0.03, 0, 0], abs=0.01)
     assert moved("positionInterpolation", **back)[0] == pytest.approx(-0.03, abs=0.01)
     assert moved("changePosition", 1.0, values=step, speed=0.5) == pytest.approx([0.03, 0, 0], abs=0.01)
     assert moved("setPosition", 1.0, values=here, speed=0.5)[0] == pytest.approx(-0.03, abs=0.01)

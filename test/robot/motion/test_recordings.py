@@ -27,9 +27,7 @@ def store(motion):
     return motion.module.store
 
 
-def test_what_somebody_else_moves_is_recorded_until_a_cancel_and_replayed_and_mirrored(
-    stiff_robot, motion, store, angle
-):
+def test_what_somebody_else_moves_is_recorded_replayed_and_mirrored(stiff_robot, motion, store, angle):
     goal = motion.send(record(rate=20.0))
     stiff_robot.finish("ALMotion", "angleInterpolation", ["HeadYaw"], [0.6], [1.0], True, after=1.5)
     assert goal.cancel().state == "preempted"
@@ -44,14 +42,13 @@ def test_what_somebody_else_moves_is_recorded_until_a_cancel_and_replayed_and_mi
     assert angle("HeadYaw") == pytest.approx(-0.6, abs=0.06)
 
 
-@pytest.mark.parametrize("end", ["over", "cancelled"])
-def test_joints_that_are_taught_by_hand_are_limp_meanwhile_and_stiff_again_where_they_are(robot, motion, store, end):
+def test_joints_that_are_taught_by_hand_are_limp_meanwhile_and_stiff_again_where_they_are(robot, motion, store):
     robot.ALMotion.setStiffnesses(["HeadYaw", "HeadPitch"], [0.8, 0.0])
     robot.ALMotion.setAngles("HeadYaw", 1.5, 0.03)
-    goal = motion.send(record(duration=1.0 if end == "over" else 60.0, limp=True))
+    goal = motion.send(record(limp=True))
     robot.advance(0.5)
     assert robot.ALMotion.getStiffnesses("Head") == [0.0, 0.0]
-    assert (goal.finish() if end == "over" else goal.cancel()).state in ("succeeded", "preempted")
+    assert goal.cancel().state == "preempted"
     assert robot.ALMotion.getStiffnesses("Head") == pytest.approx([0.8, 0.0])
     told = robot.ALMotion.getAngles("HeadYaw", False)
     robot.advance(1.0)
@@ -59,9 +56,7 @@ def test_joints_that_are_taught_by_hand_are_limp_meanwhile_and_stiff_again_where
     assert store.names() == ["turn"]
 
 
-def test_a_motion_is_replayed_from_its_first_pose_on_and_stays_where_a_cancel_meets_it(
-    stiff_robot, motion, store, angle
-):
+def test_a_replay_goes_to_its_first_pose_and_stays_where_a_cancel_meets_it(stiff_robot, motion, store, angle):
     store.save("wave", WAVE)
     goal = motion.send(play("wave"))
     stiff_robot.advance_until(lambda: angle("RShoulderRoll") < -0.45, 5.0)

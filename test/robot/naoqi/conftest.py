@@ -43,11 +43,8 @@ def refuses(robot):
     """
 
     def state():
-        return (
-            robot.ALMotion.getAngles("Body", False),
-            robot.ALLeds.getIntensity("AllLeds"),
-            robot.ALMotion.getTaskList(),
-        )
+        motion = robot.ALMotion
+        return motion.getAngles("Body", False), robot.ALLeds.getIntensity("AllLeds"), motion.getTaskList()
 
     def check(module, rows):
         before, wrong = state(), {}
@@ -55,9 +52,8 @@ def refuses(robot):
             call, words = row.strip().split(" -> ")
             method, arguments = call.split("(", 1)
             try:
-                answer = getattr(robot, module).call(
-                    method, *eval(f"({arguments[:-1]},)" if arguments != ")" else "()")
-                )
+                arguments = eval(f"({arguments[:-1]},)" if arguments != ")" else "()")
+                answer = getattr(robot, module).call(method, *arguments)
                 wrong[call] = f"answered {answer!r}"
             except RuntimeError as error:
                 if not re.match(f"{module}::{method} .*{words}", str(error), re.DOTALL):

@@ -73,9 +73,8 @@ def test_several_may_run_by_name_or_by_default_and_all_are_stopped(manager, stif
 
 
 def test_what_is_installed_is_told_runs_and_goes(manager, stiff_robot, begin):
-    added, removed, several = (
-        stiff_robot.heard(f"{MANAGER}/{what}") for what in ("BehaviorAdded", "BehaviorRemoved", "BehaviorsAdded")
-    )
+    kinds = ("BehaviorAdded", "BehaviorRemoved", "BehaviorsAdded")
+    added, removed, several = (stiff_robot.heard(f"{MANAGER}/{what}") for what in kinds)
     both = ["mine/look", "mine/wait"]
     assert manager.installBehavior("mine.yaml") is True
     assert several.get(timeout=PATIENCE) == both == manager.getUserBehaviorNames()

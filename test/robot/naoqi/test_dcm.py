@@ -28,13 +28,6 @@ def near(*values):
     return pytest.approx(list(values), abs=0.02)
 
 
-def test_its_time_is_simulated_time(robot, dcm):
-    before = dcm.getTime(0)
-    assert dcm.getTime(500) == before + 500
-    robot.advance(0.25)
-    assert dcm.getTime(0) == before + 250 and dcm.getPrefix() == PREFIX
-
-
 def test_a_joint_goes_in_straight_lines_through_timed_values(robot, dcm, send, read):
     send("set", [PREFIX + HEAD, "ClearAll", [[0.5, dcm.getTime(1000)], [-0.1, dcm.getTime(2000)]]], after=0.5)
     assert read(HEAD) == pytest.approx(0.25, abs=0.01)
@@ -79,14 +72,6 @@ def test_it_takes_joints_from_almotion_but_not_legs_that_walk(stiff_robot, dcm, 
     begin("ALMotion", "moveToward", 0.5, 0.0, 0.0, after=0.5)
     with pytest.raises(RuntimeError, match="DCM::set the robot walks, and LKneePitch with it: stop it first"):
         send("set", ["LKneePitch/Position/Actuator/Value", "ClearAll", [[1.0, dcm.getTime(500)]]])
-
-
-def test_preferences_are_keys_of_the_memory_that_can_be_brought_back(dcm, read):
-    for action, value, wanted in (("Save", 3.5, 3.5), ("Add", 4.5, 4.5), ("Load", 0, 3.5)):
-        assert dcm.preferences(action, "Chest", "Test/Preference", value) == 0
-        assert read("Test/Preference") == wanted
-    with pytest.raises(RuntimeError, match="one that was saved for 'Head'"):
-        dcm.preferences("Load", "Head", "Test/Preference", 0)
 
 
 def test_wrong_commands_name_what_is_right(refuses):

@@ -83,12 +83,10 @@ def test_groups_and_lists_of_names(leds, shown):
 def test_wrong_arguments_name_what_is_allowed(refuses):
     refuses("ALLeds", r"""
         on('FaceLed') -> unknown LED or group 'FaceLed': did you mean 'FaceLeds'
-        setIntensity('FaceLeds', 1.5) -> intensity is 1.5, allowed is 0 to 1
         fade('FaceLeds', 0.5, -1.0) -> duration is -1.0, allowed is 0 or more
         fadeRGB('FaceLeds', 'grein', 1.0) -> unknown colour 'grein': did you mean 'green'
         fadeRGB('FaceLeds', 0x1000000, 1.0) -> colour is 16777216, allowed is 0x000000 to 0xFFFFFF
         fadeListRGB('FaceLeds', [1, 2], [1.0]) -> rgbList is .* as many colours as times, 1
-        fadeListRGB('FaceLeds', [1, 2], [1.0, 1.0]) -> timeList is .*, allowed is rising times
         rotateEyes(0xFF, 0.0, 1.0) -> timeForRotation is 0.0, allowed is above 0
         createGroup('FaceLeds', ['Brain0']) -> 'FaceLeds' is taken by the robot's own LEDs
     """)  # fmt: skip

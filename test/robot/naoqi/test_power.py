@@ -85,19 +85,6 @@ def test_low_nearly_empty_and_empty_are_told_once_each(health, read, told):
     assert since() == {"BatteryLowDetected": False}
 
 
-def test_changes_are_events_unless_monitoring_is_off(robot, health, read, told):
-    since = told("BatteryChargeChanged")
-    for charge in (0.8, 0.3):
-        health("setBatteryCharge", charge)
-        assert since() == {"BatteryChargeChanged": 100 * charge}
-    robot.ALBattery.enablePowerMonitoring(False)
-    health("setBatteryCharge", 0.4)
-    assert read("BatteryChargeChanged") == 30 and since() == {}
-    robot.ALBattery.enablePowerMonitoring(True)
-    robot.advance(SOON)
-    assert read("BatteryChargeChanged") == 40
-
-
 def test_an_empty_battery_puts_the_robot_to_rest_and_keeps_it_there(stiff_robot, health):
     motion = stiff_robot.ALMotion
     stiff_robot.finish("ALMotion", "wakeUp", after=2.5)
@@ -126,13 +113,8 @@ def test_a_charger_from_the_start_stays_and_a_v5_tells_its_plug(bench):
 
 
 TEMPERATURE_EVENTS = (
-    "HotDeviceDetected",
-    "DeviceNoLongerHotDetected",
-    "HotJointDetected",
-    "TemperatureStatusChanged",
-    "TemperatureDiagnosisErrorChanged",
-    "HeadProcessorIsHot",
-    "HeadProcessorIsCriticallyHot",
+    *("HotDeviceDetected", "DeviceNoLongerHotDetected", "HotJointDetected", "TemperatureStatusChanged"),
+    *("TemperatureDiagnosisErrorChanged", "HeadProcessorIsHot", "HeadProcessorIsCriticallyHot"),
 )
 
 
@@ -184,13 +166,7 @@ def test_sensors_that_do_not_answer_are_found_at_once(robot, health):
     both = [1, ["US/Left", "InertialSensor"]]
     assert diagnosis.getPassiveDiagnosis() == diagnosis.getDiagnosisStatus() == both
     assert robot.value("PassiveDiagnosisErrorChanged") == both and diagnosis.getActiveDiagnosis() == [0, []]
-    diagnosis.setEnableNotification(False)
-    assert diagnosis.isNotificationEnabled() is False
-    health("breakDevice", "RHand/Touch/Back")
-    assert robot.value("PassiveDiagnosisErrorChanged") == both  # it keeps that to itself
-    assert diagnosis.getPassiveDiagnosis() == [1, ["RHand/Touch/Back", *both[1]]]
-    diagnosis.setEnableNotification(True)
-    for device in ("InertialSensor", "US/Left", "RHand/Touch/Back"):
+    for device in ("InertialSensor", "US/Left"):
         health("repairDevice", device)
     assert diagnosis.getPassiveDiagnosis() == [0, []] == robot.value("ALDiagnosis/DiagnosisErrorChanged")
 
@@ -211,6 +187,15 @@ def test_a_broken_motor_is_found_when_the_robot_wakes_up_and_its_chain_stays_lim
     health("repairDevice", "HeadYaw")
     motion.setStiffnesses("Head", 1.0)
     assert motion.getStiffnesses("Head") == [1.0, 1.0] and diagnosis.getDiagnosisStatus() == [0, []]
+
+
+def test_with_a_broken_leg_the_robot_does_not_wake_up(robot, begin, health):
+    health("breakDevice", "LHipRoll")
+    begin("ALMotion", "wakeUp", after=3.5)
+    assert robot.ALDiagnosis.getDiagnosisStatus() == [2, ["LHipRoll"]]
+    assert set(robot.ALMotion.getStiffnesses("Body")) == {0.0}
+    with pytest.raises(RuntimeError, match="a motor of the legs is broken, the robot wakes up when it is repaired"):
+        robot.ALMotion.wakeUp()
 
 
 def test_a_health_that_cannot_be_is_refused(robot, refuses):

@@ -3,13 +3,11 @@
 import pytest
 
 from nao_sim_bridge.services.sonar import DETECTED, NOTHING
-from nao_sim_bridge.sim.settings import load_settings
 
 KEY = "Device/SubDeviceList/US/{}/Sensor/Value"
 POST = "{name: post, cylinder: [0.06, 1.0], position: [0.35, 0.3, 0.5]}"
 FIRST = 0.15
 """Time for one measurement, s."""
-TICK = load_settings().tick_s
 
 
 @pytest.fixture
@@ -40,12 +38,10 @@ def both(distance, within=0.015):
     return pytest.approx([distance, distance], abs=within)
 
 
-@pytest.fixture
-def fires(robot):
-    return lambda: robot.value("Device/SubDeviceList/US/Actuator/Value") == 68.0
+def test_they_fire_while_somebody_is_subscribed_and_keys_keep_what_was_last(robot, sonar, wall, keys):
+    def fires():
+        return robot.value("Device/SubDeviceList/US/Actuator/Value") == 68.0
 
-
-def test_they_fire_while_somebody_is_subscribed_and_keys_keep_what_was_last(robot, sonar, wall, keys, fires):
     wall(0.8)
     robot.advance(0.3)
     assert keys() == [0.0, 0.0] and not fires()
@@ -63,17 +59,6 @@ def test_they_fire_while_somebody_is_subscribed_and_keys_keep_what_was_last(robo
     assert keys() == both(0.9)
     assert sonar.getCurrentPeriod() == 100 and set(sonar.getEventList()) == {*DETECTED, *NOTHING}
     assert KEY.format("Left") in sonar.getMemoryKeyList()
-
-
-def test_they_fire_for_a_robot_that_walks(stiff_robot, sonar, wall, keys):
-    stiff_robot.advance(0.2)
-    wall(1.5)
-    stiff_robot.ALMotion.move(0.03, 0.0, 0.0)
-    stiff_robot.settled()
-    for seconds in (TICK, 1.0):  # from the first tick on
-        stiff_robot.advance(seconds)
-        assert keys() == both(1.5, 0.06)
-    assert not sonar.getSubscribersInfo()
 
 
 def test_events_say_what_is_near_and_what_is_free(robot, sonar):

@@ -1,7 +1,6 @@
 """ALSystem: name, clock, machine, and what a simulated robot has not."""
 
 import io
-import os
 
 import pytest
 from PIL import Image
@@ -20,21 +19,9 @@ def test_the_name_can_be_changed_and_is_announced(robot, system):
     assert system.robotName() == "Marvin-2" == robot.value("ALSystem/RobotNameChanged")
     assert ["name", "Marvin-2"] in system.systemInfo()
     for name in ("", "two words", "../etc"):
-        with pytest.raises(
-            RuntimeError, match="ALSystem::setRobotName name is .*, allowed are letters, digits and hyp"
-        ):
+        with pytest.raises(RuntimeError, match="setRobotName name is .*, allowed are letters, digits and hyp"):
             system.setRobotName(name)
     assert system.robotName() == "Marvin-2"
-
-
-def test_versions_agree_and_memory_and_disk_are_those_of_the_machine(system):
-    assert system.systemVersion() == system.previousSystemVersion() == system.version()
-    assert [["version", system.version()], ["simulated", True]] == system.systemInfo()[1:3]
-    total = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**20
-    assert 0 < system.freeMemory() <= system.totalMemory() == pytest.approx(total, abs=1)
-    ((mount, total, used, free),) = system.diskFree(True)
-    assert mount == "/" and 0 <= free <= total and 0 <= used <= total
-    assert list(system.appBackupInfo()) == []
 
 
 def test_the_robots_clock_is_that_of_its_time_zone(robot, system):

@@ -183,11 +183,9 @@ def test_after_a_kill_it_can_start_again_on_its_port_at_once(program, used):
     assert again.port() == port and not any("waiting" in line for line in again.said)
 
 
-@pytest.mark.parametrize(
-    "arguments, message",
-    [(("--world", "moon"), "no world 'moon'.*empty"), (("--listen", "192.0.2.1"), "cannot listen on 192.0.2.1:0")],
-)
-def test_what_keeps_it_from_starting_is_said_in_one_line(program, arguments, message):
-    ended = program(*arguments)
+def test_what_keeps_it_from_starting_is_said_in_one_line(program):
+    ended = program("--world", "moon")
     assert ended.status() == 1
-    assert re.search(rf"\[nao_sim\] ERROR .*{message}", ended.said[-1]) and "Traceback" not in ended.said[-1]
+    assert (
+        re.search(r"\[nao_sim\] ERROR .*no world 'moon'.*empty", ended.said[-1]) and "Traceback" not in ended.said[-1]
+    )

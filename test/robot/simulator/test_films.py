@@ -65,14 +65,8 @@ def test_there_is_one_film_at_a_time_and_it_is_complete_when_the_program_ends(ro
     simulation = robot.NaoSimulation
     with pytest.raises(RuntimeError, match="nothing is being filmed"):
         simulation.stopFilm()
-    for wrong, words in (
-        (("film.avi", "", 0, 0, 0.0), "file is 'film.avi'"),
-        (("film.mp4", "", 33, 32, 0.0), "film size"),
-        (("film.mp4", "", 0, 0, 1000.0), "frame_rate is 1000.0, allowed is 1 to 60"),
-        (("../film.mp4", "", 0, 0, 0.0), "is not inside"),
-    ):
-        with pytest.raises(RuntimeError, match=f"NaoSimulation::startFilm .*{words}"):
-            simulation.startFilm(*wrong)
+    with pytest.raises(RuntimeError, match="NaoSimulation::startFilm frame_rate is 1000.0, allowed is 1 to 60"):
+        simulation.startFilm("film.mp4", "", 0, 0, 1000.0)
     film("")
     with pytest.raises(RuntimeError, match="film.mp4 is being filmed"):
         simulation.startFilm("other.mp4", "", SIDE, SIDE, FRAME_RATE)
@@ -85,7 +79,7 @@ class Card:
     """A stand-in for the library of the sound card."""
 
     def __init__(self):
-        self.written, self.dry, self.closed = [], False, False
+        self.written, self.closed = [], False
 
     def OutputStream(self, rate, channels, dtype):
         assert (rate, channels, dtype) == (RATE, 2, "int16")
@@ -96,8 +90,6 @@ class Card:
 
     def write(self, samples):
         self.written.append(samples)
-        dry, self.dry = self.dry, False
-        return dry
 
     def abort(self):
         self.closed = True
@@ -137,7 +129,7 @@ def test_the_file_has_silence_and_sound_at_their_times_and_is_whole_while_it_gro
         SoundFile(simulation, tmp_path / "missing" / "all.wav")
 
 
-def test_the_card_gets_what_is_played_after_a_short_silence_again_when_it_ran_dry(simulation, card, bench):
+def test_the_card_gets_what_is_played_after_a_short_silence(simulation, card, bench):
     outlet, tone, start = SoundCard(simulation), sine(1000.0, 0.2, 0.5), round(CARD_DELAY * RATE)
     simulation.sound.loudspeakers.play(tone, "say")
     simulation.run(0.3)
@@ -147,10 +139,6 @@ def test_the_card_gets_what_is_played_after_a_short_silence_again_when_it_ran_dr
     assert not card.closed
     outlet.close()
     assert card.closed
-    dry, card.dry = SoundCard(simulation), True
-    simulation.run(0.1)
-    dry.close()
-    assert [len(samples) for samples in card.written].count(start) == 3
 
 
 def test_the_sound_file_goes_on_after_a_factory_reset_and_modules_that_were_taken_off_are_back(tmp_path):

@@ -1,7 +1,6 @@
 """What only a simulator has: time, resets, pushes, fingers, ground truth, pictures, things that come and go."""
 
 import io
-import json
 import re
 
 import numpy as np
@@ -100,9 +99,7 @@ def test_things_are_placed_moved_and_removed(robot, simulation):
     assert simulation.objects()["b"] == pytest.approx([0.7, -0.2, 0.03, 0.0, 0.0, 1.0], abs=1e-6)
     simulation.removeObject("b")
     simulation.placeObject("{name: f, ball: 0.04, position: [0.4, 0.4, 0.5]}")
-    simulation.placeObject(json.dumps({"name": "m", "landmark": 64, "position": [0.8, 0.0, 0.5], "stand": True}))
     simulation.placeObject("{name: p, person: anna, position: [1.5, 1.0, 0]}")
-    assert simulation.objects()["m"] == pytest.approx([0.8, 0.0, 0.5, 0.0, 0.0, 0.0], abs=1e-6)
     move = robot.post("NaoSimulation", "moveObject", "p", [1.5, -1.0, 0.0], [], 2.0)
     robot.settled()
     simulation.advance(1.0)
@@ -111,7 +108,7 @@ def test_things_are_placed_moved_and_removed(robot, simulation):
     robot.answer(move)
     assert simulation.objects()["p"][1] == pytest.approx(-1.0, abs=1e-3)
     assert simulation.objectPoses()["f"][2] == pytest.approx(0.04, abs=0.005)  # it has fallen
-    assert set(simulation.objects()) == {"f", "m", "p"}
+    assert set(simulation.objects()) == {"f", "p"}
 
 
 def test_what_is_placed_is_seen_and_gone_after_a_reset_and_what_was_removed_is_back(simulation):
@@ -126,18 +123,6 @@ def test_what_is_placed_is_seen_and_gone_after_a_reset_and_what_was_removed_is_b
     assert "wall" not in simulation.objects() and "table" in simulation.objects()
     assert simulation.objects()["chair_left"] == pytest.approx(chair, abs=0.01)
     assert blue(picture(simulation)) < blue(empty) + 100
-
-
-def test_an_image_comes_from_the_folder_for_recordings(robot, simulation, refused):
-    path = robot.server.files.folder / "image.png"
-    Image.new("RGB", (40, 20), (10, 200, 10)).save(path)
-    simulation.placeObject("{name: i, image: image.png, position: [1.0, 0.0, 0.5]}")
-    path.unlink()
-    assert "i" in simulation.objects() and picture(simulation).shape == (240, 320, 3)  # also without the file
-    refused(
-        ("placeObject", "{name: j, image: ../../etc/passwd, position: [1.0, 0.0, 0.5]}", "is not inside"),
-        ("placeObject", "{name: j, image: nowhere.png, position: [1.0, 0.0, 0.5]}", "no file 'nowhere.png'"),
-    )
 
 
 def test_what_cannot_be_placed_or_moved_is_refused(simulation, refused):

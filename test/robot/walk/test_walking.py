@@ -59,18 +59,6 @@ def test_it_walks_at_the_velocity_that_was_asked_for_and_another_one_takes_over(
     assert walker.locomotion.active
 
 
-def test_of_two_goals_the_later_one_counts(walker):
-    walker.until(walker.move_to((0.0, 0.0, 0.5)))  # from here on, the frame of its plan is turned in the world
-    first = walker.move_to((1.0, 0.0, 0.0))
-    walker.run(2.0)
-    second = walker.move_to((0.0, 0.05, 0.0))
-    assert first.finished and first.value is False
-    at = walker.place()
-    assert walker.until(second) is True
-    x, y, _ = walker.place().seen_from(at)
-    assert (x, y) == pytest.approx((0.0, 0.05), abs=0.004)
-
-
 def test_odometry_knows_where_it_went(walker):
     world, believed = walker.place(), walker.locomotion.position(use_sensors=True)
     walker.locomotion.move_toward(0.6, 0.3, 0.4, walker.GAIT)

@@ -16,7 +16,6 @@ from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.sound.samples import RATE, Sound
 from nao_sim_bridge.sim.world_objects import read_object
 
-FACE_TO_FACE = "0,0,0; 0.6,0,180"
 SPEED_OF_SOUND = 343.0
 PUSHED_AWAY = (0.0, 90.0, 0.0), 0.3
 
@@ -95,20 +94,6 @@ def test_they_push_each_other_with_equal_forces_until_one_falls(company):
     assert felt[0].normal[0] < 0.0, "towards the robot that stands: away from the one that comes"
     assert standing.run(1.5).torso.position[2] < 0.25
     assert math.dist(before, third.snapshot.torso.position) < 0.02, "who is far is left alone"
-
-
-def test_a_foot_of_another_robot_presses_a_bumper_and_sonars_hear_it(company):
-    one, other = company(FACE_TO_FACE)
-    one.run(1.0)
-    assert [robot.snapshot.sonars for robot in (one, other)] == [pytest.approx((0.54, 0.54), abs=0.03)] * 2
-    walls, feet = company("0,0,0; 0.36,-0.1,180")
-    assert not walls.snapshot.touched
-    for ankle in ("l_ankle", "r_ankle"):
-        feet.robot.push((-45.0, 0.0, 0.0), 1.0, ankle)
-    pressed = set()
-    while not pressed and walls.time < 1.0:
-        pressed = {name for name in walls.tick().touched if "Bumper" in name}
-    assert pressed and all(name.startswith("RFoot") for name in pressed), "the other one stands to its right"
 
 
 def test_things_are_everybodys_and_nothing_is_placed_inside_any_robot(company):

@@ -3,7 +3,6 @@
 import math
 from pathlib import Path
 
-import numpy as np
 import pybullet
 import pytest
 import yaml
@@ -94,9 +93,6 @@ def test_things_fall_lie_and_are_seen_at_their_places(engine):
 def test_an_object_of_parts_is_one_body_with_its_frame_in_its_centre_of_mass(engine):
     built = world({**CHAIR, "rpy": [0, 0, 0.5], "mass": 1.2})
     (chair,) = built.objects
-    # The back is heavy: the middle is behind that of the seat.
-    behind = [chair.position[0] - 2.0, chair.position[1] - 1.0]
-    assert behind[0] * math.cos(0.5) + behind[1] * math.sin(0.5) < -0.02
     body = engine.build(built)["chair"]
     assert engine.pose(body)[0] == pytest.approx(chair.position)
     engine.settle()
@@ -196,15 +192,6 @@ def test_a_person_walks_by_at_constant_speed_until_a_kill(one):
     assert abs(where(one, "p")[5]) == pytest.approx(math.pi, abs=0.02), "the short way round"
 
 
-def test_where_something_is_can_be_told_back_to_move(one):
-    place(one, **PERSON)
-    assert where(one, "p") == pytest.approx((1.5, 0.0, 0.0, 0.0, 0.0, 3.0), abs=1e-6)
-    for name in ("p", "chair_left", "poster_left"):
-        before = where(one, name)
-        move(one, name, before[:3], before[3:])
-        assert where(one, name) == pytest.approx(before, abs=1e-6)
-
-
 def test_what_cannot_be_placed_is_refused(one):
     for entry, message in (
         ({"name": "table"}, r"name is 'table', allowed is one that is free .*; taken: ball, .*wall_right"),
@@ -216,10 +203,6 @@ def test_what_cannot_be_placed_is_refused(one):
     with pytest.raises(NotAllowed, match=r"'b' cannot be there: it would be 0\.\d+ m inside the robot"):
         place(one, **{**BALL, "ball": 0.1, "position": [0.0, 0.0, 0.3]})
     assert one.simulation.things.placed == ()
-    for number in range(64):
-        place(one, **{**BALL, "name": f"b{number}", "position": [1.8 + 0.1 * (number % 8), 0.1 * (number // 8), 0.03]})
-    with pytest.raises(BadValue, match="number of placed things is 65, allowed is 64 at most"):
-        place(one, **BALL)
 
 
 BOX = {"name": "box", "box": [0.4, 0.4, 0.4], "position": [1.0, -1.0, 0.2], "rpy": [0, 0, 1.5707963]}
@@ -262,6 +245,4 @@ def test_a_sound_rides_on_what_moves_and_is_turned_with_what_stands(playing):
     assert sources.get("radio").place == pytest.approx((1.0, -0.9, 0.4), abs=1e-6)
     move(one, "ball", [1.5, 0.0, 0.04], None, 0.5)
     ball = one.run(0.6).objects["ball"].position
-    assert ball[0] > 1.2 and np.linalg.norm(np.subtract(sources.get("bell").place, ball)) == pytest.approx(
-        0.1, abs=0.03
-    )
+    assert ball[0] > 1.2 and math.dist(sources.get("bell").place, ball) == pytest.approx(0.1, abs=0.03)

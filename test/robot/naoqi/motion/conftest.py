@@ -39,11 +39,6 @@ class Walker:
         return self.client.answer(future)
 
     @property
-    def now(self):
-        """The last snapshot."""
-        return self.client.now
-
-    @property
     def truth(self):
         """Where the torso really is on the ground, m, and how it is turned, rad."""
         (x, y, _), (a, b, c, d) = self.now.torso.position, self.now.torso.orientation

@@ -156,36 +156,16 @@ def test_a_limp_joint_takes_commands_but_follows_none_and_does_not_jump(robot, m
     assert sensed("HeadYaw") == near(0.0, within=0.01)
 
 
-def test_tasks_are_listed_hold_their_joints_and_are_killed_by_number(robot, motion, begin, commands):
-    assert motion.getTaskList() == [] and motion.killTask(4711) is False
-    future, other = (begin("ALMotion", INTERPOLATION, name, 0.4, 2.0, True, after=0.5) for name in HEAD)
-    (name, number), _ = motion.getTaskList()
-    assert name == INTERPOLATION and isinstance(number, int) and number > 0
-    free = [motion.areResourcesAvailable(names) for names in (["HeadYaw"], ["Head"], ["LArm"], ["LArm", "HeadYaw"])]
-    assert free == [False, False, True, False]
-    assert motion.killTask(number) is True and robot.answer(future) is None
-    assert [motion.areResourcesAvailable([name]) for name in HEAD] == [True, False]
-    before = commands("HeadYaw")
-    robot.advance(2.0)
-    assert commands("HeadYaw") == before != [0.4]
-    robot.answer(other)
-    assert commands("HeadPitch") == near(0.4) and motion.areResourcesAvailable(["Head"]) is True
-
-
 def test_wrong_arguments_name_what_is_allowed_and_move_nothing(refuses):
     refuses("ALMotion", r"""
         getAngles('HeadYow', True) -> unknown joint or chain 'HeadYow': did you mean 'HeadYaw'
-        setAngles(['HeadYaw', 'HeadYaw'], 0.1, 0.5) -> named twice: HeadYaw
         setAngles('Head', [0.1, 0.2, 0.3], 0.5) -> angles is .*, allowed is one number or 2, one for each joint
         setAngles('HeadYaw', 0.5, 1.5) -> fractionMaxSpeed is 1.5, allowed is 0 to 1
         angleInterpolation('HeadYaw', 0.1, 0.0, True) -> allowed is times that rise, the first above 0 s
-        angleInterpolationWithSpeed('HeadYaw', 0.1, -0.5) -> fractionMaxSpeed is -0.5, allowed is 0 to 1
         openHand('LArm') -> unknown hand 'LArm'
         setStiffnesses('Head', 1.5) -> stiffnesses is 1.5, allowed is 0 to 1
-        stiffnessInterpolation('HeadYaw', -0.5, 1.0) -> stiffnessLists is -0.5, allowed is 0 to 1
         angleInterpolationBezier(['HeadYaw', 'HeadPitch'], [[0.5], [0.5]], [[0.1, 0.2], [0.1]]) -> as many points as t
         angleInterpolationBezier(['HeadYaw'], [[0.5]], [[[0.1, [7, 0.0, 0.0]]]]) -> type of a handle is 7
         angleInterpolationBezier(['HeadYaw'], [[0.5]], [[[0.1, [3, 0.2, 0.0], [3, 0.2, 0.0]]]]) -> dTime of 0 or less
         animation(['HeadYaw'], [[0.3]], [[0.2]], True, [[0.1, 'LLeg']]) -> supportSequence
-        areResourcesAvailable(['Hed']) -> unknown joint or chain 'Hed': did you mean 'Head'
     """)  # fmt: skip

@@ -17,9 +17,7 @@ CHEST = [0.8, -0.3, -0.3, -1.5]
 def test_names_limits_cycle_and_configuration_of_the_body(robot, motion):
     for name, expected in (
         ("Head", ["HeadYaw", "HeadPitch"]),
-        ("HeadYaw", ["HeadYaw"]),
         ("Body", [joint.name for joint in MODEL.joints]),
-        ("Joints", list(MODEL.chains["Joints"])),
         ("Legs", [*MODEL.chains["LLeg"], *MODEL.chains["RLeg"]]),
         ("Chains", ["Head", "LArm", "LLeg", "RLeg", "RArm"]),
     ):
@@ -89,22 +87,6 @@ def test_an_arm_stops_short_of_the_chest_unless_its_protection_is_off(stiff_robo
     assert motion.setCollisionProtectionEnabled("Arms", False) is False and protected()[0] is True
 
 
-def test_the_external_protection_has_parts_and_distances(robot, motion):
-    def protected():
-        return [motion.getExternalCollisionProtectionEnabled(part) for part in ("All", "Move", "Arms")]
-
-    assert protected() == [True, True, True]
-    motion.setExternalCollisionProtectionEnabled("Move", False)
-    assert protected() == [False, False, True]
-    distances = motion.getOrthogonalSecurityDistance, motion.getTangentialSecurityDistance
-    assert [get() for get in distances] == pytest.approx([0.4, 0.1])
-    motion.setOrthogonalSecurityDistance(0.25)
-    motion.setTangentialSecurityDistance(-1.0)
-    assert [get() for get in distances] == pytest.approx([0.25, 0.0])
-    robot.advance(0.2)
-    assert motion.getChainClosestObstaclePosition("LArm", 0) == []
-
-
 @pytest.fixture
 def balanced(stiff_robot, motion):
     """A robot in StandInit under whole body control."""
@@ -162,17 +144,12 @@ def test_balance_out_of_reach_and_what_cannot_be(stiff_robot, motion, refuses):
         wbFootState('Fixed', 'Legs') -> call wbEnable\(True\) before
         getPosition('LArn', 0, True) -> did you mean 'LArm'
         setPositions('LArm', 0, [0.0] * 6, 0.5, 64) -> axisMask is 64
-        setTransforms('LArm', 0, [0.0] * 12, 0.5, 7) -> a rotation in the first three columns
-        isCollision('LLeg') -> unknown arm or group 'LLeg'
-        setBreathEnabled('LLeg', True) -> unknown chain 'LLeg'
         setBreathConfig([['Bpm', 50.0]]) -> Bpm is 50.0, allowed is 5 to 30
         setBreathConfig([['Bmp', 10.0]]) -> did you mean 'Bpm'
     """)  # fmt: skip
     motion.wbEnable(True)
     assert stiff_robot.finish("ALMotion", "wbGoToBalance", "LLeg", 1.0, after=0.5) is False
     refuses("ALMotion", """
-        wbFootState('Fixd', 'Legs') -> did you mean 'Fixed'
-        wbGoToBalance('LLeg', -1.0) -> duration is -1.0
         wbEnableEffectorControl('LLeg', True) -> unknown effector
         wbSetEffectorControl('Head', [0.0, 0.0]) -> wx, wy, wz in rad
         wbSetEffectorControl('Head', [0.0, 0.0, 0.0]) -> call wbEnableEffectorControl

@@ -46,17 +46,6 @@ def test_waking_up_stiffens_and_stands_resting_crouches_and_lets_go(robot, motio
     assert robot.now.torso.position[2] == pytest.approx(0.228, abs=0.01)
 
 
-def test_a_killed_awakening_never_finishes_and_a_reset_puts_it_to_sleep(robot, motion, begin, raised):
-    raised(*states())
-    wake = begin("ALMotion", "wakeUp", after=1.0)
-    motion.killAll()
-    robot.answer(wake)
-    robot.advance(2.0)
-    assert raised(*states()) == [1, 0, 0, 0] and motion.getTaskList() == []
-    robot.NaoSimulation.reset()
-    assert motion.robotIsWakeUp() is False and motion.getStiffnesses("Body") == [0.0] * 26
-
-
 def test_a_fall_is_told_ends_calls_and_leaves_the_robot_limp(stiff_robot, motion, begin, read, raised):
     stiff_robot.finish("ALMotion", "wakeUp", after=2.5)
     stiff_robot.advance(1.0)
@@ -91,15 +80,6 @@ def test_the_fall_manager_is_switched_off_with_permission_only_and_then_does_not
     assert motion.getStiffnesses("Body") == [1.0] * 26
     stiff_robot.NaoSimulation.reset()  # switches them on
     assert motion.getFallManagerEnabled() is motion.getPushRecoveryEnabled() is True
-
-
-@pytest.mark.parametrize("enabled", [True, False])
-def test_push_recovery_keeps_the_robot_on_its_feet(stiff_robot, motion, enabled):
-    stiff_robot.advance(1.0)
-    motion.setPushRecoveryEnabled(enabled)
-    stiff_robot.NaoSimulation.push([-20.0, 0.0, 0.0], 0.1, "torso")
-    stiff_robot.advance(3.0)
-    assert (stiff_robot.now.torso.position[2] > 0.3) is enabled
 
 
 def test_smart_stiffness_saves_effort_and_can_be_switched_off(stiff_robot, motion):

