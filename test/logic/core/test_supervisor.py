@@ -95,7 +95,6 @@ def test_nothing_it_started_is_left_behind_not_even_in_a_session_of_its_own(supe
     supervisor = supervise("import subprocess, sys; " + child + FOREVER, str(held_open), grandchild)
     assert identify(int(pipe.line())) in descendants(os.getpid())
     supervisor.stop()
-    # Its end of the pipe closes with it: reading comes to the end instead of waiting.
     os.set_blocking(end_of_grandchild, True)
     assert os.read(end_of_grandchild, 1) == b""
 

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 from actionlib import CommState
 from actionlib_msgs.msg import GoalStatus
-from fake_goals import FakeActionClient
+from fake_goals import FakeActionClient, FakeGoal
 from plan_tools import fails
 
 import nao_library_modules.process_modules as p
+from nao_library_modules.goal_watch import GoalWatch
 from nao_library_modules.process_modules.action_client import PlanActionClient
 from nao_library_modules.process_modules.chains import Chain
 from nao_library_modules.process_modules.failures import ActionlibActionTimedOut
@@ -96,3 +97,9 @@ def test_a_goal_that_takes_too_long_is_cancelled_when_the_server_knows_it_or_has
         assert (client.goals[0].cancelled, ends[0].status) == ([CommState.ACTIVE], GoalStatus.PREEMPTED)
     else:
         assert p.top_level(plan) == ends[0] and ends[0].succeeded and client.goals[0].cancelled == []
+
+
+def test_a_goal_of_which_the_server_never_tells_is_cancelled_all_the_same():
+    watch = GoalWatch()
+    goal = FakeGoal(watch.look)
+    assert watch.cancel(goal.handle, limit=0.01) and goal.cancelled == [CommState.WAITING_FOR_GOAL_ACK]
