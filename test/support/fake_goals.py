@@ -38,9 +38,8 @@ class FakeGoal:
         cancelled: State of the client at each cancel.
     """
 
-    def __init__(self, on_transition, in_cancel=lambda: None, name="goal"):
-        self._in_cancel = in_cancel
-        self._id = GoalID(id=name)
+    def __init__(self, on_transition):
+        self._id = GoalID(id="goal")
         self.cancelled = []
         self._machine = CommStateMachine(NaoLedActionGoal(goal_id=self._id), on_transition, None, None, self._on_cancel)
         self.handle = ClientGoalHandle(self._machine)
@@ -60,7 +59,6 @@ class FakeGoal:
     def _on_cancel(self, _):
         state = self._machine.state
         self.cancelled.append(state)
-        self._in_cancel()
         known = state not in (CommState.WAITING_FOR_GOAL_ACK, CommState.DONE)
         # Told by another thread: it has to wait until the client has done with the cancel.
         answer = (lambda: self.end(GoalStatus.PREEMPTED, "preempted")) if known else self.tell
