@@ -42,13 +42,6 @@ def test_a_head_that_is_turned_hears_the_same_place_elsewhere(yaw, azimuth):
     assert (sound.head, sound.confidence, sound.energy) == ((0.0, 0.1, 0.45), 0.5, 0.2)
 
 
-def test_old_robots_tell_no_energy_and_what_is_no_located_sound_is_told():
-    assert located_sound([[1, 2], [0.1, 0.2, 0.3], LEVEL, LEVEL]).energy == 0.0
-    for value in (None, [], [[1, 2], [0.1], LEVEL, LEVEL], [[1, 2], [0.1, 0.2, 0.3], LEVEL], "sound"):
-        with pytest.raises(ValueError, match="no sound that was located"):
-            located_sound(value)
-
-
 def test_only_the_begin_of_a_sound_counts():
     two = [[12, 0, 0.8, 5], [90, 1, 0.4, 9]]
     rows = [([[12, 1, 0.8, 5]], [0.8]), ([[12, 0, 0.8, 5]], []), (two, [0.4]), ([12, 1, 0.7, 5], [0.7]), ([], [])]

@@ -7,8 +7,6 @@ import threading
 import pytest
 
 from nao_sim_bridge.services.audio.background import Background
-from nao_sim_bridge.services.audio.microphone_formats import flags_to_channel, microphone_format
-from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.tasks import Task
 
 PATIENCE = 15.0
@@ -71,12 +69,3 @@ def test_work_learns_that_nobody_wants_it_any_more(way):
 
 
 # --- modules that hear ------------------------------------------------------------------------------------------------
-
-
-def test_formats_that_there_are_not_are_refused():
-    for asked in [(16000, 0, 0), (48000, 3, 0), (44100, 0, 0), (16000, 5, 0), (16000, -1, 0), (16000, "front", 0)]:
-        with pytest.raises(BadValue, match="48000 Hz with channels 0 .all four., or 16000 Hz with 1 .left."):
-            microphone_format(*asked)
-    for flags in [[], [0, 0, 0, 0], [1, 1, 0, 0], [2, 0, 0, 0], [1, 0, 0], [1, 0, 0, 0, 0], "1000", 3]:
-        with pytest.raises(BadValue, match="flags .left, right, front, rear. of 0 or 1: one of them set, or all four"):
-            flags_to_channel(flags)

@@ -10,12 +10,12 @@ from nao_library_modules import light_goals
 from nao_library_modules.colours import from_integer, named_colours, parse_colour, read_colours, to_integer
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.light_names import LightNames, UnknownLight, colour_part
-from nao_library_modules.light_state import light_intensity, mean_colour, mean_intensity, memory_keys, restoring_calls
+from nao_library_modules.light_state import light_intensity, mean_colour, mean_intensity, memory_keys
 
 TWO = ["LeftFaceLeds", "RightFaceLeds"]
-RED, GREEN, BLUE = EYE = [f"Face/Led/{part}/Left/0Deg/Actuator/Value" for part in ("Red", "Green", "Blue")]
+RED, *_ = EYE = [f"Face/Led/{part}/Left/0Deg/Actuator/Value" for part in ("Red", "Green", "Blue")]
 BRAIN = "Head/Led/Front/Right/0/Actuator/Value"
-NAN, INF = float("nan"), float("inf")
+NAN = float("nan")
 
 
 def refused(text, function, *arguments):
@@ -23,41 +23,13 @@ def refused(text, function, *arguments):
         function(*arguments)
 
 
-# Fields
-
-
-def test_one_value_for_all_lights_or_one_each():
-    assert light_goals.intensities(TWO, [0.5]) == [0.5, 0.5] and light_goals.intensities(TWO, [0, 1]) == [0.0, 1.0]
-    assert light_goals.colours(TWO, [0, 1, 0], "") == [(0, 1, 0), (0, 1, 0)]
-    assert light_goals.colours(TWO, [1, 0, 0, 0, 0, 1], "") == [(1, 0, 0), (0, 0, 1)]
-    assert light_goals.colours(TWO, [], "cyan") == [(0, 1, 1), (0, 1, 1)]
-    for lights, values, text in (
-        (TWO, [0.1, 0.2, 0.3], r"3 values for 2 lights: allowed are 1 \(for all\) or 2 \(1 each\)"),
-        (["Brain0"], [0.1, 0.2], "2 values for 1 light: allowed are 1$"),
-    ):
-        refused(f"field i_values: {text}", light_goals.intensities, lights, values)
-    text = r"4 values for the colours of 2 lights: allowed are 3 \(for all\) or 6"
-    refused(text, light_goals.colours, TWO, [0, 1, 0, 1], "")
-    refused("field i_values: there is a colour in str_param already", light_goals.colours, TWO, [0, 1, 0], "green")
-    for value in (-0.1, 1.5, NAN):
-        refused(r"field i_values: .* each within 0\.\.1", light_goals.intensities, ["Brain0"], [value])
-        refused(r"field i_values: .* each within 0\.\.1", light_goals.colours, ["FaceLeds"], [0, value, 0], "")
-
-
-def test_colour_steps_from_numbers_or_names_times_and_angles():
-    assert light_goals.colour_steps([0.5, 1.0], [1, 0, 0, 0, 1, 0], "") == [(1, 0, 0), (0, 1, 0)]
-    assert light_goals.colour_steps([0.5, 1.0], [], "red, #00FF00") == [(1, 0, 0), (0, 1, 0)]
-    text = "field i_values: 3 values for 2 times: allowed are 6"
-    refused(text, light_goals.colour_steps, [0.5, 1.0], [1, 0, 0], "")
+def test_times_rise_and_colours_are_in_one_field_only():
     light_goals.require_times([0.1, 0.2, 5.0])
-    for times in ([], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [-1.0], [NAN], [INF]):
+    for times in ([], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [NAN]):
         refused("field times", light_goals.require_times, times)
-    light_goals.require_seconds("duration", 0.0, True)
-    refused("field rotation_time", light_goals.require_seconds, "rotation_time", INF, True)
-    light_goals.require_angle(0)
+    refused("field i_values: there is a colour in str_param already", light_goals.colours, TWO, [0, 1, 0], "green")
     light_goals.require_angle(360)
-    for angle in (-1, 361):
-        refused(r"field angle: .* 0\.\.360 deg", light_goals.require_angle, angle)
+    refused(r"field angle: .* 0\.\.360 deg", light_goals.require_angle, 361)
 
 
 def test_colours_as_text_and_as_integers(tmp_path):
@@ -74,9 +46,6 @@ def test_colours_as_text_and_as_integers(tmp_path):
     (tmp_path / "colours.json").write_text(json.dumps({"odd": [0, 0, 2]}))
     with pytest.raises(ValueError, match="odd"):
         read_colours(tmp_path / "colours.json")
-
-
-# Names
 
 
 def test_groups_lights_and_leds_are_used_alike():
@@ -121,15 +90,3 @@ def test_lights_are_as_bright_as_their_strongest_led_and_groups_as_their_mean():
     equal = values((0.1, 0.2, 0.7), (0.1, 0.2, 0.7))
     assert mean_colour(NAMES, "Eyes", equal) == [0.1, 0.2, 0.7], "without rounding"
     assert mean_colour(NAMES, "All", values((1, 0, 0), (1, 0, 0), brain=0.9)) == [1, 0, 0]
-
-
-def test_restoring_sets_each_light_once_to_its_own_values():
-    state = values((0.1, 0.2, 0.3), (0.4, 0.5, 0.6))
-    assert restoring_calls(NAMES, ["Eyes", "All", "Eye1"], state) == [
-        ("fadeRGB", ("Eye1", 0.1, 0.2, 0.3, 0.0)), ("fadeRGB", ("Eye2", 0.4, 0.5, 0.6, 0.0)),
-        ("setIntensity", ("Brain0", 0.5)),
-    ]  # fmt: skip
-    pair = [("setIntensity", ("Pair/Led/0", 0.1)), ("setIntensity", ("Pair/Led/1", 0.9))]
-    assert restoring_calls(NAMES, ["Pair"], state) == pair, "several of one colour: LED by LED"
-    led = NAMES.lights["Eye1"][0]
-    assert restoring_calls(NAMES, [led], state) == [("setIntensity", (led, pytest.approx(0.1)))]

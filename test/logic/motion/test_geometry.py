@@ -39,27 +39,6 @@ def test_angles_are_wrapped_to_half_a_turn_and_headings_read_from_quaternions():
     assert yaw_of_quaternion(0.0, 0.0, 0.0, 0.0) is yaw_of_quaternion(0.0, 0.0, math.nan, 1.0) is None
 
 
-def off_axis(camera, yaw, pitch, point):
-    """Distance of a point from the line of sight of a camera, m."""
-    x, y, z = point
-    # Into the frame of the head: turn back yaw, then pitch (positive is down).
-    ahead, aside = x * math.cos(yaw) + y * math.sin(yaw), y * math.cos(yaw) - x * math.sin(yaw)
-    up = z - HEAD.height
-    hx = ahead * math.cos(pitch) - up * math.sin(pitch)
-    hz = ahead * math.sin(pitch) + up * math.cos(pitch)
-    dx, dz = hx - camera.ahead, hz - camera.above
-    assert dx * math.cos(camera.down) - dz * math.sin(camera.down) > 0.0, "behind the camera"
-    return math.hypot(aside, dx * math.sin(camera.down) + dz * math.cos(camera.down))
-
-
-@pytest.mark.parametrize("name", HEAD.cameras)
-@given(point=st.tuples(st.floats(0.3, 3.0), st.floats(-1.0, 1.0), st.floats(-0.3, 1.0)))
-@settings(max_examples=30)
-def test_the_point_is_in_the_middle_of_the_picture(name, point):
-    camera = HEAD.cameras[name]
-    assert off_axis(camera, *look_at(HEAD, camera, point), point) == pytest.approx(0.0, abs=1e-9)
-
-
 def test_left_is_positive_yaw_down_is_positive_pitch_and_a_point_in_the_head_is_refused():
     camera = HEAD.cameras["CameraTop"]
     assert look_at(HEAD, camera, (1000.0, 0.0, HEAD.height)) == pytest.approx((0.0, -camera.down), abs=1e-3)

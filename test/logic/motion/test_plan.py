@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from nao_library_modules.errors import BadGoal, CannotWalk, NotFit
+from nao_library_modules.errors import BadGoal, NotFit
 from nao_library_modules.motion_facts import JointLimits, JointState, MotionFacts, one_each
 from nao_library_modules.motion_gait import GaitRange, read_gait, walk_time
-from nao_library_modules.motion_health import Health, in_chain
+from nao_library_modules.motion_health import Health
 from nao_library_modules.motion_plan import MotionPlan, require_fraction, require_rising
 from nao_library_modules.places import Place
 
@@ -105,30 +105,6 @@ def test_a_hot_joint_is_slow_and_a_very_hot_one_is_refused():
     warm(90.0).require_fit(["HeadYaw"])
     text = "too hot to move: LKneePitch 74 degC: rest until they are below 74 degC"
     refused(text, warm(74.0).require_fit, [KNEE, "HeadYaw"], error=NotFit)
-
-
-def test_an_empty_battery_moves_nothing_until_it_is_charged_and_nobody_walks_in_the_air():
-    Health(charge=0.03).require_fit([KNEE])
-    Health(charge=0.0, charging=True).require_fit([KNEE])
-    text = r"the battery is empty \(2% left\): plug the charger in"
-    refused(text, Health(charge=0.02).require_fit, [KNEE], error=NotFit)
-    text = r"the battery is too low to walk \(5% left\): plug the charger in"
-    refused(text, Health(charge=0.05).require_walk, [KNEE], False, error=CannotWalk)
-    Health(charge=0.06).require_walk([KNEE], moved=False)
-    text = "no foot touches the ground: put the robot on its feet first"
-    refused(text, Health(on_ground=False).require_walk, [KNEE], False, error=CannotWalk)
-    Health(on_ground=True).require_walk([KNEE], moved=False)
-    Health(on_ground=False).require_walk([KNEE], moved=True)  # it is put on its feet before
-    Health().require_walk([KNEE], moved=False)  # a robot that tells nothing is fit
-
-
-def test_chains_of_the_protection():
-    for joint, chain, inside in (
-        ("HeadYaw", "Head", True), ("LHand", "LArm", True), ("LHand", "RArm", False), ("LHipRoll", "LArm", False),
-        ("LHipRoll", "LLeg", True), ("RAnklePitch", "LLeg", False), ("RElbowYaw", "RArm", True),
-        ("RElbowYaw", "Body", True), ("RElbowYaw", "Legs", True), ("LHipRoll", "Head", False),
-    ):  # fmt: skip
-        assert in_chain(joint, chain) is inside, (joint, chain)
 
 
 # Gait

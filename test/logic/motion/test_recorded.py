@@ -1,8 +1,7 @@
-"""Recorded motions: faster, mirrored, thinned out, read from files, kept in a folder; walks that were watched."""
+"""Recorded motions: faster, mirrored, thinned out, read from files, kept in a folder."""
 
 from __future__ import annotations
 
-import json
 import math
 
 import pytest
@@ -12,8 +11,6 @@ from hypothesis import strategies as st
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.motion_store import MotionStore
 from nao_library_modules.recorded_motion import RecordedMotion, motion_of, recorded
-from nao_library_modules.walk_picture import FILLS, MASS, PRESSURE, SOLE, draw, outline
-from nao_library_modules.walk_record import LEFT, RIGHT, Sample, WalkRecordError, footprints, load, save
 
 MOTION = RecordedMotion(("HeadYaw", "LElbowRoll", "RHand"), (0.0, 1.0), ((0.5, -1.0, 0.0), (0.0, -0.5, 1.0)))
 
@@ -68,9 +65,6 @@ def test_what_is_written_is_read_and_a_broken_file_is_told_with_what_is_wrong():
             motion_of(content and {"version": 1, **content}, "wave")
 
 
-# The folder
-
-
 @pytest.fixture
 def store(tmp_path):
     return MotionStore(tmp_path / "motions")
@@ -99,57 +93,3 @@ def test_motions_are_saved_listed_renamed_and_deleted(store):
     store.path("greet").write_text("joints: [a]\n")
     with pytest.raises(BadGoal, match="motion 'greet'"):
         store.load("greet")
-
-
-# Walks
-
-
-def sample(left=0.0, right=0.0, loads=(2.5, 2.5), planned=("", (0.0, 0.0, 0.0)), turn=0.0):
-    """Feet at these distances ahead, 0.1 m apart; the centre of mass between them."""
-    centres = ((0.02, 0.0), (0.02, 0.0))
-    return Sample((left, 0.05, turn), (right, -0.05, 0.0), ((left + right) / 2.0, 0.0), loads, centres, planned)
-
-
-# The right foot swings 8 cm ahead, then the left one to its side.
-WALK = [
-    sample(), sample(right=0.04, loads=(5.0, 0.0), planned=(RIGHT, (0.081, -0.05, 0.0))),
-    sample(right=0.08, loads=(4.5, 0.5)), sample(right=0.079), sample(right=0.08, loads=(0.1, 4.9)),
-    sample(left=0.05, right=0.08, loads=(0.0, 5.0), planned=(LEFT, (0.082, 0.05, 0.0))), sample(left=0.08, right=0.08),
-]  # fmt: skip
-
-
-def test_feet_leave_prints_where_they_stand_and_pressure_by_what_they_carry():
-    prints = footprints(WALK)
-    assert [(each.foot, each.place[0]) for each in prints] == [(LEFT, 0.0), (RIGHT, 0.0), (RIGHT, 0.08), (LEFT, 0.08)]
-    assert [each.planned and each.planned[0] for each in prints] == [None, None, 0.081, 0.082]
-    assert [each.foot for each in footprints([sample(), sample(turn=0.3)])] == [LEFT, RIGHT, LEFT], "a turn is a step"
-    for loads, place in (((5.0, 0.0), 0.05), ((2.5, 2.5), 0.0), ((1.0, 3.0), -0.025)):
-        assert sample(loads=loads).pressure == pytest.approx((0.02, place))
-    assert sample(loads=(0.0, 0.0)).pressure is None
-
-
-def test_a_record_comes_back_as_it_was_and_another_file_is_refused(tmp_path):
-    path = tmp_path / "walk.json"
-    save(WALK, path)
-    assert load(path) == WALK
-    for text, problem in (("[]", "format"), (json.dumps({"format": "nao_walk_record"}), "samples")):
-        path.write_text(text, encoding="utf-8")
-        with pytest.raises(WalkRecordError, match=f"walk.json.*{problem}"):
-            load(path)
-
-
-def test_the_picture_is_to_scale_and_shows_everything():
-    picture = draw(WALK)
-    pixels = list(picture.getdata())
-    assert {*FILLS.values(), MASS, PRESSURE} <= set(pixels)
-    # The soles cover what they cover on the ground, at equal scale in both directions.
-    columns = [i % picture.width for i, pixel in enumerate(pixels[: picture.width * 300]) if pixel == FILLS[LEFT]]
-    rows = [i // picture.width for i, pixel in enumerate(pixels) if pixel == FILLS[LEFT]]
-    xs, ys = zip(*SOLE)
-    wanted = (max(xs) - min(xs) + 0.08) / (max(ys) - min(ys))
-    assert (max(columns) - min(columns)) / (max(rows) - min(rows)) == pytest.approx(wanted, rel=0.1)
-    left, right = outline(LEFT, (0.0, 0.0, 0.0)), outline(RIGHT, (0.0, 0.0, 0.0))
-    assert [(x, -y) for x, y in left] == right, "mirror images"
-    assert outline(LEFT, (1.0, 2.0, math.pi / 2.0)) == [pytest.approx((1.0 - y, 2.0 + x)) for x, y in left]
-    with pytest.raises(ValueError, match="without a sample"):
-        draw([])

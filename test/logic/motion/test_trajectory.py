@@ -6,15 +6,12 @@ import math
 from types import SimpleNamespace
 
 import pytest
-import yaml
 
-from nao_library_modules.behaviors import BehaviorStore, problems_of
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.joint_trajectory import H25_BODY, check_range, expand_names, one_each, read_trajectory
 from nao_library_modules.motion_store import MotionStore
 from nao_library_modules.paths import config_file
 from nao_library_modules.xap import BadPoseFile, read_poses
-from nao_sim_bridge.paths import sounds_directory
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.motion.curves import SmoothCurve
 
@@ -47,31 +44,10 @@ def test_relative_values_are_told_to_the_robot_or_added_to_the_start():
     assert frames.interpolation_arguments()[-1] is False
     assert frames.absolute([1.0, 2.0]).values == ((1.1,), (1.9,))
     assert frames.absolute([1.0, 2.0]).interpolation_arguments()[-1] is True
-
-
-def bezier(start, end, share):
-    """Angle of a cubic Bezier segment between two control points; (time, angle) relative to the start time."""
-    length, (value, _, (_, dt_out, da_out)) = end[0], start[1]
-    target, (_, dt_in, da_in), _ = end[1]
-    points = [(0.0, value), (dt_out, value + da_out), (length + dt_in, target + da_in), (length, target)]
-    s, t = share, 1.0 - share
-    weights = (t**3, 3 * t * t * s, 3 * t * s * s, s**3)
-    return tuple(sum(w * p[axis] for w, p in zip(weights, points)) for axis in (0, 1))
-
-
-def test_bezier_points_have_the_velocities_asked_for():
-    names, times, points = read(["HeadYaw"], point(1, [0.2], [0.3]), point(3, [0.6], [-0.1])).bezier_arguments()
-    assert (names, times) == (["HeadYaw"], [[1.0, 3.0]])
-    start, end, step = (1.0, points[0][0]), (2.0, points[0][1]), 1e-5
-    for share, velocity in ((0.0, 0.3), (1.0 - step, -0.1)):
-        (t0, a0), (t1, a1) = bezier(start, end, share), bezier(start, end, share + step)
-        assert (a1 - a0) / (t1 - t0) == pytest.approx(velocity, abs=1e-4)
-    assert bezier(start, end, 0.5)[0] == pytest.approx(1.0)  # time runs evenly along the segment
-    relative = read(["HeadYaw"], point(1, [0.2], [0.0]), relative=True)
-    for frames in (read(["HeadYaw"], point(1, [0.2])), relative):
-        with pytest.raises(ValueError, match="velocities and absolute"):
-            frames.bezier_arguments()
-    assert relative.absolute([0.5]).bezier_arguments()[2][0][0][0] == 0.7
+    names, times, points = read(["HeadYaw"], point(1, [0.2], [0.3]), point(4, [0.6], [-0.1])).bezier_arguments()
+    (_, _, (_, out, rise)), (_, (_, into, fall), _) = points[0]
+    assert (names, times) == (["HeadYaw"], [[1.0, 4.0]]) and (out, rise) == pytest.approx((1.0, 0.3))
+    assert (into, fall) == pytest.approx((-1.0, 0.1)), "time runs evenly; slopes are the velocities"
 
 
 def test_a_pose_of_the_whole_h25_body_fits_a_robot_without_wrists_and_hands():
@@ -145,7 +121,6 @@ def test_version_2_is_in_radians_and_older_in_degrees(poses, tmp_path):
 
 # What comes with the library
 
-TEN = "bow count_to_ten dance hello introduce_yourself look_around nod shake_head sit_and_rest tai_chi".split()
 MOTIONS = sorted(path.stem for path in config_file("motions").glob("*.yaml"))
 SHARE = 0.75
 """Of its top speed that a joint of a shipped motion may need."""
@@ -154,32 +129,6 @@ SHARE = 0.75
 @pytest.fixture
 def motions(tmp_path):
     return MotionStore(tmp_path, config_file("motions"))
-
-
-def fields_named(node, name):
-    """Values of a field, wherever it is in a file."""
-    if isinstance(node, dict):
-        return [value for key, value in node.items() if key == name] + [
-            found for value in node.values() for found in fields_named(value, name)
-        ]
-    return [found for value in node for found in fields_named(value, name)] if isinstance(node, list) else []
-
-
-def test_ten_behaviours_can_be_run_as_they_are_and_play_every_motion(tmp_path):
-    store, played = BehaviorStore(tmp_path, config_file("behaviors")), []
-    assert store.names() == TEN
-    for name in TEN:
-        behavior = store.load(name)
-        assert problems_of(lambda n=name: store.load(n), store.load) == []
-        assert behavior.help and behavior.tags and behavior.parameters
-        content = yaml.safe_load(store.text(name))
-        for step in fields_named(content, "NaoMotion.playMotion"):
-            depths = ["small", "deep"] if "${depth}" in step["str_param"] else [""]
-            played += [step["str_param"].replace("${depth}", depth) for depth in depths]
-    assert sorted(played) == MOTIONS
-    (play,) = fields_named(yaml.safe_load(store.text("dance")), "nao_audio_out.playFile")
-    for tempo in store.load("dance").parameters["tempo"].choices:
-        assert (sounds_directory() / play["str_param"].replace("${tempo}", str(tempo))).is_file()
 
 
 @pytest.mark.parametrize("name", MOTIONS)

@@ -1,16 +1,11 @@
-"""Files of pictures and videos: names, what is never replaced, disks that are full; and pictures of films."""
+"""Files of pictures and videos: names, and what is never replaced."""
 
 from __future__ import annotations
 
 import re
-from fractions import Fraction
 
-import av
-import numpy as np
 import pytest
-from PIL import Image
 
-from nao_library_modules.contact_sheet import BAND, MOMENTS, Part, contact_sheet, frames_at, save_small
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.vision_files import FileTrouble, VisionFiles
 
@@ -73,46 +68,3 @@ def test_what_is_there_stays_unless_it_may_be_replaced(files):
     files.require_free(video, True)
     with pytest.raises(FileTrouble, match="cannot be written: .*[Ee]xists|Not a directory"):
         VisionFiles(str(path)).write(path / "a.png", b"")
-
-
-# Pictures of films
-
-RATE, SECONDS, SIDE = 10, 6, 64
-
-
-@pytest.fixture
-def film(tmp_path):
-    """A film that gets brighter: at time t its grey is 40 t."""
-    path = tmp_path / "film.mp4"
-    with av.open(str(path), "w") as container:
-        stream = container.add_stream("mpeg4", rate=RATE)
-        stream.width = stream.height = SIDE
-        stream.pix_fmt, stream.bit_rate = "yuv420p", 2_000_000
-        for number in range(RATE * SECONDS):
-            grey = np.full((SIDE, SIDE, 3), 40.0 * number / RATE, np.uint8)
-            frame = av.VideoFrame.from_ndarray(grey, format="rgb24")
-            frame.pts, frame.time_base = number, Fraction(1, RATE)
-            container.mux(stream.encode(frame))
-        container.mux(stream.encode(None))
-    return path
-
-
-def grey(picture):
-    return float(np.asarray(picture).mean())
-
-
-def test_a_sheet_has_a_strip_for_each_part_of_a_film(film, tmp_path):
-    assert Part("a", 2.0, 5.0).moments(3) == [2.5, 3.5, 4.5]
-    found = [grey(picture) for picture in frames_at(film, [3.05, 1.05, 99.0])]
-    assert found == pytest.approx([120.0, 40.0, 236.0], abs=6.0), "in any order"
-    sheet = contact_sheet(film, [Part("dark", 0.0, 3.0), Part("bright", 3.0, 6.0)], side=32)
-    assert sheet.size == (MOMENTS * 32, 2 * (32 + BAND))
-    dark = sheet.crop((0, BAND, sheet.width, BAND + 32))
-    bright = sheet.crop((0, 2 * BAND + 32, sheet.width, sheet.height))
-    assert grey(dark) == pytest.approx(60.0, abs=8.0) and grey(bright) == pytest.approx(180.0, abs=8.0)
-    parts = [Part(str(place), place, place + 1.0) for place in range(3)]
-    assert contact_sheet(film, parts, side=32, columns=2).size == (2 * MOMENTS * 32 + BAND, 2 * (32 + BAND))
-    middle = contact_sheet(film, [Part("all", 0.0, 6.0)], side=32, share=0.5)
-    assert middle.size == (MOMENTS * 16, 32 + BAND)
-    save_small(middle, tmp_path / "sheet.png")
-    assert Image.open(tmp_path / "sheet.png").mode == "P", "a small sheet has few colours"

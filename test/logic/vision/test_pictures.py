@@ -65,13 +65,6 @@ def test_sixteen_bits_of_grey_stay(big):
     assert back.tolist() == picture.tolist()
 
 
-def test_rows_may_be_longer_than_the_picture():
-    rows = np.full((3, 10), 9, np.uint8)
-    rows[:, :6] = [1, 2, 3, 4, 5, 6]
-    message = Image(width=2, height=3, step=10, encoding="bgr8", data=rows.tobytes())
-    assert picture_of(message).tolist() == [[[1, 2, 3], [4, 5, 6]]] * 3
-
-
 def test_compressed_messages_are_pictures_as_well():
     for kind in ("png", "jpg"):
         data = encoded(picture_of(image(0.0, ORANGE)), kind)

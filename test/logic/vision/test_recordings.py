@@ -65,15 +65,6 @@ def test_without_a_frame_there_is_no_file(recording, files):
     assert one.video.error == f"no frame came from {CAMERA}: there is no file"
 
 
-def test_stamps_that_are_missing_are_the_time_of_arrival(recording, topics, clock):
-    one = recording()
-    for number in range(3):
-        clock.time += 0.25
-        topics.send(CAMERA, numbered_image(number, 0.0))
-    one.stop()
-    assert one.video.duration == pytest.approx(0.75)
-
-
 def test_a_full_disk_ends_a_recording_and_nothing_else(recording, stream, send, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 import pytest
 
 from nao_library_modules.motion_facts import JointLimits
@@ -13,7 +12,6 @@ from nao_library_modules.vision_detect_events import (
     BALL,
     CODE,
     FACE,
-    LANDMARK,
     MOVEMENT,
     NOTHING,
     Lens,
@@ -33,9 +31,6 @@ HFOV, VFOV = math.radians(56.3), math.radians(43.7)
 LENS = Lens(HFOV, VFOV)
 HERE = (0.0,) * 6
 HEAD = JointLimits(-2.0857, 2.0857, 8.27), JointLimits(-0.6720, 0.5149, 7.19)
-
-
-# Events
 
 
 def value(content, camera=0, time=(100, 300000)):
@@ -120,40 +115,6 @@ def test_what_is_wanted():
     assert same_clock(100.0, 100.4) and not same_clock(7000.0, 100.0)
 
 
-# Space
-
-
-def drawn(points):
-    """Region of points (n, 3) of the camera's frame in the picture: X along its axis, Y left, Z up."""
-    x = 0.5 - points[:, 1] / points[:, 0] / math.tan(HFOV / 2) / 2
-    y = 0.5 - points[:, 2] / points[:, 0] / math.tan(VFOV / 2) / 2
-    return Region((x.max() + x.min()) / 2, (y.max() + y.min()) / 2, np.ptp(x), np.ptp(y))
-
-
-def disc(centre, normal, radius):
-    """Points of a circle around a point, (n, 3), m."""
-    normal = np.asarray(normal, dtype=float) / np.linalg.norm(normal)
-    left = np.cross([0.0, 0.0, 1.0], normal)
-    left /= np.linalg.norm(left)
-    turns = np.linspace(0.0, 2.0 * math.pi, 720)[:, None]
-    return np.asarray(centre) + radius * (np.cos(turns) * left + np.sin(turns) * np.cross(normal, left))
-
-
-@pytest.mark.parametrize("tilt", ["to the camera", "turned aside", "lying back"])
-@pytest.mark.parametrize("centre", [(1.0, 0.4, 0.0), (0.8, -0.35, 0.2), (1.4, 0.3, -0.4)])
-def test_a_landmark_is_where_it_is_however_it_hangs(centre, tilt):
-    normal = {
-        "to the camera": [-value for value in centre],
-        "turned aside": (-math.cos(0.5) * centre[0], math.sin(0.5) - centre[1], -centre[2]),
-        "lying back": (-math.cos(0.5) * centre[0], -centre[1], math.sin(0.5) - centre[2]),
-    }[tilt]
-    region = drawn(disc(centre, normal, 0.046))
-    sizes = [2 * math.atan(region.width * math.tan(HFOV / 2)), 2 * math.atan(region.height * math.tan(VFOV / 2))]
-    seen = located(Sight(LANDMARK, "64", "64", 1.0, 0.0, 0.0, *sizes), 0, 1.0, region, LENS, 0.092, HERE, HERE)
-    assert seen.distance == pytest.approx(math.hypot(*centre), rel=0.035)
-    assert seen.in_robot == pytest.approx(centre, abs=0.035 * math.hypot(*centre))
-
-
 @pytest.mark.parametrize("offset", [(1.0, 0.0, 0.0), (0.5, 0.12, -0.1), (2.0, -0.8, 0.6), (0.3, -0.1, 0.05)])
 @pytest.mark.parametrize("yaw, down", [(0.0, 0.0), (0.7, 0.3), (-0.4, 0.9)])
 def test_a_ball_is_where_it_is_wherever_it_is_in_the_picture(offset, yaw, down):
@@ -174,9 +135,6 @@ def test_a_ball_is_where_it_is_wherever_it_is_in_the_picture(offset, yaw, down):
     assert message.header.stamp.to_sec() == 9.5 and (message.x, message.y) == region[:2]
     assert (message.position.x, message.position.y, message.position.z) == pytest.approx(place)
     assert message.camera_position.z == pytest.approx(ahead)
-
-
-# Several pictures
 
 
 def seen(key, name="", x=1.0, y=0.0, alpha=0.0, size=0.1):
@@ -200,9 +158,6 @@ def test_looks_at_the_same_are_put_together_the_known_first_then_the_most_often_
     assert told(order) == [("anna", 1), ("", 2), ("", 1)]
     (one,) = merged([[seen("1", alpha=alpha)] for alpha in (0.1, 0.4, 0.12)])
     assert (one.sight.alpha, one.looks) == (0.12, 3)
-
-
-# The head
 
 
 def test_the_one_that_is_followed_is_the_largest_first_and_then_the_same():

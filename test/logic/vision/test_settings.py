@@ -4,20 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-import vision_definitions
-from nao_library_modules.camera_facts import BOTTOM, RESOLUTIONS, SIZES, TOP, camera_number
+from nao_library_modules.camera_facts import BOTTOM, TOP, camera_number
 from nao_library_modules.errors import BadGoal
-from nao_library_modules.vision_cameras import PARAMETERS, camera_name, parameter_number, resolution_name, resolution_of
-
-
-def test_the_constants_are_those_of_the_sdk():
-    assert (TOP, BOTTOM) == (vision_definitions.kTopCamera, vision_definitions.kBottomCamera)
-    for name, number in PARAMETERS.items():
-        assert getattr(vision_definitions, f"kCamera{name}ID") == number
-    for name, (number, _, _) in RESOLUTIONS.items():
-        assert getattr(vision_definitions, f"k{name}") == number
-    pixels = [width * height for width, height in SIZES.values()]
-    assert pixels == sorted(set(pixels)), "sizes grow with the names"
+from nao_library_modules.vision_cameras import camera_name, parameter_number, resolution_name, resolution_of
 
 
 def test_spellings_of_a_parameter():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
-from camera_topics import CAMERA, OUT, image, numbers_of, wait_for
+from camera_topics import CAMERA, OUT, numbers_of, wait_for
 
 from nao_library_modules import vision_queue
 from nao_library_modules.errors import BadGoal
@@ -49,19 +49,6 @@ def test_a_thread_tells_how_it_is(started, topics, send, clock):
     clock.time += 100.0
     assert (one.report().state, one.report().duration) == ("stopped", pytest.approx(3.0 + 2.0 + 2.5 + 0.1))
     assert topics.count(CAMERA) == 0
-
-
-def test_frames_that_cannot_be_read_are_told_once_and_the_next_one_may_be(stream, topics, send, clock, caplog):
-    one = stream(width=32)
-    for _ in range(3):
-        topics.send(CAMERA, image(clock.time, encoding="32FC1"))
-    wait_for(lambda: one.report().dropped == 3)
-    report = one.report()
-    assert report.state == "running" and "encoding '32FC1' cannot be read: known are bgr8" in report.error
-    assert len([r for r in caplog.records if "32FC1" in r.getMessage()]) == 1
-    send(1)
-    wait_for(lambda: one.report().frames == 1)
-    assert one.report().error == ""
 
 
 def test_the_table_knows_its_threads(topics, clock):

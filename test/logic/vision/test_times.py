@@ -7,7 +7,7 @@ import random
 import pytest
 
 from nao_library_modules.image_clock import ImageClock
-from nao_library_modules.vision_times import RateLimit, RateMeter, VideoTimes
+from nao_library_modules.vision_times import RateLimit, VideoTimes
 
 
 def passed(rate, stamps):
@@ -38,19 +38,6 @@ def test_times_in_a_video_are_those_of_the_camera_whichever_clock_it_has():
         assert places(*stamps) == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.5], abs=1e-6)
 
 
-def test_rate_of_late():
-    meter = RateMeter(4)
-    assert meter.rate == 0.0
-    for stamp in (0.0, 1.0, 2.0, 2.1, 2.2, 2.3):
-        meter.count(stamp)
-    assert meter.rate == pytest.approx(10.0)
-    meter.count(0.5)  # set back
-    assert meter.rate == 0.0
-
-
-# Pictures of a clock of their own
-
-
 def test_the_quickest_pictures_tell_how_the_clocks_go_together():
     clock, luck = ImageClock(), random.Random(1)
     times = []
@@ -63,17 +50,6 @@ def test_the_quickest_pictures_tell_how_the_clocks_go_together():
     late = [ros - 1000.0 - taken for taken, ros, _ in times[100:]]
     assert max(late) - min(late) < 0.012, "the jitter of the way is in the times"
     assert sum(late) / len(late) == pytest.approx(0.02, abs=0.003)
-
-
-def test_a_clock_that_runs_away_or_slower_is_followed():
-    clock, ros = ImageClock(), 0.0
-    for number in range(3000):
-        ros = clock.take(number / 10.0, 500.0 + number / 10.0 * 1.00005)
-    assert ros == pytest.approx(500.0 + 299.9 * 1.00005, abs=0.001)
-    clock = ImageClock()
-    for number in range(300):  # a simulation that does not keep real time
-        arrived = 500.0 + number / 15.0 / 0.5 + 0.02
-        assert arrived - clock.take(number / 15.0, arrived) < 0.6
 
 
 @pytest.mark.parametrize("taken, arrived", [(1.0, 210.0), (90.0, 210.0), (10.1, 5.0), (300.0, 210.0)])

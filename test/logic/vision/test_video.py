@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-import errno
-import io
-import os
-
 import av
-import cv2
 import numpy as np
 import pytest
 from camera_topics import number_of, numbered
@@ -69,46 +64,6 @@ def test_a_camera_that_changes_its_size_is_made_to_fit(path):
     assert [picture.shape for picture in pictures] == [(48, 64, 3)] * 4
     assert [picture[:, 16:48].mean() for picture in pictures] == pytest.approx([50, 100, 150, 200], abs=6)
     assert pictures[3][:, :6].mean() == pytest.approx(0, abs=6)  # black beside what is higher than wide
-
-
-@pytest.mark.parametrize("size, even", [((65, 49), (64, 48)), ((40, 30), (40, 30)), ((1, 1), (2, 2))])
-def test_odd_sizes_lose_a_line(path, size, even):
-    video = write(path, [0.0, 0.1], size=size)
-    capture = cv2.VideoCapture(str(path))
-    assert [capture.read()[1].shape for _ in range(2)] == [(even[1], even[0], 3)] * 2
-    assert (video.width, video.height) == even
-
-
-class SmallDisk(io.FileIO):
-    """A file on a disk with little room."""
-
-    def __init__(self, path, room):
-        super().__init__(str(path), "x")
-        self.room = room
-
-    def write(self, data):
-        if self.tell() + len(data) > self.room:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        return super().write(data)
-
-
-@pytest.mark.parametrize("kind, codec", [("mp4", "h264"), ("avi", "mjpeg")])
-def test_what_was_written_before_the_disk_was_full_can_be_played(path, kind, codec):
-    file = SmallDisk(path, 150_000)
-    video = VideoFile(file, kind, codec, 64, 48)
-    noise = np.random.default_rng(2).integers(0, 60, (48, 64, 3), dtype=np.uint8)
-    written = 0
-    with pytest.raises(OSError, match="No space left") as caught:
-        for k in range(10000):
-            video.write(np.roll(numbered(k % 10) + noise, k, axis=0), k / 10.0)
-            written += 1
-    assert caught.value.errno == errno.ENOSPC
-    with pytest.raises(OSError, match="No space left"):
-        video.close()
-    times, _, _ = read(path)
-    assert file.closed and 0 < video.frames == len(times) < written and path.stat().st_size <= file.room
-    assert kind == "avi" or video.frames % 30 == 0
-    assert times == pytest.approx([k / 10.0 for k in range(video.frames)], abs=1e-3)
 
 
 def test_codecs_have_several_names():

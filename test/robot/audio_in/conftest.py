@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import module_goals
 import pytest
-from bent_robot import BentRobot
 
 from nao_library_actions.msg import NaoAudioInGoal
 from nao_library_modules.audio_in import NaoAudioInput
@@ -15,18 +13,6 @@ EXTRACTORS = ("ALSpeechRecognition", "ALSoundDetection", "ALSoundLocalization")
 @pytest.fixture
 def ears(goals_to):
     return goals_to(NaoAudioInput, NaoAudioInGoal)
-
-
-@pytest.fixture
-def bent_ears(goals_to, monkeypatch):
-    """Makes the module on a robot that is different; see BentRobot."""
-
-    def make(**bends):
-        monkeypatch.setattr(module_goals, "WatchedRobot", BentRobot)
-        monkeypatch.setattr(BentRobot, "bends", {("ALSpeechRecognition", name): bend for name, bend in bends.items()})
-        return goals_to(NaoAudioInput, NaoAudioInGoal)
-
-    return make
 
 
 @pytest.fixture

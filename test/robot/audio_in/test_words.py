@@ -93,14 +93,15 @@ def test_words_with_too_little_confidence_are_told_but_do_not_count(robot, ears,
     restored()
 
 
-@pytest.mark.parametrize("timeout, lasts", [(2.0, 2.0), (0.0, 10.0)])
-def test_nothing_in_time_is_no_failure(robot, ears, restored, timeout, lasts):
-    if timeout:  # noise is no word either
-        put(robot, (1.0, 0.5, 0.5), noise(2.0), 50.0, loop=True)
-    began = robot.now.time
-    result = ears.succeed(f("listen", vocabulary=YES_NO, timeout=timeout, str_param="English"))
-    assert (result.words, result.confidences, result.results[0].values) == ([], [], [])
-    assert robot.now.time - began == pytest.approx(lasts, abs=0.3)
+def test_nothing_in_time_is_no_failure(robot, ears, restored):
+    put(robot, (1.0, 0.5, 0.5), noise(2.0), 50.0, loop=True)  # noise is no word either
+    for timeout, lasts in ((2.0, 2.0), (0.0, 10.0)):
+        began = robot.now.time
+        result = ears.succeed(f("listen", vocabulary=YES_NO, timeout=timeout, str_param="English"))
+        assert (result.words, result.confidences, result.results[0].values) == ([], [], [])
+        assert robot.now.time - began == pytest.approx(lasts, abs=0.3)
+    text = ears.refused(f("listen", vocabulary=["yes", "привет"]))
+    assert text.startswith("function 1 (listen): ALSpeechRecognition.setVocabulary failed: ") and "'привет'" in text
     restored()
 
 
@@ -119,49 +120,6 @@ def test_every_function_that_takes_time_is_preempted_and_leaves_nothing_behind(r
     ears.succeed(f("record", str_param="after.wav", duration=0.2))
 
 
-def test_words_that_cannot_be_pronounced_abort_and_leave_all_as_it_was(robot, ears, restored):
-    text = ears.refused(f("listen", vocabulary=["yes", "привет"]))
-    assert text.startswith("function 1 (listen): ALSpeechRecognition.setVocabulary failed: ") and "'привет'" in text
-    restored()
-    assert "'привет'" in ears.refused(f("startRecognition", vocabulary=["привет"]))
-    restored()
-
-
-def test_a_pause_of_another_program_stays(robot, ears):
-    service = robot.ALSpeechRecognition
-    service.subscribe("another program")
-    service.pause(True)
-    ears.succeed(f("listen", vocabulary=YES_NO, timeout=1.0))
-    assert "привет" in ears.refused(f("setVocabulary", vocabulary=["привет"]))
-    assert robot.value("ALSpeechRecognition/IsRunning") is False
-    service.pause(False)
-    assert robot.value("ALSpeechRecognition/IsRunning") is True
-    service.unsubscribe("another program")
-
-
-def test_who_has_paused_the_recognition_does_not_listen_in_vain(robot, ears):
-    paused = "the recognition is paused: resume comes first"
-    assert paused in ears.refused(f("pause"), LISTEN)
-    service = robot.ALSpeechRecognition
-    service.subscribe("another program")
-    assert robot.value("ALSpeechRecognition/IsRunning") is True
-    ears.succeed(f("pause"))
-    assert robot.value("ALSpeechRecognition/IsRunning") is False
-    assert paused in ears.refused(LISTEN)
-    ears.succeed(f("resume"), f("listen", vocabulary=YES_NO, timeout=0.5))
-    assert robot.value("ALSpeechRecognition/IsRunning") is True
-    service.unsubscribe("another program")
-
-
-def test_a_vocabulary_that_was_set_is_for_later_functions(robot, ears, subscribers):
-    ears.succeed(f("setVocabulary", vocabulary=["don't", "stand-up", "Größe", "R2 D2", "3.5", "now!"]))
-    goal = begun(robot, ears, f("listen", timeout=5.0), subscribers)
-    told(robot, WORDS, ["now!", 0.7])
-    assert goal.finish().result.words == ["now!"]
-    result = ears.succeed(f("setVocabulary", vocabulary=YES_NO), f("listen", timeout=0.5), f("listen", timeout=0.5))
-    assert [list(done.values) for done in result.results] == [[], [], []]
-
-
 def test_recognition_outlives_its_goal_and_its_words_are_published(robot, ears, subscribers, restored):
     ears.succeed(f("startRecognition", vocabulary=YES_NO))
     assert len(subscribers()) == 1
@@ -169,6 +127,8 @@ def test_recognition_outlives_its_goal_and_its_words_are_published(robot, ears, 
     robot.advance(says(robot, "yes") + 1.5)
     robot.proxy("ALMemory").ping()
     assert [name for name, value in ears.edge.events if value[:1] == ["yes"]] == [WORDS]
+    assert "the recognition is paused: resume comes first" in ears.refused(f("pause"), LISTEN)
+    assert robot.value("ALSpeechRecognition/IsRunning") is True
     ears.succeed(f("startRecognition", vocabulary=["stop"], word_spotting=True))
     assert len(subscribers()) == 1
     goal = ears.send(LISTEN)  # in the middle of it
@@ -178,17 +138,13 @@ def test_recognition_outlives_its_goal_and_its_words_are_published(robot, ears, 
     assert goal.finish().result.words == ["no"] and len(subscribers()) == 1
     ears.succeed(f("stopRecognition"), f("stopRecognition"))
     restored()
+    ears.succeed(f("setVocabulary", vocabulary=["R2 D2", "now!"]))
+    goal = begun(robot, ears, f("listen", timeout=5.0), subscribers)
+    told(robot, WORDS, ["now!", 0.7])
+    assert goal.finish().result.words == ["now!"]
     published = len(ears.edge.events)
     told(robot, WORDS, ["yes", 0.6])
     assert len(ears.edge.events) == published
-
-
-def test_events_that_a_user_subscribed_stay_when_the_recognition_ends(robot, ears):
-    ears.succeed(f("subscribeToEvent", str_param=WORDS), f("startRecognition", vocabulary=YES_NO), f("stopRecognition"))
-    told(robot, WORDS, ["yes", 0.6])
-    assert [WORDS, ["yes", 0.6]] in [
-        [name, [value[0], round(value[1], 3)]] for name, value in ears.edge.events if value[0]
-    ]
 
 
 def test_the_end_of_the_server_ends_what_goals_have_left_and_so_does_the_next_of_its_name(
@@ -216,47 +172,13 @@ def test_the_end_of_the_server_ends_what_goals_have_left_and_so_does_the_next_of
     robot.ALSpeechRecognition.unsubscribe("another program")
 
 
-def test_a_language_is_for_this_time_only_and_a_robot_may_be_unable_to_keep_a_vocabulary(robot, bent_ears, subscribers):
-    robot.ALMemory.insertData("languages", ["English", "French"])
-    robot.ALMemory.insertData("language", "English")
-    ears = bent_ears(
-        getAvailableLanguages=lambda: ("ALMemory", "getData", ("languages",)),
-        getLanguage=lambda: ("ALMemory", "getData", ("language",)),
-        setLanguage=lambda language: ("ALMemory", "insertData", ("language", language)),
-        pushContexts=lambda: ("ALSpeechRecognition", "noSuchMethod", ()),
-    )
-    for function, end in [
-        (f("listen", vocabulary=YES_NO, str_param="French", timeout=3.0), "finish"),
-        (f("listen", vocabulary=YES_NO, str_param="French", timeout=3.0), "cancel"),
-        (f("setLanguage", str_param="French", revert=True, time=Duration(3)), "finish"),
-    ]:
-        goal = ears.send(function)
-        robot.advance(1.0)
-        assert robot.value("language") == "French"
-        getattr(goal, end)()
-        assert robot.value("language") == "English" and subscribers() == []
-    assert ears.succeed(f("setLanguage", str_param="French"), f("getLanguage")).memList == ["French"]
-    assert "did you mean 'French'" in ears.refused(f("listen", vocabulary=YES_NO, str_param="Frensh"))
-    assert ears.succeed(f("getAvailableLanguages")).memList == ["English", "French"]
-
-
-def test_a_robot_without_hearing_is_told_and_the_server_stays(bent_ears):
-    gone = {name: lambda *_: ("ALHearing", "ping", ()) for name in ("pushContexts", "getSubscribersInfo", "subscribe")}
-    ears = bent_ears(**gone)
-    assert "no module 'ALHearing'" in ears.refused(LISTEN)
-    ears.succeed(f("ping"))
-
-
 NAN, INF = math.nan, math.inf
 FILE, YES = {"str_param": "a.wav", "duration": 1.0}, {"vocabulary": YES_NO}
 TIMEOUT = ("timeout", [NAN, -1.0, INF, 1e7], "is not allowed: up to 3600 s")
 SURE = ("confidence", [1.5, -0.1, NAN], "is not allowed: 0..1")
-NAME = ("str_param", ["", " "], "the name of a parameter")
 PHRASES = [
     ("vocabulary", [["yes", " "]], "there is an empty phrase in it"),
     ("vocabulary", [["yes|no"]], "'|' in 'yes|no' cannot be said"),
-    ("vocabulary", [["<yes>"]], "'<' in '<yes>' cannot be said"),
-    ("vocabulary", [["a\x07b"], ["☎"]], "cannot be said"),
     ("vocabulary", [["..."]], "nothing to say in '...'"),
     ("vocabulary", [["word " * 50]], "is too long"),
     ("vocabulary", [["word"] * 1001], "1001 words and phrases are too many"),
@@ -265,43 +187,28 @@ PHRASES = [
 REFUSED = [
     ("lisen", YES, [("timeout", [0.0], "did you mean 'listen'")]),
     ("record", FILE, [("duration", [0.0, NAN, -1.0, 1e9], "is not allowed: above 0 to 3600 s")]),
-    (
-        "record",
-        FILE,
-        [("str_param", [""], "field str_param: it is empty"), ("str_param", ["a.mp3"], "ends in .wav, .ogg")],
-    ),
+    ("record", FILE, [("str_param", [""], "field str_param: it is empty"), ("str_param", ["a.mp3"], "ends in .wav, ")]),
     ("record", FILE, [("str_param", ["../a.wav", "/etc/a.wav"], "leads out of the folder")]),
     (
         "record",
         FILE,
-        [("file_type", ["ogg"], "field file_type"), ("file_type", ["flac"], "'flac' is no type of recording")],
+        [("file_type", ["ogg"], "field file_type"), ("rate", [44100, -1], "is not allowed: 16000, 48000")],
     ),
-    ("record", FILE, [("rate", [44100, -1], "is not allowed: 16000, 48000")]),
-    ("record", FILE, [("channels", [["fornt"]], "did you mean 'front'"), ("channels", [["up"]], "no microphone")]),
+    ("record", FILE, [("channels", [["fornt"]], "did you mean 'front'")]),
     ("record", FILE, [("channels", [["left", "left"]], "each microphone once")]),
     ("record", FILE, [("channels", [["left", "rear"]], "2 channel(s): one of left, right")]),
     ("startRecording", {**FILE, "rate": 48000}, [("channels", [["left"]], "1 channel(s) at 48000 Hz")]),
     ("listen", {}, [("vocabulary", [[]], "it is empty: at least one word or phrase, here or by setVocabulary before")]),
-    (
-        "listen",
-        YES,
-        [*PHRASES, TIMEOUT, SURE, ("str_param", ["Klingon"], "no language that the robot recognises: one of En")],
-    ),
-    ("setVocabulary", {}, [("vocabulary", [[]], "at least one word or phrase"), *PHRASES]),
-    ("startRecognition", {}, [("vocabulary", [[]], "at least one word or phrase"), *PHRASES]),
+    ("listen", YES, [*PHRASES, TIMEOUT, SURE, ("str_param", ["Klingon"], "no language that the robot recognises: ")]),
+    ("setVocabulary", {}, [("vocabulary", [[]], "at least one word or phrase")]),
     ("setLanguage", {}, [("str_param", [""], "a language by NAOqi's name"), ("str_param", ["Klingon"], "no language")]),
-    ("detectSound", {}, [TIMEOUT, SURE]),
     ("localizeSound", {}, [TIMEOUT, SURE, ("duration", [NAN, -1.0], "field duration")]),
     ("getEnergy", {}, [("duration", [-1.0, NAN, 4000.0], "is not allowed: 0..3600 s")]),
     ("setSensitivity", {}, [("sensitivity", [0.0, 2.0, -0.1, NAN], "is not allowed: above 0 to 1")]),
     ("setSensitivity", {"sensitivity": 0.5}, [("str_param", ["smell"], "one of speech, detection, localization")]),
     ("setParameter", {"str_param": "Sensitivity"}, [("values", [[], [1.0, 2.0], [NAN]], "is not allowed: one number")]),
-    ("setParameter", {"values": [1.0]}, [NAME]),
-    ("setParameter", {"str_param": "outputSampleRate"}, [("values", [[11025]], "16000, 22050, 44100, 48000")]),
-    ("getParameter", {}, [NAME]),
+    ("getParameter", {}, [("str_param", ["", " "], "the name of a parameter")]),
     ("setFileAsInput", {}, [("str_param", ["a.txt"], "not a file of a known kind")]),
-    ("setOutputVolume", {}, [("volume", [101], "field volume")]),
-    ("listen", YES, [("time", [Duration(-1)], "field time")]),
 ]
 
 

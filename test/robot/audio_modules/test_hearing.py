@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from sounds import RATE, frequency, noise, put, tone, until, write
+from sounds import RATE, frequency, noise, put, until
 from spoken_words import RATE as SPEECH_RATE
 from spoken_words import spoken
 
@@ -28,9 +28,6 @@ GRAMMAR = """#BNF+EM V2.1;
 <polite>: please;
 """
 HERE, THERE = [1.0, 0.0, 0.5], [0.0, 2.0, 0.5]
-
-
-# --- sounds of the world ----------------------------------------------------------------------------------------------
 
 
 def level(robot, seconds=0.2):
@@ -62,15 +59,6 @@ def test_a_noise_is_placed_moved_and_removed_and_a_tone_has_its_frequency(robot)
     assert simulation.sounds() == {}
 
 
-def test_a_file_sounds_once_or_again_and_again(robot):
-    path = write(robot, "world.wav", tone(500.0, 0.3))
-    robot.NaoSimulation.addSound("once", path.name, HERE, 60.0, False)
-    robot.NaoSimulation.addSound("again", path.name, THERE, 60.0, True)
-    assert set(robot.NaoSimulation.sounds()) == {"once", "again"}
-    robot.advance(0.5)
-    assert set(robot.NaoSimulation.sounds()) == {"again"}
-
-
 def test_persons_speak_at_once_and_each_call_ends_when_it_is_said(robot):
     first = robot.post("NaoSimulation", "personSays", "Good morning.", HERE, "slt", 0.0)
     begun, loudest = robot.now.time, []
@@ -96,14 +84,10 @@ def test_what_cannot_sound_is_refused(robot, refused):
     robot.NaoSimulation.addSound("n", "noise:white", HERE, 60.0, True)
     rows = [
         ("m", "noise:blue", HERE, 60.0, "addSound sound is 'noise:blue', allowed is noise:white or noise:pink"),
-        ("m", "tone:a", HERE, 60.0, 'allowed is "tone:" and a frequency in Hz'),
         ("m", "tone:-1", HERE, 60.0, "frequency is -1.0, allowed is 1 to 20000"),
         ("m", "none.wav", HERE, 60.0, "no file 'none.wav'"),
-        ("m", "../none.wav", HERE, 60.0, "is not inside"),
         ("m", "noise:white", [1.0, 2.0], 60.0, "allowed is .x, y, z. in m, in world"),
-        ("m", "noise:white", [1.0, 2.0, float("nan")], 60.0, "a finite number"),
         ("m", "noise:white", HERE, 600.0, "level_db is 600.0, allowed is -20 to 140"),
-        ("", "noise:white", HERE, 60.0, "name is ''"),
         ("n", "noise:white", HERE, 60.0, "addSound name is 'n'"),
     ]
     refused("NaoSimulation", [("addSound", (*row[:4], False), row[4]) for row in rows])
@@ -111,14 +95,10 @@ def test_what_cannot_sound_is_refused(robot, refused):
         ("moveSound", ("m", HERE), "unknown sound source 'm'"),
         ("removeSound", ("m",), "unknown sound source 'm'"),
         ("personSays", ("  ", HERE, "", 0.0), "text is '  '"),
-        ("personSays", ("x" * 10001, HERE, "", 0.0), "1 to 10000 characters"),
         ("personSays", ("Hi", HERE, "bob", 0.0), "voice is 'bob', allowed is"),
     ]
     refused("NaoSimulation", others)
     assert list(robot.NaoSimulation.sounds()) == ["n"]
-
-
-# --- detection and localisation ---------------------------------------------------------------------------------------
 
 
 class Room:
@@ -151,7 +131,7 @@ def room(stiff_robot):
     return Room(stiff_robot)
 
 
-@pytest.mark.parametrize("bearing", [0, 100, -20, -140])
+@pytest.mark.parametrize("bearing", [100, -140])
 def test_a_sound_is_located(room, bearing):
     room.advance(0.3)
     begun = room.burst(bearing)
@@ -159,37 +139,16 @@ def test_a_sound_is_located(room, bearing):
     assert 3 <= len(located) <= 5
     assert room.events(ALL_LOCATED, begun) == [[sound] for sound in located]
     assert room.events(OLD_LOCATED, begun) == located
-    for (seconds, micros), (azimuth, _, confidence, energy), _, _ in located:
+    head = room.robot.ALMotion.getPosition("Head", 0, True)
+    for (seconds, micros), (azimuth, _, confidence, energy), in_torso, in_robot in located:
+        assert in_torso == pytest.approx(head, abs=1e-3)
+        assert in_robot == pytest.approx(room.robot.ALMotion.getPosition("Head", 2, True), abs=2e-3)
         assert begun - 0.2 < seconds + 1e-6 * micros < begun + 0.7
         assert (math.degrees(azimuth) - bearing + 180) % 360 - 180 == pytest.approx(0.0, abs=10.0)
         assert 0.5 < confidence <= 1.0 and energy == 0.0
-
-
-def test_angles_are_in_the_frame_of_the_head_wherever_it_looks(room):
-    room.robot.finish("ALMotion", "setAngles", ["HeadYaw", "HeadPitch"], [0.8, 0.1], 0.5, after=1.5)
-    begun = room.burst(60, then=0.8)
-    (_, (azimuth, _, _, _), in_torso, in_robot) = room.events(LOCATED, begun)[-1]
-    head = room.robot.ALMotion.getPosition("Head", 0, True)
-    assert in_torso == pytest.approx(head, abs=1e-3)
-    assert in_robot == pytest.approx(room.robot.ALMotion.getPosition("Head", 2, True), abs=2e-3)
-    assert math.degrees(azimuth + head[5]) == pytest.approx(60.0, abs=6.0)
-
-
-def test_energy_is_there_when_it_is_asked_for(room):
     room.robot.ALSoundLocalization.setParameter("EnergyComputation", True)
-    energies = [room.events(LOCATED, room.burst(20, level_db=level_db))[1][1][3] for level_db in (60.0, 66.0)]
-    assert energies[1] == pytest.approx(2.0 * energies[0], rel=0.1)
-
-
-def test_the_own_voice_is_detected_and_not_located_and_a_quiet_room_is_neither(room):
-    room.advance(3.0)
-    begun = room.robot.now.time
-    assert room.events(DETECTED, 0.0) == [] or room.events(DETECTED, begun - 2.5) == []
-    speakers, voice = room.robot.server.simulation.sound.loudspeakers, Sound((0.5 * noise(0.5)).astype(np.float32))
-    room.robot.server.runner.call(lambda: speakers.play(voice, "own voice"))
-    room.advance(1.0)
-    assert room.events(LOCATED, begun - 2.5) == []
-    assert [edge[1] for edges in room.events(DETECTED, begun) for edge in edges] == [1, 0]
+    energies = [room.events(LOCATED, room.burst(bearing, level_db=level_db))[1][1][3] for level_db in (60.0, 66.0)]
+    assert energies[1] == pytest.approx(2.0 * energies[0], rel=0.2)
 
 
 def test_a_sound_is_detected_when_it_begins_and_ends(room):
@@ -203,57 +162,14 @@ def test_a_sound_is_detected_when_it_begins_and_ends(room):
     assert 0 <= start[0] < 8160 and 0.5 <= start[2] <= 1.0
 
 
-def test_pauses_and_sensitivities_count_for_each_module(room):
-    services = {events[0]: getattr(room.robot, module) for module, events in EXTRACTORS.items()}
-    room.advance(0.5)
-
-    def heard(level_db=65.0):
-        begun = room.burst(0, level_db=level_db, then=1.2)
-        return [bool(room.events(event, begun)) for event in services]
-
-    for service in services.values():
-        assert (service.isPaused(), service.isProcessing()) == (False, True)
-    services[LOCATED].pause(True)
-    services[DETECTED].setParameter("Sensitivity", 0.1)
-    assert (services[LOCATED].isPaused(), services[LOCATED].isProcessing()) == (True, False)
-    assert heard(50.0) == [False, False, True]
-    services[LOCATED].pause(False)
-    services[LOCATED].setParameter("Sensibility", 0.1)
-    services[OLD_LOCATED].setParameter("Sensitivity", 0.1)
-    assert heard(50.0) == [False, False, False]
-    services[DETECTED].pause(True)
-    for service in services.values():
-        service.setParameter("Sensibility", 0.9)
-    assert heard(50.0) == [False, True, True]
-    services[DETECTED].pause(False)
-    services[OLD_LOCATED].pause(True)
-    room.advance(0.5)
-    assert heard(50.0) == [True, True, False]
-
-
 @pytest.mark.parametrize("module, events", EXTRACTORS.items())
 def test_extractors_tell_their_events_and_refuse_wrong_parameters(robot, refused, module, events):
     assert getattr(robot, module).getEventList() == robot.ALMemory.getExtractorEvent(module) == events
     rows = [
         ("Volume", 1.0, f"{module}::setParameter unknown parameter 'Volume'; there are Sensitivity, Sensibility"),
         ("Sensitivity", 1.5, "Sensitivity is 1.5, allowed is 0 to 1"),
-        ("Sensitivity", "high", "Sensitivity is 'high', allowed is a finite number"),
     ]
-    if module == "ALSoundLocalization":
-        rows.append(("EnergyComputation", "loud", "EnergyComputation is 'loud', allowed is true or false"))
     refused(module, [("setParameter", row[:2], row[2]) for row in rows])
-
-
-def test_the_ears_are_closed_when_nobody_is_subscribed(robot, sound):
-    assert sound.ears.listening is False
-    robot.post("ALSoundDetection", "subscribe", "Somebody", 100, 0.5).value()
-    assert sound.ears.listening is True
-    assert robot.ALSoundDetection.getSubscribersInfo() == [["Somebody", 100, 0.5]]
-    robot.ALSoundDetection.unsubscribe("Somebody")
-    assert sound.ears.listening is False
-
-
-# --- speech recognition -----------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -272,53 +188,22 @@ def person_says(robot, text):
         robot.advance((words.duration + 1.5) / 4)
 
 
-def test_a_word_is_recognised_in_simulated_time_and_other_speech_is_none(robot, asr):
-    asr.subscribe("Test")
-    robot.advance(1.0)
-    begun = robot.now.time
-    person_says(robot, "good morning")
-    phrase, confidence = robot.ALMemory.getData("WordRecognized")
-    assert phrase == "Good morning" and 0.5 < confidence <= 1.0
-    assert robot.ALMemory.getData("WordRecognizedAndGrammar") == [phrase, confidence, "modifiable_grammar"]
-    assert robot.ALMemory.getData("LastWordRecognized") == [phrase, confidence]
-    history = robot.server.memory.history("ALSpeechRecognition/Status")
-    assert [value for value, at in history if at > begun] == ["SpeechDetected", "EndOfProcess", "ListenOn"]
-    seconds, microseconds = robot.ALMemory.getTimestamp("WordRecognized")[1:3]
-    assert 0.5 < seconds + 1e-6 * microseconds - begun < 2.5
-    person_says(robot, "the weather in the mountains is nice today")
-    assert robot.ALMemory.getData("WordRecognized") == ["", -3.0]
-    assert robot.ALMemory.getData("LastWordRecognized") == [phrase, confidence]
-
-
-def test_nothing_is_recognised_while_paused_and_the_vocabulary_is_changed_then_only(robot, asr):
-    asr.subscribe("Test")
-    robot.advance(1.0)
-    assert robot.ALMemory.getData("ALSpeechRecognition/IsRunning") is True
-    with pytest.raises(RuntimeError, match=r"pause\(True\) first"):
-        asr.setVocabulary(["no"], False)
-    asr.pause(True)
-    asr.setVocabulary(["no", "good morning"], False)
-    person_says(robot, "good morning")
-    assert robot.ALMemory.getData("WordRecognized") == ["", -3.0]
-    assert robot.ALMemory.getData("ALSpeechRecognition/IsRunning") is False
-
-
 def test_what_cannot_be_listened_for_is_refused_with_its_reason(asr, refused):
     asr.pause(True)
     rows = [
         ("setVocabulary", (["猫"], False), "猫"),
-        ("setVocabulary", (["?"], False), "at least one word"),
         ("setLanguage", ("French",), "English"),
-        ("setParameter", ("Sensibility", 0.5), "Sensitivity"),
         ("setParameter", ("Sensitivity", 1.5), "0 to 1"),
         ("setVisualExpressionMode", (7,), "0 .none."),
         ("compile", ("missing.bnf", "x.lcf", "English"), "missing.bnf"),
-        ("addContext", ("missing.lcf", "x"), "missing.lcf"),
         ("activateRule", ("nothing", "x"), "unknown context"),
         ("popContexts", (), "pushed"),
     ]
     refused("ALSpeechRecognition", rows)
     asr.pause(False)
+    asr.subscribe("Test")
+    with pytest.raises(RuntimeError, match=r"pause\(True\) first"):
+        asr.setVocabulary(["no"], False)
 
 
 def test_a_grammar_file_is_compiled_and_recognised(robot, asr):
@@ -350,20 +235,10 @@ def test_a_grammar_file_is_compiled_and_recognised(robot, asr):
     person_says(robot, "turn off the radio")
     phrase, _, grammar = robot.ALMemory.getData("WordRecognizedAndGrammar")
     assert (phrase, grammar) == ("turn off the radio", "house")
+    history = [value for value, _ in robot.server.memory.history("ALSpeechRecognition/Status")]
+    assert history[-3:] == ["SpeechDetected", "EndOfProcess", "ListenOn"]
+    person_says(robot, "the weather in the mountains is nice today")
+    assert robot.ALMemory.getData("WordRecognized") == ["", -3.0]
+    assert robot.ALMemory.getData("LastWordRecognized")[0] == phrase
     asr.pause(True)
     asr.removeWordListFromSlot("house", "thing")
-
-
-def test_the_eyes_and_a_bip_show_that_it_listens(robot, asr):
-    before, begun = robot.ALLeds.getIntensity("FaceLeds"), robot.now.time
-    asr.setAudioExpression(True)
-    asr.subscribe("Test")
-    robot.settled()
-    assert robot.ALLeds.getIntensity("FaceLeds") != before
-    robot.advance(0.3)
-    asr.unsubscribe("Test")
-    robot.settled()
-    assert robot.ALLeds.getIntensity("FaceLeds") == before
-    robot.advance(0.3)
-    bips = robot.server.simulation.sound.loudspeakers.played(begun, begun + 0.6).samples[:, 0]
-    assert [frequency(bips[first : first + 5700]) for first in (0, 14400)] == pytest.approx([880.0, 587.0], abs=9.0)

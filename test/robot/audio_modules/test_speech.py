@@ -70,25 +70,6 @@ def test_say_is_over_when_the_sound_is_and_events_tell_what_is_said(robot, say, 
     assert robot.ALMemory.getData("ALTextToSpeech/TextDone") is True
 
 
-def test_the_keys_tell_while_it_speaks_that_it_is_not_done(robot, tts, say, begin):
-    keys = [f"ALTextToSpeech/{name}" for name in ("TextStarted", "TextDone", "TextInterrupted")]
-    say("One.")
-    future = begin(LONG)
-    robot.advance(0.5)
-    assert robot.ALMemory.getListData(keys) == [True, False, False]
-    tts.stopAll()
-    robot.answer(future)
-    assert robot.ALMemory.getListData(keys) == [False, False, True]
-
-
-def test_texts_that_are_said_at_once_are_said_one_after_the_other(robot, say, begin):
-    alone = [say(text) for text in ("One two.", "Three four five.")]
-    assert say("One two. Three four five.") == pytest.approx(sum(alone), abs=0.15)
-    first, second = begin("One two."), begin("Three four five.")
-    assert until(robot, first) == pytest.approx(alone[0], abs=0.11) and second.isRunning()
-    assert until(robot, second) == pytest.approx(alone[1], abs=0.11)
-
-
 @pytest.mark.parametrize("way", ["stopAll", "stop", "cancel", "reset"])
 def test_a_stop_is_silence_at_once_for_those_that_wait_too(robot, tts, begin, events, way):
     if way == "stop":
@@ -114,30 +95,6 @@ def test_a_stop_is_silence_at_once_for_those_that_wait_too(robot, tts, begin, ev
     assert way != "stop" or not tts.isRunning(number)
 
 
-def test_a_posted_text_has_a_number_to_wait_for(robot, tts):
-    number = tts.pCall("say", "One.")
-    assert tts.isRunning(number)
-    robot.finish("ALTextToSpeech", "wait", number, 0, after=2.0)
-    assert not tts.isRunning(number)
-
-
-@pytest.mark.parametrize("text", ["", " \n", r"\rspd=80\ ", "..."])
-def test_nothing_to_say_is_said_at_once(say, text):
-    assert say(text) < 0.2
-
-
-def test_without_notifications_there_are_no_events(tts, say, events):
-    tts.disableNotifications()
-    say("One.")
-    assert not events
-    tts.enableNotifications()
-    say("Two.")
-    assert "CurrentSentence" in [name for name, _, _ in events]
-
-
-# --- files ------------------------------------------------------------------------------------------------------------
-
-
 def test_a_file_has_the_speech_and_nothing_is_heard(robot, tts, say):
     duration, path = say("This is in a file."), robot.server.files.folder / "day/one.wav"
     began = robot.now.time
@@ -149,21 +106,6 @@ def test_a_file_has_the_speech_and_nothing_is_heard(robot, tts, say):
     assert len(sound) / rate == pytest.approx(duration, abs=0.06)
     tts.sayToFile("This is in a file.", "/home/nao/day/one.raw")
     assert np.corrcoef(np.fromfile(path.with_suffix(".raw"), "<i2") / 32768.0, sound)[0, 1] > 0.999
-
-
-def test_a_file_can_be_heard_as_well_unless_all_is_stopped(robot, tts, begin):
-    began, future = robot.now.time, begin("Twice.", method="sayToFileAndPlay")
-    until(robot, future)
-    assert np.abs(played(robot, began)).max() > 0.05
-    assert (robot.server.files.folder / "sayToFileAndPlay.wav").exists()
-    began, future = robot.now.time, begin("Never heard, " * 20, method="sayToFileAndPlay")
-    tts.stopAll()
-    robot.answer(future)
-    robot.advance(0.5)
-    assert not played(robot, began).any()
-
-
-# --- the voice --------------------------------------------------------------------------------------------------------
 
 
 def test_languages_and_voices_belong_together(tts, say):
@@ -211,18 +153,6 @@ def test_volume_makes_it_quieter_and_reset_brings_back_the_start(robot, tts, say
     assert (tts.getVolume(), tts.getVoice()) == (1.0, "naoenu")
 
 
-def test_the_dictionary_changes_what_is_heard(tts, say):
-    usual = say("xy")
-    assert tts.addToDictionary("xy", "something that takes much longer") is True
-    assert say("xy") > usual + 0.5
-    tts.showDictionary()
-    assert tts.addToDictionary("xy", r"\toi=lhp\E'mil\toi=orth\ ") is False
-    assert tts.deleteFromDictionary("xy") is True and tts.deleteFromDictionary("xy") is False
-    assert say("xy") == pytest.approx(usual, abs=0.06)
-    assert tts.addToDictionary("noun", "ab", "1", "another one", "0") is True
-    assert tts.deleteFromDictionary("noun", "ab") is True
-
-
 def test_a_voice_preference_is_a_file(robot, tts):
     path = robot.server.files.folder / "ALTextToSpeech_Voice_mine.json"
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -233,27 +163,18 @@ def test_a_voice_preference_is_a_file(robot, tts):
     with pytest.raises(RuntimeError, match="parameter is 'sped', allowed is one of pitchShift"):
         tts.loadVoicePreference("mine")
     assert tts.getVolume() == 0.5
-    path.write_text("{")
-    with pytest.raises(RuntimeError, match="ALTextToSpeech_Voice_mine.json cannot be read"):
-        tts.loadVoicePreference("mine")
 
 
 def test_errors_name_what_is_wrong_and_what_is_allowed(tts, refused):
     rows = [
         ("setVoice", ("Bob",), "voice is 'Bob', allowed is one of naoenu, slt"),
         ("setLanguage", ("Klingon",), "language is 'Klingon', allowed is one of English, French"),
-        ("say", ("text", "Klingon"), "language is 'Klingon', allowed is one of English, French"),
         ("setLanguageDefaultVoice", ("French", "rms"), "Voice is 'rms', allowed is a voice of French: naofrf"),
-        ("getLanguageEncoding", ("Klingon",), "pLanguage is 'Klingon'"),
         ("setParameter", ("speed", 20.0), "speed is 20.0, allowed is 50 to 400"),
         ("setParameter", ("pitchShift", 0.5), r"pitchShift is 0.5, allowed is 0 \(off\) or 1 to 4"),
-        ("setParameter", ("doubleVoice", float("nan")), "doubleVoice is nan, allowed is a finite number"),
-        ("setParameter", ("sped", 100.0), "parameter is 'sped', allowed is one of pitchShift, doubleVoice"),
         ("getParameter", ("sped",), "parameter is 'sped', allowed is one of"),
         ("setVolume", (1.5,), "volume is 1.5, allowed is 0 to 1"),
-        ("addToDictionary", (" ", "x"), "word is ' ', allowed is a word"),
         ("sayToFile", ("text", "one.mp3"), r"pFileName is 'one.mp3', allowed is a name that ends in .wav or .raw"),
-        ("sayToFile", ("text", "../one.wav"), "file '../one.wav' is not inside"),
         ("loadVoicePreference", ("none",), "no file 'ALTextToSpeech_Voice_none.json'"),
     ]
     refused("ALTextToSpeech", rows)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from genpy import Duration
-from sounds import loudness, played, span, tone, write
+from sounds import loudness, played, span
 
 from nao_library_msgs.msg import AudioOutFunction
 
@@ -69,17 +69,6 @@ def test_words_are_fed_back_as_they_are_spoken_and_those_of_others_are_not(robot
     assert words(quiet) == [] and quiet.state == "succeeded"
 
 
-def test_a_text_over_a_file_in_the_background_has_its_words_in_the_feedback(robot, audio):
-    write(robot, "tone.wav", tone(440.0, 1.0))
-    begun = robot.now.time
-    chain = f("playFileInLoop", "tone.wav", volume=0.5), f("say", "I sing.", background=True), f("waitUntilSilent")
-    goal = audio.send(*chain)
-    step(robot, goal, lambda: len(words(goal)) == 2)
-    assert words(goal) == ["I", "sing"] and {e.function for e in goal.feedback if e.word} <= {"say", "waitUntilSilent"}
-    assert loudness(played(robot, begun + 0.2)) > 0.5 * 0.35
-    assert goal.cancel().state == "preempted"
-
-
 def test_a_goal_that_is_cancelled_is_silent_at_once_and_nothing_else_is(robot, audio):
     hum = robot.post("ALAudioPlayer", "playSine", 500, 2, 0, 10.0)
     goal = audio.send(f("say", f"{TEXT} {TEXT}", voice="kal", volume=0.5), f("say", "never"))
@@ -99,17 +88,6 @@ def test_a_goal_that_is_cancelled_is_silent_at_once_and_nothing_else_is(robot, a
     robot.ALAudioPlayer.stopAll()
 
 
-def test_a_robot_whose_calls_cannot_be_cancelled_is_silenced_as_a_whole(robot, bent_audio):
-    audio = bent_audio(stubborn=("ALTextToSpeech", "ALAnimatedSpeech"))
-    for function in ("say", "animatedSay"):
-        goal = audio.send(f(function, TEXT))
-        robot.advance(0.5)
-        assert goal.cancel().state == "preempted"
-        cancelled = robot.now.time
-        robot.advance(0.5)
-        assert not played(robot, cancelled + MESSAGE).any()
-
-
 def test_how_a_text_is_spoken_is_for_this_text_only(robot, audio):
     speech = robot.ALTextToSpeech
 
@@ -121,7 +99,6 @@ def test_how_a_text_is_spoken_is_for_this_text_only(robot, audio):
     chains.append({"voice": "rms", "language": "French"})  # the voice says in which language
     spans = [sounding(robot, audio, f("say", "The lazy dog runs away.", **fields))[:2] for fields in chains]
     sounding(robot, audio, f("say", "Bonjour.", language="French"))
-    sounding(robot, audio, f("say", "Bonjour.", language="French", voice="naofrf", volume=0.5))
     assert settings() == before
     lengths, heard = [last - first for first, last in spans], [loudness(played(robot, *each)) for each in spans]
     assert lengths[1] / lengths[0] == pytest.approx(0.5, abs=0.12)
@@ -130,23 +107,6 @@ def test_how_a_text_is_spoken_is_for_this_text_only(robot, audio):
     assert lengths[6] == pytest.approx(lengths[3], abs=0.02)
     assert lengths[4] == pytest.approx(lengths[0], abs=0.05) and abs(heard[4] / heard[0] - 1.0) > 0.001
     assert lengths[5] == pytest.approx(lengths[0], abs=0.02) and heard[5] == pytest.approx(heard[0], rel=0.02)
-
-
-def test_a_text_in_a_file_sounds_like_a_text_that_is_said(robot, audio):
-    first, last, _ = sounding(robot, audio, f("say", TEXT))
-    begun = robot.now.time
-    result = audio.succeed(f("sayToFile", TEXT, file_name="fox.wav", volume=1.0))
-    robot.advance(0.2)
-    assert not played(robot, begun).any()
-    assert result.files == ["fox.wav"] and result.memList == [str(result.durations[0])]
-    assert robot.ALAudioPlayer.getLoadedFilesIds() == []
-    file_first, file_last, playing = sounding(robot, audio, f("playFile", "fox.wav"))
-    assert result.durations == pytest.approx(playing.durations, abs=0.1)
-    assert file_last - file_first == pytest.approx(last - first, abs=0.02)
-    assert loudness(played(robot, file_first, file_last)) == pytest.approx(
-        loudness(played(robot, first, last)), rel=0.05
-    )
-    assert sounding(robot, audio, f("sayToFileAndPlay", "Yes."))[1] > file_last
 
 
 def arm(robot):
@@ -163,31 +123,3 @@ def test_gestures_go_with_a_text_and_end_when_it_is_cancelled(stiff_robot, audio
     at = arm(robot)
     robot.advance(0.5)
     assert np.abs(arm(robot) - at).max() < 0.01 and np.abs(at - before).max() < 0.1
-
-
-def test_body_language_of_a_text_and_for_good(stiff_robot, audio):
-    robot, before = stiff_robot, arm(stiff_robot)
-    result = audio.succeed(
-        f("setBodyLanguageMode", body_language="disabled", revert=True, time=Duration.from_sec(0.1)),
-        f("getBodyLanguageMode"),
-        f("animatedSay", "Hello.", body_language="disabled"),
-    )
-    assert result.memList == ["contextual"] and np.abs(arm(robot) - before).max() < 0.05
-    goal = audio.send(f("animatedSay", "Tables are made of wood and metal.", body_language="random"))
-    robot.advance(1.0)
-    assert np.abs(arm(robot) - before).max() + np.abs(robot.ALMotion.getAngles("LArm", True)).max() > 0.1
-    goal.cancel()
-    audio.succeed(f("setBodyLanguageMode", body_language="random"))
-    assert robot.ALAnimatedSpeech.getBodyLanguageModeToStr() == "random"
-
-
-def test_tags_link_words_and_animations(stiff_robot, audio):
-    before = arm(stiff_robot)
-    audio.succeed(
-        f("declareTagForAnimations", "ahoy", texts=["animations/Stand/Gestures/Hey_1"]),
-        f("addTagsToWords", "ahoy", texts=["ship", "boat"]),
-    )
-    goal = audio.send(f("animatedSay", "Boat and ship sail the sea all day.", body_language="contextual"))
-    stiff_robot.advance(1.2)
-    assert np.abs(arm(stiff_robot) - before).max() > 0.3
-    goal.cancel()

@@ -1,4 +1,4 @@
-"""Sound in a simulation with physics: resets, kills, and time that waits."""
+"""Sound in a simulation with physics: resets, and time that waits."""
 
 from __future__ import annotations
 
@@ -39,20 +39,6 @@ def test_a_reset_ends_what_plays_and_time_goes_on(simulation):
     assert sound.microphones.heard(0.0, 1.0).shape == (48000, 4)
 
 
-def test_tasks_end_when_the_simulation_does(simulation):
-    playing = simulation.sound.loudspeakers.play(sine(500.0, 5.0), "say")
-    simulation.close()
-    assert playing.task.finished
-
-
-def test_a_kill_from_another_thread_silences(simulation, runner):
-    task = runner.execute(lambda: simulation.sound.loudspeakers.play(sine(500.0, 5.0), "say").task).result(PATIENCE)
-    runner.advance(0.5).result(PATIENCE)
-    task.request_kill()
-    runner.advance(0.5).result(PATIENCE)
-    assert task.killed and not simulation.sound.loudspeakers.played(0.6, 1.0).samples.any()
-
-
 def test_fast_time_waits_for_whoever_holds_it_and_real_time_for_nobody(simulation, runner):
     held = True
     simulation.holds.append(lambda: held)
@@ -73,12 +59,3 @@ def test_fast_time_waits_for_whoever_holds_it_and_real_time_for_nobody(simulatio
     assert runner.wait_for_tick(now + 1, 0.1) is None
     held = False
     simulation.wake()
-
-
-def test_ears_hear_everything_of_a_fast_run(simulation, runner):
-    blocks = []
-    runner.call(lambda: simulation.sound.loudspeakers.play(sine(500.0, 4.0, 0.5), "say"))
-    simulation.sound.ears.listen("test", blocks.append)
-    runner.advance(2.0).result(PATIENCE)
-    simulation.sound.ears.catch_up(PATIENCE)
-    assert [block.time for block in blocks] == pytest.approx([0.17 * k for k in range(11)])

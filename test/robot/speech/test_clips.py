@@ -7,7 +7,6 @@ import pytest
 
 from nao_sim_bridge.sim.sound.samples import RATE
 from nao_sim_bridge.sim.speech.clips import ClipMaker, SpokenWord
-from nao_sim_bridge.sim.speech.dictionary import Pronunciations
 from nao_sim_bridge.sim.speech.parameters import DoubleVoice, Prosody
 from nao_sim_bridge.sim.speech.tags import Bookmark
 
@@ -47,18 +46,8 @@ def words(clip):
 def test_words_are_told_without_punctuation_and_counted(clip):
     expected = [SpokenWord(t, i) for i, t in enumerate(["Well", "that's", "it", "42", "times"])]
     assert [mark for _, mark in clip("Well, (that's) it: 42 “times”!").marks] == expected
-
-
-def test_a_bookmark_comes_with_the_word_behind_it_and_parts_no_text(clip):
-    plain, marked = clip("one two three four"), clip(r"one two \mrk=5\ three four\mrk=6\ ")
-    assert np.array_equal(samples(plain), samples(marked))
-    times = {mark: time for time, mark in marked.marks}
-    spoken = {mark.text: time for time, mark in plain.marks}
-    assert times[Bookmark(5)] == spoken["three"]
-    assert spoken["four"] < times[Bookmark(6)] < plain.sound.duration
-    assert [time for time, _ in marked.marks] == sorted(time for time, _ in marked.marks)
-    alone = clip(r"\mrk=9\ ")
-    assert [mark for _, mark in alone.marks] == [Bookmark(9)] and alone.sound.frames > 0
+    marks = {mark: time for time, mark in clip(r"one \mrk=5\ two\mrk=6\ ").marks}
+    assert marks[Bookmark(5)] == marks[SpokenWord("two", 1)] < marks[Bookmark(6)]
 
 
 @pytest.mark.parametrize("voice", ["naoenu", "naogem"])
@@ -70,30 +59,14 @@ def test_a_pause_is_silent_and_as_long_as_it_says(clip, voice):
     assert loud(long, second, second + 0.3) > 0.2
 
 
-def test_a_word_in_another_prosody_leaves_no_gap(clip):
-    plain, changed = clip("This is very good news."), clip(r"This is \rspd=95\very \rst\ good news.")
-    assert changed.sound.duration < plain.sound.duration + 0.5
-    very = changed.marks[2][0]
-    assert loud(changed, very - 0.1, very + 0.1) > 0.1
-    assert words(changed) == ["This", "is", "very", "good", "news"]
-    assert [mark.position for _, mark in changed.marks] == [0, 1, 2, 3, 4]
-
-
-def test_words_of_the_dictionary_are_told_as_they_are_written(clip):
-    known = Pronunciations((("NAO", "now one two"),))
-    replaced = clip("My name is Nao indeed", pronunciations=known)
-    assert words(replaced) == ["My", "name", "is", "Nao", "indeed"]
-    assert replaced.marks[-1][0] > clip("My name is Nao indeed").marks[-1][0] + 0.2
-
-
-@pytest.mark.parametrize("voice", ["naoenu", "rms", "awb", "kal16", "naogem", "naojpe"])
+@pytest.mark.parametrize("voice", ["naoenu", "kal16", "naogem", "naojpe"])
 def test_all_voices_are_about_equally_loud(clip, voice):
     sound = samples(clip("こんにちは" if voice == "naojpe" else TEXT, voice))
     assert 0.05 < np.sqrt(np.mean(sound[np.abs(sound) > 0.02] ** 2)) < 0.35
     assert np.abs(sound).max() <= 0.81
 
 
-@pytest.mark.parametrize("voice, factor", [("naoenu", 0.8), ("rms", 1.5), ("naogem", 2.0)])
+@pytest.mark.parametrize("voice, factor", [("naoenu", 0.8), ("naogem", 2.0)])
 def test_pitch_moves_the_fundamental_and_leaves_the_length(clip, voice, factor):
     plain, shifted = clip(TEXT, voice), clip(TEXT, voice, prosody=Prosody(pitch=factor))
     assert fundamental(samples(shifted)) == pytest.approx(factor * fundamental(samples(plain)), rel=0.06)

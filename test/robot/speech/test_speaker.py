@@ -8,7 +8,6 @@ import threading
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import SimulationStopped
 from nao_sim_bridge.sim.speech.clips import Style
 from nao_sim_bridge.sim.speech.sentences import sentences
 from nao_sim_bridge.sim.speech.speaker import Speaker
@@ -19,7 +18,6 @@ from nao_sim_bridge.sim.speech.voices import Voice, load_voices
 
 NAO = Style(load_voices().voices["naoenu"])
 MISSING = Style(Voice("x", "English", "festival", "x"))
-LONG = "This is a text that takes a while."
 
 
 class Mouth:
@@ -73,10 +71,6 @@ def mouth(bench, engines):
     return Mouth(bench(posture="Sit", stiffness=0.0).simulation, engines)
 
 
-def level(samples):
-    return float(np.abs(samples).max()) if len(samples) else 0.0
-
-
 def test_a_text_ends_with_its_sound_and_words_are_told_when_they_sound(mouth, caplog):
     caplog.set_level(logging.INFO, logger="nao_sim.speech")
     task = mouth.say(r"One \mrk=4\ two. Three.")
@@ -91,20 +85,6 @@ def test_a_text_ends_with_its_sound_and_words_are_told_when_they_sound(mouth, ca
     sound = clips[0].sound.samples[:-2000, 0]
     assert np.corrcoef(mouth.played(begins[0], ended)[: len(sound)], sound)[0, 1] > 0.99
     assert "says: One two." in caplog.text
-
-
-@pytest.mark.parametrize("way", ["stop_all", "reset"])
-def test_everything_can_be_stopped_those_that_wait_too(mouth, way):
-    tasks = [mouth.say(text) for text in (LONG, "Two.", "Three.")]
-    mouth.run(1.0)
-    stopped = mouth.simulation.time
-    (mouth.speaker.stop_all if way == "stop_all" else mouth.simulation.reset)()
-    mouth.run(0.5)
-    assert all(task.killed for task in tasks) and not mouth.speaker.speaking
-    assert level(mouth.played(stopped + 0.02, stopped + 0.5)) == 0.0
-    assert len(mouth.times("started")) == 1
-    mouth.until(mouth.say("Three."))
-    assert mouth.kinds()[-1] == "done"
 
 
 def test_what_cannot_be_said_is_an_error_and_the_next_text_is_said(mouth, caplog):
@@ -140,19 +120,3 @@ def test_a_long_text_begins_at_once_and_is_made_a_little_ahead_only(bench, count
     said = mouth.kinds().count("sentence")
     assert 2 <= said <= 4 and said < counting.asked <= said + 2
     task.kill()
-
-
-def test_two_runs_are_equal_sample_by_sample(bench, engines):
-    heard = []
-    for _ in range(2):
-        mouth = Mouth(bench(posture="Sit", stiffness=0.0).simulation, engines)
-        mouth.say("First. Second!")
-        ended = mouth.until(mouth.say("And the third."))
-        heard.append((ended, mouth.played(0.0, ended)))
-    assert heard[0][0] == heard[1][0] and np.array_equal(heard[0][1], heard[1][1])
-
-
-def test_whoever_waits_when_the_simulation_ends_gets_an_error(mouth):
-    task = mouth.say("This is never said.")
-    mouth.speaker.close()
-    assert isinstance(task.error, SimulationStopped)

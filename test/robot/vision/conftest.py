@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from camera_topics import BOTTOM, TOP, Topics, numbered_image
 
-TORSO, WORLD, ROBOT = 0, 1, 2
+TORSO, ROBOT = 0, 2
 """NAOqi's frames."""
 
 

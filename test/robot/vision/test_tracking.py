@@ -73,13 +73,6 @@ def test_the_head_turns_no_faster_than_asked_for_and_what_is_lost_is_given_up(ro
     assert 1.0 < float(goal.result.memList[0]) < 2.6
 
 
-def test_nothing_to_follow_is_an_answer(robot, vision):
-    began = robot.now.time
-    result = vision.succeed(f("trackFace", timeout=1.0, duration=30.0))
-    assert (result.objects, result.memList) == ([], ["0.0"])
-    assert robot.now.time - began == pytest.approx(1.0, abs=0.5)
-
-
 def test_what_is_behind_the_shoulder_is_looked_for_and_found(robot, vision, things, head, idle):
     place = things.place("ball", (-0.3, 0.9, 0.03), ball=0.03)
     goal = vision.play(f("lookFor", str_param="ball", count=2))
@@ -110,17 +103,6 @@ def test_the_head_is_given_back(robot, vision, things, head, idle, end):
     assert (goal.finish() if end == "over" else goal.cancel()).state == {"over": "succeeded"}.get(end, end)
     assert head() == pytest.approx([0.2, 0.1], abs=0.05) and robot.ALMotion.getStiffnesses("Head") == [0.0, 0.0]
     assert [seen.kind for seen in goal.result.objects] == ["ball"] and idle()
-
-
-def test_a_preempted_head_stops_where_it_is(robot, vision, things, head, idle):
-    things.place("ball", things.from_camera(0.8, 0.35), ball=0.03)
-    goal = vision.send(f("trackBall", speed=0.03))
-    robot.advance_until(lambda: head()[0] > 0.1, 3.0)
-    assert goal.cancel().state == "preempted"
-    robot.advance(0.1)
-    stopped = head()
-    robot.advance(0.5)
-    assert head() == pytest.approx(stopped, abs=0.01) and stopped[0] < 0.3 and idle()
 
 
 def test_only_the_person_that_is_asked_for_is_followed(robot, vision, things, head):
