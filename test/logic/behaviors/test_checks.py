@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from nao_library_modules.behaviors import BehaviorError, check, read
-from nao_library_modules.behaviors.outlook import MOST_STEPS, outlook_of, waits_of
+from nao_library_modules.behaviors.outlook import outlook_of, waits_of
 from nao_library_modules.behaviors.program import Goal, InOrder, Pause, servers_in, walk
 from nao_library_modules.errors import BadGoal
 
@@ -125,10 +125,3 @@ def test_steps_and_boxes_are_told_with_their_paths(program, tables, texts):
     # A box is known by what it is and not by its text.
     told, other = replace(made.parts[0], what="the inner"), replace(made.parts[0], what="behavior of a kind", box="")
     assert outlook_of(InOrder((), "test", "", "test", nodes=(told, other)), tables).boxes == ("inner", "innermost")
-
-
-def test_what_only_the_robot_knows_is_told_and_of_many_steps_the_first(program, tables):
-    steps = "- chain: {NaoLights: [{function: listLEDs}, {function: on, lights: [Nose], time: 1}]}\n- {wait: 1}"
-    assert outlook_of(program(steps), tables).unchecked == ("1 NaoLights.on: lights [Nose]",)
-    steps = outlook_of(program("- {wait: 1}\n" * (MOST_STEPS + 5)), tables).steps
-    assert (len(steps), steps[-1]) == (MOST_STEPS + 1, "... and 5 more")

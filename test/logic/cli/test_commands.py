@@ -9,12 +9,10 @@ import pytest
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoAudioInFeedback, NaoBehaviorFeedback, NaoLedFeedback
 from nao_library_modules.command_line.app import COMMANDS, nao
 from nao_library_modules.command_line.bash_completion import LineComplete
 from nao_library_modules.command_line.chain_text import build_message, read_chain, read_value
-from nao_library_modules.command_line.output import plain, say_json, say_result, table, words
-from nao_library_modules.command_line.progress import Progress
+from nao_library_modules.command_line.output import say_result
 from nao_library_msgs.msg import BehaviorInfo, BehaviorParameter, LedFunction, MotionFunction
 from nao_library_msgs.srv import ListBehaviorsResponse
 
@@ -53,28 +51,6 @@ def test_a_command_is_a_function_of_a_server(run, graph, sent, line, server, exp
     assert result.exit_code == 0, result.stderr
     ((name, (message,)),) = sent.goals
     assert name == f"/{server}" and {field: getattr(message, field) for field in expected} == expected
-
-
-@pytest.mark.parametrize("stands, functions", [(False, ["goToPosture", "moveTo"]), (True, ["moveTo"])])
-def test_walking_stands_up_first_and_tells_how_far_it_got(run, graph, sent, monkeypatch, stands, functions):
-    graph()
-
-    class Robot:
-        def __init__(self, address):
-            assert address == ("10.0.0.7", 9559)
-
-        __enter__, __exit__ = lambda self: self, lambda *_: None
-
-        def call(self, module, method):
-            return stands if method == "robotIsWakeUp" else "Standing"
-
-    monkeypatch.setattr("nao_library_modules.command_line.robot_link.RobotLink", Robot)
-    monkeypatch.setattr("nao_library_modules.command_line.stack.Stack.robot_address", lambda self: ("10.0.0.7", 9559))
-    sent.fill = lambda result: setattr(result.results[-1], "values", ["0.5", "0.01", "-0.02"])
-    result = run("walk", "0.5", "0", "-0.1")
-    assert [message.function for message in sent.goals[0][1]] == functions
-    assert sent.goals[0][1][-1].values == [0.5, 0.0, -0.1]
-    assert result.stdout == "0.500 m ahead, 0.010 m to the left, -0.020 rad to the left\n"
 
 
 def test_a_goal_that_fails_is_status_1_and_3_where_the_robot_is_gone(run, graph, sent):
@@ -258,16 +234,6 @@ def test_values_of_another_type_are_refused():
             read_value(kind, text)
 
 
-def test_messages_become_plain_values_and_words(capsys):
-    value = plain(LedFunction(function="on", lights=["a"], time=rospy.Duration(1.5)))
-    assert (value["function"], value["lights"], value["time"]) == ("on", ["a"], 1.5)
-    say_json({"a": [float("inf"), float("nan"), 1.0]}, compact=True)
-    assert capsys.readouterr().out == '{"a": [null, null, 1.0]}\n'
-    told = {"true": True, "0.123457": 0.1234567, "1, 2": [1, 2.0], "a 1": {"a": 1, "b": ""}, "": None}
-    assert [words(each) for each in told.values()] == list(told)
-    assert table([("a", "1"), ("bbb", "2")], indent=" ") == [" a    1", " bbb  2"]
-
-
 @pytest.mark.parametrize(
     "result, out, err",
     [
@@ -280,19 +246,6 @@ def test_messages_become_plain_values_and_words(capsys):
 def test_answers_are_printed_with_what_failed(capsys, result, out, err):
     say_result(result)
     assert tuple(capsys.readouterr()) == (out, err)
-
-
-def test_progress_is_a_line_a_function_or_a_step_where_there_is_no_terminal(capsys):
-    step = {"index": 0, "function": "runBehavior", "count": 1, "path": "2.1", "what": "nao_audio_out.say"}
-    for shown in (True, False):
-        with Progress(shown=shown) as progress:
-            progress.feedback(NaoLedFeedback(index=0, function="on", count=2))
-            progress.feedback(NaoLedFeedback(index=0, function="on", count=2))
-            progress.feedback(NaoAudioInFeedback(index=1, function="off", count=2, status="listening"))
-            progress.feedback(NaoBehaviorFeedback(state="began", **step))
-            progress.feedback(NaoBehaviorFeedback(state="failed", text="no voice", **step))
-        told = "1/2 on\n2/2 off\n2.1 nao_audio_out.say began\n2.1 nao_audio_out.say failed no voice\n"
-        assert capsys.readouterr().err == (told if shown else "")
 
 
 @pytest.fixture

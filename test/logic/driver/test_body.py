@@ -18,7 +18,6 @@ from nao_library_modules.driver.motors import read_motors, torque_per_ampere
 from nao_library_modules.driver.poses import BadPose, Pose, UnknownPose, built_in, library, pose_table
 from nao_library_modules.driver.robot_facts import KEYS, facts_of, info_fields
 from nao_library_modules.driver.sonars import range_of
-from nao_library_modules.driver.urdf_joints import UrdfJoint, movable_joints
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.health import Level
 from nao_library_modules.joint_trajectory import H25_BODY
@@ -106,17 +105,6 @@ def test_tables_of_nao_robot_and_libraries_of_choregraphe_hold_poses():
         ({"time_from_start": 0}, "0 s"),
     ):
         refused(problem, pose_table, {"nod": {**POSE, **change}}, error=BadPose)
-
-
-def test_joints_that_are_fixed_or_follow_another_have_no_slider():
-    limit, mimic = '<limit lower="0.1" upper="2.0"/>', '<mimic joint="knee"/>'
-    kinds = {"knee": ("revolute", limit), "wheel": ("continuous", ""), "finger": ("revolute", limit + mimic)}
-    joints = [f'<joint name="{name}" type="{kind}">{more}</joint>' for name, (kind, more) in kinds.items()]
-    joints = movable_joints(f'<robot name="x"><joint name="neck" type="fixed"/>{"".join(joints)}</robot>')
-    assert joints == [UrdfJoint("knee", 0.1, 2.0), UrdfJoint("wheel", -math.pi, math.pi)]
-    assert [joint.rest for joint in joints] == [0.1, 0.0]  # zero or the limit nearest to it
-    for text in ("<robot", "<robot/>"):
-        refused("robot description", movable_joints, text)
 
 
 NAO = {KEYS["body type"]: "Nao", KEYS["head version"]: "6.0.0", KEYS["body version"]: 5.0, KEYS["arm version"]: None}

@@ -149,21 +149,6 @@ def test_work_and_delays_do_not_add_up_and_a_long_round_is_made_up_for_once():
     assert moments == pytest.approx([0.0, 0.02, 0.04, 0.06, 0.08, 0.11, 0.12])
 
 
-@pytest.mark.parametrize("jump", [5.0, -50.0])
-def test_after_a_break_or_a_clock_set_back_it_begins_anew_until_an_interrupt(jump):
-    clock, interrupt = PassingClock(), Interrupt()
-    pacer = Pacer(clock, 0.02, 0.0, interrupt)
-    pacer.wait()
-    clock.time += jump
-    now = clock.time
-    pacer.wait()
-    assert clock.time == now
-    pacer.wait()
-    assert clock.time == pytest.approx(now + 0.02)
-    interrupt.trigger()
-    assert not pacer.wait()
-
-
 FIELDS = (
     Field("volume", -1, "how loud", -1, 100),
     Field("voice", "", "who speaks"),

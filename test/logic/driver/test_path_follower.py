@@ -15,7 +15,7 @@ from nao_library_modules.driver import path_follower_walk, planar_frames
 from nao_library_modules.driver.path_follower_courses import PathCourse, TargetCourse, reached
 from nao_library_modules.driver.path_follower_path import WalkPath
 from nao_library_modules.driver.path_follower_settings import Settings
-from nao_library_modules.driver.path_follower_steering import StuckWatch, velocity
+from nao_library_modules.driver.path_follower_steering import velocity
 from nao_library_modules.driver.path_follower_walk import lead
 from nao_library_modules.driver.planar_frames import (
     PlanarFrames,
@@ -118,18 +118,6 @@ def test_names_of_parameters_are_those_of_the_settings_and_those_that_will_not_d
     wrong = {"controller_frequency": 0, "max_vel_x": 1.5, "step_freq": 2.0, "use_vel_ctrl": 1, "straight_offset": NAN}
     for name, value in wrong.items():
         refused(f"~{name} is", lambda name=name, value=value: Settings(**{name: value}))
-
-
-def test_a_robot_that_gets_no_nearer_is_told_how_far_it_got():
-    watch, never = StuckWatch(5.0), StuckWatch(0.0)
-    for second in range(60):
-        watch.check(second, 3.0 - 0.01 * second)
-    watch = StuckWatch(5.0)
-    for second, rest in ((0.0, 1.0), (3.0, 0.7), (8.0, 0.69)):
-        watch.check(second, rest)
-    refused(r"no progress for 5 s, with 0\.69 m still to go", watch.check, 8.1, 0.69)
-    never.check(0.0, 1.0)
-    never.check(1e6, 1.0)
 
 
 SPEED, TURN = 0.095, 0.83

@@ -30,7 +30,6 @@ from nao_library_modules.driver.walk_inhibition import NotInhibited, WalkInhibit
 from nao_library_modules.driver.walk_orders import Order, OrderBox, Stop, WalkEnded
 from nao_library_modules.driver.walk_pace import PACE, REFRESH, WalkPace
 from nao_library_modules.driver.walk_report import WalkJournal
-from nao_library_modules.driver.walk_watchdog import WalkWatchdog
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.health import Level
 from nao_library_modules.places import Place
@@ -114,15 +113,6 @@ def test_commands_keep_a_distance_and_lasting_ones_are_repeated_once_a_second():
     assert pace.is_news(STAND, 11.1) and not pace.is_news(FORWARD, 11.2)
     pace.sent(None, 11.3)
     assert pace.is_news(FORWARD, 11.4)
-
-
-def test_a_watchdog_whose_clock_is_set_back_gives_the_whole_time_again():
-    watchdog = WalkWatchdog(0.5)
-    watchdog.feed(10.0)
-    assert watchdog.left(10.2) == pytest.approx(0.3)
-    assert (watchdog.left(1.0), watchdog.left(1.6)) == pytest.approx((0.5, -0.1))
-    watchdog.rest()
-    assert watchdog.left(20.0) is None
 
 
 def test_inhibition_is_counted_and_means_the_others():

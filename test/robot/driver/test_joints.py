@@ -1,4 +1,4 @@
-"""Joints, sensors of the body, memory, touch, lights, behaviours and autonomous life, as the driver asks the robot."""
+"""Joints, sensors of the body, memory, touch and lights, as the driver asks the robot."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ import pytest
 
 from nao_library_modules.body_devices import SONARS as SONAR_KEYS
 from nao_library_modules.driver import demand
-from nao_library_modules.driver.autonomous_life import ABILITIES, AutonomousLife
-from nao_library_modules.driver.behaviors import Behaviors
 from nao_library_modules.driver.blinking import Blinks, blink, fade
 from nao_library_modules.driver.goal_crowd import Replaced
 from nao_library_modules.driver.joint_controller import JointController
@@ -248,18 +246,6 @@ def test_data_is_published_at_its_rate_while_somebody_listens(watch, robot, topi
     assert len(topics[CHARGE].messages) == count
 
 
-def test_keys_and_events_that_come_later_have_a_topic_from_then_on(watch, robot, topics, soon):
-    watch.watch([Rule("Late/*"), Rule("Later"), Rule("LateClick", kind="string")])
-    assert watch.watched() == {"LateClick": "LateClick", "Later": ""}
-    robot.ALMemory.insertData("Late/Text", "a")
-    robot.ALMemory.insertData("Yours/Text", "b")
-    robot.ALMemory.raiseEvent("Later", [1, 2])
-    soon(lambda: "Late/Text" in topics and "Later" in topics)
-    assert set(watch.watched()) == {"Late/Text", "Later", "LateClick"} and topics["Later"].kind == "int[]"
-    topics["Later"].tell(True)
-    soon(lambda: topics["Later"].messages[-1:] == [[1, 2]])
-
-
 def test_events_are_published_as_they_stand_and_while_somebody_listens_also_after_a_loss(
     watch, robot, driver_robot, topics, soon, until
 ):
@@ -329,21 +315,6 @@ def eye(robot):
     return [robot.led(f"Face/Led/{name}/Left/0Deg") for name in ("Red", "Green", "Blue")]
 
 
-def test_eyes_blink_in_thirds_until_they_end_in_the_colour_of_the_background(robot, driver_robot, clock, until, begin):
-    interrupt, told = Interrupt(), []
-    blinks = Blinks([RED, GREEN], (0.0, 0.0, 1.0), 0.6, 0.5, 0.0)
-    blinking = begin(blink, driver_robot, blinks, clock, interrupt, told.append, random.Random(1))
-    until(lambda: told and eye(robot) == pytest.approx(told[-1], abs=0.05), limit=1.0, step=0.02)
-    until(lambda: eye(robot) == pytest.approx((0.0, 0.0, 1.0), abs=0.05), limit=2.0, step=0.02)
-    until(lambda: len(told) >= 4, limit=6.0)
-    assert set(told) == {RED, GREEN}
-    interrupt.trigger()
-    until(blinking.done, limit=1.0)
-    robot.advance(0.1)
-    assert blinking.result() is False
-    assert eye(robot) == [0.0, 0.0, 1.0]
-
-
 def test_a_newer_goal_takes_the_eyes_as_they_are_and_a_fade_ends_with_the_interrupt(
     robot, driver_robot, clock, until, begin
 ):
@@ -362,44 +333,3 @@ def test_a_newer_goal_takes_the_eyes_as_they_are_and_a_fade_ends_with_the_interr
         fade(driver_robot, "FaceLeds", GREEN, 10.0, interrupt)
     robot.advance(1.0)
     assert eye(robot) == before
-
-
-def test_a_behaviour_runs_to_its_end_or_until_it_is_stopped(stiff_robot, driver_robot, until, begin):
-    behaviors = Behaviors(driver_robot)
-    installed = behaviors.installed()
-    hey = "animations/Stand/Gestures/Hey_1"
-    assert hey in installed
-    with pytest.raises(BadGoal, match=r"'animations/Stand/Gestures/Hey_0' is not installed: did you mean '.*Hey_1'"):
-        behaviors.run("animations/Stand/Gestures/Hey_0", Interrupt())
-    run = begin(behaviors.run, hey, Interrupt())
-    until(lambda: stiff_robot.ALBehaviorManager.isBehaviorRunning(hey))
-    assert not run.done()
-    until(run.done, limit=30.0, step=0.25)
-    run.result()
-    interrupt = Interrupt()
-    run = begin(behaviors.run, hey, interrupt)
-    until(lambda: stiff_robot.ALBehaviorManager.isBehaviorRunning(hey))
-    interrupt.trigger()
-    until(run.done)
-    with pytest.raises(Preempted):
-        run.result()
-    assert not stiff_robot.ALBehaviorManager.isBehaviorRunning(hey)
-
-
-def test_states_and_abilities_of_life_are_told_and_set(robot, driver_robot, closing, soon, until, begin):
-    told = []
-    life = closing(AutonomousLife(driver_robot, told.append))
-    soon(lambda: told == ["disabled"])
-    change = begin(life.set_state, "solitary")
-    until(change.done, limit=20.0, step=0.25)
-    change.result()
-    soon(lambda: told[-1] == "solitary")
-    assert life.report().message == "solitary" and told.count("solitary") == 1
-    background, awareness = ABILITIES[0], ABILITIES[3]
-    for enabled in (False, True):
-        life.set_enabled(background, enabled)
-        assert life.is_enabled(background) is enabled
-    life.set_enabled(awareness, False)
-    assert not life.is_enabled(awareness) and life.is_enabled(background)
-    driver_robot.lose()
-    soon(lambda: told.count("solitary") == 2)

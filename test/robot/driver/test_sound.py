@@ -175,18 +175,6 @@ def test_voice_language_and_volume_are_used_for_the_text_and_put_back(speech, ro
     assert during == [("English", "rms", 0.6), ("French", "naofrf", before[2])]
 
 
-def test_settings_that_the_robot_refuses_are_an_error_and_change_nothing(speech, robot, settings, soon, until):
-    before, failures = voice(robot), []
-    settings[0] = SpeechSettings(language="French", voice="nobody")
-    text = speech.say("hello", on_failure=failures.append)
-    soon(text.ended.is_set)
-    assert isinstance(text.error, RobotError) and failures == [text.error] and voice(robot) == before
-    settings[0] = SpeechSettings()
-    text = speech.say("again")
-    until(text.ended.is_set)
-    assert text.error is None
-
-
 def test_a_text_is_silenced_at_once_or_before_it_begins(speech, robot, settings, soon, until, begin):
     settings[0] = SpeechSettings(volume=0.6)
     before, started = voice(robot), []

@@ -199,29 +199,6 @@ def footsteps(standing, driver_robot, clock):
     return FootstepWalk(driver_robot, clock)
 
 
-def test_all_footsteps_are_made_and_told_of_on_the_way(footsteps, robot, until, begin):
-    told, start = [], place(robot)
-    steps = footsteps.prepared([*STEPS[:3], Footstep("RLeg", Place(0.3, -0.088, 0.0))])
-    assert steps[:3] == tuple(STEPS[:3]) and steps[3].place == pytest.approx((0.08, -0.088, 0.0))  # as it is made
-    walk = begin(footsteps.walk, steps, 0.25, Interrupt(), lambda made: told.append(len(made)))
-    until(walk.done, step=0.02)
-    assert walk.result().steps == steps and not walk.result().preempted
-    assert told == sorted(told) and told[0] == 0 and told[-1] == 4 and len(set(told)) >= 4
-    assert place(robot).seen_from(start).x > 0.1
-
-
-def test_an_interrupt_stops_footsteps_and_those_that_cannot_be_taken_back_are_made(footsteps, robot, until, begin):
-    interrupt, told = Interrupt(), []
-    steps = footsteps.prepared(STEPS * 2)
-    walk = begin(footsteps.walk, steps, 0.25, interrupt, lambda made: told.append(len(made)))
-    until(lambda: told and told[-1] >= 2, step=0.02)
-    interrupt.trigger()
-    until(walk.done)
-    walked = walk.result()
-    assert walked.preempted and 2 < len(walked.steps) < 7 and walked.steps == steps[: len(walked.steps)]
-    assert not walking(robot)
-
-
 def test_footsteps_that_end_too_early_are_told_and_single_ones_are_added_to_those_before(
     footsteps, robot, driver_robot, until, begin
 ):
