@@ -65,7 +65,8 @@ def tell(robot, place, seconds):
 
 
 def test_the_head_follows_a_ball_that_moves_and_tells_when_it_is_lost(tracker, stiff_robot):
-    detected, lost = (stiff_robot.heard(f"ALTracker/Target{what}") for what in ("Detected", "Lost"))
+    events = ("TargetDetected", "TargetLost", "ActiveTargetChanged")
+    detected, lost, active = (stiff_robot.heard(f"ALTracker/{event}") for event in events)
     simulation = stiff_robot.NaoSimulation
     simulation.placeObject("{name: ball, ball: 0.03, position: [1.0, 0.0, 0.45], mass: 0.0}")
     tracker.registerTarget("RedBall", 0.06)
@@ -86,6 +87,8 @@ def test_the_head_follows_a_ball_that_moves_and_tells_when_it_is_lost(tracker, s
     assert tracker.isTargetLost() and tracker.getTargetPosition(ROBOT) == []
     assert detected.get(timeout=stiff_robot.patience) == "RedBall" == lost.get(timeout=stiff_robot.patience)
     tracker.stopTracker()
+    stiff_robot.advance(0.1)
+    assert [active.get(timeout=stiff_robot.patience) for _ in range(2)] == ["RedBall", ""]
     assert stiff_robot.ALRedBallDetection.getSubscribersInfo() == []
 
 
