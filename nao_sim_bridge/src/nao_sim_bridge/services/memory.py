@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Any, Callable
+from typing import Any
 
 import qi
 
@@ -15,31 +14,8 @@ from nao_sim_bridge.sim.tasks import Task
 class EventSubscriber:
     """What `ALMemory.subscriber` returns: an object whose member `signal` fires with each value of the event."""
 
-    def __init__(self, connected: Callable[[bool], None]) -> None:
-        self.signal = qi.Signal("m", connected)
-
-
-class _EventSignal:
-    """The signal of an event: it hears of the event while a client is connected to it."""
-
-    def __init__(self, name: str, store: MemoryStore) -> None:
-        self.subscriber = EventSubscriber(self._connection)
-        self._name = name
-        self._store = store
-        self._connected = False
-
-    def move_to(self, store: MemoryStore) -> None:
-        self._store = store
-        if self._connected:
-            self._connection(True)
-
-    def _connection(self, connected: bool) -> None:
-        """Called by libqi with the first client that connects and the last that leaves, however it leaves."""
-        self._connected = connected
-        if connected:
-            self._store.listen(self._name, self.subscriber.signal, declare=False)
-        else:
-            self._store.stop_listening(self._name, self.subscriber.signal)
+    def __init__(self) -> None:
+        self.signal = qi.Signal("m")
 
 
 class ALMemory:
@@ -53,7 +29,7 @@ class ALMemory:
     def __init__(self, store: MemoryStore, broker: Any) -> None:
         self._store = store
         self._broker = broker
-        self._signals: dict[str, _EventSignal] = {}
+        self._signals: dict[str, EventSubscriber] = {}
         self._mappings: list[tuple[Any, int]] = []  # signals of clients, and links to them
 
     def getData(self, key: str, *_deprecated: Any) -> Any:
@@ -145,10 +121,11 @@ class ALMemory:
         return self._store.subscribers(name)
 
     def subscriber(self, name: str) -> EventSubscriber:
-        self._store.expect(name)
         if name not in self._signals:
-            self._signals[name] = _EventSignal(name, self._store)
-        return self._signals[name].subscriber
+            self._signals[name] = EventSubscriber()
+        subscriber = self._signals[name]
+        self._store.listen(name, subscriber.signal)
+        return subscriber
 
     def subscribeToEvent(self, name: str, module: str, *rest: str) -> None:
         message, method = rest if len(rest) == 2 else ("", rest[0])
@@ -174,11 +151,11 @@ class ALMemory:
     def take_over(self, former: ALMemory) -> None:
         """Go on with the signals that clients are connected to; nobody is told of what the former one had."""
         self._signals = former._signals
-        for signal in self._signals.values():
-            signal.move_to(self._store)
-        for mapped, link in former._mappings:
+        for name, subscriber in self._signals.items():
+            self._store.listen(name, subscriber.signal, declare=False)
+        for signal, link in former._mappings:
             try:
-                mapped.disconnect(link)
+                signal.disconnect(link)
             except RuntimeError:
                 pass  # the client has gone
 

@@ -157,11 +157,6 @@ class MemoryStore:
             entry.kind = EVENT
             entry.extractor = extractor or entry.extractor
 
-    def expect(self, name: str) -> None:
-        """Make an event known unless there is a key of that name."""
-        with self._lock:
-            self._entries.setdefault(name, _Entry(EVENT))
-
     def raise_event(self, name: str, value: Any) -> None:
         """Write an event and tell its subscribers."""
         self._write(name, value, EVENT)
@@ -242,17 +237,12 @@ class MemoryStore:
             listener: See above; one that listens already goes on.
             declare: Whether the event becomes known by it.
         """
-        if declare:
-            self.expect(name)
         with self._lock:
+            if declare:
+                self._entries.setdefault(name, _Entry(EVENT))
             listeners = self._listeners.setdefault(name, [])
             if not any(known is listener for known in listeners):
                 listeners.append(listener)
-
-    def stop_listening(self, name: str, listener: Callable[[Any], None]) -> None:
-        """End what `listen` has begun."""
-        with self._lock:
-            self._listeners[name] = [known for known in self._listeners.get(name, ()) if known is not listener]
 
     def close(self) -> None:
         """Tell nobody anything any more."""
