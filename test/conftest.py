@@ -51,6 +51,8 @@ def pytest_collection_modifyitems(config, items):
     seed = config.getoption("--shuffle")
     if seed:
         random.Random(seed).shuffle(items)
+        place = {item.cls: number for number, item in reversed(list(enumerate(items)))}
+        items.sort(key=lambda item: place[item.cls] if item.cls else 0)  # what a class sets up is set up once
     items.sort(key=lambda item: getattr(item.cls, "world", ""))  # the running stack starts once in each world
     for item in items:
         # The cases of the running stack share it, and those of a file what takes long to start. Whatever has processes

@@ -35,6 +35,7 @@ class DriverFootsteps(WalkingTest):
         cls.client = action_client("footsteps_execution", ExecFootstepsAction)
         cls.step = service("footstep_srv", StepTargetService)
         cls.clip = service("clip_footstep_srv", ClipFootstep)
+        cls.robot.reset()
         # It has reached the robot when it refuses what is wrong for the robot's own reasons.
         wait_until(lambda: "wakeUp" in answer(cls.step, step(LEFT, 0.0, 0.1)), 30.0, "nao_footsteps")
 
