@@ -22,7 +22,7 @@ from std_msgs.msg import Header
 
 from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
 from nao_library_msgs.msg import VisionFunction
-from nao_sim_bridge.testing import send, wait_until
+from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 NS = "webcam_only"
 TOP, BOTTOM = f"{NS}/webcam/image_raw", f"{NS}/other_camera/image_raw/compressed"
@@ -111,9 +111,12 @@ class Vision(unittest.TestCase):
         cls.folder = Path(rospkg.get_ros_home()) / "vision_files"
         cls.top, cls.bottom = Camera(TOP), Camera(BOTTOM, CompressedImage)
         cls.client = cls.connect(f"{NS}/NaoVision")
+        cls.real_time = SimulatedRobot().at_speed(1.0)  # the cameras send in this computer's time
+        cls.real_time.__enter__()
 
     @classmethod
     def tearDownClass(cls):
+        cls.real_time.__exit__(None, None, None)
         cls.top.close()
         cls.bottom.close()
 
@@ -165,7 +168,7 @@ class Vision(unittest.TestCase):
 
     def test_a_stream_and_a_recording_of_each_camera(self):
         heard = []
-        listener = rospy.Subscriber("NaoVision/small/image_raw", Image, heard.append)
+        listener = rospy.Subscriber(f"{NS}/NaoVision/small/image_raw", Image, heard.append)
         self.play(
             f("subscribe", id="small", width=160),
             f("startRecording", id="top"),
@@ -196,7 +199,7 @@ class Vision(unittest.TestCase):
     def test_ten_streams_and_ten_recordings_at_once(self):
         heard = [[] for _ in range(10)]
         listeners = [
-            rospy.Subscriber(f"NaoVision/s{k}/image_raw", Image, heard[k].append, buff_size=1 << 22) for k in range(10)
+            rospy.Subscriber(f"{NS}/NaoVision/s{k}/image_raw", Image, heard[k].append, buff_size=1 << 22) for k in range(10)
         ]
         codecs = ["h264", "mpeg4"] * 5
         self.play(
@@ -234,7 +237,7 @@ class Vision(unittest.TestCase):
         folder = self.folder.parent / name
         process = subprocess.Popen(
             ["rosrun", "nao_library_modules", "nao_vision_server", f"__ns:={name}", "_pport:=9",
-             f"_record_dir:={folder}", "_camera_top:=/webcam/image_raw"],
+             f"_record_dir:={folder}", f"_camera_top:=/{TOP}"],
             preexec_fn=limit,
         )  # fmt: skip
         self.addCleanup(self.end, process)
