@@ -199,7 +199,8 @@ class Vision(unittest.TestCase):
     def test_ten_streams_and_ten_recordings_at_once(self):
         heard = [[] for _ in range(10)]
         listeners = [
-            rospy.Subscriber(f"{NS}/NaoVision/s{k}/image_raw", Image, heard[k].append, buff_size=1 << 22) for k in range(10)
+            rospy.Subscriber(f"{NS}/NaoVision/s{k}/image_raw", Image, heard[k].append, buff_size=1 << 22)
+            for k in range(10)
         ]
         codecs = ["h264", "mpeg4"] * 5
         self.play(
