@@ -7,14 +7,15 @@ import shutil
 import sys
 import threading
 import time
-from contextlib import contextmanager
 
 import qi
 
 import naoqi
 import naoqi.calls
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
+from nao_sim_bridge.sim.errors import SimulationError
 from nao_sim_bridge.sim.simulation import Scene
+from naoqi.errors import NaoError
 
 PATIENCE = 15.0
 """Longest wait for something that must happen, in s of wall time; passing tests do not come near it."""
@@ -75,11 +76,11 @@ class Simulator:
 
     def advance(self, seconds):
         """Let simulated time pass, as fast as possible; returns the time after it."""
-        time = self.server.runner.advance(seconds).result(4 * PATIENCE).time
+        snapshot = self.server.runner.advance(seconds).result(4 * PATIENCE)
         self._posted = [(module, future) for module, future in self._posted if future.isRunning()]
         for module in {module for module, _ in self._posted}:
             getattr(self, module).ping()  # what has ended is answered
-        return time
+        return snapshot.time
 
     def advance_until(self, condition, limit, step=0.05, what="the condition"):
         """Let time pass until `condition()` holds, at most `limit` s of simulated time."""
@@ -103,7 +104,7 @@ class Simulator:
     def post(self, module, method, *arguments):
         """Call without waiting; the future of the answer."""
         future = getattr(self, module).call(method, *arguments, _async=True)
-        if module.startswith("AL"):
+        if module.startswith("AL"):  # the simulator's own service has no ping
             self._posted.append((module, future))
         return future
 
@@ -127,16 +128,6 @@ class Simulator:
         getattr(self, module).ping()
         self.settled()
 
-    @contextmanager
-    def busy_simulation(self):
-        """The simulation has no time for anybody."""
-        done = threading.Event()
-        self.server.runner.execute(lambda: done.wait(PATIENCE))
-        try:
-            yield
-        finally:
-            done.set()
-
     # --- looking -----------------------------------------------------------------------------------------------------
 
     def value(self, key):
@@ -159,22 +150,25 @@ class Simulator:
         naoqi.connection(*self.address, wait=False).close()
         self.session.close()
         self.server.stop()
+        self.lockstep.close()
         sys.setswitchinterval(self._interval)
 
 
 class Lockstep:
     """Lets time pass only while every goal under test waits for time or for the robot.
 
-    So a goal sees the same times on a slow machine as on a fast one, because nothing here is measured in wall time.
-    Whatever happens to a goal (a call begins or ends, a wait for time is over, something on the robot has ended) holds
-    time until `ROUNDS` times in a row the robot has answered a ping of every module that has not answered a call of the
-    goal, the simulation has run a command, and the threads of the goals have been seen waiting. A module takes one call
-    at a time, so a call that is still open then is one that takes simulated time.
+    So a goal sees the same times on a slow machine as on a fast one: what is waited for is counted, not timed. Whatever
+    happens to a goal (a call begins or ends, a wait for time is over, something on the robot has ended) holds time.
+    It passes again when, `ROUNDS` times in a row, the robot has answered a ping of every module that has not answered a
+    call of the goal, the simulation has run a command, and the threads of the goals have been seen waiting. A module
+    takes one call at a time, so a call that is still open then is one that takes simulated time.
     """
 
     ROUNDS = 4
     STUCK = 1.0
-    """s of wall time after which a thread counts as waiting that nobody sees wait."""
+    """s of wall time after which a thread counts as waiting that is never seen to: it calls the robot unwatched."""
+    PAUSE = 0.001
+    """s until the next look at a thread that works."""
 
     def __init__(self, simulator):
         self._simulator = simulator
@@ -183,7 +177,8 @@ class Lockstep:
         self._calls = []
         self._waiters = []
         self._change = self._quiet = 0
-        self._busy_since = None
+        self._busy_since = {}
+        self._ended = False
         threading.Thread(target=self._look, name="lockstep", daemon=True).start()
         self.attach()
 
@@ -208,7 +203,7 @@ class Lockstep:
     # --- the goals under test ----------------------------------------------------------------------------------------
 
     def goal_begins(self, thread=None):
-        """Args: thread: That of the goal, when there is one."""
+        """Hold time for a goal; `thread` is the one it runs in, where there is only one."""
         self._changed(lambda: self._goals.append(thread))
 
     def goal_is_over(self, thread=None):
@@ -261,7 +256,9 @@ class Lockstep:
         rounds, seen = 0, 0
         while True:
             with self._news:
-                self._news.wait_for(lambda: self._goals and self._quiet != self._change)
+                self._news.wait_for(lambda: self._ended or (self._goals and self._quiet != self._change))
+                if self._ended:
+                    return
                 rounds = rounds if seen == self._change else 0
                 seen, goals, calls = self._change, list(self._goals), list(self._calls)
             self._round(calls)
@@ -269,7 +266,8 @@ class Lockstep:
                 continue
             if not all(self._waits(goal, bool(calls)) for goal in goals):
                 rounds = 0
-                time.sleep(0.001)
+                with self._news:
+                    self._news.wait(self.PAUSE)
                 continue
             rounds += 1
             if rounds == self.ROUNDS:
@@ -281,14 +279,19 @@ class Lockstep:
             for proxy in calls:
                 proxy.call("ping")
             self._simulator.settled()
-        except Exception:  # the robot is lost, which the goal sees as well
-            time.sleep(0.005)
+        except (NaoError, SimulationError):
+            pass  # the robot is lost, which the goal sees as well
 
     def _waits(self, thread, called):
+        """Whether a goal does nothing now: its thread waits for another, or for an answer that is known of."""
         frame = thread and sys._current_frames().get(thread.ident)
-        name = frame and frame.f_code.co_filename
-        if not frame or name == threading.__file__ or (called and name == naoqi.calls.__file__):
-            self._busy_since = None
+        file = frame and frame.f_code.co_filename
+        if not frame or file == threading.__file__ or (called and file == naoqi.calls.__file__):
+            self._busy_since.pop(thread, None)
             return True
-        self._busy_since = self._busy_since or time.monotonic()
-        return time.monotonic() > self._busy_since + self.STUCK
+        return time.monotonic() > self._busy_since.setdefault(thread, time.monotonic()) + self.STUCK
+
+    def close(self):
+        with self._news:
+            self._ended = True
+            self._news.notify_all()
