@@ -39,6 +39,24 @@ def pytest_configure(config):
     config.addinivalue_line("markers", "alone: nothing else runs meanwhile")
     for level in LEVELS:
         config.addinivalue_line("markers", f"{level}: a test of the level {level}")
+    if not hasattr(config, "workerinput"):
+        config.pluginmanager.register(FailuresAtOnce(config))
+
+
+class FailuresAtOnce:
+    """Tells of each failure when it happens: a run that is cut off has told what it knew."""
+
+    def __init__(self, config):
+        self._config = config
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_runtest_logreport(self, report):
+        if report.failed:
+            crash = getattr(report.longrepr, "reprcrash", None)
+            said = crash.message.split("\n")[0] if crash else report.longreprtext.strip().split("\n")[-1]
+            terminal = self._config.pluginmanager.get_plugin("terminalreporter")
+            terminal.ensure_newline()
+            terminal.write_line(f"{report.nodeid.rpartition('@')[0] or report.nodeid}: {said}")
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -83,6 +101,8 @@ class LongestFirst(LoadGroupScheduling):
 
         self.workqueue.move_to_end(min(self.workqueue, key=rank), last=False)
         super()._assign_work_unit(node)
+        if self.workqueue and self._pending_of(self.assigned_work[node]) < 2:
+            self._assign_work_unit(node)  # a worker begins with a case when it knows the next one
 
     def _alone_on(self, node):
         return any(
@@ -98,10 +118,12 @@ class LongestFirst(LoadGroupScheduling):
 
     def remove_node(self, node):
         """A case that ends its worker is not run again: it would end the next one as well."""
-        units = self.assigned_work.get(node, {}).values()
-        crashed, unit = next(((case, unit) for unit in units for case in unit if not unit[case]), (None, None))
+        units = self.assigned_work.get(node, {})
+        crashed, unit = next(((case, unit) for unit in units.values() for case in unit if not unit[case]), (None, None))
         if crashed:
             unit[crashed] = True
+            for name in [name for name, unit in units.items() if all(unit.values())]:
+                del units[name]
         super().remove_node(node)
         return crashed
 
