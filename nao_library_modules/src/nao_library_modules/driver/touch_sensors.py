@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -123,10 +123,12 @@ class TouchSensors:
             self._heard.clear()
         for event in (*self._sensors, *CLICKS):
             self._relay.subscribe(event)
-        self._read(tuple(self._sensors.values()))
+        self._read({sensor: sensor.keys for sensor in self._sensors.values()})
 
     def _look_again(self) -> bool:
-        """Read the sensors that told something: libqi brings events that follow each other closely in any order.
+        """Read the events that came: libqi brings those that follow each other closely in any order.
+
+        The sensors themselves would not do: a foot that bounces has no contact for a moment, of which no event tells.
 
         Returns:
             True: to be put right, nothing has to be started anew.
@@ -136,17 +138,19 @@ class TouchSensors:
             self._heard.clear()
         try:
             if heard:
-                self._read(heard)
+                self._read({sensor: (sensor.event,) for sensor in heard})
         except NaoError as error:
             log.debug("touch sensors: %s", error)  # a lost connection is told elsewhere, and all is read after it
+            with self._lock:
+                self._heard.update(sensor.event for sensor in heard)
         return True
 
-    def _read(self, sensors: Sequence[Sensor]) -> None:
-        keys = [key for sensor in sensors for key in sensor.keys]
+    def _read(self, keys_of: Mapping[Sensor, Sequence[str]]) -> None:
+        keys = [key for keys in keys_of.values() for key in keys]
         answer = self._robot.proxy(MEMORY).call_async("getListData", keys).result(timeout=ANSWER_LIMIT)
         values = dict(zip(keys, answer))
-        for sensor in sensors:
-            known = [values[key] for key in sensor.keys if isinstance(values[key], (bool, int, float))]
+        for sensor, keys in keys_of.items():
+            known = [values[key] for key in keys if isinstance(values[key], (bool, int, float))]
             if known:
                 self._take(sensor, any(value > 0.5 for value in known), is_event=False)
 
