@@ -80,6 +80,7 @@ class DriverSpeechWords(unittest.TestCase):
 
         self.set_vocabulary("hello", "goodbye")  # while it listens
         heard.clear()
+        self.robot.advance(1.0)  # the sound that says it listens again is over
         self.room.person_says("goodbye", self.room.around(1.0, 0.0))
         self.robot.advance(2.0)
         wait_until(lambda: heard, LIMIT, "a word of the new vocabulary")
