@@ -12,11 +12,14 @@ from pathlib import Path
 import rospy
 
 from nao_library_modules.own_stack import OwnStack, can_connect, free_port
-from nao_sim_bridge.testing import SimulatedRobot
+from nao_sim_bridge.testing import SimulatedRobot, StackNotReady
 
 SPEED = 2
 PR_SET_PDEATHSIG = 1
-LIMIT = 60.0
+LIMIT = 90.0
+ATTEMPTS = 2
+LINES = 20
+"""Of what a stack has printed that does not start."""
 
 
 def _die_with_parent():
@@ -42,7 +45,9 @@ class RosStack:
     def __init__(self, folder, **arguments):
         self.folder = folder
         self._arguments = {"speed": SPEED, "world": "empty", **arguments}
-        self.broken = False
+        self.broken = True
+        self.stack = None
+        self._failures = []
         self._starts = 0
         self._nodes = {}
         port = free_port()
@@ -55,12 +60,30 @@ class RosStack:
             self._master = start_program("rosmaster", "--core", "-p", str(port), stdout=output, stderr=output)
         self._await(lambda: can_connect(port), "the ROS master")
         self._port = port
-        self.start()
-        rospy.init_node(f"ros_tests_{os.getpid()}", disable_signals=True)
-        self.robot = SimulatedRobot(limit=LIMIT)
 
-    def start(self):
+    def ensure(self, world="empty"):
+        """Start the stack, or start it again if a case has broken it or another world is wanted.
+
+        Raises:
+            RuntimeError: It does not start; whoever asks after two failures is not kept waiting.
+        """
+        if not self.broken and world == self._arguments["world"]:
+            return
+        if len(self._failures) >= ATTEMPTS:
+            raise RuntimeError(f"the stack did not start {ATTEMPTS} times, at last: {self._failures[-1]}")
+        self.rest()
+        self._arguments["world"] = world
         self._starts += 1
+        try:
+            self._start()
+        except (TimeoutError, StackNotReady) as error:
+            words = self.stack.log.read_text(errors="replace").splitlines()[-LINES:]
+            self._failures.append(f"{error}\n" + "\n".join(words))
+            raise RuntimeError(f"the stack did not start: {self._failures[-1]}") from error
+        self.broken = False
+        self._failures.clear()
+
+    def _start(self):
         self._nodes = {}
         self.stack = OwnStack(
             self.folder / f"stack_{self._starts}.txt",
@@ -70,19 +93,14 @@ class RosStack:
         )
         os.environ["NAO_PORT"] = str(self.stack.nao_port)
         self.stack.wait_for_robot(LIMIT)
-
-    def ensure(self, world="empty"):
-        """Start the stack again if a case has broken it or another world is wanted."""
-        if self.broken or world != self._arguments["world"]:
-            self._arguments["world"] = world
-            self.stack.stop()
-            self.start()
-            self.robot = SimulatedRobot(limit=LIMIT)
-            self.broken = False
+        if not rospy.core.is_initialized():  # not before the stack has said whose time counts
+            rospy.init_node(f"ros_tests_{os.getpid()}", disable_signals=True)
+        self.robot = SimulatedRobot(limit=LIMIT)
 
     def rest(self):
         """End it until it is needed again; its master stays."""
-        self.stack.stop()
+        if self.stack:
+            self.stack.stop()
         self.broken = True
 
     def deaths(self):
@@ -92,7 +110,7 @@ class RosStack:
 
     def close(self):
         rospy.signal_shutdown("the tests are over")
-        self.stack.stop()
+        self.rest()
         self._master.terminate()
         self._master.wait(LIMIT)
 
