@@ -273,6 +273,8 @@ class Walker:
         except NaoError as error:
             self._ended(order, error)
             return
+        if order.stopped_by and arrived is not True:
+            return  # it has ended when the robot stands
         if arrived is None or arrived is True:  # robots differ in whether they tell
             self._ended(order, arrived=arrived is True)
         else:
@@ -283,6 +285,8 @@ class Walker:
         try:
             call.result(timeout=0)
         except NaoError as error:
+            for stopped in old:
+                self._ended(stopped, error)
             self._ended(order, error)
             return
         if other.done():
