@@ -135,7 +135,7 @@ def record_reach(suite, source, levels, jobs):
     (folder / "cache").mkdir(parents=True)
     tree = copy_tree(source, SCRATCH / suite / "tree-0")
     for level in levels:
-        several = ["-n", str(jobs), "--dist", "loadfile"] if jobs > 1 and level != "ros" else []
+        several = ["-n", str(jobs), "--dist", "loadgroup"] if jobs > 1 and level != "ros" else []
         print(f"running {level} once to see what each test reaches...", flush=True)
         patient = ["-o", "timeout=600"] if "timeout =" in (tree / "pyproject.toml").read_text() else []
         run_pytest(tree, [f"test/{level}", *several, *patient], folder / f"{level}.log", FAULTS_REACH=str(folder))

@@ -17,7 +17,8 @@ REACH, PICKS = os.environ.get("FAULTS_REACH"), os.environ.get("FAULTS_PICKS")
 class Recorder:
     """One line a test: name, outcome, duration in s, numbers of the blocks; before them lines that name the numbers."""
 
-    def __init__(self):
+    def __init__(self, grouped):
+        self.grouped = grouped
         page = f"{REACH}/page-{os.getpid()}"
         with open(page, "wb") as file:
             file.write(b"\0" * 4096)
@@ -28,8 +29,11 @@ class Recorder:
         self.numbers, self.generations = {}, itertools.count(1)
         self.reports = {}
 
+    def name_of(self, nodeid):
+        return nodeid.rpartition("@")[0] if self.grouped else nodeid  # xdist adds the group
+
     def pytest_runtest_logstart(self, nodeid):
-        self.page[8:] = nodeid.encode()[:4080].ljust(4088, b"\0")
+        self.page[8:] = self.name_of(nodeid).encode()[:4080].ljust(4088, b"\0")
         self.page[:8] = next(self.generations).to_bytes(8, "little")
         sys.reached.clear()
         self.reports = {}
@@ -46,7 +50,7 @@ class Recorder:
         outcome = "passed" if all(r.outcome == "passed" for r in self.reports.values()) else "failed"
         took = sum(r.duration for r in self.reports.values())
         numbers = " ".join(str(self.numbers[name]) for name in reached)
-        self.file.write(f"{nodeid}\t{outcome}\t{took:.3f}\t{numbers}\n")
+        self.file.write(f"{self.name_of(nodeid)}\t{outcome}\t{took:.3f}\t{numbers}\n")
         self.file.flush()
 
 
@@ -102,6 +106,6 @@ class Picker:
 def pytest_configure(config):
     # The process that only hands out work to others has no tests of its own.
     if REACH and (hasattr(config, "workerinput") or not config.getoption("numprocesses", None)):
-        config.pluginmanager.register(Recorder(), "faults-recorder")
+        config.pluginmanager.register(Recorder(config.getoption("loadgroup", False)), "faults-recorder")
     if PICKS:
         config.pluginmanager.register(Picker(), "faults-picker")
