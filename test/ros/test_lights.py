@@ -5,7 +5,7 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoLedAction
+from nao_library_actions.msg import NaoLedAction, NaoLedActionGoal, NaoLedGoal
 from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.testing import RobotTestCase, wait_until
 
@@ -59,6 +59,16 @@ class Lights(RobotTestCase):
         result = self.succeed(LedFunction(function="getIntensity", lights=["Brain0"]))
         self.ends(older, GoalStatus.PREEMPTED)
         self.assertEqual(result.results[0].values, ["1.0"])
+
+    def test_a_client_whose_clock_is_ahead_locks_nobody_out(self):
+        publisher = rospy.Publisher("NaoLights/goal", NaoLedActionGoal, queue_size=1)
+        self.addCleanup(publisher.unregister)
+        wait_until(lambda: publisher.get_num_connections() > 0, 10.0, "NaoLights")
+        early = NaoLedActionGoal(goal=NaoLedGoal([intensity("Brain0", 0.25)]))
+        early.goal_id.stamp = rospy.Time.now() + rospy.Duration(10000)
+        publisher.publish(early)
+        self.robot.wait_for_leds({BRAIN["Brain0"]: 0.25})
+        self.succeed(intensity("Brain0", 0.5))
 
     def test_goals_and_cancels_that_chase_each_other_all_end_and_leave_the_server_alive(self):
         runs = [self.send(intensity("Brain0", 0.5, wait=1000.0)) for _ in range(20)]

@@ -15,6 +15,7 @@ log = logging.getLogger(__name__)
 
 SHUTDOWN_POLL = 0.1
 """s between two looks whether the node has ended, for nothing wakes the waiting thread then."""
+REPLACED = "a newer goal came before this one began"
 OVER = frozenset(
     (GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.PREEMPTED, GoalStatus.RECALLED, GoalStatus.REJECTED)
 )
@@ -26,6 +27,10 @@ class PromptActionServer(actionlib.SimpleActionServer):
 
     The loop it replaces waits before it looks: a goal that came while the last one was being ended was announced to
     nobody, and lies there for a tenth of a second. This one looks under the lock that announcements are made under.
+
+    The goal that came last counts. actionlib cancels one whose stamp is older than that of the goal before, even if that
+    is over: after one goal of a client whose clock is ahead (of another computer, of a simulation before it was started
+    again, or the wall's beside simulated time), nobody else would have a goal carried out for as long.
 
     It also forgets what was in a goal when that is over. actionlib tells of such a goal for 5 s more and keeps all of
     it for longer, in a ring of objects that Python finds some day: hundreds of goals with long lists in them are
@@ -59,10 +64,18 @@ class PromptActionServer(actionlib.SimpleActionServer):
             self._empty_goals()
             self._heap.tidy()
 
-    # Called under the lock of actionlib's ActionServer. A new goal may end one that waits.
+    # Called under the lock of actionlib's ActionServer.
     def internal_goal_callback(self, goal: Any) -> None:
-        """Keep a new goal until it is taken up."""
-        super().internal_goal_callback(goal)
+        """Keep a new goal until it is taken up, and end one that waits."""
+        with self.execute_condition:
+            if self.new_goal:
+                self.next_goal.set_canceled(None, REPLACED)
+            self.next_goal, self.new_goal, self.new_goal_preempt_request = goal, True, False
+            if self.is_active():
+                self.preempt_request = True
+                if self.preempt_callback:
+                    self.preempt_callback()
+            self.execute_condition.notify()
         self._empty_goals()
 
     def _empty_goals(self) -> None:
