@@ -103,6 +103,8 @@ def test_a_stop_or_a_newer_command_overtakes_a_target(walker, robot, until):
     until(lambda: walking(robot), limit=2.0)
     robot.advance(1.5)
     stop = walker.order(Stop(), "stop_walk_srv from /you")
+    until(lambda: walker.doing == "nothing")
+    done(steer(walker, STAND))  # which takes nothing from the stop
     until(target.answer.done)
     assert not walking(robot)
     done(stop)

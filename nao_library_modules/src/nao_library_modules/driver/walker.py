@@ -176,6 +176,9 @@ class Walker:
             raise
 
     def _steer(self, order: Order, velocity: Velocity) -> None:
+        if order.halts and self._stops():
+            order.succeed()  # whoever lets go of a key and calls for a stop gets both answers
+            return
         # Only of a stream of velocities the same ones may be left out: who commands once wants an answer of the robot.
         if not self._pace.is_news(velocity, self._wall.now()) and order.watched:
             if not order.halts:
@@ -217,6 +220,10 @@ class Walker:
         standing = self._start("waitUntilMoveIsFinished")
         stopping.add_done_callback(lambda call: self._stopped(order, old, call, standing))
         standing.add_done_callback(lambda call: self._stopped(order, old, call, stopping))
+
+    def _stops(self) -> bool:
+        with self._lock:
+            return any(isinstance(old.command, Stop) and not old.answer.done() for old in self._running)
 
     def _begin(self, order: Order, velocity: Velocity | None = None) -> list[Order]:
         """Note what is done from now on. What was done before ends: at once, or if it is stopped when the robot stands.
