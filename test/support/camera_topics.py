@@ -13,16 +13,11 @@ from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from nao_library_modules.vision_pictures import picture_of
-from nao_library_msgs.msg import VisionFunction
 from naoqi.errors import NaoError
 
 CAMERA, OUT = "/camera/image_raw", "/out/image_raw"
 TOP, BOTTOM = "/nao_robot/camera/top/image_raw", "/nao_robot/camera/bottom/image_raw"
 LIMIT = 10.0
-
-
-def f(function, **fields):
-    return VisionFunction(function=function, **fields)
 
 
 def header(stamp, frame="CameraTop_optical_frame"):

@@ -1,4 +1,4 @@
-"""Services and action servers that scenarios call."""
+"""Services, topics and action servers of the stack, as scenarios use them."""
 
 import rospy
 
@@ -14,10 +14,10 @@ def service(name, kind, limit=LIMIT):
     return rospy.ServiceProxy(name, kind)
 
 
-def answer(call, *fields):
+def answer(call, *fields, **named):
     """Error text of a service, empty if it did what it was asked."""
     try:
-        call(*fields)
+        call(*fields, **named)
     except rospy.ServiceException as error:
         return str(error)
     return ""
@@ -26,6 +26,23 @@ def answer(call, *fields):
 def configuration(settings):
     """What a server of dynamic_reconfigure has set now; its client's get_configuration waits for no topic."""
     return settings.update_configuration({})
+
+
+def measured_now(topic, kind):
+    """A message of a topic that was measured after now."""
+    began = rospy.Time.now()
+    while True:
+        message = rospy.wait_for_message(topic, kind, 10.0)
+        if message.header.stamp > began:
+            return message
+
+
+def publisher(test, name, kind):
+    """A publisher of a topic that somebody listens to; it ends with the test."""
+    made = rospy.Publisher(name, kind, queue_size=10)
+    test.addCleanup(made.unregister)
+    wait_until(lambda: made.get_num_connections() > 0, 10.0, f"subscriber of {name}")
+    return made
 
 
 def action_client(name, action, limit=LIMIT):

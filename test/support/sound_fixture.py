@@ -8,6 +8,7 @@ import numpy as np
 import rospkg
 import rospy
 import soundfile
+from camera_fixture import matrix
 
 SOUND_FILE = "loudspeakers.wav"
 """Name that the scenarios' launch files give to the file with what the loudspeakers play."""
@@ -125,40 +126,8 @@ class Room:
 
     def _head_in_world(self) -> np.ndarray:
         pose = self._robot.true_pose()
-        torso = quaternion_matrix([getattr(pose.orientation, axis) for axis in "xyzw"])
-        torso[:3, 3] = [getattr(pose.position, axis) for axis in "xyz"]
-        return torso @ np.array(self._robot.module("ALMotion").getTransform("Head", 0, True)).reshape(4, 4)
-
-
-def quaternion_matrix(quaternion) -> np.ndarray:
-    """(4, 4) rotation of a quaternion x, y, z, w."""
-    x, y, z, w = quaternion
-    matrix = np.identity(4)
-    matrix[:3, :3] = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    return matrix
-
-
-def delay(first: np.ndarray, second: np.ndarray, rate: int, longest: float = 0.002) -> float:
-    """How much later the second of two signals of one source comes, s, by generalised cross-correlation.
-
-    Args:
-        first: (frames,) samples.
-        second: As many.
-        rate: Hz.
-        longest: Delays are looked for up to this, s.
-    """
-    finer = 16
-    frames = len(first)
-    cross = np.fft.rfft(second, 2 * frames) * np.conj(np.fft.rfft(first, 2 * frames))
-    cross[: int(200.0 * 2 * frames / rate)] = 0.0  # below, the background is as loud as the source
-    correlation = np.fft.irfft(cross / np.maximum(np.abs(cross), 1e-12), finer * 2 * frames)
-    reach = int(longest * rate * finer)
-    lags = np.concatenate([correlation[-reach:], correlation[: reach + 1]])
-    return float((int(np.argmax(lags)) - reach) / (rate * finer))
+        head = np.array(self._robot.module("ALMotion").getTransform("Head", 0, True)).reshape(4, 4)
+        return matrix(pose.position, pose.orientation) @ head
 
 
 def noise(seconds):

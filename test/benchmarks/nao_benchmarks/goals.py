@@ -1,54 +1,19 @@
-"""Goals for lights and motion, and a client that measures round trips instead of its own waiting."""
+"""A client of action servers that measures round trips instead of its own waiting."""
 
 from __future__ import annotations
 
 import threading
-from typing import Any
+from typing import Any, Mapping
 
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoAudioOutGoal, NaoBehaviorGoal, NaoLedAction, NaoLedGoal, NaoMotionGoal
-from nao_library_msgs.msg import AudioOutFunction, BehaviorFunction, LedFunction, MotionFunction
+from nao_library_modules.server_types import server_type
 
 from .errors import BenchmarkError
 
 GOAL_LIMIT = 20.0
-
-
-def list_group(group: str) -> NaoLedGoal:
-    """A goal with one function that needs no call to the robot once the server knows the robot's lights."""
-    return NaoLedGoal([LedFunction(function="listGroup", str_param=group)])
-
-
-def set_intensity(light: str, count: int) -> NaoLedGoal:
-    """A goal with a chain of `count` functions; each makes one call to the robot."""
-    # Alternating, so that every call changes something.
-    return NaoLedGoal(
-        [LedFunction(function="setIntensity", lights=[light], i_values=[float(i % 2)]) for i in range(count)]
-    )
-
-
-def set_angles(joint: str, angle: float, speed: float) -> NaoMotionGoal:
-    """A goal that gives a joint a target (rad) at a fraction of its top speed, and is over then."""
-    return NaoMotionGoal([MotionFunction(function="setAngles", names=[joint], angles=[angle], speed=speed)])
-
-
-def interpolate(joint: str, angle: float, duration: float) -> NaoMotionGoal:
-    """A goal that moves a joint to an angle (rad) in a time (s)."""
-    function = MotionFunction(function="angleInterpolation", names=[joint], angles=[angle], times=[duration])
-    return NaoMotionGoal([function])
-
-
-def say(text: str) -> NaoAudioOutGoal:
-    """A goal that says a text and is over when that is said."""
-    return NaoAudioOutGoal([AudioOutFunction(function="say", str_param=text)])
-
-
-def run_behavior(name: str) -> NaoBehaviorGoal:
-    """A goal that runs a stored behaviour."""
-    return NaoBehaviorGoal([BehaviorFunction(function="runBehavior", str_param=name)])
 
 
 class GoalClient:
@@ -62,18 +27,23 @@ class GoalClient:
 
     Args:
         server: Name of the action.
+        kind: Name of the server of ours that has the same action.
         limit: Longest wait for the server, in s.
-        action: Its type.
 
     Raises:
         BenchmarkError: If the server does not come up.
     """
 
-    def __init__(self, server: str, limit: float, action: type = NaoLedAction) -> None:
+    def __init__(self, server: str, kind: str, limit: float) -> None:
         self.server = server
-        self._client = actionlib.ActionClient(server, action)
+        self._type = server_type(kind)
+        self._client = actionlib.ActionClient(server, self._type.action)
         if not self._client.wait_for_server(rospy.Duration(limit)):
             raise BenchmarkError(f"no action server {server} within {limit:g} s")
+
+    def goal(self, function: str, *fields: Mapping[str, object]) -> Any:
+        """A goal that calls a function once with each of some fields."""
+        return self._type.goal([self._type.function(function=function, **each) for each in fields])
 
     def send(self, goal: Any) -> actionlib.ClientGoalHandle:
         """Send a goal and go on; the handle cancels it."""

@@ -7,8 +7,4 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[3]
 PROGRAMS = Path(__file__).resolve().parent / "programs"
 SIMULATOR_NODE = ROOT / "nao_sim_bridge" / "nodes" / "nao_sim"
-LIGHTS_NODE = ROOT / "nao_library_modules" / "nodes" / "nao_lights"
-MOTION_NODE = ROOT / "nao_library_modules" / "nodes" / "nao_motion"
-AUDIO_OUT_NODE = ROOT / "nao_library_modules" / "nodes" / "nao_audio_out"
-TACTILE_NODE = ROOT / "nao_library_modules" / "nodes" / "nao_tactile"
-BEHAVIOR_NODE = ROOT / "nao_library_modules" / "nodes" / "nao_behavior_server"
+NODES = ROOT / "nao_library_modules" / "nodes"

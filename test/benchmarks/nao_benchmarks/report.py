@@ -83,7 +83,7 @@ def _entry(result: Result) -> dict[str, object]:
         "ours": None if figures is None else figures.ours,
         "reference": None if figures is None else figures.reference,
         "ratio": None if figures is None else figures.ratio,
-        "bound": {"kind": row.bound.kind.value, "limit": row.bound.limit},
+        "bound": {"kind": row.bound.kind, "limit": row.bound.limit},
         "ok": result.ok,
         "error": result.error or None,
         "note": None if figures is None else figures.note or None,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import abc
-import enum
 from dataclasses import dataclass, field
 from typing import Mapping
 
@@ -11,41 +10,34 @@ from .stack import Stack
 from .stats import Sample
 
 
-class Kind(enum.Enum):
-    """On which side of its limit a figure must be."""
-
-    AT_MOST = "at most"
-    AT_LEAST = "at least"
-
-
 @dataclass(frozen=True)
 class Bound:
     """What is promised of a figure.
 
     Attributes:
-        kind: Which side of the limit is right; the limit itself is.
+        kind: Which side of the limit is right, "at most" or "at least"; the limit itself is.
         limit: In the unit of the figure.
     """
 
-    kind: Kind
+    kind: str
     limit: float
 
     def holds(self, value: float) -> bool:
         """Whether a figure is on the right side; one that is no number never is."""
-        return value <= self.limit if self.kind is Kind.AT_MOST else value >= self.limit
+        return value <= self.limit if self.kind == "at most" else value >= self.limit
 
     def __str__(self) -> str:
-        return f"{self.kind.value} {self.limit:g}"
+        return f"{self.kind} {self.limit:g}"
 
 
 def at_most(limit: float) -> Bound:
     """A bound from above."""
-    return Bound(Kind.AT_MOST, limit)
+    return Bound("at most", limit)
 
 
 def at_least(limit: float) -> Bound:
     """A bound from below."""
-    return Bound(Kind.AT_LEAST, limit)
+    return Bound("at least", limit)
 
 
 @dataclass(frozen=True)

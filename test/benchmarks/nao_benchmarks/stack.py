@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-import socket
 import sys
 from contextlib import ExitStack
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from .places import AUDIO_OUT_NODE, BEHAVIOR_NODE, LIGHTS_NODE, MOTION_NODE, PROGRAMS, TACTILE_NODE
+from .places import NODES, PROGRAMS
 from .program import Program
 from .simulator import Simulator
 
@@ -17,10 +16,8 @@ if TYPE_CHECKING:
     from .goals import GoalClient
 
 START_LIMIT = 40.0
-OUR_SERVER = "NaoLights"
+LIGHTS = "NaoLights"
 BARE_SERVER = "bare_lights"
-MOTION_SERVER = "NaoMotion"
-AUDIO_OUT_SERVER = "nao_audio_out"
 # s; a client must still find its goal in the list when the result takes longer than the state.
 FORGET_AFTER = 0.2
 
@@ -36,9 +33,6 @@ class Stack:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
         """End everything, the newest first."""
         self._started.close()
 
@@ -51,12 +45,14 @@ class Stack:
         """Start a ROS master of our own, unless it runs already; this process becomes a node of it."""
         if self._ros:
             return
+        from nao_library_modules.own_stack import free_port  # not above: rows that need no ROS run without it
+
         port = free_port()
         os.environ.update(ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1")
         os.environ.pop("ROS_HOSTNAME", None)
         core = self._started.enter_context(Program("roscore", ["roscore", "-p", str(port)]))
         core.wait_for(r"started core service \[/rosout\]", START_LIMIT)
-        import rospy  # not above: rows that need no ROS run without it
+        import rospy
 
         rospy.init_node("benchmarks", disable_signals=True)
         self._started.callback(rospy.signal_shutdown, "the benchmarks are over")
@@ -79,66 +75,49 @@ class Stack:
     @cached_property
     def motion_client(self) -> GoalClient:
         """A client of our server for motion; the robot is awake."""
-        self.start_ros()
-        from nao_library_actions.msg import NaoMotionAction  # not above: it needs the built workspace
-
-        from .goals import GoalClient
-
         self.simulator.wake_up()
-        self._start("nao_motion", [str(MOTION_NODE), *self._robot()])
-        return GoalClient(MOTION_SERVER, START_LIMIT, NaoMotionAction)
+        return self._client_of("NaoMotion", "nao_motion")
 
     @cached_property
     def audio_out_client(self) -> GoalClient:
         """A client of our server for sound."""
-        self.start_ros()
-        from nao_library_actions.msg import NaoAudioOutAction  # not above: it needs the built workspace
-
-        from .goals import GoalClient
-
-        self._start("nao_audio_out", [str(AUDIO_OUT_NODE), *self._robot()])
-        return GoalClient(AUDIO_OUT_SERVER, START_LIMIT, NaoAudioOutAction)
+        return self._client_of("nao_audio_out", "nao_audio_out")
 
     def start_tactile(self) -> None:
         """Start the driver's node for touch."""
-        self.start_ros()
-        self._start("nao_tactile", [str(TACTILE_NODE), *self._robot()])
+        self._start_node("nao_tactile")
 
     def start_behaviors(self, folder: str) -> tuple[GoalClient, GoalClient]:
         """Start the server for behaviours on a folder; clients of it, and of a server for lights beside it."""
-        self.start_ros()
-        from nao_library_actions.msg import NaoBehaviorAction  # not above: it needs the built workspace
-
-        from .goals import GoalClient
-
-        self._start("nao_behavior_server", [str(BEHAVIOR_NODE), *self._robot(), f"_behavior_dir:={folder}"])
-        self._start("nao_lights of behaviors", [str(LIGHTS_NODE), *self._robot()])
-        return GoalClient("NaoBehavior", START_LIMIT, NaoBehaviorAction), GoalClient(OUR_SERVER, START_LIMIT)
-
-    def _robot(self) -> list[str]:
-        return ["--pip", "127.0.0.1", "--pport", str(self.simulator.port)]
+        behaviors = self._client_of("NaoBehavior", "nao_behavior_server", f"_behavior_dir:={folder}")
+        return behaviors, self._client_of(LIGHTS, "nao_lights")
 
     def _goal_servers(self, name: str, forget_after: float | None = None) -> tuple[GoalClient, GoalClient]:
         self.start_ros()
         import rospy
 
-        from .goals import GoalClient  # not above: it needs the messages of the built workspace
-
-        ours, bare = f"/{name}/{OUR_SERVER}", f"/{name}/{BARE_SERVER}"
+        ours, bare = f"/{name}/{LIGHTS}", f"/{name}/{BARE_SERVER}"
         if forget_after is not None:
             for server in (ours, bare):
                 rospy.set_param(f"{server}/status_list_timeout", forget_after)
         remapping = f"__ns:=/{name}"
-        self._start("nao_lights", [str(LIGHTS_NODE), *self._robot(), remapping])
+        self._start_node("nao_lights", remapping)
         self._start("bare server", [str(PROGRAMS / "bare_action_server.py"), BARE_SERVER, remapping])
-        return GoalClient(ours, START_LIMIT), GoalClient(bare, START_LIMIT)
+        return self._connect(ours, LIGHTS), self._connect(bare, LIGHTS)
 
-    def _start(self, name: str, command: list[str]) -> Program:
-        return self._started.enter_context(Program(name, [sys.executable, *command]))
+    def _client_of(self, server: str, node: str, *options: str) -> GoalClient:
+        self._start_node(node, *options)
+        return self._connect(server, server)
 
+    def _connect(self, server: str, kind: str) -> GoalClient:
+        from .goals import GoalClient  # not above: it needs the messages of the built workspace
 
-def free_port() -> int:
-    """A TCP port of the loopback interface that nobody uses at the moment."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+        return GoalClient(server, kind, START_LIMIT)
+
+    def _start_node(self, name: str, *options: str) -> None:
+        """Start a node of ours that speaks to the simulator."""
+        self.start_ros()
+        self._start(name, [str(NODES / name), "--pip", "127.0.0.1", "--pport", str(self.simulator.port), *options])
+
+    def _start(self, name: str, command: list[str]) -> None:
+        self._started.enter_context(Program(name, [sys.executable, *command]))

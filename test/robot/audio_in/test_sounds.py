@@ -6,18 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from genpy import Duration
+from goal_functions import audio_in as f
 from sounds import RATE, frequency, loudness, noise, put, read, take, tone, write
-
-from nao_library_msgs.msg import AudioInFunction
 
 DETECTED, LOCATED = "SoundDetected", "ALSoundLocalization/SoundLocated"
 LEVEL = [0.0] * 6
 ALL = ["left", "right", "front", "rear"]
-
-
-def f(function, **fields):
-    return AudioInFunction(function=function, **fields)
 
 
 @pytest.mark.parametrize(
@@ -202,7 +196,7 @@ def test_parameters_of_the_recognition_and_of_the_sound_card(ears):
 
 
 def test_settings_go_back_after_the_wait(robot, ears):
-    recognition, device, wait = robot.ALSpeechRecognition, robot.ALAudioDevice, Duration.from_sec(0.5)
+    recognition, device, wait = robot.ALSpeechRecognition, robot.ALAudioDevice, 0.5
     device.setOutputVolume(60)
 
     def now():

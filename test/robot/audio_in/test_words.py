@@ -6,22 +6,17 @@ import math
 
 import numpy as np
 import pytest
-from genpy import Duration
+from goal_functions import audio_in as f
 from sounds import RATE, noise, put
 from spoken_words import RATE as SPEECH_RATE
 from spoken_words import spoken
 
 from nao_library_actions.msg import NaoAudioInGoal
 from nao_library_modules.audio_in import NaoAudioInput
-from nao_library_msgs.msg import AudioInFunction
 from nao_sim_bridge.sim.sound.samples import Sound
 
 WORDS, STATUS = "WordRecognized", "ALSpeechRecognition/Status"
 YES_NO = ["yes", "no"]
-
-
-def f(function, **fields):
-    return AudioInFunction(function=function, **fields)
 
 
 LISTEN = f("listen", vocabulary=YES_NO, timeout=5.0)
@@ -108,7 +103,7 @@ def test_nothing_in_time_is_no_failure(robot, ears, restored):
 @pytest.mark.parametrize("function", ["listen", "detectSound", "localizeSound", "getEnergy", "record", "getLanguage"])
 def test_every_function_that_takes_time_is_preempted_and_leaves_nothing_behind(robot, ears, restored, function):
     file = {"str_param": "a.wav"} if function == "record" else {}
-    long = f(function, vocabulary=YES_NO, duration=1000.0, timeout=1000.0, time=Duration(1000), **file)
+    long = f(function, vocabulary=YES_NO, duration=1000.0, timeout=1000.0, time=1000.0, **file)
     goal = ears.send(long, f("ping"))
     robot.advance(1.0)
     goal.cancel()

@@ -7,16 +7,13 @@ import json
 import math
 
 from genpy import Duration
+from goal_functions import audio_out as f
 from sounds import played, tone, write
 
 from nao_library_modules.memory_functions import MemoryFunctions
 from nao_library_msgs.msg import AudioOutFunction
 
 NAN = math.nan
-
-
-def f(function, text="", **fields):
-    return AudioOutFunction(function=function, str_param=text, **fields)
 
 
 BIP, SET = "nao_library/bip.ogg", "nao_library"
@@ -137,7 +134,7 @@ def test_what_is_set_goes_back_after_the_wait_also_when_that_is_cancelled(robot,
         volume, voice, master = speech.getVolume(), speech.getVoice(), player.getMasterVolume()
         return device.getOutputVolume(), device.isAudioOutMuted(), voice, round(volume, 3), round(master, 3)
 
-    before, wait = now(), Duration.from_sec(0.5)
+    before, wait = now(), 0.5
     assert before == (100, False, "naoenu", 1.0, 1.0)
     for function, changed in [
         (f("setOutputVolume", volume=20, revert=True, time=wait), (20, False, "naoenu", 1.0, 1.0)),

@@ -4,18 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from genpy import Duration
+from goal_functions import audio_out as f
 from sounds import frequency, loudness, played, span, tone, write
-
-from nao_library_msgs.msg import AudioOutFunction
 
 FULL, LENGTH = 0.5 / np.sqrt(2.0), 1.0
 MESSAGE = 0.1
 """Simulated s in which the end of a goal is known, and no more."""
-
-
-def f(function, text="", **fields):
-    return AudioOutFunction(function=function, str_param=text, **fields)
 
 
 @pytest.fixture(autouse=True)
@@ -140,7 +134,7 @@ def test_waiting_for_silence_lasts_as_long_as_the_background(robot, audio):
 
 
 def test_a_loaded_sound_is_played_paused_and_moved(audio):
-    wait = Duration.from_sec(0.3)
+    wait = 0.3
     result = audio.succeed(
         f("loadFile", "long.wav"),
         f("getFileLength", "long.wav"),

@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from genpy import Duration
+from goal_functions import audio_out as f
 from sounds import loudness, played, span
-
-from nao_library_msgs.msg import AudioOutFunction
 
 TEXT = "The quick brown fox jumps over the lazy dog."
 WORDS = TEXT.rstrip(".").split()
 HEY = "^start(animations/Stand/Gestures/Hey_1)"
 MESSAGE = 0.1
-
-
-def f(function, text="", **fields):
-    return AudioOutFunction(function=function, str_param=text, **fields)
 
 
 def words(goal):
@@ -47,7 +41,7 @@ def sounding(robot, audio, *functions):
 
 def test_a_goal_lasts_as_long_as_its_texts_which_follow_each_other(robot, audio):
     begun = robot.now.time
-    result = audio.succeed(f("say", "One.", time=Duration.from_sec(0.5)), f("say", "Two."))
+    result = audio.succeed(f("say", "One.", time=0.5), f("say", "Two."))
     elapsed = [each.elapsed.to_sec() for each in result.results]
     assert robot.now.time - begun == pytest.approx(sum(elapsed) + 0.5, abs=MESSAGE) and min(elapsed) > 0.3
     second = begun + elapsed[0] + 0.5
@@ -64,7 +58,7 @@ def test_words_are_fed_back_as_they_are_spoken_and_those_of_others_are_not(robot
     assert {(each.index, each.function, each.count, each.sentence) for each in told} == {(1, "say", 2, TEXT)}
     assert [(each.index, each.function) for each in goal.feedback[:2]] == [(0, "getVoice"), (1, "say")]
     other = robot.post("ALTextToSpeech", "say", "Gossip.")
-    quiet = step(robot, audio.send(f("getVoice", time=Duration.from_sec(1.5)))).finish()
+    quiet = step(robot, audio.send(f("getVoice", time=1.5))).finish()
     robot.answer(other)
     assert words(quiet) == [] and quiet.state == "succeeded"
 

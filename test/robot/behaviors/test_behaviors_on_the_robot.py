@@ -8,6 +8,7 @@ import pytest
 import rospy
 import yaml
 from actionlib_msgs.msg import GoalID, GoalStatus
+from goal_functions import behavior as f
 from plan_clients import client_of
 from std_msgs.msg import Header
 
@@ -23,7 +24,7 @@ from nao_library_modules.audio_out import NaoAudioOutput
 from nao_library_modules.behaviors.server import NaoBehavior
 from nao_library_modules.behaviors.servers import FunctionTables
 from nao_library_modules.motion import NaoMotion
-from nao_library_msgs.msg import BehaviorFunction, LedFunction
+from nao_library_msgs.msg import LedFunction
 
 TABLES = FunctionTables()
 BRAIN, RED = "Device/SubDeviceList/Head/Led/Front/Right/1/Actuator/Value", "Device/SubDeviceList/Face/Led/Red/Left/0Deg"
@@ -59,10 +60,6 @@ do:
 }  # fmt: skip
 GREEN = NaoLedGoal([LedFunction(function="setColor", lights=["FaceLeds"], str_param="green")])
 BLINK = NaoLedGoal([LedFunction(function="blink")])
-
-
-def f(function, name="", **fields):
-    return BehaviorFunction(function=function, str_param=name, **fields)
 
 
 @pytest.fixture

@@ -7,11 +7,11 @@ import weakref
 
 import pytest
 from genpy import Duration
+from goal_functions import led_with_text as f
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_modules.errors import BadGoal, Preempted, UnknownFunction
 from nao_library_modules.nao_basic import NaoBasic
-from nao_library_msgs.msg import LedFunction
 from naoqi.errors import RobotUnreachable
 
 BRAIN0 = "Head/Led/Front/Right/1"
@@ -51,10 +51,6 @@ class ChainModule(NaoBasic):
         self.borrow("outer")
         self.run("borrow", ["inner"], 0.0)
         self.borrow("late")
-
-
-def f(function, str_param="", time=0.0, **fields):
-    return LedFunction(function=function, str_param=str_param, time=Duration.from_sec(time), **fields)
 
 
 @pytest.fixture

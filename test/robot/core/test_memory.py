@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import json
 
+from goal_functions import led_with_text as f
+
 from nao_library_modules.memory_functions import parse_assignment
-from nao_library_msgs.msg import LedFunction
-
-
-def f(function, str_param=""):
-    return LedFunction(function=function, str_param=str_param)
 
 
 def ask(lights, *calls):

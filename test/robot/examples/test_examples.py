@@ -5,18 +5,14 @@ from __future__ import annotations
 import re
 
 import pytest
+from goal_functions import led as f
 from PIL import Image
 from simulator import Simulator
 
 from nao_library_actions.msg import NaoLedGoal
-from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.sim.simulation import Scene
 
 BRAIN0, BRAIN1 = "Head/Led/Front/Right/1", "Head/Led/Front/Right/0"
-
-
-def f(function, **fields):
-    return LedFunction(function=function, **fields)
 
 
 @pytest.fixture

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from genpy import Duration
-
-from nao_library_msgs.msg import LedFunction
+from goal_functions import led as f
 
 EYES = [f"Face/Led/{{}}/{side}/{angle}Deg" for side in ("Left", "Right") for angle in range(0, 360, 45)]
 PARTS = ("Red", "Green", "Blue")
@@ -18,10 +16,6 @@ BOTH_EYES = ["LeftFaceLeds", "RightFaceLeds"]
 def lasted(seconds):
     """A time that something took, with what the way of a call takes on a busy computer, s."""
     return pytest.approx(seconds + 0.35, abs=0.45)
-
-
-def f(function, time=0.0, **fields):
-    return LedFunction(function=function, time=Duration.from_sec(time), **fields)
 
 
 @pytest.fixture

@@ -4,13 +4,7 @@ import json
 import math
 
 import pytest
-from genpy import Duration
-
-from nao_library_msgs.msg import MotionFunction
-
-
-def f(function, time=0.0, **fields):
-    return MotionFunction(function=function, time=Duration.from_sec(time), **fields)
+from goal_functions import motion as f
 
 
 def answers(result):

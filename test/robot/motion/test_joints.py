@@ -2,9 +2,8 @@
 
 import pytest
 from genpy import Duration
+from goal_functions import motion as f
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-
-from nao_library_msgs.msg import MotionFunction
 
 NEAR = 0.03
 """What a joint under load may be off its target, rad."""
@@ -14,10 +13,6 @@ YAW = {"names": ["HeadYaw"], "stiffness": 1.0}
 def lasted(seconds):
     """A time that something took, with what the way of a call takes on a busy computer, s."""
     return pytest.approx(seconds + 0.35, abs=0.45)
-
-
-def f(function, time=0.0, **fields):
-    return MotionFunction(function=function, time=Duration.from_sec(time), **fields)
 
 
 def trajectory(*points, joints=("HeadYaw",)):

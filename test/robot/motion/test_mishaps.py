@@ -1,19 +1,13 @@
 """Falls, heat, an empty battery: what ends a motion or keeps it from beginning."""
 
 import pytest
-from genpy import Duration
-
-from nao_library_msgs.msg import MotionFunction
+from goal_functions import motion as f
 
 DISABLED = "ALMotion/Protection/DisabledDevicesChanged"
 STANDING, LYING = 0.28, 0.2
 """Height of the torso, m."""
 HEAD = {"names": ["HeadYaw"], "angles": [0.5]}
 TURN = {"names": ["HeadYaw"], "angles": [1.0], "times": [20.0]}
-
-
-def f(function, time=0.0, **fields):
-    return MotionFunction(function=function, time=Duration.from_sec(time), **fields)
 
 
 GET_UP = f("goToPosture", str_param="Stand")

@@ -1,17 +1,12 @@
 """Motions recorded from the joints, replayed, mirrored, kept under names."""
 
 import pytest
-from genpy import Duration
+from goal_functions import motion as f
 
 from nao_library_modules.recorded_motion import RecordedMotion
-from nao_library_msgs.msg import MotionFunction
 
 NEAR = 0.03
 WAVE = RecordedMotion(("RShoulderRoll",), (0.0, 1.0, 2.0), ((-0.5,), (-1.0,), (-0.6,)))
-
-
-def f(function, time=0.0, **fields):
-    return MotionFunction(function=function, time=Duration.from_sec(time), **fields)
 
 
 def record(name="turn", **fields):

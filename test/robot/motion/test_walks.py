@@ -5,17 +5,12 @@ import math
 import threading
 
 import pytest
-from genpy import Duration
+from goal_functions import motion as f
 
 from nao_library_modules.places import Place
-from nao_library_msgs.msg import MotionFunction
 
 CLOSE, CLOSE_TURN = 0.03, 0.1
 """m and rad: what odometry of the legs may be off after a short walk."""
-
-
-def f(function, time=0.0, **fields):
-    return MotionFunction(function=function, time=Duration.from_sec(time), **fields)
 
 
 def walk(x, y=0.0, theta=0.0, **fields):

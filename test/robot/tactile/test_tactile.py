@@ -6,6 +6,7 @@ import math
 import threading
 
 import pytest
+from goal_functions import tactile as f
 from sensor_msgs.msg import BatteryState
 
 from nao_library_actions.msg import NaoTactileGoal
@@ -18,10 +19,6 @@ WALL = "{name: wall, box: [0.1, 2.0, 2.0], position: [%g, 0.0, 1.0]}"
 HELLO = TactileFunction(function="onTouch", sensors=["head"], behavior="hello", parameters=["text=Hi"])
 SLACK = 0.3
 """Simulated time that the way of an event takes on a busy computer, s."""
-
-
-def f(function, **fields):
-    return TactileFunction(function=function, **fields)
 
 
 class Runner:

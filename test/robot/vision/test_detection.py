@@ -6,17 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from genpy import Duration
-
-from nao_library_msgs.msg import VisionFunction
+from goal_functions import vision as f
 
 EXTRACTORS = "ALRedBallDetection", "ALFaceDetection", "ALLandMarkDetection", "ALBarcodeReader", "ALMovementDetection"
 BEARING = math.radians(2.0)
 FUNCTIONS = "detectBall", "detectLandmarks", "detectFaces", "readBarcodes", "detectMovement"
-
-
-def f(function, time=0.0, **fields):
-    return VisionFunction(function=function, time=Duration.from_sec(time), **fields)
 
 
 def point(message):

@@ -7,13 +7,7 @@ from pathlib import Path
 import cv2
 import pytest
 from camera_topics import BOTTOM, TOP, number_of, numbered_image, read_video, wait_for
-from genpy import Duration
-
-from nao_library_msgs.msg import VisionFunction
-
-
-def f(function, time=0.0, **fields):
-    return VisionFunction(function=function, time=Duration.from_sec(time), **fields)
+from goal_functions import vision as f
 
 
 @pytest.fixture

@@ -6,13 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from genpy import Duration
-
-from nao_library_msgs.msg import VisionFunction
-
-
-def f(function, time=0.0, **fields):
-    return VisionFunction(function=function, time=Duration.from_sec(time), **fields)
+from goal_functions import vision as f
 
 
 def off(things, place, camera="CameraTop"):

@@ -2,9 +2,8 @@
 
 import math
 
-import rospy
 from actionlib_msgs.msg import GoalStatus
-from services import action_client, answer, service
+from services import action_client, answer, publisher, service
 from walking_fixture import WalkingTest
 
 from nao_library_actions.msg import ExecFootstepsAction, ExecFootstepsGoal
@@ -105,11 +104,9 @@ class DriverFootsteps(WalkingTest):
         self.assertFalse(self.motion.moveIsActive())
         left, right = self.feet()
         self.assertAlmostEqual(left.seen_from(right).x, 0.04, delta=0.01)
-        publisher = rospy.Publisher("footstep", StepTarget, queue_size=10)
-        self.addCleanup(publisher.unregister)
-        wait_until(lambda: publisher.get_num_connections() > 0, 10.0, "subscriber of footstep")
+        single = publisher(self, "footstep", StepTarget)
         for target in (step(RIGHT, 0.04, -0.1), step(LEFT, 0.0, 0.1)):
-            publisher.publish(target)
+            single.publish(target)
         wait_until(lambda: self.moved_since(before).x > 0.06, 90.0, "the steps")
         wait_until(lambda: not self.motion.moveIsActive(), 90.0, "the end of the steps")
         self.assertAlmostEqual(self.moved_since(before).x, 0.08, delta=0.025)

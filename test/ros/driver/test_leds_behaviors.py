@@ -7,12 +7,11 @@ from actionlib_msgs.msg import GoalStatus
 from cases import case
 from news import LIMIT, News
 from rospy import Duration
-from services import answer, service
+from services import action_client, answer, service
 from std_msgs.msg import ColorRGBA, String
 from std_srvs.srv import Empty, SetBool, Trigger
 
 from nao_library_actions.msg import BlinkAction, BlinkGoal, RunBehaviorAction, RunBehaviorGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import FadeRGB
 from nao_library_msgs.srv import GetInstalledBehaviors
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
@@ -45,8 +44,8 @@ class DriverLedsBehaviors(unittest.TestCase):
         cls.robot = SimulatedRobot()
         cls.news = News()
         cls.fade = rospy.Publisher("fade_rgb", FadeRGB, queue_size=10)
-        cls.blink = cls.client("blink", BlinkAction)
-        cls.run_behavior = cls.client("run_behavior", RunBehaviorAction)
+        cls.blink = action_client("blink", BlinkAction)
+        cls.run_behavior = action_client("run_behavior", RunBehaviorAction)
         cls.installed = service("get_installed_behaviors", GetInstalledBehaviors)
         cls.states = []
         cls.news.subscribe("nao_alife/state", String, lambda message: cls.states.append(message.data))
@@ -54,12 +53,6 @@ class DriverLedsBehaviors(unittest.TestCase):
         wait_until(lambda: answer(cls.installed) == "", LIMIT, "nao_behaviors and the robot")
         wait_until(lambda: cls.fade.get_num_connections() == 1 and cls.manager.ping(), LIMIT, "nao_leds")
         cls.news.wait(lambda: cls.states, "nao_alife and the robot")
-
-    @classmethod
-    def client(cls, name, action):
-        client = SimpleActionClient(name, action)
-        assert client.wait_for_server(Duration(LIMIT)), name
-        return client
 
     def setUp(self):
         self.robot.reset()

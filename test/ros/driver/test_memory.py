@@ -24,7 +24,6 @@ from nao_sim_bridge.testing import SimulatedRobot, wait_until
 CHARGE = "Device/SubDeviceList/Battery/Charge/Sensor/Value"
 ANGLE = "Device/SubDeviceList/InertialSensor/AngleX/Sensor/Value"
 CLICK = "ALChestButton/SimpleClickOccurred"
-POSITIONS = "Device/SubDeviceList/*/Position/Sensor/Value"
 FRONT = "FrontTactilTouched"
 
 
@@ -92,12 +91,6 @@ class DriverMemory(unittest.TestCase):
             second = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=LIMIT)
             self.assertEqual(second.stdout.split()[0], "1.0", "a second listener learns how it stands as well")
 
-    def click(self):
-        self.robot.press(["ChestBoard/Button"])
-        self.robot.advance(0.1)
-        self.robot.press([])
-        self.robot.advance(1.0)
-
     # --- both ways ------------------------------------------------------------------------------------------------
 
     def test_what_is_set_appears_with_its_type(self):
@@ -136,7 +129,6 @@ class DriverMemory(unittest.TestCase):
 
     def test_what_is_wrong_is_told(self):
         self.assertIn("did you mean 'FrontTactilTouched'", self.get("FrontTactileTouched").message)
-        self.assertIn("no key is like", self.get("Nothing/*").message)
         self.assertIn("is a sensor of the robot", self.set(CHARGE, "1", False).message)
         self.assertIn("it is empty", self.set(" ", "1", False).message)
         self.assertIn("0 to 100 Hz", self.watch(FRONT, 1000.0, "").message)

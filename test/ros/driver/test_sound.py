@@ -5,12 +5,12 @@ import unittest
 from contextlib import contextmanager
 
 import numpy as np
-import rospkg
 import rospy
 import soundfile
 from cases import case
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure.client import Client
+from services import answer
 from sound_fixture import Loudspeakers, Room, bursts, recording, strongest_frequency
 
 from nao_library_msgs.msg import AudioBuffer, AudioSourceLocalization
@@ -18,7 +18,6 @@ from nao_library_msgs.srv import AudioPlayback, AudioRecorder, GetAudioMasterVol
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 LIMIT = 30.0
-EXAMPLE = rospkg.RosPack().get_path("nao_library_modules") + "/examples/microphone_to_file.py"
 MICROPHONE = "nao_robot/microphone/naoqi_microphone"
 BLOCK = 0.17
 AUDIBLE = 300
@@ -71,16 +70,7 @@ class DriverSound(unittest.TestCase):
         cls.record = Service("nao_audio/record", AudioRecorder)
         cls.set_volume = Service("nao_audio/master_volume", SetAudioMasterVolume)
         cls.volume = Service("nao_audio/get_master_volume", GetAudioMasterVolume)
-        wait_until(lambda: cls.answer(cls.volume) == "", LIMIT, "nao_audio and the robot")
-
-    @staticmethod
-    def answer(call, **fields):
-        """Error text of a service, empty if it did what it was asked."""
-        try:
-            call(**fields)
-        except rospy.ServiceException as error:
-            return str(error)
-        return ""
+        wait_until(lambda: answer(cls.volume) == "", LIMIT, "nao_audio and the robot")
 
     @classmethod
     def note(cls, message):
@@ -160,7 +150,7 @@ class DriverSound(unittest.TestCase):
         self.set_volume(master_volume=35)
         self.assertEqual(self.volume().master_volume.data, 35)
         self.assertEqual(self.device.getOutputVolume(), 35)
-        self.assertIn("0 to 100", self.answer(self.set_volume, master_volume=101))
+        self.assertIn("0 to 100", answer(self.set_volume, master_volume=101))
         self.assertEqual(self.device.getOutputVolume(), 35)
 
     def test_a_recording_holds_what_was_heard_and_plays_as_long(self):
@@ -196,11 +186,11 @@ class DriverSound(unittest.TestCase):
         ]
         for text, change, sides in cases:
             with case(text, **change):
-                self.assertIn(text, self.answer(self.record, **{**good, **change}, **self.channels(*sides)))
+                self.assertIn(text, answer(self.record, **{**good, **change}, **self.channels(*sides)))
         for text, name in (("no file", "nothing.wav"), (NOT_IN_HOME, "../a.wav"), ("file_path", "")):
             with case(text, name=name):
-                self.assertIn(text, self.answer(self.play_file, file_path=name))
-        self.assertEqual(self.answer(self.volume), "")
+                self.assertIn(text, answer(self.play_file, file_path=name))
+        self.assertEqual(answer(self.volume), "")
 
     # --- directions -----------------------------------------------------------------------------------------------
 

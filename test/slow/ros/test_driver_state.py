@@ -10,11 +10,11 @@ from actionlib_msgs.msg import GoalStatus
 from nav_msgs.msg import Odometry
 from rospy import Duration, Time
 from sensor_msgs.msg import Imu, JointState
+from services import action_client, measured_now, publisher, service
 from std_srvs.srv import Empty
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import JointAnglesWithSpeed
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
@@ -57,15 +57,13 @@ class DriverState(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.robot = SimulatedRobot()
-        cls.client = SimpleActionClient("joint_trajectory", JointTrajectoryAction)
-        wait_until(lambda: cls.client.wait_for_server(Duration(0.1)), 30.0, "joint_trajectory")
+        cls.client = action_client("joint_trajectory", JointTrajectoryAction)
         cls.frames = tf2_ros.Buffer()
         cls.listener = tf2_ros.TransformListener(cls.frames)
         rospy.wait_for_message("joint_states", JointState, 30.0)
         easy = trajectory("HeadYaw", (0.1, 0.0))  # succeeds as soon as nao_controller has reached the robot as well
         wait_until(lambda: send(cls.client, easy).wait().state == GoalStatus.SUCCEEDED, 30.0, "nao_controller")
-        rospy.wait_for_service("wakeup", 10.0)
-        rospy.ServiceProxy("wakeup", Empty)()
+        service("wakeup", Empty)()
         cls.robot.advance(1.0)
 
     def setUp(self):
@@ -77,14 +75,6 @@ class DriverState(unittest.TestCase):
         """Pose of `child` in `parent`: a transform of after now, for the world has changed before."""
         transform = self.frames.lookup_transform(parent, child, Time.now(), Duration(5)).transform
         return transform.translation, transform.rotation
-
-    def now(self, topic, kind):
-        """A message that was measured after now."""
-        began = Time.now()
-        while True:
-            message = rospy.wait_for_message(topic, kind, 10.0)
-            if message.header.stamp > began:
-                return message
 
     def test_the_rate_is_even_while_three_clients_send_goals(self):
         stop, ended = threading.Event(), []
@@ -123,7 +113,7 @@ class DriverState(unittest.TestCase):
         self.assertLess(self.robot.advance(0.0) - began, 0.1)
 
     def test_joint_states_are_what_the_robot_measures(self):
-        state = self.now("joint_states", JointState)
+        state = measured_now("joint_states", JointState)
         motion = self.robot.module("ALMotion")
         self.assertEqual(state.name, motion.getBodyNames("Body"))
         for name, found, wanted in zip(state.name, state.position, motion.getAngles("Body", True)):
@@ -135,20 +125,18 @@ class DriverState(unittest.TestCase):
         self.assertLess(abs(effort["LHand"]), 0.05)
 
     def test_stiffnesses_are_told_under_the_name_of_the_node(self):
-        state = self.now("nao_joint_states/joint_stiffness", JointState)
+        state = measured_now("nao_joint_states/joint_stiffness", JointState)
         stiffnesses = dict(zip(state.name, state.effort))
         self.assertEqual(len(stiffnesses), 26)
         self.assertAlmostEqual(stiffnesses["LKneePitch"], 1.0, delta=1e-6)  # awake since the beginning
 
     def test_velocities_are_those_of_the_motion(self):
-        publisher = rospy.Publisher("joint_angles", JointAnglesWithSpeed, queue_size=1)
-        self.addCleanup(publisher.unregister)
-        wait_until(lambda: publisher.get_num_connections() > 0, 10.0, "subscriber of joint_angles")
+        angles = publisher(self, "joint_angles", JointAnglesWithSpeed)
         motion = self.robot.module("ALMotion")
         speed = 0.1 * motion.getLimits("HeadYaw")[0][2]
         collector = Collector("joint_states", JointState, 2.0)
         sign = -1.0 if motion.getAngles("HeadYaw", True)[0] > 0.0 else 1.0
-        publisher.publish(JointAnglesWithSpeed(joint_names=["HeadYaw"], joint_angles=[sign * 1.5], speed=0.1))
+        angles.publish(JointAnglesWithSpeed(joint_names=["HeadYaw"], joint_angles=[sign * 1.5], speed=0.1))
         messages = collector.wait()
         index = messages[0].name.index("HeadYaw")
         fastest = sorted(sign * message.velocity[index] for message in messages)
@@ -156,7 +144,7 @@ class DriverState(unittest.TestCase):
         self.assertAlmostEqual(fastest[len(fastest) * 3 // 4], speed, delta=0.15 * speed)
 
     def test_the_inertial_unit_feels_gravity_and_knows_the_tilt(self):
-        imu, odometry = self.now("imu", Imu), self.now("odom", Odometry)
+        imu, odometry = measured_now("imu", Imu), measured_now("odom", Odometry)
         felt = imu.linear_acceleration
         self.assertAlmostEqual(math.sqrt(felt.x**2 + felt.y**2 + felt.z**2), 9.81, delta=0.5)
         self.assertGreater(felt.z, 9.0)
@@ -166,7 +154,7 @@ class DriverState(unittest.TestCase):
             self.assertAlmostEqual(tilt, getattr(odometry.pose.pose.orientation, axis), delta=0.02)
 
     def test_odometry_and_its_frame_agree_with_the_world(self):
-        odometry, truth = self.now("odom", Odometry), self.robot.true_pose()
+        odometry, truth = measured_now("odom", Odometry), self.robot.true_pose()
         self.assertEqual((odometry.header.frame_id, odometry.child_frame_id), ("odom", "base_link"))
         self.assertAlmostEqual(odometry.pose.pose.position.z, truth.position.z, delta=0.01)
         self.assertAlmostEqual(odometry.twist.twist.linear.x, 0.0, delta=0.02)

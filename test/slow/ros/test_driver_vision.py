@@ -12,7 +12,7 @@ from services import answer, service
 from std_srvs.srv import Empty
 
 from nao_library_msgs.msg import FaceDetected, LandmarkDetected, MovementDetected
-from nao_library_msgs.srv import LearnFace, VisionMotionSensitivity
+from nao_library_msgs.srv import LearnFace
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 MODULES = {"face": "ALFaceDetection", "motion": "ALMovementDetection", "landmark": "ALLandMarkDetection"}
@@ -31,7 +31,6 @@ class DriverVision(unittest.TestCase):
         cls.switches = {name.split("/", 1)[1]: service(name, Empty) for name in names}
         cls.learn = service("nao_vision/face_detection/learn_face", LearnFace)
         cls.forget = service("nao_vision/face_detection/forget_person", LearnFace)
-        cls.sensitivity = service("nao_vision/movement_detection_sensitivity", VisionMotionSensitivity)
         enable = cls.switches["landmark_detection/enable"]
         wait_until(lambda: answer(enable) == "", LIMIT, "nao_vision and the robot")
 
@@ -39,7 +38,6 @@ class DriverVision(unittest.TestCase):
         self.robot.reset()
         for kind in MODULES:
             self.switches[f"{kind}_detection/disable"]()
-        self.device = self.robot.module("ALVideoDevice")
 
     # --- things to see --------------------------------------------------------------------------------------------
 
@@ -142,21 +140,9 @@ class DriverVision(unittest.TestCase):
         fastest = max(abs(message.mean_velocity.x) for message in messages)
         self.assertGreater(fastest, 0.05)
 
-    # --- switching ------------------------------------------------------------------------------------------------
-
-    def subscribers(self, kind):
-        return [entry[0] for entry in self.robot.module(MODULES[kind]).getSubscribersInfo()]
-
 
 def name_of(text):
     """A name as the service takes it."""
     request = LearnFace._request_class()
     request.name.data = text
-    return request
-
-
-def number(value):
-    """A sensitivity as the service takes it."""
-    request = VisionMotionSensitivity._request_class()
-    request.sensitivity.data = value
     return request

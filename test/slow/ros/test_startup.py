@@ -2,7 +2,6 @@
 
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -15,6 +14,7 @@ import rospkg
 
 import nao_library_actions
 import nao_library_msgs
+from nao_library_modules.own_stack import free_port
 
 # The stack starts 28 programs. All servers are to be ready in at most this many times what as many programs take that
 # import what each needs and end: a figure that a slow machine does not change; 1.85 here.
@@ -28,12 +28,6 @@ from nao_sim_bridge.testing import SimulatedRobot
 rospy.init_node("startup_client")
 SimulatedRobot().action_client("NaoLights", NaoLedAction)
 """
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 class Startup(unittest.TestCase):

@@ -17,11 +17,11 @@ import rospkg
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from camera_topics import number_of, numbered
+from goal_functions import vision as f
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
-from nao_library_msgs.msg import VisionFunction
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 NS = "webcam_only"
@@ -31,23 +31,16 @@ RATE = 15.0
 LIMIT = 20.0
 
 
-def f(function, **fields):
-    return VisionFunction(function=function, **fields)
-
-
 class Camera:
     """Publishes numbered pictures at a rate, as cameras do.
 
     Attributes:
         stamps: Number -> stamp of each picture that was sent, s.
-        size: Of the pictures, pixels.
-        encoding: Of the pictures.
     """
 
     def __init__(self, topic, kind=Image):
         self.publisher = rospy.Publisher(topic, kind, queue_size=30)
         self.stamps = {}
-        self.size, self.encoding = SIZE, "bgr8"
         self._kind = kind
         self._pictures = {}
         self._ended = threading.Event()
@@ -56,7 +49,6 @@ class Camera:
         self._thread.start()
 
     def run(self):
-        self.size, self.encoding = SIZE, "bgr8"
         self._running.set()
 
     def close(self):
@@ -77,16 +69,13 @@ class Camera:
             self.publisher.publish(self._message(number % 256, Header(stamp=stamp, frame_id="webcam_optical")))
 
     def _message(self, number, header):
-        picture = self._pictures.get((number, self.size))
+        picture = self._pictures.get(number)
         if picture is None:
-            picture = self._pictures[number, self.size] = numbered(number, self.size)
+            picture = self._pictures[number] = numbered(number, SIZE)
         if self._kind is CompressedImage:
             return CompressedImage(header=header, format="jpeg", data=cv2.imencode(".jpg", picture)[1].tobytes())
-        width, height = self.size
-        data = picture.tobytes() if self.encoding == "bgr8" else bytes(4 * width * height)
-        return Image(
-            header=header, width=width, height=height, encoding=self.encoding, step=len(data) // height, data=data
-        )
+        width, height = SIZE
+        return Image(header=header, width=width, height=height, encoding="bgr8", step=3 * width, data=picture.tobytes())
 
 
 def read(path):
@@ -223,8 +212,6 @@ class Vision(unittest.TestCase):
             self.check_video(video, self.top)
         for k in range(10):
             self.assertEqual({message.width for message in heard[k]}, {32 * (k + 1)})
-
-    # What goes wrong
 
     # How it ends
 

@@ -11,24 +11,14 @@ import numpy as np
 import rosnode
 import rospy
 from actionlib_msgs.msg import GoalStatus
+from goal_functions import vision as f
 from sensor_msgs.msg import CameraInfo, Image
 
 from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
-from nao_library_msgs.msg import VisionFunction
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 LIMIT = 60.0
 CAMERAS = ("top", "bottom")
-
-
-def f(function, **fields):
-    return VisionFunction(function=function, **fields)
-
-
-def video_times(path):
-    """Times of the frames of a video, s."""
-    with av.open(path) as container:
-        return [float(frame.pts * frame.time_base) for frame in container.decode(video=0)]
 
 
 def likeness(one, other):

@@ -7,7 +7,6 @@ camera's sensor, and comes back as bytes. Prints JSON: `ours` and `reference`, s
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 
@@ -109,14 +108,5 @@ def time_frames(rounds: int, size: str) -> dict[str, list[float]]:
     return {"ours": ours, "reference": reference}
 
 
-def main() -> int:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=60, help="frames to measure")
-    parser.add_argument("--size", choices=RESOLUTIONS, default="320x240", help="of the frames, in pixels (320x240)")
-    options = parser.parse_args()
-    return print_times(lambda: time_frames(options.rounds, options.size))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(print_times(time_frames, __doc__, 60, ("--size", {"choices": RESOLUTIONS, "default": "320x240"})))

@@ -7,7 +7,6 @@ JSON: `ours` and `reference`, s of a mean tick of each stretch.
 
 from __future__ import annotations
 
-import argparse
 import sys
 
 import numpy as np
@@ -62,14 +61,6 @@ def time_stretches(rounds: int) -> dict[str, list[float]]:
     return {"ours": [s / TICKS for s in ours.seconds], "reference": [s / TICKS for s in reference.seconds]}
 
 
-def main() -> int:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=60, help="stretches to measure")
-    rounds = parser.parse_args().rounds
-    sys.setswitchinterval(SWITCH_INTERVAL)
-    return print_times(lambda: time_stretches(rounds))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.setswitchinterval(SWITCH_INTERVAL)
+    sys.exit(print_times(time_stretches, __doc__, 60))

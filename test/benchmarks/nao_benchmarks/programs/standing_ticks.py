@@ -6,7 +6,6 @@ The server has all its services registered; nobody calls them. Prints JSON: `our
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 
@@ -76,11 +75,8 @@ def check_alike(snapshot: Snapshot, twin: Physics) -> None:
         raise BenchmarkError(f"the robots do not stand alike: torsos {ours:.3f} m and {bare:.3f} m high")
 
 
-def main() -> int:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=2000, help="ticks to measure")
-    rounds = parser.parse_args().rounds
+def measure(rounds: int) -> dict[str, list[float]]:
+    """Time ticks of a server that somebody has connected to, between its turns."""
     server = SimulatorServer(ServerOptions(Scene(posture="Stand"), port=0, speed=math.inf))
     server.start()
     session = qi.Session()
@@ -88,11 +84,11 @@ def main() -> int:
         session.connect(f"tcp://127.0.0.1:{server.broker.port}")
         session.service("ALMotion").wakeUp()
         server.runner.pause()
-        return print_times(lambda: server.runner.call(lambda: time_ticks(server.simulation, rounds), LIMIT))
+        return server.runner.call(lambda: time_ticks(server.simulation, rounds), LIMIT)
     finally:
         session.close()
         server.stop()
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(print_times(measure, __doc__, 2000))

@@ -7,7 +7,6 @@ Prints JSON: `ours` and `reference`, s of processor time of each tick.
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from typing import Any, Callable
@@ -15,16 +14,9 @@ from typing import Any, Callable
 import pybullet
 from nao_benchmarks.errors import BenchmarkError
 from nao_benchmarks.printing import print_times
-from nao_benchmarks.robots import awake
-from nao_benchmarks.stats import interleave
+from nao_benchmarks.robots import alternate, awake, check, walk
 
 from nao_sim_bridge.sim.simulation import Simulation
-from nao_sim_bridge.sim.walk.gait import FeetGait
-
-# Until the walk has its speed.
-START_S = 4.0
-# A circle, m/s, m/s, rad/s: it never leaves the level ground near the origin.
-VELOCITY = (0.07, 0.0, 0.2)
 
 
 class Stopwatch:
@@ -52,48 +44,23 @@ class Stopwatch:
 def walking() -> Simulation:
     """A robot that walks a circle."""
     simulation = awake()
-    simulation.robot.locomotion.move(*VELOCITY, FeetGait())
-    simulation.run(START_S)
+    walk(simulation)
     return simulation
 
 
-def check_walks(simulation: Simulation) -> None:
-    """See that a robot walks.
-
-    Raises:
-        BenchmarkError: If it does not.
-    """
-    if not simulation.robot.locomotion.active:
-        raise BenchmarkError("the robot that should walk does not")
-    if not any(simulation.robot.locomotion.velocity()):
-        raise BenchmarkError("the robot that should walk makes no way")
-
-
-def check_stands(simulation: Simulation) -> None:
-    """See that a robot stands still.
-
-    Raises:
-        BenchmarkError: If it does not.
-    """
-    if simulation.robot.locomotion.active or simulation.snapshot.torso.position[2] < 0.25:
-        raise BenchmarkError("the robot that should stand still does not")
-
-
-def time_ticks(rounds: int) -> dict[str, list[float]]:
+def time_walk(rounds: int) -> dict[str, list[float]]:
     """Alternate ticks of two robots, one of which walks.
 
     Raises:
         BenchmarkError: If one of them does something else.
     """
     ours, still = walking(), awake()
-    try:
-        taken, reference = interleave([ours.tick, still.tick], rounds, warm_up=100, clock=time.thread_time)
-        check_walks(ours)
-        check_stands(still)
-    finally:
-        ours.close()
-        still.close()
-    return {"ours": list(taken.seconds), "reference": list(reference.seconds)}
+
+    def check_both() -> None:
+        check(ours, walks=True)
+        check(still, walks=False)
+
+    return alternate(ours, still, rounds, check_both, time.thread_time)
 
 
 def time_controller(rounds: int) -> dict[str, list[float]]:
@@ -114,7 +81,7 @@ def time_controller(rounds: int) -> dict[str, list[float]]:
             simulation.tick()
             ours.append(controller.seconds)
             reference.append(physics.seconds)
-        check_walks(simulation)
+        check(simulation, walks=True)
     finally:
         pybullet.stepSimulation = step
         simulation.close()
@@ -123,15 +90,10 @@ def time_controller(rounds: int) -> dict[str, list[float]]:
     return {"ours": ours, "reference": reference}
 
 
-def main() -> int:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=2000, help="ticks to measure")
-    parser.add_argument("--controller", action="store_true", help="the walk's own part against the physics")
-    options = parser.parse_args()
-    measure = time_controller if options.controller else time_ticks
-    return print_times(lambda: measure(options.rounds))
+def measure(rounds: int, controller: bool) -> dict[str, list[float]]:
+    """Whichever was asked for."""
+    return time_controller(rounds) if controller else time_walk(rounds)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(print_times(measure, __doc__, 2000, ("--controller", {"action": "store_true"})))

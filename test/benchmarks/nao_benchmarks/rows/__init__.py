@@ -7,30 +7,19 @@ from .behaviors import BehaviorOverhead
 from .cameras import CameraFrame, CameraRate, PhysicsWithCameras
 from .chained_functions import ChainedFunctions
 from .goal_round_trip import GoalRoundTrip
-from .hearing_tick import HearingTick
 from .memory import Memory
 from .motion_latency import MotionStart, MotionStop
-from .moving_tick import MovingTick
-from .physics_tick import PhysicsTick
 from .plans import ParOfHundred, PerformOverhead
 from .proxy_call import ProxyCall
-from .real_time_factor import RealTimeFactor
-from .robots_tick import RobotsTick
+from .real_time_factor import RealTimeFactor, WalkingRealTimeFactor
 from .sound import PhysicsWithSound, RecognitionSpeed
-from .speech import SpeechStart, SpeechStop
+from .speech import SPEECH
+from .ticks import TICKS
 from .touch import TouchEvent
-from .walking_real_time_factor import WalkingRealTimeFactor
-from .walking_tick import WalkController, WalkingTick
 
 # Those that compute come first, while nothing else runs yet.
 ROWS: tuple[Row, ...] = (
-    PhysicsTick(),
-    MovingTick(),
-    WalkingTick(),
-    WalkController(),
-    HearingTick(),
-    RobotsTick("three_robots_tick", "tick of three robots in one world"),
-    RobotsTick("three_robots_walking", "tick of three robots that walk", "--walking"),
+    *TICKS,
     CameraFrame("camera_frame", "320x240"),
     CameraFrame("camera_frame_vga", "640x480"),
     RealTimeFactor(),
@@ -48,7 +37,6 @@ ROWS: tuple[Row, ...] = (
     MotionStop(),
     BehaviorOverhead(),
     TouchEvent(),
-    SpeechStart(),
-    SpeechStop(),
+    *SPEECH,
     Memory(),
 )

@@ -28,9 +28,9 @@ class BehaviorOverhead(Row):
         with TemporaryDirectory() as folder:
             (Path(folder) / f"{NAME}.yaml").write_text(TEXT, encoding="utf-8")
             behaviors, lights = stack.start_behaviors(folder)
-            from ..goals import list_group, run_behavior  # not above: they need the messages of the built workspace
-
-            runs = [lambda: behaviors.run(run_behavior(NAME)), lambda: lights.run(list_group(GROUP))]
+            behavior = behaviors.goal("runBehavior", {"str_param": NAME})
+            step = lights.goal("listGroup", {"str_param": GROUP})
+            runs = [lambda: behaviors.run(behavior), lambda: lights.run(step)]
             ours, reference = interleave(runs, ROUNDS, WARM_UP)
         note = f"{1e3 * ours.median:.1f} ms : {1e3 * reference.median:.1f} ms"
         return Figures(1e3 * (ours.median - reference.median), note=note)

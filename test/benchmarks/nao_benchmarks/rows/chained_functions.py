@@ -25,9 +25,9 @@ class ChainedFunctions(Row):
     def measure(self, stack: Stack) -> Figures:
         """Measure both ways with our server in turns; for the note also each goal by itself."""
         client, _ = stack.goal_clients
-        from ..goals import set_intensity  # not above: it needs the messages of the built workspace
-
-        together, alone = set_intensity(LIGHT, FUNCTIONS), set_intensity(LIGHT, 1)
+        # Alternating, so that every call of the chain changes something.
+        steps = [{"lights": [LIGHT], "i_values": [float(i % 2)]} for i in range(FUNCTIONS)]
+        together, alone = client.goal("setIntensity", *steps), client.goal("setIntensity", steps[0])
         single: list[float] = []
 
         def one_by_one() -> None:

@@ -39,9 +39,7 @@ class GoalRoundTrip(Row):
     def measure(self, stack: Stack) -> Figures:
         """Measure the two servers in turns; for the note also as if goals were rare."""
         clients = stack.goal_clients
-        from ..goals import list_group  # not above: it needs the messages of the built workspace
-
-        goal = list_group(GROUP)
+        goal = clients[0].goal("listGroup", {"str_param": GROUP})
         ours, bare = run_in_turns(clients, goal, ROUNDS)
         rare_ours, rare_bare = run_in_turns(stack.rare_goal_clients, goal, RARE_ROUNDS)
         note = (

@@ -83,8 +83,6 @@ class MotionStart(Row):
     def measure(self, stack: Stack) -> Figures:
         """Start swings in turns through our server and over bare libqi; each is stopped at once."""
         client = stack.motion_client
-        from ..goals import set_angles  # not above: it needs the messages of the built workspace
-
         watch, motion = Watch(stack), stack.simulator.session.service("ALMotion")
 
         def begin(start: Callable[[], Any]) -> float:
@@ -95,7 +93,8 @@ class MotionStart(Row):
             return watch.first_change(began)
 
         def ours(target: float) -> float:
-            return begin(lambda: client.send(set_angles(JOINT, target, SPEED)))
+            fields = {"names": [JOINT], "angles": [target], "speed": SPEED}
+            return begin(lambda: client.send(client.goal("setAngles", fields)))
 
         def bare(target: float) -> float:
             return begin(lambda: motion.setAngles(JOINT, target, SPEED, _async=True))
@@ -115,12 +114,11 @@ class MotionStop(Row):
     def measure(self, stack: Stack) -> Figures:
         """Stop swings through our server; a stop over bare libqi is within the tick, nothing to compare with."""
         client = stack.motion_client
-        from ..goals import interpolate  # not above: it needs the messages of the built workspace
-
         watch = Watch(stack)
         times = []
         for turn in range(ROUNDS):
-            handle = client.send(interpolate(JOINT, SWING if turn % 2 == 0 else -SWING, SWING_TIME))
+            fields = {"names": [JOINT], "angles": [SWING if turn % 2 == 0 else -SWING], "times": [SWING_TIME]}
+            handle = client.send(client.goal("angleInterpolation", fields))
             watch.first_change(time.perf_counter())
             began = time.perf_counter()
             handle.cancel()

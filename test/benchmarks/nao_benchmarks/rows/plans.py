@@ -35,9 +35,7 @@ class PerformOverhead(Row):
         from nao_library_modules.process_modules.process_module import ProcessModule
         from nao_library_modules.process_modules.registry import perform, with_process_modules_running
 
-        from ..goals import list_group
-
-        client, goal = PlanActionClient(bare.server, NaoLedAction), list_group(GROUP)
+        client, goal = PlanActionClient(bare.server, NaoLedAction), bare.goal("listGroup", {"str_param": GROUP})
 
         class Bare(ProcessModule):
             name = "bare"
