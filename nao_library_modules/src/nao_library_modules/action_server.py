@@ -28,7 +28,7 @@ class PromptActionServer(actionlib.SimpleActionServer):
     The loop it replaces waits before it looks: a goal that came while the last one was being ended was announced to
     nobody, and lies there for a tenth of a second. This one looks under the lock that announcements are made under.
 
-    The goal that came last counts. actionlib cancels one whose stamp is older than that of the goal before, even if that
+    The goal that came last counts. actionlib cancels one whose stamp is older than that of the last, even if that one
     is over: after one goal of a client whose clock is ahead (of another computer, of a simulation before it was started
     again, or the wall's beside simulated time), nobody else would have a goal carried out for as long.
 
