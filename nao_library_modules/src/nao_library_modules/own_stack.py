@@ -13,7 +13,7 @@ from pathlib import Path
 START_LIMIT = 90.0
 PERIOD = 0.05
 LIMITS = ((signal.SIGINT, 40.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0))
-"""Signals in turn, and s that roslaunch may take after each. It kills nodes that do not end by themselves after 17 s; if
+"""Signals in turn, and s that roslaunch may take after each. It kills nodes that do not end themselves after 17 s; if
 it were killed before, they would be left."""
 
 
