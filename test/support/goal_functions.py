@@ -22,8 +22,8 @@ def _timed(kind, /, function, time=0.0, **fields):
     return kind(function=function, time=Duration.from_sec(time), **fields)
 
 
-def _with_text(kind, /, function, text="", time=0.0, **fields):
-    return _timed(kind, function, time, str_param=text, **fields)
+def _with_text(kind, /, function, str_param="", time=0.0, **fields):
+    return _timed(kind, function, time, str_param=str_param, **fields)
 
 
 audio_in, led, motion, tactile, vision = (

@@ -1,14 +1,19 @@
 """Touch, feet, sonars, temperatures and battery of the robot, as topics and on /diagnostics."""
 
+import itertools
 import json
 import math
+import os
+import subprocess
 import unittest
 
 import rospy
 from cases import case
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from news import LIMIT, News
-from sensor_msgs.msg import Range
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState, Range
+from services import publisher
 from std_msgs.msg import Bool
 
 from nao_library_msgs.msg import (
@@ -143,6 +148,26 @@ class DriverSenses(unittest.TestCase):
         with self.news.messages("other/nao_robot/fsr/left", Fsr) as found:
             self.news.wait(lambda: found, "forces under the left foot")
         self.assertEqual(found[0].header.frame_id, "other/l_sole")
+
+    # --- joints ---------------------------------------------------------------------------------------------------
+
+    def test_joint_states_go_on_when_the_clock_was_set_back(self):
+        node = subprocess.Popen(
+            ["rosrun", "nao_library_modules", "nao_joint_states", "--pport", os.environ["NAO_PORT"]]
+            + ["__ns:=second", "/clock:=/second/clock", "/tf:=/second/tf"]
+        )
+        self.addCleanup(node.wait, LIMIT)
+        self.addCleanup(node.terminate)
+        clock = publisher(self, "second/clock", Clock)
+        with self.news.messages("second/joint_states", JointState) as found:
+            for begin in (1000.0, 5.0):
+                steps = (rospy.Time.from_sec(begin + 0.1 * step) for step in itertools.count())
+
+                def there(begin=begin, steps=steps):
+                    clock.publish(Clock(next(steps)))
+                    return found and begin <= found[-1].header.stamp.to_sec() < begin + 500.0
+
+                wait_until(there, LIMIT, f"joint states of a clock that began at {begin:g} s")
 
     # --- sonars ---------------------------------------------------------------------------------------------------
 

@@ -23,10 +23,10 @@ class FactoryReset(RobotTestCase):
     def test_the_robots_time_begins_anew_the_clock_goes_on_and_nodes_come_back(self):
         simulation = self.robot.module("NaoSimulation")
         self.robot.module("ALLeds").createGroup("Mine", ["Brain0"])
-        before = self.robot.advance(1000.0)
+        before = self.robot.advance(100.0)
         self.robot.factory_reset(world="lab")
         self.assertIn("ball", simulation.objectPoses())
-        self.assertLess(simulation.time(), 500.0)
+        self.assertLess(simulation.time(), 50.0)
         self.assertNotIn("Mine", self.robot.module("ALLeds").listGroups())
         self.assertGreaterEqual(rospy.wait_for_message("/clock", Clock, 60.0).clock.to_sec(), before)
         # A goal that meets the moment in which its server notices is aborted; those after it are not.

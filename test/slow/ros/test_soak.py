@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-SOAK = Path(__file__).resolve().parents[1] / "soak" / "run.py"
+SOAK = Path(__file__).resolve().parents[2] / "soak" / "run.py"
 NO_NAMESPACES = 3
 
 

@@ -7,6 +7,7 @@ import sys
 import time
 import unittest
 import xml.etree.ElementTree as ElementTree
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import cache_from_source
 from pathlib import Path
 
@@ -72,12 +73,17 @@ class Startup(unittest.TestCase):
                 self.assertTrue(Path(cache_from_source(str(file))).exists(), file)
 
     def test_every_program_explains_itself(self):
-        for package in ("nao_sim_bridge", "nao_library_modules"):
-            for program in sorted((Path(rospkg.RosPack().get_path(package)) / "nodes").iterdir()):
-                done = subprocess.run(
-                    ["rosrun", package, program.name, "--help"], stdout=subprocess.PIPE, text=True, timeout=30
-                )
-                self.assertEqual(done.returncode, 0, program)
+        def run(program):
+            package = program.parents[1].name
+            return subprocess.run(
+                ["rosrun", package, program.name, "--help"], capture_output=True, text=True, timeout=60
+            )
+
+        folders = [Path(rospkg.RosPack().get_path(name)) for name in ("nao_sim_bridge", "nao_library_modules")]
+        programs = [program for folder in folders for program in sorted((folder / "nodes").iterdir())]
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            for program, done in zip(programs, pool.map(run, programs)):
+                self.assertEqual(done.returncode, 0, (program, done.stderr))
                 self.assertIn("usage", done.stdout.lower(), program)
 
     def test_every_launch_argument_is_documented(self):

@@ -4,11 +4,13 @@ import os
 import signal
 import subprocess
 import unittest
+from pathlib import Path
 
 import av
 import cv2
 import numpy as np
 import rosnode
+import rospkg
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from goal_functions import vision as f
@@ -127,9 +129,10 @@ class VisionRobot(unittest.TestCase):
         np.testing.assert_allclose(np.array(infos[-1].K)[:6], np.array(whole.K)[:6] / 2.0)
 
     def test_a_server_can_start_its_cameras_itself(self):
+        folder = Path(rospkg.get_ros_home()) / "own_files"
         server = subprocess.Popen(
             ["rosrun", "nao_library_modules", "nao_vision_server", "--pport", os.environ["NAO_PORT"], "__ns:=own",
-             "_autostart:=true", "_launchpath:=nao_library cameras.launch", "_record_dir:=own_files"],
+             "_autostart:=true", "_launchpath:=nao_library cameras.launch", f"_record_dir:={folder}"],
         )  # fmt: skip
         try:
             client = self.robot.action_client("own/NaoVision", NaoVisionAction, limit=90.0)
