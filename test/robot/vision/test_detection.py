@@ -120,8 +120,9 @@ def test_what_moves_is_seen_with_the_sensitivity_that_is_asked_for(robot, vision
     things.place("ben", (2.0, 1.0, 0.0), things.facing, person="ben")
     before = robot.ALMovementDetection.getColorSensitivity()
     goal = vision.send(f("detectMovement", timeout=10.0, count=2, sensitivity=0.9))
+    sensitivity = robot.ALMovementDetection.getColorSensitivity
+    robot.advance_until(lambda: sensitivity() == pytest.approx(0.9), 2.0, what="the sensitivity")
     robot.advance(0.5)
-    assert robot.ALMovementDetection.getColorSensitivity() == pytest.approx(0.9)
     things.move("ben", (2.0, -1.0, 0.0), things.facing, 4.0)
     goal.finish()
     assert goal.state == "succeeded" and goal.result.objects
