@@ -104,6 +104,10 @@ class LongestFirst(LoadGroupScheduling):
         if self.workqueue and self._pending_of(self.assigned_work[node]) < 2:
             self._assign_work_unit(node)  # a worker begins with a case when it knows the next one
 
+    def _reschedule(self, node):
+        if node in self.registered_collections:  # one that replaces a lost worker may still be reading the tests
+            super()._reschedule(node)
+
     def _alone_on(self, node):
         return any(
             group.startswith(ALONE) and not all(unit.values()) for group, unit in self.assigned_work[node].items()
