@@ -58,6 +58,13 @@ def goals(goals_to):
     return goals_to(ChainModule, NaoLedGoal)
 
 
+def test_a_cancel_that_came_before_the_goal_was_taken_up_counts(goals):
+    server = goals.module.server
+    server.preempt_requested = True
+    goals.module.execute_cb(NaoLedGoal([f("say", "one")]))
+    assert server.end == "preempted" and goals.module.done == []
+
+
 @pytest.fixture
 def done(goals):
     return goals.module.done

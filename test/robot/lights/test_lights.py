@@ -144,10 +144,11 @@ def test_each_function_reverts_before_the_next_begins_to_what_was_before_it(robo
         f("setColor", lights=["LeftFaceLed1"], i_values=[0.1, 0.2, 0.3]),
         f("off", lights=["Brain0", "FaceLeds"], revert=True),
         f("getIntensity", lights=["Brain0"]),
+        f("getColor", lights=["LeftFaceLed1"]),
         f("rasta", duration=0.5, revert=True),
         f("getColor", lights=["LeftFaceLed1"]),
     )
-    assert result.results[3].values == ["0.7"] and result.results[5].values == ["[0.1, 0.2, 0.3]"]
+    assert [result.results[n].values for n in (3, 4, 6)] == [["0.7"], ["[0.1, 0.2, 0.3]"], ["[0.1, 0.2, 0.3]"]]
     assert len(eyes()) == 2 and WHITE in eyes()
 
 
