@@ -258,6 +258,15 @@ def test_a_robot_that_does_not_get_there_says_why(point, control, monkeypatch):
     assert unable.commands == []  # before it is told
     refused("fallen", walk, halfway, ahead, control, None, fall)
     assert halfway.time < 6.0
+    careful = Point()
+
+    def see(place, aim):
+        if place.x > 0.4 and not careful.cause:
+            careful.cause = "an obstacle 0.39 m ahead"
+            careful.stop()
+
+    refused("the robot stopped: an obstacle 0.39 m ahead", walk, careful, ahead, control, None, see)
+    assert careful.place.x < 0.45
 
 
 def test_an_interrupt_ends_it_and_leaves_the_legs_as_they_are(point):

@@ -30,6 +30,7 @@ from nao_library_modules.driver.walk_inhibition import NotInhibited, WalkInhibit
 from nao_library_modules.driver.walk_orders import Order, OrderBox, Stop, WalkEnded
 from nao_library_modules.driver.walk_pace import PACE, REFRESH, WalkPace
 from nao_library_modules.driver.walk_report import WalkJournal
+from nao_library_modules.driver.walk_watchdog import WalkWatchdog
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.health import Level
 from nao_library_modules.places import Place
@@ -52,6 +53,16 @@ def twist(x, y, turn):
 
 def pose(x, y, theta):
     return SimpleNamespace(x=x, y=y, theta=theta)
+
+
+def test_the_watchdog_counts_from_the_last_command_also_when_the_clock_is_set_back():
+    dog = WalkWatchdog(0.5)
+    assert dog.left(10.0) is None
+    dog.feed(10.0)
+    assert dog.left(10.2) == pytest.approx(0.3) and dog.left(11.0) == pytest.approx(-0.5)
+    assert dog.left(3.0) == pytest.approx(0.5) and dog.left(3.4) == pytest.approx(0.1)
+    dog.rest()
+    assert dog.left(3.6) is None
 
 
 def test_a_velocity_is_forward_left_and_turning_and_clamped_when_out_of_range():

@@ -113,9 +113,10 @@ def test_plain_data_notifies_nobody_until_it_becomes_an_event_and_a_removed_one_
     assert heard == []
     store.raise_event("key", 3)
     assert heard == [3]
+    subscribe(store, heard, "key")
     store.remove("key", "Event")
     store.raise_event("key", 4)
-    assert heard == [3]
+    assert heard == [3] and store.subscribers("key") == []
 
 
 def test_who_wants_to_know_is_told_of_keys_that_come_and_go_and_of_subscribers(store, heard):

@@ -63,6 +63,17 @@ def connect():
         session.close()
 
 
+def test_a_broker_that_closes_ends_the_threads_of_its_calls(listening):
+    broker, echo = listening(), Echo()
+    broker.register("Closing", echo)
+    broker.call("Closing", "hear", [1])
+    assert echo.calls.get(timeout=PATIENCE) == 1
+    (caller,) = (thread for thread in threading.enumerate() if thread.name == "calls of Closing")
+    broker.close()
+    caller.join(PATIENCE)
+    assert not caller.is_alive()
+
+
 def accepts(address, port):
     with socket.socket() as probe:
         probe.settimeout(2.0)

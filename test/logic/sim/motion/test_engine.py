@@ -12,7 +12,7 @@ from nao_sim_bridge.sim.tasks import TaskIds
 
 MODEL = load_model()
 DT = 0.01
-YAW, LEFT, RIGHT = (MODEL.joint_index[name] for name in ("HeadYaw", "LHipYawPitch", "RHipYawPitch"))
+YAW, PITCH, LEFT, RIGHT = (MODEL.joint_index[n] for n in ("HeadYaw", "HeadPitch", "LHipYawPitch", "RHipYawPitch"))
 
 
 class Motion:
@@ -49,6 +49,17 @@ def test_a_target_gives_way_to_a_task_and_is_taken_up_afterwards_when_it_is_newe
     assert motion.angle(YAW) == 0.5
     motion.run(0.5)
     assert motion.angle(YAW) == pytest.approx(0.25)
+
+
+def test_what_is_killed_with_its_tasks_moves_no_more_and_nothing_else_is():
+    motion = Motion()
+    task, other = motion.glide(YAW, 1.0), motion.glide(PITCH, 0.4)
+    motion.run(0.5)
+    motion.engine.set_targets({YAW: -1.0}, {YAW: 1.0})
+    motion.engine.kill_using([YAW])
+    motion.run(1.0)
+    assert task.killed and not other.killed
+    assert motion.angle(YAW) == pytest.approx(0.5) and motion.angle(PITCH) == 0.4
 
 
 def test_the_left_hip_has_the_say_over_the_common_motor():

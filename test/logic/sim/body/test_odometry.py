@@ -1,0 +1,26 @@
+"""Odometry: it begins where the robot stands, looking ahead, whatever heading the inertial unit has then."""
+
+from __future__ import annotations
+
+import pytest
+
+from nao_sim_bridge.sim.kinematics import matrix_rpy, quaternion_matrix
+from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.sim.odometry import Odometry
+from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.sim.readings import Contact
+
+MODEL = load_model()
+INIT = posture(MODEL, "StandInit")
+ANKLES = LEFT, RIGHT = 11, 22
+LEAN = 0.1
+"""rad; pitch of the torso when the feet are flat on the ground."""
+
+
+@pytest.mark.parametrize("start", [0.0, 1.0, -2.5])
+def test_it_begins_with_heading_zero_and_turns_as_the_inertial_unit_says(start):
+    odometry = Odometry(MODEL, ANKLES, INIT, (0.0, LEAN, start))
+    both_feet = [Contact(link, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 20.0) for link in ANKLES]
+    for turn in (0.0, 0.5):
+        odometry.update(INIT, (0.0, LEAN, start + turn), both_feet)
+        assert matrix_rpy(quaternion_matrix(odometry.torso.orientation))[2] == pytest.approx(turn, abs=1e-6)
