@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -12,6 +13,7 @@ from pathlib import Path
 
 START_LIMIT = 90.0
 PERIOD = 0.05
+COLOUR = re.compile(r"\x1b\[[\d;]*m")
 LIMITS = ((signal.SIGINT, 40.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0))
 """Signals in turn, and s that roslaunch may take after each. It kills nodes that do not end themselves after 17 s; if
 it were killed before, they would be left."""
@@ -95,10 +97,14 @@ class OwnStack:
         deadline = time.monotonic() + limit
         while not can_connect(port):
             if self._ended_within(PERIOD):
-                words = self.log.read_text(encoding="utf-8", errors="replace").strip().rpartition("\n")[2]
-                raise TimeoutError(f"{what} does not come up: roslaunch has ended: {words}")
+                raise TimeoutError(f"{what} does not come up: roslaunch has ended: {self._last_words()}")
             if time.monotonic() > deadline:
                 raise TimeoutError(f"{what} does not come up: not there within {limit:g} s")
+
+    def _last_words(self) -> str:
+        """Of roslaunch; behind an error it says where a traceback is."""
+        text = COLOUR.sub("", self.log.read_text(encoding="utf-8", errors="replace"))
+        return " ".join(line for line in text.splitlines() if line.strip()).rpartition("RLException: ")[2][-300:]
 
     def _ended_within(self, seconds: float) -> bool:
         try:

@@ -12,6 +12,7 @@ from nao_library_modules.driver.camera_subscriber import StreamSettings
 from nao_library_modules.driver.camera_tuning import CameraTuning
 from nao_library_modules.driver.vision_detection import FACES, MOVEMENT, Detection
 from nao_library_modules.health import Level
+from nao_library_modules.robot import Robot
 from naoqi.errors import NaoError
 
 NAME = "ros_nao_camera_top"
@@ -65,6 +66,13 @@ def test_pictures_come_with_their_times_while_somebody_looks(stream, robot, vide
     assert taken == sorted(set(taken)) and all(time >= own for time, own in zip(taken, times))
     stream.want(False)
     soon(lambda: not ours(video))
+
+
+def test_without_a_robot_there_are_no_pictures_and_it_says_why(clock, closing):
+    settings = StreamSettings(0, 1, 13, 15)
+    stream = closing(CameraStream(Robot("127.0.0.1", 9), NAME, settings, clock, lambda *picture: None))
+    stream.want(True)
+    assert stream.report().message == "no pictures: the robot is not connected"
 
 
 def test_settings_change_while_pictures_come_and_what_the_robot_refuses_leaves_all_as_it_was(

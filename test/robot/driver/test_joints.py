@@ -181,7 +181,9 @@ def test_sonars_measure_only_while_somebody_listens_and_after_a_loss(robot, driv
     until(lambda: not robot.ALSonar.getSubscribersInfo())
     told.clear()
     lacks = {"ALSonar": "ALSonarX"}
-    lacking = SimpleNamespace(connection=driver_robot.connection, proxy=lambda name: driver_robot.proxy(lacks.get(name, name)))
+    lacking = SimpleNamespace(
+        connection=driver_robot.connection, proxy=lambda name: driver_robot.proxy(lacks.get(name, name))
+    )
     sonars = closing(Sonars(lacking, "ros_nao_sonar", 20.0, clock, told.append))
     sonars.want(True)
     until(lambda: "no module 'ALSonarX" in sonars.report().message)

@@ -38,6 +38,10 @@ def test_the_robots_clock_is_that_of_its_time_zone(robot, system):
     assert (hour_in("Asia/Tokyo") - hour_in("Etc/UTC")) % 24.0 == pytest.approx(9.0, abs=0.1)
 
 
+def test_memory_is_that_of_the_computer_in_mib(system):
+    assert 50 < system.freeMemory() < system.totalMemory() < 100_000_000
+
+
 def test_a_reboot_puts_the_robot_to_the_start(robot, system):
     robot.finish("ALMotion", "wakeUp", after=2.5)
     system.reboot()

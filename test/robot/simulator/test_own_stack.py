@@ -1,0 +1,15 @@
+"""A stack of one's own: what is told when it does not come up."""
+
+from __future__ import annotations
+
+import pytest
+
+from nao_library_modules.own_stack import OwnStack
+
+
+def test_a_roslaunch_that_ends_is_told_at_once_with_its_last_words(tmp_path):
+    log = tmp_path / "log.txt"
+    with OwnStack(log, {}, launch=("nao_library", "no_such.launch")) as stack:
+        with pytest.raises(TimeoutError, match="the simulated robot does not come up: roslaunch has ended: .*no_such"):
+            stack.wait_for_robot(60.0)
+        assert not stack.alive()
