@@ -53,6 +53,15 @@ def test_postures_and_key_frames_are_reached_exactly_in_their_time(bench):
     assert one.robot.motion.tasks() == [] and one.now.commands[other] == expected[other]
 
 
+@pytest.mark.parametrize("name, angle", [("LElbowYaw", -1.0), ("LWristYaw", 0.8), ("HeadPitch", 0.2)])
+def test_a_joint_in_the_air_with_less_torque_stays_within_half_a_degree_of_its_target(bench, name, angle):
+    one = bench()
+    one.aim(**{"RShoulderPitch": 0.5, name: angle})
+    one.run(4.0)
+    assert max(one.robot.joints.efforts) < 1.0
+    assert one.joint(name) == pytest.approx(angle, abs=0.0087)
+
+
 @pytest.fixture
 def change():
     def make(one, goal, speed=1.0, tries=3, moves=()):

@@ -39,6 +39,17 @@ def ball(name, position, color=GREEN, radius=0.03):
     return {"name": name, "sphere": radius, "position": list(position), "color": list(color)}
 
 
+def test_things_of_a_world_are_seen_until_they_are_gone(name):
+    plate = {"name": "plate", "box": [0.4, 0.4, 0.02], "position": [1.2, 0.0, 0.3], "color": list(GREEN)}
+    engine, _ = open_engine(name, world(plate), "V6")
+    try:
+        view = View.of_shot(shot(rpy=(0.0, 0.25, 0.0)))
+        assert area(engine.draw(AWAY, view)) > 300
+        assert area(engine.draw(replace(AWAY, gone=frozenset(["plate"])), view)) == 0
+    finally:
+        engine.close()
+
+
 def area(picture, channel=1):
     """Number of pixels of a primary colour."""
     return np.count_nonzero(clear(picture, channel))

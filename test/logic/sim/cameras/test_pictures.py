@@ -18,7 +18,7 @@ from nao_sim_bridge.sim.cameras.settings import load_cameras
 from nao_sim_bridge.sim.cameras.shot import Shot
 
 BRIGHTNESS, CONTRAST, SATURATION, HUE, GAIN, H_FLIP, V_FLIP, AUTO_WHITE = 0, 1, 2, 3, 6, 7, 8, 12
-EXPOSURE, ALGORITHM, WHITE = 17, 22, 33
+EXPOSURE, ALGORITHM, SHARPNESS, WHITE = 17, 22, 24, 33
 MANUAL = {11: 0, AUTO_WHITE: 0}
 SHOT = Shot("V6", 0, (0, 0, 0), (0, 0, 0, 1), 0.98, 0.76, 320, 240, 11, {}, 7)
 
@@ -50,6 +50,13 @@ def test_at_manual_defaults_the_picture_is_as_it_was_drawn(scene, version):
     assert mean == pytest.approx(scene.reshape(-1, 3).mean(axis=0), abs=0.6)
     assert (rgb.astype(int) - scene).std() < 1.5
     assert chosen.luminance == pytest.approx(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY).mean(), abs=1.5)
+
+
+def test_sharpness_makes_edges_stronger_and_weaker(scene):
+    soft = cv2.GaussianBlur(scene, (0, 0), 1.0)
+    pictures = [taken(soft, {**MANUAL, SHARPNESS: value})[1] for value in (0, 4, 9)]
+    edges = [cv2.Laplacian(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY), cv2.CV_64F).std() for rgb in pictures]
+    assert edges[0] < 0.9 * edges[1] < 0.81 * edges[2]
 
 
 @pytest.mark.parametrize("version", ["V6", "V5"])
