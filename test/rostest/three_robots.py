@@ -11,7 +11,6 @@ import rostest
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from nav_msgs.msg import Odometry
-from PIL import Image
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_msgs.msg import LedFunction
@@ -60,14 +59,6 @@ class ThreeRobots(unittest.TestCase):
         self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
         green = "Face/Led/Green/Left/0Deg"
         self.assertEqual([robot.led(green) for robot in self.robots], [1.0, 0.0, 1.0])
-
-    def test_a_reset_is_everybodys_and_all_are_in_one_picture(self):
-        self.robots[1].push((0.0, 60.0, 0.0), 0.3)
-        self.robots[1].advance(1.0)
-        with Image.open(self.robots[1].picture("far", "three.png")) as picture:
-            self.assertEqual(picture.size, (640, 480))
-        self.robots[2].reset()
-        self.assertAlmostEqual(self.robots[1].true_pose().position.y, 0.35, delta=0.03)
 
 
 def launched(question, *arguments):
