@@ -249,7 +249,8 @@ def ordered(tests, fault, before, reach, levels, seconds):
         by_file[test.split("::")[0]].append(test)
 
     def about(file):
-        return len(stems & set(Path(file).stem.split("_"))) / len(stems)
+        own = set(Path(file).stem.split("_"))
+        return 1.0 if own & set(fault.words) else len(stems & own) / len(stems)
 
     keyed = []
     for file, own in by_file.items():
