@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from .machines import Machines
 from .processes import Simulator
-from .two_machines import TwoMachines
 
 DEAD_FOR = 2.0
 CABLE_OUT_FOR = 5.0
@@ -43,7 +43,13 @@ class Accidents:
     """
 
     def __init__(
-        self, machines: TwoMachines, simulator: Simulator, kills: int, drops: int, length: float, seed: int
+        self,
+        machines: Machines,
+        simulator: Simulator,
+        kills: int,
+        drops: int,
+        length: float,
+        seed: int,
     ) -> None:
         self._machines, self._simulator = machines, simulator
         kinds = [("killed", self._kill)] * kills + [("cable", self._drop)] * drops
@@ -64,8 +70,8 @@ class Accidents:
         self._simulator.start()
 
     def _drop(self) -> None:
-        self._machines.pull_the_cable()
+        self._machines.pull_the_cable(self._simulator.pid)
         try:
             time.sleep(CABLE_OUT_FOR)
         finally:
-            self._machines.plug_in()
+            self._machines.plug_in(self._simulator.pid)

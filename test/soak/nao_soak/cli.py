@@ -8,7 +8,7 @@ from pathlib import Path
 
 from nao_library_modules.server_types import ACTIONS
 
-from .two_machines import NoNamespaces, enter
+from .machines import machines
 
 DEFAULT_FOLDER = Path("soak_output")
 
@@ -18,9 +18,9 @@ def parser() -> argparse.ArgumentParser:
     options = argparse.ArgumentParser(
         prog="soak",
         description="Random and strange goals to all action servers, on one machine, of a simulated robot on another "
-        "one, which is killed now and then, over a network that drops. Exit status 0: no server died, no goal hung, "
-        "memory stayed flat, and everything worked afterwards; 1: something did not, and is named; 3: network "
-        "namespaces cannot be made here.",
+        "one, which is killed now and then, over a network that drops. Where network namespaces cannot be made it is "
+        "one machine, and the robot stops instead. Exit status 0: no server died, no goal hung, memory stayed flat, "
+        "and everything worked afterwards; 1: something did not, and is named.",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
     options.add_argument("--minutes", type=float, default=30.0, help="how long goals are sent, simulated minutes")
@@ -38,11 +38,7 @@ def parser() -> argparse.ArgumentParser:
 def main() -> int:
     """Run it; returns the exit status."""
     arguments = parser().parse_args()
-    try:
-        enter()
-    except NoNamespaces as error:
-        print(error, file=sys.stderr)
-        return 3
+    where = machines()
     from .processes import NotReady
     from .soak import Plan, soak  # only after the help: it imports half of ROS
 
@@ -59,7 +55,7 @@ def main() -> int:
         flat=not arguments.no_memory,
     )
     try:
-        findings = soak(plan)
+        findings = soak(plan, where)
     except NotReady as error:
         print(f"FAULT: {error}", file=sys.stderr)
         return 1

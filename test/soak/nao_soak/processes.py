@@ -14,10 +14,8 @@ from pathlib import Path
 from typing import Any
 from xmlrpc.client import ServerProxy
 
-from .two_machines import HERE, ROBOT, TwoMachines
+from .machines import Machines
 
-MASTER = f"http://{HERE}:11311"
-NAO_PORT = 9559
 START_LIMIT = 90.0
 STOP_LIMIT = 20.0
 
@@ -26,12 +24,12 @@ class NotReady(RuntimeError):
     """Something was not there in time."""
 
 
-def ros_environment(folder: Path) -> dict[str, str]:
+def ros_environment(machines: Machines, folder: Path) -> dict[str, str]:
     """Environment of programs on the servers' machine; logs go to `folder`."""
     return {
         **os.environ,
-        "ROS_MASTER_URI": MASTER,
-        "ROS_IP": HERE,
+        "ROS_MASTER_URI": f"http://{machines.here}:{machines.ros_port}",
+        "ROS_IP": machines.here,
         "ROS_HOME": str(folder / "ros_home"),
         "ROS_LOG_DIR": str(folder / "ros_log"),
     }
@@ -41,24 +39,26 @@ class Servers:
     """ROS master, driver and action servers, as `nao.launch` starts them; a context.
 
     Args:
+        machines: Where they run.
         folder: Where their output goes.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, machines: Machines, folder: Path) -> None:
+        self._machines = machines
         self._folder = folder
         self._processes: list[subprocess.Popen[bytes]] = []
 
     def __enter__(self) -> Servers:
         """Start them; they need not be ready."""
-        self._start("roscore", ["roscore"])
+        self._start("roscore", ["roscore", "-p", str(self._machines.ros_port)])
         deadline = time.monotonic() + START_LIMIT
-        while not _listens(HERE, 11311):
+        while not _listens(self._machines.here, self._machines.ros_port):
             if time.monotonic() > deadline:
                 raise NotReady(f"the ROS master was not there within {START_LIMIT:g} s")
             time.sleep(0.1)
         records = self._folder / "records"
-        arguments = [f"nao_ip:={ROBOT}", f"nao_port:={NAO_PORT}", f"record_dir:={records}"]
-        self._start("roslaunch", ["roslaunch", "nao_library", "nao.launch", *arguments])
+        arguments = [f"nao_ip:={self._machines.robot}", f"nao_port:={self._machines.nao_port}"]
+        self._start("roslaunch", ["roslaunch", "nao_library", "nao.launch", *arguments, f"record_dir:={records}"])
         return self
 
     def __exit__(self, *_: Any) -> None:
@@ -82,7 +82,7 @@ class Servers:
         Raises:
             OSError: A node does not answer.
         """
-        master = ServerProxy(MASTER)
+        master = ServerProxy(ros_environment(self._machines, self._folder)["ROS_MASTER_URI"])
         publishers, subscribers, services = master.getSystemState("/soak")[2]
         names = {n for kind in (publishers, subscribers, services) for _, users in kind for n in users}
         names = {n for n in names if n != "/rosout" and not n.startswith("/soak")}
@@ -90,7 +90,7 @@ class Servers:
 
     def _start(self, name: str, command: list[str]) -> None:
         log = (self._folder / f"{name}.log").open("wb")
-        environment = ros_environment(self._folder)
+        environment = ros_environment(self._machines, self._folder)
         self._processes.append(
             subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
         )
@@ -109,7 +109,7 @@ class Simulator:
         lives: How often it was started.
     """
 
-    def __init__(self, machines: TwoMachines, folder: Path, speed: float, seed: int) -> None:
+    def __init__(self, machines: Machines, folder: Path, speed: float, seed: int) -> None:
         self._machines = machines
         self._folder = folder
         self._speed = speed
@@ -129,9 +129,10 @@ class Simulator:
     def start(self) -> None:
         """Start it; it may take a while until it answers."""
         self.lives += 1
-        command = [sys.executable, "-m", "nao_sim_bridge", "--listen", ROBOT, "--port", str(NAO_PORT)]
-        command += ["--speed", str(self._speed), "--seed", str(self._seed + self.lives), "--world", "lab"]
-        command += ["--sensor-noise", "1", "--record-dir", str(self._folder / "robot")]
+        where = ["--listen", self._machines.robot, "--port", str(self._machines.nao_port)]
+        command = [sys.executable, "-m", "nao_sim_bridge", *where, "--world", "lab", "--sensor-noise", "1"]
+        command += ["--speed", str(self._speed), "--seed", str(self._seed + self.lives)]
+        command += ["--record-dir", str(self._folder / "robot")]
         with (self._folder / "nao_sim.log").open("ab") as log:
             self._process = subprocess.Popen(
                 self._machines.on_robot(command), stdout=log, stderr=subprocess.STDOUT, start_new_session=True

@@ -16,9 +16,9 @@ from sensor_msgs.msg import Image, JointState
 
 from .accidents import Accidents
 from .clients import Client, until
+from .machines import Machines
 from .memory_record import MemoryRecord
 from .processes import Servers, Simulator, memory, ros_environment
-from .two_machines import TwoMachines
 
 START_LIMIT = 120.0
 RECOVERY_LIMIT = 60.0
@@ -80,17 +80,17 @@ class Findings:
         path.write_text(json.dumps(asdict(self), indent=2), encoding="utf-8")
 
 
-def soak(plan: Plan) -> Findings:
-    """Do it; takes a minute or two more than the plan says."""
+def soak(plan: Plan, where: Machines) -> Findings:
+    """Do it there; takes a minute or two more than the plan says."""
     plan.folder.mkdir(parents=True, exist_ok=True)
-    os.environ.update(ros_environment(plan.folder))
-    with TwoMachines() as machines, Servers(plan.folder) as servers:
+    with where as machines, Servers(machines, plan.folder) as servers:
+        os.environ.update(ros_environment(machines, plan.folder))
         with Simulator(machines, plan.folder, plan.speed, plan.seed) as simulator:
             return _Soak(plan, machines, servers, simulator).run()
 
 
 class _Soak:
-    def __init__(self, plan: Plan, machines: TwoMachines, servers: Servers, simulator: Simulator) -> None:
+    def __init__(self, plan: Plan, machines: Machines, servers: Servers, simulator: Simulator) -> None:
         self._plan, self._servers, self._simulator = plan, servers, simulator
         self._accidents = Accidents(machines, simulator, plan.kills, plan.drops, plan.seconds, plan.seed)
         self._memory = MemoryRecord()
