@@ -56,7 +56,7 @@ class FailuresAtOnce:
             said = crash.message.split("\n")[0] if crash else report.longreprtext.strip().split("\n")[-1]
             terminal = self._config.pluginmanager.get_plugin("terminalreporter")
             terminal.ensure_newline()
-            terminal.write_line(f"{report.nodeid.rpartition('@')[0] or report.nodeid}: {said}")
+            terminal.write_line(f"{_name(report)}: {said}")
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -143,6 +143,11 @@ def _durations():
         return {}
 
 
+def _name(report):
+    """Of its test, without the group of xdist."""
+    return report.nodeid.rpartition("@")[0] or report.nodeid
+
+
 def pytest_terminal_summary(terminalreporter, config):
     """The slowest tests, how long each file took, and the closing line: a test that was skipped has not passed."""
     if hasattr(config, "workerinput"):
@@ -150,7 +155,7 @@ def pytest_terminal_summary(terminalreporter, config):
     reports = [r for group in terminalreporter.stats.values() for r in group if hasattr(r, "duration")]
     took, cases = {}, {}
     for report in reports:
-        name = report.nodeid.rpartition("@")[0] or report.nodeid  # without the group of xdist
+        name = _name(report)
         file = name.split("::")[0].replace("test/", "", 1)
         took[file] = took.get(file, 0.0) + report.duration
         cases[name] = cases.get(name, 0.0) + report.duration
