@@ -140,7 +140,7 @@ class TouchSensors:
             if heard:
                 self._read({sensor: (sensor.event,) for sensor in heard})
         except NaoError as error:
-            log.debug("touch sensors: %s", error)  # a lost connection is told elsewhere, and all is read after it
+            log.debug("touch sensors: %s", error)  # a lost connection is told elsewhere; the next look asks again
             with self._lock:
                 self._heard.update(sensor.event for sensor in heard)
         return True

@@ -176,7 +176,7 @@ class Walker:
             raise
 
     def _steer(self, order: Order, velocity: Velocity) -> None:
-        if order.halts and self._stops():
+        if order.halts and self._stopping():
             order.succeed()  # whoever lets go of a key and calls for a stop gets both answers
             return
         # Only of a stream of velocities the same ones may be left out: who commands once wants an answer of the robot.
@@ -221,7 +221,7 @@ class Walker:
         stopping.add_done_callback(lambda call: self._stopped(order, old, call, standing))
         standing.add_done_callback(lambda call: self._stopped(order, old, call, stopping))
 
-    def _stops(self) -> bool:
+    def _stopping(self) -> bool:
         with self._lock:
             return any(isinstance(old.command, Stop) and not old.answer.done() for old in self._running)
 
@@ -281,7 +281,7 @@ class Walker:
             self._ended(order, error)
             return
         if order.stopped_by and arrived is not True:
-            return  # it has ended when the robot stands
+            return  # it ends when the robot stands: see `_stopped`
         if arrived is None or arrived is True:  # robots differ in whether they tell
             self._ended(order, arrived=arrived is True)
         else:
