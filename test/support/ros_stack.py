@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-import time
 from ctypes import CDLL
 from pathlib import Path
 
 import rospy
 
 from nao_library_modules.own_stack import OwnStack, can_connect, free_port
-from nao_sim_bridge.testing import SimulatedRobot, StackNotReady
+from nao_sim_bridge.testing import SimulatedRobot, StackNotReady, wait_until
 
 SPEED = 2
 PR_SET_PDEATHSIG = 1
@@ -39,7 +38,7 @@ class RosStack:
 
     Args:
         folder: For logs and everything else that ROS writes.
-        arguments: Of test_stack.launch.
+        arguments: Of whole_stack.launch.
     """
 
     def __init__(self, folder, **arguments):
@@ -58,7 +57,7 @@ class RosStack:
             (folder / name).mkdir()
         with (folder / "master.txt").open("wb") as output:
             self._master = start_program("rosmaster", "--core", "-p", str(port), stdout=output, stderr=output)
-        self._await(lambda: can_connect(port), "the ROS master")
+        wait_until(lambda: can_connect(port), LIMIT, "the ROS master")
         self._port = port
 
     def ensure(self, world="empty"):
@@ -113,13 +112,6 @@ class RosStack:
         self.rest()
         self._master.terminate()
         self._master.wait(LIMIT)
-
-    @staticmethod
-    def _await(condition, what):
-        give_up = time.monotonic() + LIMIT
-        while not condition():
-            assert time.monotonic() < give_up, f"not there within {LIMIT:g} s: {what}"
-            time.sleep(0.02)
 
 
 def _children(parent):

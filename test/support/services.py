@@ -37,9 +37,9 @@ def measured_now(topic, kind):
             return message
 
 
-def publisher(test, name, kind):
+def publisher(test, name, kind, **options):
     """A publisher of a topic that somebody listens to; it ends with the test."""
-    made = rospy.Publisher(name, kind, queue_size=10)
+    made = rospy.Publisher(name, kind, queue_size=10, **options)
     test.addCleanup(made.unregister)
     wait_until(lambda: made.get_num_connections() > 0, 10.0, f"subscriber of {name}")
     return made

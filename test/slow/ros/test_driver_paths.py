@@ -182,8 +182,7 @@ class DriverPaths(WalkingTest):
         self.assertLess(self.truth().distance_to(before), 0.005)
 
     def test_lost_foot_contact_ends_the_goal(self):
-        feet = rospy.Publisher("foot_contact", Bool, queue_size=1, latch=True)
-        wait_until(lambda: feet.get_num_connections() > 0, 10.0, "subscriber")
+        feet = publisher(self, "foot_contact", Bool, latch=True)
         start, here = self.here(), target(0.0, 0.0, frame="base_footprint")
         run = send(self.targets, target(*start.then(Place(1.0, 0.0, 0.0))))
         wait_until(lambda: self.here().distance_to(start) > 0.05, 90.0, "the walk")
@@ -193,7 +192,6 @@ class DriverPaths(WalkingTest):
         self.assertIn("put the robot on its feet", self.play(self.targets, here, GoalStatus.ABORTED).text)
         feet.publish(Bool(True))
         wait_until(lambda: send(self.targets, here).wait().state == GoalStatus.SUCCEEDED, 10.0, "foot contact")
-        feet.unregister()
 
     # --- goals of RViz, odometry -----------------------------------------------------------------------------------
 
