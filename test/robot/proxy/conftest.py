@@ -57,12 +57,15 @@ class Robot:
         return naoqi.ALProxy(name, *self.address, **options)
 
 
-@pytest.fixture(scope="session")
-def shared_robot():
+def _running():
+    """A robot of its own for a test that breaks it."""
     robot = Robot()
     yield robot
     naoqi.connection(*robot.address, wait=False).close()
     robot.kill()
+
+
+fragile_robot, shared_robot = pytest.fixture(_running), pytest.fixture(_running, scope="session")
 
 
 @pytest.fixture
@@ -70,15 +73,6 @@ def robot(shared_robot):
     """A robot that nobody waits for."""
     shared_robot.proxy().forget()
     return shared_robot
-
-
-@pytest.fixture
-def fragile_robot():
-    """A robot of its own for a test that breaks it."""
-    robot = Robot()
-    yield robot
-    naoqi.connection(*robot.address, wait=False).close()
-    robot.kill()
 
 
 @pytest.fixture

@@ -122,6 +122,17 @@ class DriverPaths(WalkingTest):
         wait_until(lambda: not self.motion.moveIsActive(), 90.0, "the end of the walk")
         self.there(self.here(), start.then(Place(0.2, 0.0, 0.0)))
 
+    def test_a_new_goal_takes_over_without_a_stop(self):
+        start = self.here()
+        old = send(self.targets, target(*start.then(Place(1.0, 0.0, 0.0))))
+        wait_until(lambda: self.here().distance_to(start) > 0.1, 90.0, "the walk")
+        new = send(self.targets, target(*start.then(Place(0.4, 0.1, 0.0))))
+        self.assertEqual(old.wait().state, GoalStatus.PREEMPTED)
+        self.assertEqual(old.text, "a newer goal needs the legs")
+        self.assertTrue(self.motion.moveIsActive())
+        self.assertEqual(new.wait(180.0).state, GoalStatus.SUCCEEDED, new.text)
+        self.there(self.here(), start.then(Place(0.4, 0.1, 0.0)))
+
     def test_a_cancelled_goal_leaves_the_robot_standing(self):
         start = self.here()
         run = send(self.targets, target(*start.then(Place(1.0, 0.0, 0.0))))

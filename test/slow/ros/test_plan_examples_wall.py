@@ -17,6 +17,7 @@ class PlanExamplesAtTheWall(PlanExampleTest):
         self.assertLess(math.hypot(place.x - GOAL[0], place.y - GOAL[1]), NEAR, output)
         walks = trace.named("walk")
         self.assertEqual(walks[0].state, "failed", output)
+        self.assertRegex(walks[0].failure, r"the robot stopped: an obstacle 0\.\d+ m ahead")
         self.assertGreaterEqual(len([walk for walk in walks if walk.state == "succeeded"]), 3, output)
         self.assertIn("Something is in my way.", output)
         self.assert_stands()
