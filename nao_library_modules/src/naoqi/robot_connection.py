@@ -167,7 +167,10 @@ class Connection:
             raise self.unreachable()
         found = live.services.get(name)
         if found is None:
-            found = live.services[name] = directory.find_module(self, live, name)
+            with live.lookups[name]:  # of two threads that ask at once, libqi leaves one without an answer now and then
+                found = live.services.get(name)
+                if found is None:
+                    found = live.services[name] = directory.find_module(self, live, name)
         return found
 
     def forget_service(self, name: str) -> None:

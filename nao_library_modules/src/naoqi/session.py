@@ -6,7 +6,8 @@ import contextlib
 import logging
 import threading
 import time
-from typing import Any, Callable, Dict, Optional
+from collections import defaultdict
+from typing import Any, Callable, DefaultDict, Dict, Optional
 
 import qi
 
@@ -29,6 +30,7 @@ class Live:
         heartbeat: The remote method that is called as heartbeat; None until it is connected.
         broken: Set when libqi reports the end of the session, and when the program wants it.
         services: Remote objects found so far, by name.
+        lookups: Held while a remote object is looked for, by name.
         connected_at: Monotonic time of its connection, in s.
         start_watch: Tells when NAOqi starts again behind this session; None while that cannot be known.
     """
@@ -44,6 +46,7 @@ class Live:
         self.heartbeat: Any = None
         self.broken = threading.Event()
         self.services: Dict[str, Any] = {}
+        self.lookups: DefaultDict[str, threading.Lock] = defaultdict(threading.Lock)
         self.connected_at = 0.0
         self.start_watch: Optional[StartWatch] = None
         self._on_break = on_break

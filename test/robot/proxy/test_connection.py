@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import socket
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
 import naoqi
-from naoqi import errors
+from naoqi import directory, errors
 from naoqi.state import Timing
 
 SOON = 10.0
@@ -95,6 +96,22 @@ def test_a_module_may_appear_a_moment_after_the_robot(robot, states, pool):
     answer = pool.submit(lambda: robot.proxy("Visitor").add(1, 1))
     robot.proxy("Switch").arrive("Visitor")
     assert answer.result(SOON) == 2
+
+
+def test_threads_that_want_the_same_module_look_it_up_once(robot, pool, monkeypatch):
+    connection, find, asked = naoqi.connection(*robot.address), directory.find_module, []
+    both = threading.Event()
+
+    def found(*arguments):
+        asked.append(arguments)
+        if len(asked) == 2:
+            both.set()
+        both.wait(0.1)  # for the other one, which must not come
+        return find(*arguments)
+
+    monkeypatch.setattr(directory, "find_module", found)
+    first, second = pool.map(connection.service, ("ALTest", "ALTest"))
+    assert first is second and len(asked) == 1
 
 
 def test_a_closed_connection_refuses_and_a_new_one_can_be_had(robot, states):
