@@ -83,6 +83,7 @@ class Goal:
     def cancel(self):
         """Preempt it and wait for its end; no simulated time passes unless its clean-up waits for some."""
         self._server.preempt()
+        self._simulator.lockstep.changed()
         return self.finish()
 
     def over(self):

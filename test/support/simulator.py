@@ -195,7 +195,7 @@ class Lockstep:
 
         def watched(*arguments, **options):
             task = make(*arguments, **options)
-            task.add_done_callback(lambda _: self._changed())
+            task.add_done_callback(lambda _: self.changed())
             return task
 
         ids.make = watched
@@ -204,18 +204,19 @@ class Lockstep:
 
     def goal_begins(self, thread=None):
         """Hold time for a goal; `thread` is the one it runs in, where there is only one."""
-        self._changed(lambda: self._goals.append(thread))
+        self.changed(lambda: self._goals.append(thread))
 
     def goal_is_over(self, thread=None):
-        self._changed(lambda: self._goals.remove(thread))
+        self.changed(lambda: self._goals.remove(thread))
 
     def call_begins(self, proxy):
-        self._changed(lambda: self._calls.append(proxy))
+        self.changed(lambda: self._calls.append(proxy))
 
     def call_ended(self, proxy):
-        self._changed(lambda: self._calls.remove(proxy))
+        self.changed(lambda: self._calls.remove(proxy))
 
-    def _changed(self, change=lambda: None):
+    def changed(self, change=lambda: None):
+        """Something has happened to a goal: time holds until it waits again."""
         with self._news:
             change()
             self._change += 1
@@ -233,16 +234,16 @@ class Lockstep:
         due = threading.Event()
         waiter = (self.time() + duration, due)
         with interrupt.waking(due.set):
-            self._changed(lambda: self._waiters.append(waiter))
+            self.changed(lambda: self._waiters.append(waiter))
             due.wait()
-            self._changed(lambda: waiter in self._waiters and self._waiters.remove(waiter))
+            self.changed(lambda: waiter in self._waiters and self._waiters.remove(waiter))
         return not interrupt.is_set()
 
     def _tick(self, snapshot):
         """In the simulation thread: time holds again before those wake up who waited for it."""
         over = [w for w in list(self._waiters) if w[0] <= snapshot.time + 1e-9 or w[1].is_set()]
         if over:
-            self._changed(lambda: [self._waiters.remove(waiter) for waiter in over if waiter in self._waiters])
+            self.changed(lambda: [self._waiters.remove(waiter) for waiter in over if waiter in self._waiters])
             for _, due in over:
                 due.set()
 
