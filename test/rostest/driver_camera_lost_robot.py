@@ -7,7 +7,6 @@ from pathlib import Path
 
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure.client import Client
 from std_srvs.srv import Empty
 
@@ -18,6 +17,7 @@ from naoqi import ALProxy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from camera_fixture import LIMIT, Look  # noqa: E402
 from mortal_simulator import PORT, MortalSimulator  # noqa: E402
+from news import Reports  # noqa: E402
 
 BRIGHTNESS = 0
 
@@ -25,8 +25,7 @@ BRIGHTNESS = 0
 class DriverCameraLostRobot(MortalSimulator, unittest.TestCase):
     def setUp(self):
         self.addCleanup(self.kill)
-        self.reports = {}
-        rospy.Subscriber("/diagnostics", DiagnosticArray, self.note, queue_size=100)
+        self.reports = Reports()
         self.switches = {}
         for change in ("enable", "disable"):
             name = f"nao_vision/landmark_detection/{change}"
@@ -34,14 +33,11 @@ class DriverCameraLostRobot(MortalSimulator, unittest.TestCase):
             self.switches[change] = rospy.ServiceProxy(name, Empty)
         self.settings = Client("nao_camera/top", timeout=LIMIT)
 
-    def note(self, message):
-        self.reports.update((status.name, status.message) for status in message.status)
-
     def proxy(self, name):
         return ALProxy(name, "127.0.0.1", PORT)
 
-    def wait_for_report(self, name, text):
-        wait_until(lambda: text in self.reports.get(name, ""), LIMIT, lambda: f"{name}: {text}; it says {self.reports}")
+    def wait_for_report(self, name, beginning):
+        self.reports.wait(name, lambda status: status.message.startswith(beginning))
 
     def check_pictures(self, look):
         image, info = look.now()

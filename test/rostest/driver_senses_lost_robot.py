@@ -8,7 +8,7 @@ from pathlib import Path
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from sensor_msgs.msg import Range
 
 from nao_library_actions.msg import BlinkAction, BlinkGoal, RunBehaviorAction, RunBehaviorGoal
@@ -20,7 +20,7 @@ from naoqi import ALProxy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from mortal_simulator import PORT, MortalSimulator  # noqa: E402
-from news import LIMIT, News  # noqa: E402
+from news import LIMIT, News, Reports  # noqa: E402
 
 FRONT, CHARGE = "FrontTactilTouched", "Device/SubDeviceList/Battery/Charge/Sensor/Value"
 ENDLESS = "nao_library/breathe"
@@ -31,23 +31,19 @@ class DriverSensesLostRobot(MortalSimulator, unittest.TestCase):
         self.addCleanup(self.kill)
         self.news = News()
         self.states, self.touches, self.events, self.charges, self.ranges = [], [], [], [], []
-        self.reports = {}
+        self.reports = Reports()
         self.news.subscribe("connection", ConnectionState, self.states.append)
         self.news.subscribe("tactile_touch", TactileTouch, lambda message: self.touches.append(message.state))
         self.news.subscribe(f"nao_memory/{FRONT}", FloatStamped, lambda message: self.events.append(message.data))
         self.news.subscribe(f"nao_memory/{CHARGE}", FloatStamped, self.charges.append)
         self.news.subscribe("nao_robot/sonar/left", Range, self.ranges.append)
-        self.news.subscribe("/diagnostics", DiagnosticArray, self.note)
         self.behaviors = SimpleActionClient("run_behavior", RunBehaviorAction)
         self.blink = SimpleActionClient("blink", BlinkAction)
         for client in (self.behaviors, self.blink):
             self.assertTrue(client.wait_for_server(rospy.Duration(LIMIT)))
 
-    def note(self, message):
-        self.reports.update({status.name: status for status in message.status})
-
     def wait_for_level(self, name, level):
-        self.news.wait(lambda: name in self.reports and self.reports[name].level == level, f"{name}: level {level}")
+        self.reports.wait(name, lambda status: status.level == level)
 
     def press(self, *sensors):
         ALProxy("NaoSimulation", "127.0.0.1", PORT).press(list(sensors))

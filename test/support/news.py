@@ -6,6 +6,7 @@ from xmlrpc.client import ServerProxy
 
 import rosgraph
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray
 
 from nao_sim_bridge.testing import StackNotReady, wait_until
 
@@ -48,6 +49,30 @@ class News:
         with self._condition:
             if not self._condition.wait_for(condition, LIMIT):
                 raise StackNotReady(f"not there within {LIMIT:g} s: {what}")
+
+
+class Reports:
+    """The last status of each name on /diagnostics; a slash in front of a name is left out."""
+
+    def __init__(self):
+        self._news, self._last = News(), {}
+        self._news.subscribe("/diagnostics", DiagnosticArray, self._read)
+
+    def __getitem__(self, name):
+        return self._last[name]
+
+    def _read(self, message):
+        self._last.update((status.name.lstrip("/"), status) for status in message.status)
+
+    def wait(self, name, fits):
+        """The first status of a name that fits."""
+        self._news.wait(lambda: name in self._last and fits(self._last[name]), f"{name} on /diagnostics")
+        return self._last[name]
+
+    def values(self, name, message):
+        """Values of the first status from now on that has this message."""
+        self._last.clear()
+        return {entry.key: entry.value for entry in self.wait(name, lambda status: status.message == message).values}
 
 
 def connected(subscriber):

@@ -13,9 +13,9 @@ import rospy
 import yaml
 from camera_fixture import LIMIT, MAGENTA, Geometry, Look, magenta_spot, pixels_of, project
 from cases import case
-from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure import DynamicReconfigureCallbackException
 from dynamic_reconfigure.client import Client
+from news import Reports
 from sensor_msgs.msg import CompressedImage
 from services import configuration
 
@@ -48,16 +48,9 @@ class DriverCamera(unittest.TestCase):
         cls.simulation = cls.robot.module("NaoSimulation")
         cls.geometry = Geometry(cls.robot)
         cls.settings = [Client(f"nao_camera/{name}", timeout=LIMIT) for name in NAMES]
-        cls.reports = {}
-        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.note, queue_size=100)
+        cls.reports = Reports()
         with Look(FOLDERS[TOP]) as look:  # what draws the pictures has begun
             look.after(0.0)
-
-    @classmethod
-    def note(cls, message):
-        for status in message.status:
-            values = {entry.key: entry.value for entry in status.values}
-            cls.reports[status.name] = (status.message, values)
 
     def setUp(self):
         self.robot.reset()
@@ -143,21 +136,14 @@ class DriverCamera(unittest.TestCase):
         self.wait_for_nobody()
         counts = []
         for _ in range(2):
-            self.reports.clear()
-            report = self.wait_for_report("nao_camera: camera bottom", "nobody looks")
-            counts.append(report["pictures"])
+            counts.append(self.reports.values("nao_camera: camera bottom", "nobody looks")["pictures"])
             self.robot.advance(1.0)
         self.assertEqual(counts[0], counts[1])
-
-    def wait_for_report(self, name, text):
-        wait_until(lambda: self.reports.get(name, ("",))[0] == text, LIMIT, f"{name}: {text}")
-        return self.reports[name][1]
 
     def test_diagnostics_tell_what_comes(self):
         with Look(FOLDERS[TOP]) as look, self.robot.at_speed(0.5):
             look.now()
-            self.reports.clear()
-            values = self.wait_for_report("nao_camera: camera top", "pictures come")
+            values = self.reports.values("nao_camera: camera top", "pictures come")
             self.assertEqual((values["size"], values["colour space"]), ("320x240", "BGR"))
             self.assertIn("computed", values["calibration"])
 

@@ -5,7 +5,6 @@ import subprocess
 import unittest
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray
 from news import LIMIT, News
 from rospy import get_published_topics
 
@@ -33,19 +32,11 @@ class DriverMemory(unittest.TestCase):
         cls.robot = SimulatedRobot()
         cls.memory = cls.robot.module("ALMemory")
         cls.news = News()
-        cls.report = {}
-        cls.news.subscribe("/diagnostics", DiagnosticArray, cls.note_report)
         kinds = {"watch": WatchMemory, "unwatch": UnwatchMemory, "get": GetMemory, "set": SetMemory, "list": ListMemory}
         for name, kind in kinds.items():
             rospy.wait_for_service(f"nao_memory/{name}", LIMIT)
             setattr(cls, name, staticmethod(rospy.ServiceProxy(f"nao_memory/{name}", kind)))
         wait_until(lambda: "/nao_memory/" + CHARGE in cls.topics(), LIMIT, "the topics of the parameter ~keys")
-
-    @classmethod
-    def note_report(cls, message):
-        for status in message.status:
-            if status.name == "nao_memory: memory":
-                cls.report = {entry.key: int(entry.value) for entry in status.values}
 
     @staticmethod
     def topics():

@@ -9,8 +9,8 @@ import unittest
 
 import rospy
 from cases import case
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from news import LIMIT, News
+from diagnostic_msgs.msg import DiagnosticStatus
+from news import LIMIT, News, Reports
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Range
 from services import publisher
@@ -56,9 +56,8 @@ class DriverSenses(unittest.TestCase):
         cls.robot = SimulatedRobot()
         cls.simulation = cls.robot.module("NaoSimulation")
         cls.news = News()
-        cls.reports = {}
+        cls.reports = Reports()
         cls.latest = {}
-        cls.news.subscribe("/diagnostics", DiagnosticArray, cls.note_reports)
         topics = {
             "foot_contact": Bool,
             "other/foot_contact": Bool,
@@ -67,20 +66,8 @@ class DriverSenses(unittest.TestCase):
         }
         for name, kind in topics.items():
             cls.news.subscribe(name, kind, lambda message, name=name: cls.latest.update({name: message}))
-        cls.wait_for_report("/nao_tactile: touch", lambda status: status.level == DiagnosticStatus.OK)
-        cls.wait_for_report("/other/nao_tactile: touch", lambda status: status.level == DiagnosticStatus.OK)
-
-    @classmethod
-    def note_reports(cls, message):
-        for status in message.status:
-            # Nodes of the driver put their names before their reports.
-            name = status.name if status.name.startswith(("/", "nao_joint", "nao_power")) else f"/{status.name}"
-            cls.reports[name] = cls.reports[status.name] = status
-
-    @classmethod
-    def wait_for_report(cls, name, condition):
-        cls.news.wait(lambda: name in cls.reports and condition(cls.reports[name]), f"{name} on /diagnostics")
-        return cls.reports[name]
+        for node in ("nao_tactile", "other/nao_tactile"):
+            cls.reports.wait(f"{node}: touch", lambda status: status.level == DiagnosticStatus.OK)
 
     def setUp(self):
         self.robot.press([])
@@ -195,14 +182,14 @@ class DriverSenses(unittest.TestCase):
     def test_a_hot_joint_is_told(self):
         for celsius, level, word in ((70.0, DiagnosticStatus.WARN, "Hot"), (78.0, DiagnosticStatus.ERROR, "Too hot")):
             self.simulation.setTemperature("LKneePitch", celsius)
-            self.wait_for_report(
+            self.reports.wait(
                 "nao_joint: LKneePitch",
                 lambda status, level=level, word=word: status.level == level and status.message.startswith(f"{word}: "),
             )
 
     def test_the_battery_is_told_with_its_flags(self):
         self.simulation.setBatteryCharge(0.2)
-        report = self.wait_for_report("nao_power: Battery", lambda status: status.level == DiagnosticStatus.WARN)
+        report = self.reports.wait("nao_power: Battery", lambda status: status.level == DiagnosticStatus.WARN)
         self.assertTrue(report.message.startswith("Low ("), report.message)
         values = {entry.key: entry.value for entry in report.values}
         self.assertEqual(len(values), 18)
@@ -210,10 +197,10 @@ class DriverSenses(unittest.TestCase):
         self.assertAlmostEqual(float(values["Percentage"]), 20.0, delta=0.5)
         self.simulation.plugCharger(True)
         self.addCleanup(self.simulation.plugCharger, False)
-        self.wait_for_report("nao_power: Battery", lambda status: status.message.startswith("Charging ("))
-        self.wait_for_report("nao_power: Current", lambda status: status.message.endswith("(charging)"))
-        self.assertTrue(self.reports["/nao_cpu: Head Temperature"].message.endswith(" C"))
-        for name in ("/nao_wlan: Status", "/nao_ethernet: Status"):
+        self.reports.wait("nao_power: Battery", lambda status: status.message.startswith("Charging ("))
+        self.reports.wait("nao_power: Current", lambda status: status.message.endswith("(charging)"))
+        self.assertTrue(self.reports["nao_cpu: Head Temperature"].message.endswith(" C"))
+        for name in ("nao_wlan: Status", "nao_ethernet: Status"):
             self.assertEqual(self.reports[name].message, "unknown: the robot does not tell")
 
     def test_the_robot_says_what_it_is_and_that_it_is_there(self):

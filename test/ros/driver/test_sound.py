@@ -8,8 +8,8 @@ import numpy as np
 import rospy
 import soundfile
 from cases import case
-from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure.client import Client
+from news import Reports
 from services import answer
 from sound_fixture import Loudspeakers, Room, bursts, recording, strongest_frequency
 
@@ -64,31 +64,18 @@ class DriverSound(unittest.TestCase):
         cls.room = Room(cls.robot)
         cls.loudspeakers = Loudspeakers(cls.robot)
         cls.settings = Client(MICROPHONE, timeout=LIMIT)
-        cls.reports = {}
-        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.note, queue_size=100)
+        cls.reports = Reports()
         cls.play_file = Service("nao_audio/play_file", AudioPlayback)
         cls.record = Service("nao_audio/record", AudioRecorder)
         cls.set_volume = Service("nao_audio/master_volume", SetAudioMasterVolume)
         cls.volume = Service("nao_audio/get_master_volume", GetAudioMasterVolume)
         wait_until(lambda: answer(cls.volume) == "", LIMIT, "nao_audio and the robot")
 
-    @classmethod
-    def note(cls, message):
-        for status in message.status:
-            cls.reports[status.name.split("/")[-1]] = (
-                status.message,
-                {entry.key: entry.value for entry in status.values},
-            )
-
     def setUp(self):
         self.robot.reset()
         self.room.clear()
         self.set_volume(master_volume=100)
         self.settings.update_configuration({"frequency": 16000})
-
-    def wait_for_report(self, name, text):
-        wait_until(lambda: self.reports.get(name, ("",))[0] == text, LIMIT, f"{name}: {text}")
-        return self.reports[name][1]
 
     # --- microphones ----------------------------------------------------------------------------------------------
 
@@ -136,8 +123,7 @@ class DriverSound(unittest.TestCase):
             pass
         counts = []
         for _ in range(3):  # blocks that are under way still come after the first
-            self.reports.clear()
-            counts.append(self.wait_for_report("naoqi_microphone: microphones", "nobody listens")["blocks"])
+            counts.append(self.reports.values(f"{MICROPHONE}: microphones", "nobody listens")["blocks"])
             self.robot.advance(2.0)
         self.assertEqual(counts[1], counts[2])
 

@@ -9,8 +9,8 @@ import unittest
 
 import rospkg
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Pose2D, Twist
+from news import Reports
 from rospy import Duration
 from services import answer, service
 from std_srvs.srv import Empty
@@ -168,16 +168,11 @@ class DriverWalker(unittest.TestCase):
         self.publishing(velocity(x=0.5))
         self.wait_for_walk()
 
-        status = {}
+        def told(status):
+            values = {pair.key: pair.value for pair in status.values}
+            return values.get("robot") == "walks" and values["commanded"].startswith("walking at (0.50")
 
-        def read(message):
-            for one in message.status:
-                if one.name == "nao_walker: walk":
-                    status.update({pair.key: pair.value for pair in one.values})
-
-        self.addCleanup(rospy.Subscriber("/diagnostics", DiagnosticArray, read).unregister)
-        wait_until(lambda: status.get("robot") == "walks", LIMIT, "diagnostics of a walk")
-        wait_until(lambda: status.get("commanded", "").startswith("walking at (0.50"), LIMIT, "its velocity")
+        Reports().wait("nao_walker: walk", told)
 
     def test_the_end_of_the_node_stops_the_walk(self):
         program = rospkg.RosPack().get_path("nao_library_modules") + "/nodes/nao_walker"
