@@ -88,7 +88,7 @@ class Sounds(NaoAudio):
             return 0.0
         began = self.clock.now()
         if not call.wait(QUICK_ANSWER):  # quicker than to set up the wait for both
-            self._wait(call, duration)
+            self._wait(call, began, duration)
         if not call.done():
             self._end(sounding)
             self.interrupt.check()
@@ -146,14 +146,15 @@ class Sounds(NaoAudio):
         else:
             sounding.call.add_done_callback(_tell_failure)
 
-    def _wait(self, call: Any, duration: float) -> None:
+    def _wait(self, call: Any, began: float, duration: float) -> None:
         if duration <= 0.0:
             wait_for_call(call, self.interrupt)
             return
         news = Interrupt()
         call.add_done_callback(lambda _: news.trigger())
         with self.interrupt.waking(news.trigger):
-            self.clock.wait(duration, news)
+            left = began + duration - self.clock.now()
+            self.clock.wait(min(duration, max(0.0, left)), news)  # not longer where the clock was set back
 
     def _silence(self, soundings: list[Sounding]) -> None:
         for sounding in soundings:

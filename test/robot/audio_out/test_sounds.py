@@ -177,7 +177,7 @@ def test_loaded_sounds_go_by_name_by_id_or_by_being_the_last(robot, audio):
     )
     assert result.memList == ["1.0", "0.3", "0.25", "0.5", first]
     assert result.files == ["tone.wav", "short.wav", "tone.wav"]
-    assert result.durations == pytest.approx([0.1, 0.3, 0.1], abs=0.05)
+    assert result.durations == pytest.approx([0.1, 0.3, 0.1], abs=0.02)
     text = audio.refused(f("loadFile", "short.wav"), f("unloadFile"), f("play", "short.wav"))
     assert text == "function 3 (play): field str_param: 'short.wav' is not loaded: one of tone.wav"
     text = audio.refused(f("unloadAllFiles"), f("play"))
