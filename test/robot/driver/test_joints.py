@@ -273,6 +273,21 @@ def test_events_are_published_as_they_stand_and_while_somebody_listens_also_afte
     soon(lambda: topics[FRONT].messages[told:] == [1.0, 0.0])
 
 
+def test_how_an_event_stands_is_asked_again_when_it_could_not_be_read(watch, robot, topics, soon, monkeypatch):
+    values, failures = MemoryAccess.values, [NaoError("no answer")]
+
+    def sometimes(access, keys):
+        if keys and failures:
+            raise failures.pop()
+        return values(access, keys)
+
+    robot.ALMemory.raiseEvent(FRONT, 0.0)
+    watch.watch([Rule(FRONT)])
+    monkeypatch.setattr(MemoryAccess, "values", sometimes)
+    topics[FRONT].tell(True)
+    soon(lambda: topics[FRONT].messages == [0.0])
+
+
 def test_unwatching_closes_topics_and_too_many_keys_are_refused(robot, driver_robot, clock, topics, closing, soon):
     watch = closing(MemoryWatch(driver_robot, clock, topics.make, 3))
     robot.ALMemory.insertListData([["Few/1", 1], ["Few/2", "two"]])

@@ -30,6 +30,7 @@ class WatchedKey:
         rule: What is to become of it.
         is_event: Whether the robot tells of it by itself.
         subscribed: Whether it does now; for the thread that subscribes.
+        to_be_told: Whether how it stands is still to be read since then; for that thread as well.
         wanted: Whether somebody listens to the topic.
         kind: Kind of message; empty as long as nothing tells the type.
     """
@@ -48,7 +49,7 @@ class WatchedKey:
         self.topic_name = topic_name
         self.rule = rule
         self.is_event = False
-        self.subscribed = False
+        self.subscribed = self.to_be_told = False
         self.wanted = False
         self.kind = ""
         self.published = 0

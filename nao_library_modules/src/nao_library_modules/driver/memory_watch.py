@@ -260,16 +260,17 @@ class MemoryWatch:
 
     def _mind_events(self) -> None:
         """Subscribe the events that somebody waits for, or whose type is not known yet; those only."""
-        begun = []
         for key in self._keys.values():
             needed = key.is_event and (key.wanted or not key.kind)
             if needed and not key.subscribed:
                 self._relay.subscribe(key.name)
-                begun.append(key)
+                key.to_be_told = True
             elif key.subscribed and not needed:
                 self._relay.unsubscribe(key.name)
             key.subscribed = needed
+        begun = [key for key in self._keys.values() if key.subscribed and key.to_be_told]
         for key, value in zip(begun, self._memory.values([key.name for key in begun])):
+            key.to_be_told = False
             if value is not None and key.wanted:
                 self._hand_over(key, value)  # who begins to listen learns how it stands
 
