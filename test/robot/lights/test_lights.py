@@ -159,7 +159,7 @@ def test_a_cancelled_fade_stops_where_it_is_and_goes_back_only_on_demand(robot, 
     robot.advance(2.0)
     assert goal.cancel().state == "preempted"
     stopped = robot.led(BRAIN0)
-    assert 0.45 < stopped < 0.75 and goal.result.intensities == [pytest.approx(stopped, abs=1e-6)]
+    assert 0.49 < stopped < 0.75 and goal.result.intensities == [pytest.approx(stopped, abs=1e-6)]
     robot.advance(0.5)
     assert robot.led(BRAIN0) == stopped
     goal = lights.send(f("fade", revert=True, **fade))
