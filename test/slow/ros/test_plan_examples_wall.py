@@ -21,3 +21,8 @@ class PlanExamplesAtTheWall(PlanExampleTest):
         self.assertGreaterEqual(len([walk for walk in walks if walk.state == "succeeded"]), 3, output)
         self.assertIn("Something is in my way.", output)
         self.assert_stands()
+
+    def test_a_way_that_is_free_needs_no_detour(self):
+        _, trace = self.run_plan("detour_plan.py", "0.3", "0.0")
+        self.assertEqual([walk.state for walk in trace.named("walk")], ["succeeded"])
+        self.assertAlmostEqual(self.robot.true_pose().position.x, 0.3, delta=0.06)
