@@ -43,13 +43,7 @@ class Accidents:
     """
 
     def __init__(
-        self,
-        machines: Machines,
-        simulator: Simulator,
-        kills: int,
-        drops: int,
-        length: float,
-        seed: int,
+        self, machines: Machines, simulator: Simulator, kills: int, drops: int, length: float, seed: int
     ) -> None:
         self._machines, self._simulator = machines, simulator
         kinds = [("killed", self._kill)] * kills + [("cable", self._drop)] * drops

@@ -24,11 +24,16 @@ class NotReady(RuntimeError):
     """Something was not there in time."""
 
 
+def master_uri(machines: Machines) -> str:
+    """Address of the ROS master."""
+    return f"http://{machines.here}:{machines.ros_port}"
+
+
 def ros_environment(machines: Machines, folder: Path) -> dict[str, str]:
     """Environment of programs on the servers' machine; logs go to `folder`."""
     return {
         **os.environ,
-        "ROS_MASTER_URI": f"http://{machines.here}:{machines.ros_port}",
+        "ROS_MASTER_URI": master_uri(machines),
         "ROS_IP": machines.here,
         "ROS_HOME": str(folder / "ros_home"),
         "ROS_LOG_DIR": str(folder / "ros_log"),
@@ -82,7 +87,7 @@ class Servers:
         Raises:
             OSError: A node does not answer.
         """
-        master = ServerProxy(ros_environment(self._machines, self._folder)["ROS_MASTER_URI"])
+        master = ServerProxy(master_uri(self._machines))
         publishers, subscribers, services = master.getSystemState("/soak")[2]
         names = {n for kind in (publishers, subscribers, services) for _, users in kind for n in users}
         names = {n for n in names if n != "/rosout" and not n.startswith("/soak")}
