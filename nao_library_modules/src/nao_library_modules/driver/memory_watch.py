@@ -260,6 +260,7 @@ class MemoryWatch:
 
     def _mind_events(self) -> None:
         """Subscribe the events that somebody waits for, or whose type is not known yet; those only."""
+        begun = []
         for key in self._keys.values():
             needed = key.is_event and (key.wanted or not key.kind)
             if needed and not key.subscribed:
@@ -268,7 +269,8 @@ class MemoryWatch:
             elif key.subscribed and not needed:
                 self._relay.unsubscribe(key.name)
             key.subscribed = needed
-        begun = [key for key in self._keys.values() if key.subscribed and key.to_be_told]
+            if needed and key.to_be_told:
+                begun.append(key)
         for key, value in zip(begun, self._memory.values([key.name for key in begun])):
             key.to_be_told = False
             if value is not None and key.wanted:
