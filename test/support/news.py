@@ -48,7 +48,7 @@ class News:
         """
         with self._condition:
             if not self._condition.wait_for(condition, LIMIT):
-                raise StackNotReady(f"not there within {LIMIT:g} s: {what}")
+                raise StackNotReady(f"not there within {LIMIT:g} s: {what() if callable(what) else what}")
 
 
 class Reports:

@@ -3,7 +3,6 @@
 import json
 import subprocess
 import unittest
-from itertools import groupby
 
 import rospy
 from news import LIMIT, News
@@ -76,10 +75,9 @@ class DriverMemory(unittest.TestCase):
     def test_an_event_says_how_it_stands_and_then_what_changes(self):
         self.watch_and_end(FRONT)
         with self.listen(FRONT, FloatStamped) as first:
-            told = lambda: [state for state, _ in groupby(each.data for each in first)]  # noqa: E731
-            self.news.wait(lambda: told() == [0.0], "the present state")
+            self.news.wait(lambda: [each.data for each in first] == [0.0], lambda: f"one 0.0, not {first}")
             self.robot.press(["Head/Touch/Front"])
-            self.news.wait(lambda: told() == [0.0, 1.0], "a touch")
+            self.news.wait(lambda: [each.data for each in first] == [0.0, 1.0], "a touch")
             command = ["rostopic", "echo", "-n1", f"/nao_memory/{FRONT}/data"]
             second = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=LIMIT)
             self.assertEqual(second.stdout.split()[0], "1.0", "a second listener learns how it stands as well")
