@@ -56,7 +56,7 @@ class Reports:
 
     def __init__(self):
         self._news, self._last = News(), {}
-        self._news.subscribe("/diagnostics", DiagnosticArray, self._read)
+        self.subscriber = self._news.subscribe("/diagnostics", DiagnosticArray, self._read)
 
     def __getitem__(self, name):
         return self._last[name]

@@ -172,7 +172,9 @@ class DriverWalker(unittest.TestCase):
             values = {pair.key: pair.value for pair in status.values}
             return values.get("robot") == "walks" and values["commanded"].startswith("walking at (0.50")
 
-        Reports().wait("nao_walker: walk", told)
+        reports = Reports()
+        self.addCleanup(reports.subscriber.unregister)
+        reports.wait("nao_walker: walk", told)
 
     def test_the_end_of_the_node_stops_the_walk(self):
         program = rospkg.RosPack().get_path("nao_library_modules") + "/nodes/nao_walker"
