@@ -144,7 +144,7 @@ def _durations():
 
 
 def _name(report):
-    """Of its test, without the group of xdist."""
+    """Name of the test of a report, without its group of xdist."""
     return report.nodeid.rpartition("@")[0] or report.nodeid
 
 

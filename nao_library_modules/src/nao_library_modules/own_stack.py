@@ -102,7 +102,7 @@ class OwnStack:
                 raise TimeoutError(f"{what} does not come up: not there within {limit:g} s")
 
     def _last_words(self) -> str:
-        """What roslaunch gives as the cause of its end; a line about its log file follows it there."""
+        """The last error of roslaunch, up to 300 characters; empty if it printed none."""
         text = COLOUR.sub("", self.log.read_text(encoding="utf-8", errors="replace"))
         return " ".join(line for line in text.splitlines() if line.strip()).rpartition("RLException: ")[2][-300:]
 

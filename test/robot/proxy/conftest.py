@@ -58,7 +58,7 @@ class Robot:
 
 
 def _running():
-    """A robot of its own for a test that breaks it."""
+    """Of its own for a test that breaks it, and one that all others share."""
     robot = Robot()
     yield robot
     naoqi.connection(*robot.address, wait=False).close()
