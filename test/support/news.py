@@ -58,9 +58,6 @@ class Reports:
         self._news, self._last = News(), {}
         self.subscriber = self._news.subscribe("/diagnostics", DiagnosticArray, self._read)
 
-    def __getitem__(self, name):
-        return self._last[name]
-
     def _read(self, message):
         self._last.update((status.name.lstrip("/"), status) for status in message.status)
 

@@ -199,9 +199,9 @@ class DriverSenses(unittest.TestCase):
         self.addCleanup(self.simulation.plugCharger, False)
         self.reports.wait("nao_power: Battery", lambda status: status.message.startswith("Charging ("))
         self.reports.wait("nao_power: Current", lambda status: status.message.endswith("(charging)"))
-        self.assertTrue(self.reports["nao_cpu: Head Temperature"].message.endswith(" C"))
+        self.reports.wait("nao_cpu: Head Temperature", lambda status: status.message.endswith(" C"))
         for name in ("nao_wlan: Status", "nao_ethernet: Status"):
-            self.assertEqual(self.reports[name].message, "unknown: the robot does not tell")
+            self.reports.wait(name, lambda status: status.message == "unknown: the robot does not tell")
 
     def test_the_robot_says_what_it_is_and_that_it_is_there(self):
         rospy.wait_for_service("get_robot_config", LIMIT)
