@@ -35,6 +35,7 @@ LIMIT = 90.0
 """s of wall time for one command."""
 AT_ONCE = 3
 """Commands side by side: most of their time is spent on waiting for speech, lights and legs."""
+SPEED = 4.0
 ANSWERS = {
     "getColor": r"LeftFaceLed1 ",
     "--person yes": r"(?i)heard: yes",
@@ -76,7 +77,8 @@ class FeatureCommands(unittest.TestCase):
             rospy.loginfo("%5.1f s, status %s: %s", outcome.seconds, outcome.status, row.command)
             return outcome
 
-        outcomes = run_all(rows, run_one, AT_ONCE)
+        with robot.at_speed(SPEED):
+            outcomes = run_all(rows, run_one, AT_ONCE)
         self.assertEqual(len(outcomes), len(rows))
         failed = [outcome for outcome in outcomes if outcome.refused or not answers(outcome)]
         self.assertEqual(failed, [], "\n\n".join(map(str, failed)))

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 import xml.etree.ElementTree as ElementTree
@@ -11,6 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib.util import cache_from_source
 from pathlib import Path
 
+import pytest
 import rospkg
 
 import nao_library_actions
@@ -21,6 +23,7 @@ from nao_library_modules.own_stack import free_port
 # import what each needs and end: a figure that a slow machine does not change; 1.85 here.
 PROGRAMS = 28
 LIMIT = 3.5
+pytestmark = pytest.mark.alone
 BARE = "import actionlib, numpy, rospy"
 CLIENT = """
 import rospy
@@ -34,7 +37,14 @@ SimulatedRobot().action_client("NaoLights", NaoLedAction)
 class Startup(unittest.TestCase):
     def test_all_servers_are_ready_soon(self):
         ros_port, nao_port = free_port(), free_port()
-        environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{ros_port}"}
+        home = tempfile.TemporaryDirectory()
+        self.addCleanup(home.cleanup)
+        environment = {
+            **os.environ,
+            "ROS_MASTER_URI": f"http://127.0.0.1:{ros_port}",
+            "ROS_HOME": home.name,
+            "ROS_LOG_DIR": home.name,
+        }
         bare = self.bare_start()
         began = time.monotonic()
         launch = subprocess.Popen(
