@@ -95,13 +95,8 @@ class RosStack:
         if not rospy.core.is_initialized():  # not before the stack has said whose time counts
             rospy.init_node(f"ros_tests_{os.getpid()}", disable_signals=True)
         self.robot = SimulatedRobot(limit=LIMIT)
-        wait_until(self._has_spoken, LIMIT, "nao_walker's announcement, which no case should hear")
-
-    def _has_spoken(self):
-        try:
-            return self.robot.module("ALMemory").getData("ALTextToSpeech/TextDone")
-        except RuntimeError:  # the key has no value yet
-            return False
+        memory, keys = self.robot.module("ALMemory"), ["ALTextToSpeech/TextDone"]  # it has no value yet
+        wait_until(lambda: memory.getListData(keys) == [True], LIMIT, "nao_walker's word, which no case should hear")
 
     def rest(self):
         """End it until it is needed again; its master stays."""
