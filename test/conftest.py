@@ -29,6 +29,16 @@ settings.register_profile("nao", derandomize=True, deadline=None, print_blob=Fal
 settings.load_profile("nao")
 
 
+@pytest.fixture(scope="session")
+def stack(tmp_path_factory):
+    """Simulator, driver and servers; this process is a node beside them. One for the levels ros and slow."""
+    from ros_stack import RosStack  # the other levels need no ROS
+
+    stack = RosStack(tmp_path_factory.mktemp("ros"))
+    yield stack
+    stack.close()
+
+
 def pytest_addoption(parser):
     parser.addoption("--words", default="", help="run tests with one of these words in their path or name")
     parser.addoption("--closing", default="", help="file for the closing line")

@@ -3,15 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from ros_stack import RosStack
-
-
-@pytest.fixture(scope="session")
-def stack(tmp_path_factory):
-    """Simulator, driver and servers; this process is a node beside them."""
-    stack = RosStack(tmp_path_factory.mktemp("ros"))
-    yield stack
-    stack.close()
 
 
 @pytest.fixture(scope="class", autouse=True)

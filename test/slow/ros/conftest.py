@@ -1,5 +1,5 @@
 """What takes long on the running stack."""
 
-from stack_fixtures import intact, running, stack
+from stack_fixtures import intact, running
 
-__all__ = ["intact", "running", "stack"]
+__all__ = ["intact", "running"]
