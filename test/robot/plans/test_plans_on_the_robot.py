@@ -289,8 +289,9 @@ def test_a_plan_that_ends_leaves_the_robot_standing(walking, robot):
     plan = walking(p.do(p.perform, to(type="looking", target="left")))
     plan.root.evaporate("enough")
     plan.fails(TaskEvaporatedFailure, "enough")
-    robot.advance_until(lambda: stands(robot), 3.0)  # in the middle of a step it takes longest
-    assert robot.now.torso.position[0] < 1.0
+    assert stands(robot)
+    robot.advance(1.0)
+    assert stands(robot) and robot.now.torso.position[0] < 1.0
 
 
 def test_lights_have_a_colour_and_an_intensity_and_are_told_wrong_names(perform, robot, link):
