@@ -58,7 +58,7 @@ class Robot:
 
 
 def _running():
-    """Of its own for a test that breaks it, and one that all others share."""
+    """A robot: one for each test that breaks it, and one for all others."""
     robot = Robot()
     yield robot
     naoqi.connection(*robot.address, wait=False).close()

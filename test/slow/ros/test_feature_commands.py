@@ -33,9 +33,8 @@ SERVERS = {
 }
 LIMIT = 90.0
 """s of wall time for one command."""
-AT_ONCE = 3
-"""Commands side by side: most of their time is spent on waiting for speech, lights and legs."""
-SPEED = 4.0
+AT_ONCE, SPEED = 3, 4.0
+"""Commands side by side, and times real time: they mostly wait for speech, lights and legs."""
 ANSWERS = {
     "getColor": r"LeftFaceLed1 ",
     "--person yes": r"(?i)heard: yes",
