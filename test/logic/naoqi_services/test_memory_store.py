@@ -58,7 +58,7 @@ def test_data_is_read_in_the_order_asked_for_with_its_time_and_removed_with_its_
             call()
 
 
-def test_an_event_without_a_value_cannot_be_read_yet_and_a_reset_one_tells_nobody(store, heard, clock):
+def test_an_event_without_a_value_cannot_be_read_yet_and_one_put_quietly_tells_nobody(store, heard, clock):
     store.declare_event("Happened", "Extractor")
     store.declare_event("Happened")
     store.declare_event("Other", "Another")
@@ -66,7 +66,6 @@ def test_an_event_without_a_value_cannot_be_read_yet_and_a_reset_one_tells_nobod
     with pytest.raises(UnknownName):
         store.get("Happened")
     subscribe(store, heard)
-    store.reset_event("Happened", 1)
     store.put_quietly("Happened", 0)
     assert (store.get("Happened"), store.kind("Happened"), heard) == (0, "Event", [])
     store.raise_event("Happened", 2)

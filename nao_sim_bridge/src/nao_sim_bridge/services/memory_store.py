@@ -161,13 +161,6 @@ class MemoryStore:
         """Write an event and tell its subscribers."""
         self._write(name, value, EVENT)
 
-    def reset_event(self, name: str, value: Any) -> None:
-        """Write an event without telling its subscribers: what it said is over."""
-        now = self._clock()
-        with self._lock:
-            entry = self._entries.setdefault(name, _Entry(EVENT))
-            entry.value, entry.time, entry.exists = value, now, True
-
     def raise_micro_event(self, name: str, value: Any) -> None:
         """Write a micro event and tell its subscribers."""
         self._write(name, value, MICRO_EVENT)
@@ -178,7 +171,7 @@ class MemoryStore:
             return sorted(n for n, e in self._entries.items() if e.kind == EVENT and e.extractor == extractor)
 
     def put_quietly(self, name: str, value: Any) -> None:
-        """Write an event's value for whoever asks for it, and tell nobody."""
+        """Write an event's value for whoever asks, and tell nobody: at the beginning, or when what it said is over."""
         with self._lock:
             entry = self._entries.setdefault(name, _Entry(EVENT))
             entry.value, entry.time, entry.exists = value, self._clock(), True

@@ -62,12 +62,12 @@ class RecognitionEngine(Switch):
         simulation.holds.append(self.behind)
         for key in KEYS:
             memory.insert(key, NO_WORD)
-        memory.reset_event(WORD, NO_WORD)
-        memory.reset_event(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
-        memory.reset_event(SPEECH, False)
-        memory.reset_event(RUNNING, False)
-        memory.reset_event(ACTIVE, False)
-        memory.reset_event(STATUS, "Idle")
+        memory.put_quietly(WORD, NO_WORD)
+        memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+        memory.put_quietly(SPEECH, False)
+        memory.put_quietly(RUNNING, False)
+        memory.put_quietly(ACTIVE, False)
+        memory.put_quietly(STATUS, "Idle")
 
     @property
     def runs(self) -> bool:
@@ -125,8 +125,8 @@ class RecognitionEngine(Switch):
         if runs == self.runs:
             return
         if runs:
-            self._memory.reset_event(WORD, NO_WORD)
-            self._memory.reset_event(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+            self._memory.put_quietly(WORD, NO_WORD)
+            self._memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
             self._deaf_until = self._simulation.time + self._on_listen(True)
             self._listener = self._simulation.sound.ears.listen(NAME, self._hear, wants="16k1", channel="front")
         else:
@@ -158,8 +158,8 @@ class RecognitionEngine(Switch):
             return
         found = [h for h in event.hypotheses if self._accepts(h)]
         if not found:
-            self._memory.reset_event(WORD, NO_WORD)
-            self._memory.reset_event(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+            self._memory.put_quietly(WORD, NO_WORD)
+            self._memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
             return
         words: list[Any] = [item for h in found for item in (h.phrase, h.confidence)]
         with_grammar: list[Any] = [item for h in found for item in (h.phrase, h.confidence, h.grammar)]

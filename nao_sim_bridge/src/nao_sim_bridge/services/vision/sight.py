@@ -22,7 +22,7 @@ class Sight:
         self._event = event
         self._tell_end = tell_end
         self._something = False
-        memory.reset_event(event, [])
+        memory.put_quietly(event, [])
 
     def show(self, value: list[Any]) -> None:
         """Something was seen."""
@@ -34,5 +34,5 @@ class Sight:
         if self._something and self._tell_end:
             self._memory.raise_event(self._event, [])
         elif self._something:
-            self._memory.reset_event(self._event, [])
+            self._memory.put_quietly(self._event, [])
         self._something = False
