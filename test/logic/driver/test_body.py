@@ -15,13 +15,13 @@ from nao_library_modules.driver.body_reports import BATTERY_FLAGS, Thresholds, b
 from nao_library_modules.driver.foot_pressure import keys_of, read_foot
 from nao_library_modules.driver.joint_sensors import JointSensors
 from nao_library_modules.driver.motors import read_motors, torque_per_ampere
-from nao_library_modules.driver.poses import BadPose, Pose, UnknownPose, built_in, library, pose_table
 from nao_library_modules.driver.robot_facts import KEYS, facts_of, info_fields
 from nao_library_modules.driver.sonars import range_of
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.health import Level
 from nao_library_modules.joint_trajectory import H25_BODY
 from nao_library_modules.paths import config_file
+from nao_library_modules.pose_tables import BadPose, Pose, UnknownPose, built_in, library, pose_table
 from nao_library_msgs.msg import RobotInfo
 from naoqi.errors import NaoError
 

@@ -8,10 +8,10 @@ import pytest
 
 from nao_library_modules.clock import WallClock
 from nao_library_modules.driver import reconfigure
-from nao_library_modules.driver.goal_crowd import GoalCrowd, Outcome
 from nao_library_modules.driver.pacer import Pacer
 from nao_library_modules.driver.reconfigure import Field
 from nao_library_modules.errors import BadGoal, Preempted, RobotLost
+from nao_library_modules.goal_crowd import GoalCrowd, Outcome
 from nao_library_modules.interrupt import Interrupt
 from naoqi.errors import NaoError
 

@@ -11,7 +11,6 @@ import pytest
 from nao_library_modules.body_devices import SONARS as SONAR_KEYS
 from nao_library_modules.driver import demand
 from nao_library_modules.driver.blinking import Blinks, blink, fade
-from nao_library_modules.driver.goal_crowd import Replaced
 from nao_library_modules.driver.joint_controller import JointController
 from nao_library_modules.driver.joint_sensors import JointSensors
 from nao_library_modules.driver.memory_access import MemoryAccess
@@ -20,6 +19,7 @@ from nao_library_modules.driver.memory_watch import MemoryWatch
 from nao_library_modules.driver.sonars import Sonars
 from nao_library_modules.driver.touch_sensors import BUMPER, FEET, HAND, HEAD, TouchSensors
 from nao_library_modules.errors import BadGoal, Preempted
+from nao_library_modules.goal_crowd import Replaced
 from nao_library_modules.interrupt import Interrupt
 from nao_library_modules.joint_trajectory import H25_BODY
 from naoqi.errors import NaoError

@@ -10,10 +10,10 @@ from typing import Any, Tuple
 from naoqi.errors import NaoError
 
 from ..errors import BadGoal, Preempted
+from ..goal_crowd import Replaced
 from ..interrupt import Interrupt
 from ..robot import CLEAN_UP_LIMIT
 from ..robot_task import run_task
-from .goal_crowd import Replaced
 
 LEDS = "ALLeds"
 EYES = "FaceLeds"

@@ -20,13 +20,13 @@ from nao_library_msgs.srv import ClipFootstep, ClipFootstepResponse, StepTargetS
 from naoqi.errors import NaoError
 
 from ..errors import BadGoal, RobotLost
+from ..goal_crowd import GoalCrowd, Outcome
 from ..health import Report
 from ..interrupt import Interrupt
 from ..places import Place
 from ..ros_clock import RosClock
 from .footsteps_clipping import LEFT, RIGHT
 from .footsteps_walk import FootstepWalk, Step
-from .goal_crowd import GoalCrowd, Outcome
 from .joint_controller import JointController
 
 START_STIFFNESS = "init_stiffness"

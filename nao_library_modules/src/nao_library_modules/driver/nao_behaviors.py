@@ -11,10 +11,10 @@ from nao_library_actions.msg import RunBehaviorAction, RunBehaviorResult
 from nao_library_msgs.srv import GetInstalledBehaviors, GetInstalledBehaviorsResponse
 
 from ..errors import RobotLost
+from ..goal_crowd import GoalCrowd, Outcome
 from ..health import Report
 from ..interrupt import Interrupt
 from .behaviors import Behaviors
-from .goal_crowd import GoalCrowd, Outcome
 from .services import offer
 
 ROBOT = frozenset({"the robot"})

@@ -21,9 +21,9 @@ from nao_library_msgs.msg import JointAnglesWithSpeed
 from naoqi.errors import NaoError
 
 from ..errors import RobotLost
+from ..goal_crowd import GoalCrowd, Outcome
 from ..health import Report
 from ..interrupt import Interrupt
-from .goal_crowd import GoalCrowd, Outcome
 from .joint_controller import JointController, Reached
 from .services import offer
 

@@ -15,11 +15,11 @@ from nao_library_msgs.msg import FadeRGB
 from naoqi.errors import NaoError
 
 from ..errors import BadGoal, Preempted, RobotLost
+from ..goal_crowd import GoalCrowd, Outcome
 from ..health import Report
 from ..interrupt import Interrupt
 from ..ros_clock import RosClock
 from .blinking import EYES, Blinks, Colour, blink, fade
-from .goal_crowd import GoalCrowd, Outcome
 
 QUEUE = 100
 COMPLAINT_PERIOD = 5.0

@@ -24,10 +24,10 @@ from nao_library_msgs.msg import WordRecognized
 from naoqi.errors import NaoError, UnknownModule
 
 from ..errors import BadGoal
+from ..goal_crowd import GoalCrowd, Outcome
 from ..health import Report
 from ..interrupt import Interrupt
 from ..ros_clock import RosClock
-from .goal_crowd import GoalCrowd, Outcome
 from .node import name_for_robot, publish
 from .reconfigure import Field, serve, update
 from .services import offer

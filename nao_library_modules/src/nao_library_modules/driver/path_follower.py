@@ -22,12 +22,12 @@ from nao_library_actions.msg import (
 from naoqi.errors import NaoError
 
 from ..errors import RobotLost
+from ..goal_crowd import GoalCrowd, Outcome, Replaced
 from ..health import Report
 from ..interrupt import Interrupt
 from ..places import Place
 from ..robot_frames import tf_prefix
 from ..ros_clock import RosClock
-from .goal_crowd import GoalCrowd, Outcome, Replaced
 from .path_follower_courses import Aim, PathCourse, TargetCourse
 from .path_follower_legs import WalkTopics
 from .path_follower_path import WalkPath

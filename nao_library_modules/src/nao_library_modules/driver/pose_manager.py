@@ -20,13 +20,13 @@ from nao_library_actions.msg import (
 from naoqi.errors import NaoError
 
 from ..errors import BadGoal, RobotLost
+from ..goal_crowd import GoalCrowd, Outcome
 from ..health import Report
 from ..interrupt import Interrupt
 from ..joint_names import MOTION
+from ..pose_tables import Pose, UnknownPose, built_in, library, pose_table
 from ..robot_task import run_task
-from .goal_crowd import GoalCrowd, Outcome
 from .joint_controller import QUICK_LIMIT, STIFFEN_TIME
-from .poses import Pose, UnknownPose, built_in, library, pose_table
 from .trajectory_client import TrajectoryClient
 
 POSTURE = "ALRobotPosture"

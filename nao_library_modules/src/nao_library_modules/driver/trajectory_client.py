@@ -12,8 +12,8 @@ from naoqi.errors import NaoError
 
 from ..goal_watch import GoalWatch
 from ..interrupt import Interrupt
+from ..pose_tables import Pose
 from ..ros_clock import RosClock
-from .poses import Pose
 
 ACTION = "joint_trajectory"
 SERVER_LIMIT = 5.0

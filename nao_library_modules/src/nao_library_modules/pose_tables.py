@@ -10,9 +10,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..paths import config_file
-from ..suggestion import did_you_mean
-from ..xap import read_poses
+from .paths import config_file
+from .suggestion import did_you_mean
+from .xap import read_poses
 
 FIELDS = ("joint_names", "positions", "time_from_start")
 XAP_TIME = 2.0

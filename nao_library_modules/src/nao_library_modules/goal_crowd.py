@@ -10,9 +10,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..errors import Preempted
-from ..health import GoalCounter
-from ..interrupt import Interrupt
+from .errors import Preempted
+from .health import GoalCounter
+from .interrupt import Interrupt
 
 log = logging.getLogger(__name__)
 
