@@ -7,19 +7,19 @@ from typing import Any
 
 from nao_library_actions.msg import NaoVisionAction
 
-from .answers import Outcome
-from .extractor_use import subscriber_name
-from .nao_basic import NaoBasic
-from .vision_detect import TYPED, DetectionFunctions
-from .vision_faces import FaceFunctions
-from .vision_files import DEFAULT_RECORD_DIR, VisionFiles
-from .vision_results import Seen
-from .vision_settings import SettingFunctions
-from .vision_streaming import StreamingFunctions
-from .vision_taken import Taken
-from .vision_takes import PictureFunctions
-from .vision_threads import VisionThreads
-from .vision_track import TrackingFunctions
+from ..answers import Outcome
+from ..extractor_use import subscriber_name
+from ..nao_basic import NaoBasic
+from ..vision_detect import TYPED, DetectionFunctions
+from ..vision_faces import FaceFunctions
+from ..vision_files import DEFAULT_RECORD_DIR, VisionFiles
+from ..vision_results import Seen
+from ..vision_settings import SettingFunctions
+from ..vision_streaming import StreamingFunctions
+from ..vision_taken import Taken
+from ..vision_takes import PictureFunctions
+from ..vision_threads import VisionThreads
+from ..vision_track import TrackingFunctions
 
 PARAMETERS = {
     "record_dir": DEFAULT_RECORD_DIR,
