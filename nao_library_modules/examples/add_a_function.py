@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A new function for the light server: one key-value pair. `blink` switches lights on and off again.
 
-Try it in place of nao_lights; then a goal may hold
+Try it in place of the node NaoLights; then a goal may hold
 LedFunction(function="blink", lights=["FaceLeds"], times=[0.2, 0.4, 0.2]).
 """
 
@@ -54,4 +54,4 @@ class BlinkingLights(NaoLights):
 
 
 if __name__ == "__main__":
-    sys.exit(run_module(BlinkingLights, "nao_lights", __doc__))
+    sys.exit(run_module(BlinkingLights, "NaoLights", __doc__))

@@ -75,6 +75,9 @@ class Edge:
             raise NaoError(f"the frame {frame} cannot be found")
         return self.frames[frame]
 
+    def driver(self):
+        """No driver: everything goes to the robot."""
+
     def frame_prefix(self):
         return "robot1/"
 

@@ -16,6 +16,7 @@ from .audio_out_player import PlayerFunctions
 from .audio_out_speech import SpeechFunctions
 from .audio_out_voices import Voices
 from .audio_out_words import SpokenWords
+from .launcher import LaunchPath
 from .memory_functions import MEMORY
 from .nao_basic import NaoBasic
 
@@ -40,15 +41,19 @@ class NaoAudioOutput(NaoBasic, SpeechFunctions, PlayerFunctions):
         Action `nao_audio_out` (nao_library_actions/NaoAudioOutAction) and what NaoBasic offers.
     """
 
-    def __init__(self, ip: str, port: int, **options: Any) -> None:
+    def __init__(
+        self, ip: str, port: int, autostart: bool = False, launchpath: LaunchPath | None = None, **options: Any
+    ) -> None:
         """Start the server.
 
         Args:
             ip: Address of the robot.
             port: Port of its NAOqi.
+            autostart: As NaoBasic takes it.
+            launchpath: As NaoBasic takes it.
             options: As NaoBasic takes them.
         """
-        super().__init__(ip, port, **options)
+        super().__init__(ip, port, autostart, launchpath, **options)
         self.start_sounds()
         self.voices = Voices(self.robot, self.call)
         self.words = SpokenWords(lambda: self.robot.proxy(MEMORY), self._tell_word)

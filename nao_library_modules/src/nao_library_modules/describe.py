@@ -19,7 +19,7 @@ from .describe_checks import allowed_in
 from .describe_fields import FieldComment, FieldHelp, read_fields
 from .describe_limits import Allowed
 from .failure_policy import ALLOWED as POLICIES
-from .function_chain import CHECK_ATTRIBUTE
+from .function_chain import CHECK_ATTRIBUTE, fields_taken
 from .memory_functions import MemoryFunctions
 
 COMMON = ("time", "on_error")
@@ -112,9 +112,10 @@ class Description:
 
     def _arguments(self, name: str, function: Callable[..., Any], texts: FieldHelp) -> list[Argument]:
         limits = self._limits_of(name, function)
-        fields = [field for field in inspect.signature(function).parameters if field in self._fields]
+        names = self._message_type.__slots__
+        fields = fields_taken(function, names)
         check = getattr(function, CHECK_ATTRIBUTE, None)
-        checked = [field for field in (inspect.signature(check).parameters if check else ()) if field in self._fields]
+        checked = fields_taken(check, names) if check else ()
         read = dict.fromkeys((*fields, *checked))
         return [self._argument(field, name, texts, limits.get(field, Allowed())) for field in read]
 

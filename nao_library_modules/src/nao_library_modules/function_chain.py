@@ -1,8 +1,9 @@
 """From function messages to calls: look-up, binding of fields to parameters by name, checks. No ROS.
 
-A library function takes the fields it needs by their names: `def set_color(self, lights, i_values)` is called
-with the fields `lights` and `i_values` of the message. A check beside it sees the same fields before anything
-of the chain runs:
+A library function takes the fields it needs by their names: `def set_color(self, lights, i_values)` is called with the
+fields `lights` and `i_values` of the message. With `*args`, or with a parameter `args`, it gets all fields that it does
+not name, in the order of the message, but for `function`, `time` and `on_error`. A check beside it sees the same fields
+before anything of the chain runs:
 
     def check_volume(self, i_values):
         if any(value < 0 for value in i_values):
@@ -16,7 +17,7 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Callable, TypeVar
 
@@ -27,6 +28,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 CHECK_ATTRIBUTE = "goal_check"
 CONTEXT = "context"
+REST = "args"
+OF_THE_SERVER = frozenset({"function", "time", "on_error"})
+"""Fields that are no arguments."""
 
 
 def checked_by(check: Callable[..., None]) -> Callable[[Function], Function]:
@@ -70,38 +74,69 @@ def seconds(duration: Any) -> float:
     return float(duration if to_sec is None else to_sec())
 
 
+def fields_taken(function: Callable[..., Any], fields: Sequence[str]) -> list[str]:
+    """Fields of a message, of those given in their order, that a function takes as arguments."""
+    parameters = inspect.signature(function).parameters.values()
+    named = [parameter.name for parameter in parameters if parameter.name in fields]
+    return [*named, *_rest(named, fields)] if any(map(_takes_rest, parameters)) else named
+
+
+def _takes_rest(parameter: inspect.Parameter) -> bool:
+    return parameter.kind is parameter.VAR_POSITIONAL or parameter.name == REST
+
+
+def _rest(named: Collection[str], fields: Sequence[str]) -> list[str]:
+    return [field for field in fields if field not in named and field not in OF_THE_SERVER]
+
+
 class _Signature:
     """Parameters of one callable as fields of one message type, worked out once."""
 
     def __init__(self, function: Callable[..., Any], message_type: type, bound_self: object | None = None) -> None:
-        fields = frozenset(message_type.__slots__)
-        self._values: list[tuple[str | None, Any]] = []
+        fields = message_type.__slots__
         parameters = list(inspect.signature(function).parameters.values())
         if bound_self is not None:
             parameters = parameters[1:]
-        self._bound_self = bound_self
+        self._first = () if bound_self is None else (bound_self,)
+        rest = _rest([parameter.name for parameter in parameters], fields)
+        self._spread: list[str] = []
+        self._values: list[Callable[[Any, dict[str, Any]], Any]] = []
         for parameter in parameters:
-            if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
-                continue
-            if parameter.name in fields or parameter.name == CONTEXT:
-                self._values.append((parameter.name, None))
-            elif parameter.default is not parameter.empty:
-                self._values.append((None, parameter.default))
-            else:
-                raise BadGoal(
-                    parameter.name,
-                    None,
-                    f"the fields are {', '.join(message_type.__slots__)}",
-                    problem=f"a parameter of the function, but no field of {message_type.__name__}",
-                )
+            if parameter.kind is parameter.KEYWORD_ONLY and parameter.default is parameter.empty:
+                problem = "the function takes it by its name alone"
+                raise BadGoal(parameter.name, None, "a parameter before *args", problem=problem)
+            if parameter.kind is parameter.VAR_POSITIONAL:
+                self._spread = rest
+            elif parameter.kind is parameter.KEYWORD_ONLY:
+                pass  # it has its default
+            elif parameter.kind is not parameter.VAR_KEYWORD:
+                self._values.append(_value(parameter, fields, rest, message_type.__name__))
 
     def arguments(self, message: Any, context: dict[str, Any]) -> tuple[Any, ...]:
         """Values of the parameters, taken from a message."""
-        values = tuple(
-            context if name == CONTEXT else default if name is None else getattr(message, name)
-            for name, default in self._values
-        )
-        return values if self._bound_self is None else (self._bound_self, *values)
+        values = [value(message, context) for value in self._values]
+        return (*self._first, *values, *(getattr(message, field) for field in self._spread))
+
+
+def _value(
+    parameter: inspect.Parameter, fields: Sequence[str], rest: Sequence[str], message: str
+) -> Callable[[Any, dict[str, Any]], Any]:
+    """What gives the value of a parameter: message, context -> value."""
+    name, default = parameter.name, parameter.default
+    if name in fields:
+        return lambda message, _: getattr(message, name)
+    if name == CONTEXT:
+        return lambda _, context: context
+    if default is not parameter.empty:
+        return lambda *_: default
+    if name == REST:
+        return lambda message, _: [getattr(message, field) for field in rest]
+    raise BadGoal(
+        name,
+        None,
+        f"the fields are {', '.join(fields)}; {REST} stands for all that are not named",
+        problem=f"a parameter of the function, but no field of {message}",
+    )
 
 
 class Binding:
@@ -201,7 +236,7 @@ class FunctionChain:
         """
         if not messages:
             raise BadGoal("functions", list(messages), "at least one function", problem="the chain is empty")
-        return [self._guarded(i, message, self._bind) for i, message in enumerate(messages, start=1)]
+        return [self._guarded(i, message, self.bind_one) for i, message in enumerate(messages, start=1)]
 
     @staticmethod
     def _guarded(position: int, message: Any, action: Callable[[Any], Any]) -> Any:
@@ -212,7 +247,8 @@ class FunctionChain:
         except Exception as error:  # a check with a mistake in it as well: the text names the function
             raise FunctionFailed(position, message.function, error) from error
 
-    def _bind(self, message: Any) -> Binding:
+    def bind_one(self, message: Any) -> Binding:
+        """As `bind`, for one message; raises what is wrong with it, BadGoal or UnknownFunction."""
         sleep_time = seconds(message.time)
         if not (math.isfinite(sleep_time) and sleep_time >= 0.0):
             raise BadGoal("time", sleep_time, "0 s or more")

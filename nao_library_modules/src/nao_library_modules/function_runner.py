@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import logging
 import threading
 from collections.abc import Callable, Mapping, Sequence
@@ -9,6 +10,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from .errors import BadGoal
 from .function_chain import FunctionChain, seconds
 from .interrupt import Interrupt
 from .robot import CLEAN_UP_LIMIT, wait_for_calls
@@ -82,6 +84,31 @@ class FunctionRunner:
             raise RuntimeError("after_wait is for functions that run() runs")
         actions.append(action)
 
+    def args_of(self, message: Any) -> list[Any]:
+        """Arguments for `run`: the fields of a function message that its function takes, checked.
+
+        Raises:
+            UnknownFunction: If there is no such function.
+            BadGoal: If a field will not do.
+        """
+        binding, context = self.chain.bind_one(message), {}
+        args = binding.arguments(message, context)
+        binding.run_check(message, context)
+        return list(args)
+
+    @staticmethod
+    def _called(function: Callable[..., Any], args: Sequence[Any]) -> Any:
+        try:
+            return function(*args)
+        except TypeError:
+            signature = inspect.signature(function)
+            try:
+                signature.bind(*args)
+            except TypeError as error:
+                taken = f"{signature}: `args_of(message)` gives what the function takes of a message"
+                raise BadGoal("args", list(args), taken, problem=str(error)) from None
+            raise
+
     def run(
         self,
         function: str,
@@ -102,6 +129,7 @@ class FunctionRunner:
 
         Raises:
             UnknownFunction: If there is no such function.
+            BadGoal: If it takes other arguments.
             Preempted: If a new goal, a cancel or the end of the node interrupts it.
         """
         callable_ = self.chain.look_up(function)
@@ -109,7 +137,7 @@ class FunctionRunner:
         actions: list[Callable[[], None]] = []
         self._clean_up.actions = actions
         try:
-            answer = callable_(*args)
+            answer = self._called(callable_, args)
             if on_answer is not None:
                 on_answer(answer)
             self.wait(seconds(sleep_time))

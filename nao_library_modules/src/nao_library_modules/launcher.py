@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Collection
 from pathlib import Path
 from typing import Tuple
 
@@ -57,21 +58,37 @@ def declared_arguments(launch_file: Path) -> set[str]:
     return {arg.get("name", "") for arg in root.findall("arg") if arg.get("value") is None}
 
 
-def launch_command(launchpath: LaunchPath, declared: set[str], ip: str, port: int) -> list[str]:
-    """The command that starts a launch file for a robot.
+def launched_nodes(launchpath: LaunchPath, ip: str, port: int, namespace: str) -> frozenset[str]:
+    """Full names of the nodes that a launch file starts for a robot in a namespace.
+
+    Raises:
+        BadLaunchPath: If it cannot be read.
+    """
+    from rosgraph.names import get_ros_namespace, ns_join
+    from roslaunch.config import load_config_default
+    from roslaunch.core import RLException
+
+    path = find_launch_file(launchpath)
+    arguments = launch_arguments(declared_arguments(path), ip, port)
+    try:
+        config = load_config_default([(str(path), arguments)], None, verbose=False)
+    except RLException as error:
+        raise BadLaunchPath(launchpath, str(error)) from error
+    ours = get_ros_namespace(argv=[])  # what the loader took relative names to be in
+    names = (ns_join(node.namespace, node.name) for node in config.nodes)
+    return frozenset(ns_join(namespace, name[len(ours) :]) if name.startswith(ours) else name for name in names)
+
+
+def launch_arguments(declared: Collection[str], ip: str, port: int) -> list[str]:
+    """Arguments of a launch file for a robot.
 
     Args:
-        launchpath: Package and launch file.
         declared: Arguments that the file takes.
         ip: Address of the robot, passed as `nao_ip` to a file that declares it.
         port: Port of its NAOqi, passed as `nao_port` likewise.
     """
     robot = {"nao_ip": ip, "nao_port": str(port)}
-    return [
-        "roslaunch",
-        *launchpath,
-        *(f"{name}:={value}" for name, value in robot.items() if name in declared),
-    ]
+    return [f"{name}:={value}" for name, value in robot.items() if name in declared]
 
 
 def launch_supervisor(launchpath: LaunchPath, ip: str, port: int, namespace: str) -> Supervisor:
@@ -88,7 +105,7 @@ def launch_supervisor(launchpath: LaunchPath, ip: str, port: int, namespace: str
     """
     declared = declared_arguments(find_launch_file(launchpath))
     return Supervisor(
-        launch_command(launchpath, declared, ip, port),
+        ["roslaunch", *launchpath, *launch_arguments(declared, ip, port)],
         name=" ".join(("roslaunch", *launchpath)),
         environment={"ROS_NAMESPACE": namespace},
     )

@@ -9,6 +9,7 @@ from nao_library_actions.msg import NaoLedAction
 
 from .colours import to_integer
 from .function_chain import checked_by
+from .launcher import LaunchPath
 from .led_access import LedAccess
 from .light_checks import (
     check_animation,
@@ -47,15 +48,19 @@ class NaoLights(NaoBasic):
 
     typed_answers = frozenset({"getIntensity", "getColor"})
 
-    def __init__(self, ip: str, port: int, **options: Any) -> None:
+    def __init__(
+        self, ip: str, port: int, autostart: bool = False, launchpath: LaunchPath | None = None, **options: Any
+    ) -> None:
         """Start the server.
 
         Args:
             ip: Address of the robot.
             port: Port of its NAOqi.
+            autostart: As NaoBasic takes it.
+            launchpath: As NaoBasic takes it.
             options: As NaoBasic takes them.
         """
-        super().__init__(ip, port, **options)
+        super().__init__(ip, port, autostart, launchpath, **options)
         self.leds = LedAccess(self.robot, self.call, self.call_all, self.call_now)
         self._touched: dict[str, None] = {}  # an ordered set of lights and groups
         self.function_table.update(
@@ -76,6 +81,7 @@ class NaoLights(NaoBasic):
                 "reset": self.reset,
                 "createGroup": self.create_group,
                 "listLEDs": self.list_leds,
+                "listLED": self.list_led,
                 "listGroup": self.list_group,
                 "listGroups": self.list_groups,
             }
@@ -186,6 +192,11 @@ class NaoLights(NaoBasic):
     def list_leds(self) -> list[str]:
         """Names of the single lights."""
         return self.leds.list_names("listLEDs")
+
+    @checked_by(check_group)
+    def list_led(self, str_param: str) -> list[str]:
+        """LEDs of a single light: the keys of the robot's memory that hold their intensities."""
+        return self.leds.names.devices([str_param.strip()])
 
     @checked_by(check_group)
     def list_group(self, str_param: str) -> list[str]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections import ChainMap
+from collections.abc import Callable, Mapping, MutableMapping, Sequence
+from typing import Any, ClassVar
 
 from genpy import Duration
 
@@ -34,9 +35,10 @@ SHUTDOWN_LIMIT = 3.0
 class NaoBasic(FunctionRunner, MemoryFunctions):
     """Base of the modules: carries out goals that are chains of function messages.
 
-    A module fills `function_table` and ends its constructor with `self.serve(...)`. A library function takes
-    the message fields it needs by name, calls long robot methods through `self.call` (preemption ends them),
-    and leaves what must be undone with `self.after_wait`.
+    A module fills `function_table` and has an action server: it ends its constructor with `self.serve(...)`, or makes
+    one itself and keeps it in `server`. `execute_cb` may be overridden; it runs functions through `run`. A library
+    function takes the message fields it needs by name, or all in their order as `*args`, calls long robot methods
+    through `self.call` (preemption ends them), and leaves what must be undone with `self.after_wait`.
 
     Threads: goals run in the thread of the action server. Preemption, the connection's listener and the end
     of the node come from others; they touch nothing but `interrupt`.
@@ -44,11 +46,12 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
     Attributes:
         ip: Address of the robot.
         port: Port of its NAOqi.
-        function_table: NAOqi function name -> callable.
+        function_table: NAOqi function name -> callable. It may be declared in the class, with functions of the class
+            as values, and changed or replaced at any time; the functions of the robot's memory are always in it.
         robot: Proxies and connection.
         clock: Time for waits.
         interrupt: Ends whatever the module waits for.
-        server: The action server, None before `serve`.
+        server: The action server, None before there is one.
 
     ROS API:
         Action as named in `serve`, and beside it the service NAME/describe (nao_library_msgs/DescribeFunctions).
@@ -59,6 +62,15 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
     """Functions whose answers have fields of their own in the result, so that they stay out of memList."""
     without_robot: frozenset[str] = frozenset()
     """Functions that do not need the robot: a goal of nothing else never waits for it."""
+    _declared: ClassVar[Mapping[str, Callable[..., Any]]] = {}
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Take over the table that a class declares."""
+        super().__init_subclass__(**options)
+        table = cls.__dict__.get("function_table")
+        if isinstance(table, Mapping):
+            cls._declared = {**cls._declared, **table}
+            del cls.function_table  # the property is in its place again
 
     def __init__(
         self,
@@ -76,7 +88,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             ip: Address of the robot.
             port: Port of its NAOqi.
             autostart: Whether to start the launch file at once.
-            launchpath: `(package, launchfile)` that belongs to the module.
+            launchpath: `(package, launchfile)` that belongs to the module; the attribute may be set at any time.
             robot: Proxies and connection, where not those of ip and port.
             edge: ROS side, where not that of this process's node.
             patience: s from now on for which goals wait for a robot that has never been reached.
@@ -84,6 +96,8 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         Raises:
             BadLaunchPath: If the launch file is to be started and is not there.
         """
+        if not isinstance(autostart, bool):
+            raise NaoError(f"autostart is {autostart!r}: True or False")
         if edge is None:
             from .ros_edge import RosEdge
 
@@ -93,10 +107,10 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         self.launchpath = launchpath
         self.robot = robot or Robot(ip, port)
         self.server: Any = None
-        self.function_table: dict[str, Callable[..., Any]] = {}
+        self._served: Any = None  # the server that `serve` made
+        self._heeded: Any = None  # the server of the module's own whose preemption ends waits
         super().__init__(self.function_table, edge.clock)
         self.events = EventRelay(lambda: self.robot.proxy(MEMORY), edge.event_sink())
-        self.function_table.update(self.memory_functions())
         self._failures: list[Outcome] = []
         self._edge = edge
         self._goals = GoalCounter()
@@ -106,6 +120,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         self._idle = threading.Event()
         self._idle.set()
         self._launch: Supervisor | None = None
+        self._launched: LaunchPath | None = None
         self._diagnostics: Any = None
         self.robot.connection.add_listener(self._connection_changed)
         edge.on_shutdown(self.shut_down)
@@ -113,6 +128,26 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             self.start_launch()
 
     # The life of a module
+
+    @property
+    def function_table(self) -> MutableMapping[str, Callable[..., Any]]:
+        """The module's own functions, over those of the robot's memory."""
+        table = self.__dict__.get("_function_table")
+        if table is None:
+            declared = {name: self._method(function) for name, function in self._declared.items()}
+            table = self._function_table = ChainMap(declared, self.memory_functions())
+        return table
+
+    @function_table.setter
+    def function_table(self, table: MutableMapping[str, Callable[..., Any]]) -> None:
+        if table is not self.function_table:  # as |= gives it back
+            self.function_table.maps[0] = table
+
+    def _method(self, function: Any) -> Callable[..., Any]:
+        """A function of the class as a method of this module, any other as it is."""
+        named = (name for kind in type(self).__mro__ for name, member in vars(kind).items() if member is function)
+        name = next(named, None)
+        return function if name is None else getattr(self, name)
 
     def serve(self, name: str, action: type) -> None:
         """Start the action server, its description and the diagnostics: the last line of a module's constructor.
@@ -123,7 +158,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         """
         self.chain.server = name
         self._feedback_type = type(action().action_feedback.feedback)
-        self.server = self._edge.action_server(name, action, self.execute_cb, self.interrupt.trigger)
+        self.server = self._served = self._edge.action_server(name, action, self._execute, self.interrupt.trigger)
         self.server.start()
         reports = {
             f"{name} robot": lambda: connection_report(self.robot.address, self.robot.connection),
@@ -136,13 +171,15 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         self._edge.serve_description(name, description.answer)
 
     def start_launch(self) -> None:
-        """Start the launch file and keep it running.
+        """Start the launch file and keep it running, instead of one that was started for another `launchpath`.
 
         Raises:
-            BadLaunchPath: If `launchpath` names no launch file.
+            BadLaunchPath: If `launchpath` names no launch file; what runs goes on.
         """
-        if self._launch is None:
-            self._launch = launch_supervisor(self.launchpath, self.ip, self.port, self._edge.namespace)
+        if self._launch is None or self._launched != self.launchpath:
+            new = launch_supervisor(self.launchpath, self.ip, self.port, self._edge.namespace)
+            self.stop_launch()
+            self._launch, self._launched = new, self.launchpath
         self._launch.start()
 
     def stop_launch(self) -> None:
@@ -163,34 +200,68 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
 
     # Goals
 
-    def execute_cb(self, goal: Any) -> None:
-        """Carry out a goal: check the whole chain, run its functions, set the end state and the result."""
+    def _execute(self, goal: Any) -> None:
+        """What is around `execute_cb`, also around one of the module's own."""
         self._idle.clear()
         try:
-            self.interrupt.clear()
-            # The request may have come before `clear`, even before this goal was taken up.
-            if self.server.is_preempt_requested():
-                self.interrupt.trigger()
-            self._await_robot(goal)
-            self.begin_chain()
-            outcomes: list[Outcome] = []
-            self._failures = []
-            end, text = self._run_chain(goal, outcomes)
-            self.end_chain(end)
-            result = self.server.get_default_result()
-            try:
-                self.fill_result(result, outcomes)
-            except NaoError as error:
-                if end == "succeeded":
-                    end, text = "aborted", f"all functions were done, but the result is incomplete: {error}"
-                else:
-                    log.debug("the result is incomplete: %s", error)  # the text says what ended the goal
-            self._goals.ended(end, text)
-            getattr(self.server, f"set_{end}")(result, text)
+            self._heed(self.server)
+            self.execute_cb(goal)
+        except Preempted:
+            self.server.set_preempted(self.server.get_default_result(), "preempted")
+        except NaoError as error:
+            self.server.set_aborted(self.server.get_default_result(), str(error))
         finally:
             self._running = ((), 0)
             self.interrupt.clear()
             self._idle.set()
+
+    def _heed(self, server: Any) -> None:
+        self.interrupt.clear()
+        # The request may have come before `clear`, even before this goal was taken up.
+        if server.is_preempt_requested():
+            self.interrupt.trigger()
+
+    def execute_cb(self, goal: Any) -> None:
+        """Carry out a goal: check the whole chain, run its functions, set the end state and the result."""
+        self._heed_own_server()
+        self._await_robot(goal)
+        self.begin_chain()
+        outcomes: list[Outcome] = []
+        self._failures = []
+        end, text = self._run_chain(goal, outcomes)
+        self.end_chain(end)
+        result = self.server.get_default_result()
+        try:
+            self.fill_result(result, outcomes)
+        except NaoError as error:
+            if end == "succeeded":
+                end, text = "aborted", f"all functions were done, but the result is incomplete: {error}"
+            else:
+                log.debug("the result is incomplete: %s", error)  # the text says what ended the goal
+        self._goals.ended(end, text)
+        getattr(self.server, f"set_{end}")(result, text)
+
+    def run(self, function: str, args: Sequence[Any], sleep_time: Any, *more: Any) -> Any:
+        """As FunctionRunner.run; a preemption of an action server that the module has made itself ends it as well."""
+        self._heed_own_server()
+        return super().run(function, args, sleep_time, *more)
+
+    def _heed_own_server(self) -> None:
+        server = self.server
+        if server is self._served:
+            return
+        if self._heeded is not server:
+            theirs = server.preempt_callback
+
+            def preempt() -> None:
+                self.interrupt.trigger()
+                if theirs is not None:
+                    theirs()
+
+            server.register_preempt_callback(preempt)
+            self._feedback_type = type(server.action_server.ActionSpec().action_feedback.feedback)
+            self._heeded = server
+        self._heed(server)
 
     def begin_chain(self) -> None:
         """Called before a chain is checked. For modules that keep account of what a chain does."""

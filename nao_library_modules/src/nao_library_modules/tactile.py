@@ -13,6 +13,7 @@ from naoqi.errors import NaoError
 from .answers import Outcome
 from .extractor_use import subscriber_name
 from .function_chain import checked_by
+from .launcher import LaunchPath
 from .memory_functions import MEMORY
 from .nao_basic import NaoBasic
 from .tactile_bindings import Binding, BindingState, TouchBindings
@@ -43,12 +44,22 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
 
     typed_answers = frozenset({"getSonar", "getFsr", "getTemperatures"})
 
-    def __init__(self, ip: str, port: int, runner: Any = None, **options: Any) -> None:
+    def __init__(
+        self,
+        ip: str,
+        port: int,
+        autostart: bool = False,
+        launchpath: LaunchPath | None = None,
+        runner: Any = None,
+        **options: Any,
+    ) -> None:
         """Start the server.
 
         Args:
             ip: Address of the robot.
             port: Port of its NAOqi.
+            autostart: As NaoBasic takes it.
+            launchpath: As NaoBasic takes it.
             runner: Runs behaviours, where not the server NaoBehavior.
             options: As NaoBasic takes them.
         """
@@ -56,7 +67,7 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
             from .tactile_runner import BehaviorClient
 
             runner = BehaviorClient()
-        super().__init__(ip, port, **options)
+        super().__init__(ip, port, autostart, launchpath, **options)
         self.felt = Felt()
         self.sonar_on = False
         self.subscriber = subscriber_name("NaoTactile", str(self._edge.namespace))

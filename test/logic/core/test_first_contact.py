@@ -156,6 +156,10 @@ def test_a_launch_file_is_started_at_once_or_when_asked_for_and_stopped_with_the
     assert len(made) == 1, "it is left alone until asked for"
     module.start_launch()
     assert done == ["start", "stop", "start"]
+    module.launchpath = ("usb_cam", "usb_cam-test.launch")
+    assert len(made) == 2, "what runs goes on until another start is asked for"
+    module.start_launch()
+    assert made[-1][0] == module.launchpath and done[-2:] == ["stop", "start"]
 
 
 def test_a_patience_is_a_time():

@@ -34,7 +34,8 @@ def test_fields_become_arguments_by_name_in_the_order_of_the_parameters():
     assert (step.args, step.position, step.function, step.sleep_time) == ((0.75, ["LHand"]), 1, "move", 2.0)
     assert arguments(Module().move, names=["LArm"]) == (["LArm"],)
     assert arguments(lambda names, times=3, speed=9: None, names=["a"], speed=0.25) == (["a"], 3, 0.25)
-    assert arguments(lambda *args, **options: None) == ()
+    assert arguments(lambda speed, *rest, **options: None, names=["a"]) == (0.5, "", ["a"])
+    assert arguments(lambda args: None, names=["a"]) == (["", ["a"], 0.5],)
     with pytest.raises(FunctionFailed, match=r"function 1 \(move\): field velocity.*str_param, names, speed"):
         arguments(lambda velocity: None)
 

@@ -8,7 +8,7 @@ from nao_library_modules.launcher import (
     BadLaunchPath,
     declared_arguments,
     find_launch_file,
-    launch_command,
+    launch_arguments,
     launch_supervisor,
 )  # fmt: skip
 from nao_library_modules.node import launch_path, robot_address, robot_parser
@@ -59,7 +59,7 @@ def test_the_robot_is_passed_on_to_a_file_that_asks_for_it(tmp_path):
         (set(), []), ({"nao_ip"}, ["nao_ip:=10.0.0.7"]),
         ({"nao_ip", "nao_port", "gui"}, ["nao_ip:=10.0.0.7", "nao_port:=9560"]),
     ):  # fmt: skip
-        assert launch_command(PATH, declared, "10.0.0.7", 9560) == ["roslaunch", *PATH, *arguments]
+        assert launch_arguments(declared, "10.0.0.7", 9560) == arguments
     assert {"nao_ip", "nao_port"} <= declared_arguments(find_launch_file(PATH))
 
 

@@ -61,7 +61,7 @@ def goals(goals_to):
 def test_a_cancel_that_came_before_the_goal_was_taken_up_counts(goals):
     server = goals.module.server
     server.preempt_requested = True
-    goals.module.execute_cb(NaoLedGoal([f("say", "one")]))
+    server.execute(NaoLedGoal([f("say", "one")]))
     assert server.end == "preempted" and goals.module.done == []
 
 
@@ -255,3 +255,61 @@ def test_functions_can_be_run_outside_of_goals(goals):
     module.interrupt.trigger()
     with pytest.raises(Preempted):
         module.wait(60.0)
+
+
+# --- a module of one's own --------------------------------------------------------------------------------------------
+
+
+class Declared(NaoBasic):
+    """A module whose table is declared in the class, with a lambda that is none of its methods."""
+
+    def rest(self, str_param, *args):
+        return [str_param, *args]
+
+    function_table = {"rest": rest, "sum": lambda i_values: sum(i_values)}
+
+    def __init__(self, *address, **options):
+        super().__init__(*address, **options)
+        self.serve("Module", NaoLedAction)
+
+
+def test_a_table_is_declared_replaced_and_changed_at_any_time_and_keeps_the_memory_functions(goals_to):
+    goals = goals_to(Declared, NaoLedGoal)
+    table = {"late": lambda: "late"}
+    assert goals.succeed(f("sum", i_values=[1, 2]), f("ping")).memList == ["3", "True"]
+    goals.module.function_table = table
+    assert goals.succeed(f("late"), f("ping")).memList == ["late", "True"]
+    table["later"] = lambda: "later"
+    goals.module.function_table["last"] = lambda: "last"
+    assert goals.succeed(f("later"), f("last")).memList == ["later", "last"]
+    assert "unknown function 'sum'" in goals.refused(f("sum"))
+
+
+def test_a_function_with_args_gets_the_other_fields_in_the_order_of_the_message(goals_to):
+    goals = goals_to(Declared, NaoLedGoal)
+    goals.module.function_table["list"] = lambda args: args[1:3]
+    (rest, listed) = goals.succeed(f("rest", "text", lights=["Brain0"]), f("list", i_values=[1.0])).results
+    assert rest.values[:4] == ["text", '["Brain0"]', "[]", "False"] and len(rest.values) == 9
+    assert listed.values == ["[]", "[1.0]"]
+
+
+class Paper(ChainModule):
+    """A module with an execute_cb of its own."""
+
+    def execute_cb(self, goal):
+        result = self.server.get_default_result()
+        for message in goal.functions:
+            result.memList.append(self.run(message.function, self.args_of(message), message.time))
+        self.server.set_succeeded(result)
+
+
+def test_an_execute_cb_of_ones_own_runs_functions_and_is_preempted_and_refuses(robot, goals_to):
+    goals = goals_to(Paper, NaoLedGoal)
+    assert goals.succeed(f("say", "one"), f("say", "two")).memList == ["one", "two"]
+    goal = goals.send(f("say", "three", 60.0), f("say", "four"))
+    robot.advance(1.0)
+    assert goal.cancel().state == "preempted" and goals.module.done == ["one", "two", "three"]
+    assert "unknown function 'sya'" in goals.refused(f("sya"))
+    assert "field str_param: 'x'" in goals.refused(f("fail", "x"))
+    with pytest.raises(BadGoal, match=r"too many positional arguments.*`args_of\(message\)` gives what"):
+        goals.module.run("getData", ["Test/Key", [], []], 0)

@@ -67,17 +67,6 @@ def test_without_a_robot_they_say_so(run):
         assert status == 1 and "NAOqi at 127.0.0.1:1" in output
 
 
-def test_a_new_module_plays_chains_of_its_functions_and_of_memory_functions(example, goals_to, robot):
-    system = goals_to(example("add_a_module").NaoSystem, NaoLedGoal)
-    version = robot.ALSystem.systemVersion()
-    rename = f("setRobotName", str_param="Ada")
-    assert "function 2 (setRobotName): field str_param: 'no name' is not allowed" in system.refused(
-        rename, f("setRobotName", str_param="no name")
-    )
-    result = system.succeed(f("robotName"), rename, f("robotName"), f("systemVersion"), f("ping"))
-    assert result.memList == ["nao", "Ada", version, "True"]
-
-
 def test_a_new_function_blinks_is_checked_and_leaves_the_lights_as_they_were(example, goals_to, robot):
     lights = goals_to(example("add_a_function").BlinkingLights, NaoLedGoal)
     robot.ALLeds.setIntensity("Brain0", 0.25)

@@ -10,6 +10,7 @@ from nao_library_actions.msg import NaoBehaviorAction
 from nao_library_msgs.srv import ListBehaviors, ListBehaviorsResponse
 
 from ..answers import Outcome
+from ..launcher import LaunchPath
 from ..nao_basic import NaoBasic
 from ..paths import config_file
 from .checking import Facts, facts_of
@@ -51,6 +52,8 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
         self,
         ip: str,
         port: int,
+        autostart: bool = False,
+        launchpath: LaunchPath | None = None,
         behavior_dir: str | Path = PARAMETERS["behavior_dir"],
         clients: Any = None,
         **options: Any,
@@ -60,11 +63,13 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
         Args:
             ip: Address of the robot.
             port: Port of its NAOqi.
+            autostart: As NaoBasic takes it.
+            launchpath: As NaoBasic takes it.
             behavior_dir: Folder of the user's behaviours; under ROS_HOME if relative, "~" stands for the home.
             clients: Clients of the servers by name, where not those of this process's node.
             options: As NaoBasic takes them.
         """
-        super().__init__(ip, port, **options)
+        super().__init__(ip, port, autostart, launchpath, **options)
         self.clients = clients or Clients()
         self.goals = GoalLog(self._edge)
         self.store = BehaviorStore(Path(behavior_dir).expanduser(), config_file(SHIPPED))

@@ -1,0 +1,41 @@
+"""Function messages written as calls, as the paper writes them."""
+
+from __future__ import annotations
+
+import pytest
+from genpy import Duration
+
+from nao_library_actions import msg as actions
+from nao_library_modules import new_functions as new
+from nao_library_msgs.msg import AudioOutFunction, LedFunction, MotionFunction
+
+
+def test_values_go_to_the_next_fields_of_their_kind():
+    for made, message in (
+        (new.newMotionFunction("getAngles", ["RArm"]), MotionFunction(function="getAngles", names=["RArm"])),
+        (
+            new.newLedFunction("setIntensity", ["Brain0"], [1, 0.5], True),
+            LedFunction(function="setIntensity", lights=["Brain0"], i_values=[1, 0.5], revert=True),
+        ),
+        (
+            new.newAudioOutFunction("say", Duration(2), "Hello", volume=0.5),
+            AudioOutFunction(function="say", time=Duration(2), str_param="Hello", volume=0.5),
+        ),
+    ):
+        assert made == message
+    for values, fields, text in (
+        (({},), {}, "no field left for {}"),
+        (("a", "b"), {}, "no field left for 'b'"),
+        ((), {"light": "x"}, "no field 'light', it has function, time"),
+    ):
+        with pytest.raises(TypeError, match=text):
+            new.newLedFunction("on", *values, **fields)
+
+
+def test_a_point_of_a_trajectory_has_its_time_first():
+    point = new.JointTrajectoryPoint(Duration(1), (0.5, 1))
+    assert point == new.JointTrajectoryPoint(1.0, [0.5, 1.0]) and (point.velocities, point.accelerations) == ([], [])
+
+
+def test_goals_have_the_short_names_of_the_paper_as_well():
+    assert actions.LedGoal is actions.NaoLedGoal and actions.MotionAction is actions.NaoMotionAction
