@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import time
 from typing import Any
 
 import actionlib
@@ -10,11 +11,14 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from .heap import Heap
+from .soonest_end import SOONEST_END, let_the_client_note_the_goal
 
 log = logging.getLogger(__name__)
 
 SHUTDOWN_POLL = 0.1
 """s between two looks whether the node has ended, for nothing wakes the waiting thread then."""
+REMEMBERED = 10
+"""Goals that are over and still told of in the status; by actionlib's rule, 5 s, it gets long when goals are short."""
 REPLACED = "a newer goal came before this one began"
 OVER = frozenset(
     (GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.PREEMPTED, GoalStatus.RECALLED, GoalStatus.REJECTED)
@@ -34,7 +38,11 @@ class PromptActionServer(actionlib.SimpleActionServer):
 
     It also forgets what was in a goal when that is over. actionlib tells of such a goal for 5 s more and keeps all of
     it for longer, in a ring of objects that Python finds some day: hundreds of goals with long lists in them are
-    hundreds of megabytes. Their ids and states are enough. The room that they took is given back to the system.
+    hundreds of megabytes. Their ids and states are enough. The room that they took is given back to the system. And of
+    goals that are over only the last few are told of at all: with hundreds of short ones in it, each status takes
+    clients so long to read that they have no time for what comes of their goals.
+
+    A goal that is taken up and would be over at once ends `soonest_end` later; see there.
 
     Everything else is actionlib's.
     """
@@ -46,8 +54,10 @@ class PromptActionServer(actionlib.SimpleActionServer):
             name: Name of the action.
             action: Its type.
             arguments: As actionlib takes them.
-            options: As actionlib takes them.
+            options: As actionlib takes them; `soonest_end`, s of wall time.
         """
+        self._soonest_end = options.pop("soonest_end", SOONEST_END)
+        self._taken_up = 0.0
         self._no_goal = type(action().action_goal)()
         self._heap = Heap()
         super().__init__(name, action, *arguments, **options)
@@ -60,8 +70,11 @@ class PromptActionServer(actionlib.SimpleActionServer):
                 if not self.is_new_goal_available():
                     self.execute_condition.wait(SHUTDOWN_POLL)
                     continue
-            self._carry_out(self.accept_new_goal())
+            goal = self.accept_new_goal()
+            self._taken_up = time.monotonic()
+            self._carry_out(goal)
             self._empty_goals()
+            self._forget_old_goals()
             self._heap.tidy()
 
     # Called under the lock of actionlib's ActionServer.
@@ -88,6 +101,30 @@ class PromptActionServer(actionlib.SimpleActionServer):
             for handle in (self.current_goal, self.next_goal):
                 if handle.status_tracker is not None and handle.status_tracker.status.status in OVER:
                     handle.goal = self._no_goal
+
+    def _forget_old_goals(self) -> None:
+        server = self.action_server
+        with server.lock:
+            over = [tracker for tracker in server.status_list if tracker.status.status in OVER]
+            forgotten = set(map(id, over[:-REMEMBERED]))
+            server.status_list = [tracker for tracker in server.status_list if id(tracker) not in forgotten]
+
+    # The names are actionlib's.
+
+    def set_succeeded(self, *arguments: Any, **options: Any) -> None:
+        """As actionlib's."""
+        let_the_client_note_the_goal(self._taken_up, self._soonest_end)
+        super().set_succeeded(*arguments, **options)
+
+    def set_aborted(self, *arguments: Any, **options: Any) -> None:
+        """As actionlib's."""
+        let_the_client_note_the_goal(self._taken_up, self._soonest_end)
+        super().set_aborted(*arguments, **options)
+
+    def set_preempted(self, *arguments: Any, **options: Any) -> None:
+        """As actionlib's."""
+        let_the_client_note_the_goal(self._taken_up, self._soonest_end)
+        super().set_preempted(*arguments, **options)
 
     def _terminated(self) -> bool:
         with self.terminate_mutex:

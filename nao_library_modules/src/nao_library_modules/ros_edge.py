@@ -10,16 +10,20 @@ import rospy
 
 from nao_library_msgs.msg import MemoryEvent
 from nao_library_msgs.srv import DescribeFunctions
+from naoqi.errors import NaoError
 
 from .action_server import PromptActionServer
 from .answers import json_of
 from .diagnostics import DiagnosticsPublisher
 from .health import Report
+from .nao_robot_driver import NaoRobotDriver
 from .places import Place
 from .robot_frames import RobotFrames, tf_prefix
 from .ros_clock import RosClock
+from .soonest_end import SOONEST_END
 
 EVENT_TOPIC = "memory_events"
+LATEST_SOONEST_END = 1.0
 
 
 class RosEdge:
@@ -30,7 +34,8 @@ class RosEdge:
 
     ROS API:
         Publishes `memory_events` (nao_library_msgs/MemoryEvent) and `/diagnostics`. Services NAME/describe
-        (nao_library_msgs/DescribeFunctions). Listens to /tf when asked for a frame.
+        (nao_library_msgs/DescribeFunctions). Listens to /tf when asked for a frame. Parameter `~soonest_end` (0.005 s):
+        no goal that is taken up is over sooner.
     """
 
     def __init__(self) -> None:
@@ -58,7 +63,7 @@ class RosEdge:
             execute: Carries out a goal, in the server's own thread.
             on_preempt: Called under actionlib's lock: it must do no more than set a flag.
         """
-        server = PromptActionServer(name, action, execute_cb=execute, auto_start=False)
+        server = PromptActionServer(name, action, execute_cb=execute, auto_start=False, soonest_end=_soonest_end())
         server.register_preempt_callback(on_preempt)
         return server
 
@@ -108,6 +113,10 @@ class RosEdge:
         """
         rospy.Subscriber(topic, kind, callback, queue_size=1000)
 
+    def driver(self) -> NaoRobotDriver:
+        """The robot's driver, which may be there or not."""
+        return NaoRobotDriver()
+
     def locate(self, frame: str) -> Place:
         """Where a frame of /tf is now, seen from above by the robot.
 
@@ -121,6 +130,18 @@ class RosEdge:
     def on_shutdown(self, action: Callable[[], None]) -> None:
         """Call `action` when the node ends, while it can still publish."""
         rospy.on_shutdown(action)
+
+
+def _soonest_end() -> float:
+    """The parameter.
+
+    Raises:
+        NaoError: It is no time.
+    """
+    value = rospy.get_param("~soonest_end", SOONEST_END)
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value <= LATEST_SOONEST_END:
+        raise NaoError(f"~soonest_end is {value!r}: 0 to {LATEST_SOONEST_END:g} s")
+    return float(value)
 
 
 def _json_type(value: Any) -> str:

@@ -101,7 +101,7 @@ class Stack:
             for server in (ours, bare):
                 rospy.set_param(f"{server}/status_list_timeout", forget_after)
         remapping = f"__ns:=/{name}"
-        self._start_node("nao_lights", remapping)
+        self._start_node("nao_lights", remapping, "_soonest_end:=0")  # as a goal that takes longer is served
         self._start("bare server", [str(PROGRAMS / "bare_action_server.py"), BARE_SERVER, remapping])
         return self._connect(ours, LIGHTS), self._connect(bare, LIGHTS)
 

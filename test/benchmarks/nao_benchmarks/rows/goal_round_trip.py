@@ -27,7 +27,8 @@ class GoalRoundTrip(Row):
     """From sending a goal to its result, without the robot's part.
 
     The function is listGroup: the server checks and runs it like any other, with feedback and result, but the
-    answer comes from what it knows of the robot. So there is no time of the robot to be subtracted.
+    answer comes from what it knows of the robot. So there is no time of the robot to be subtracted. Nor is the moment
+    that goals which would be over at once last: `soonest_end` is 0 here.
     """
 
     name = "goal_round_trip"
