@@ -20,7 +20,7 @@ def turn(angle, seconds):
     return f("angleInterpolation", names=["HeadYaw"], angles=[angle], times=[seconds], stiffness=1.0)
 
 
-class Motion(RobotTestCase):
+class MotionCase(RobotTestCase):
     server = ("NaoMotion", NaoMotionAction)
 
     def angle(self, joint):
@@ -31,6 +31,8 @@ class Motion(RobotTestCase):
         wait_until(lambda: self.angle("HeadYaw") > 0.1, 20.0, "the head on its way")
         return run
 
+
+class Motion(MotionCase):
     def test_the_result_names_the_joints_and_where_they_are(self):
         result = self.succeed(turn(0.5, 0.5), f("getAngles", names=["Head"]))
         positions = dict(zip(result.name, result.position))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,8 +12,10 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from .errors import Preempted
+from .first_contact import PATIENCE, FirstContact
 from .health import GoalCounter
 from .interrupt import Interrupt
+from .soonest_end import let_the_client_note_the_goal
 
 log = logging.getLogger(__name__)
 
@@ -31,10 +34,12 @@ class Outcome:
     Attributes:
         result: Result message.
         preempted: Whether it was ended before time.
+        error: Why it failed, for goals whose result says more; empty if it did not.
     """
 
     result: Any
     preempted: bool = False
+    error: str = ""
 
 
 @dataclass(eq=False)
@@ -63,6 +68,7 @@ class GoalCrowd:
         claims: Callable[[Any], frozenset[str]],
         execute: Callable[..., Outcome],
         with_feedback: bool = False,
+        robot: Any = None,
     ) -> None:
         """Take no goals yet; an action server hands them over.
 
@@ -70,10 +76,12 @@ class GoalCrowd:
             claims: What a goal needs for itself, the names of joints. Raises NaoError for a goal that will not do.
             execute: Carries out a goal until its interrupt comes: it gets both. Raises NaoError if it fails.
             with_feedback: Whether `execute` gets, as a third argument, what publishes a feedback message.
+            robot: The robot that goals need: one that was never reached yet is waited for, for a while.
         """
         self._claims = claims
         self._execute = execute
         self._with_feedback = with_feedback
+        self._first_contact = None if robot is None else FirstContact(robot, PATIENCE)
         self._lock = threading.Lock()
         self._members: list[_Member] = []
         self._closed = False
@@ -121,8 +129,10 @@ class GoalCrowd:
             member.ended.wait(limit / max(1, len(members)))
 
     def _run(self, member: _Member) -> None:
+        taken_up = time.monotonic()
         try:
             end, result, text = self._carry_out(member)
+            let_the_client_note_the_goal(taken_up)
             handle = member.handle
             tell = {"succeeded": handle.set_succeeded, "preempted": handle.set_canceled, "aborted": handle.set_aborted}
             self.counter.ended(end, text)
@@ -135,6 +145,8 @@ class GoalCrowd:
     def _carry_out(self, member: _Member) -> tuple[str, Any, str]:
         """End state, result and text."""
         try:
+            if self._first_contact is not None:
+                self._first_contact.wait(member.interrupt, lambda _: None)
             member.interrupt.check()
             goal = member.handle.get_goal()
             self._make_room(member, self._claims(goal))
@@ -150,6 +162,8 @@ class GoalCrowd:
             return "aborted", None, f"unexpected error: {error!r}"
         if outcome.preempted:
             return "preempted", outcome.result, member.reason
+        if outcome.error:
+            return "aborted", outcome.result, outcome.error
         return "succeeded", outcome.result, ""
 
     def _make_room(self, member: _Member, claims: frozenset[str]) -> None:

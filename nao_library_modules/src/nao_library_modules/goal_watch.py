@@ -58,3 +58,15 @@ class GoalWatch:
                 return False
             handle.cancel()
             return True
+
+
+def server_connection(client: Any) -> Any:
+    """What goals of a client go through to the server; None while there is none.
+
+    Another one after the server was started again. Who only listens to goals, as a recorder does, is no server.
+    """
+    status = client.last_status_msg
+    if status is None:
+        return None
+    server = status._connection_header["callerid"]
+    return next((each for each in client.pub_goal.impl.connections if each.endpoint_id == server), None)

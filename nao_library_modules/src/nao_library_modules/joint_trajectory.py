@@ -6,9 +6,11 @@ The message is read by its fields, so anything that has them will do. What nao_r
 - a point holds one position for each joint, or a single one for all;
 - a first point at time 0 is the place the joints start from. The robot starts from where it is, so it is left out;
 - points with velocities are joined by cubic Hermite segments with these velocities, points without by ALMotion's own
-  interpolation.
+  interpolation;
+- points with accelerations as well are joined by quintic segments. ALMotion knows only cubic ones, so each is cut into
+  PIECES of them. The way to the first point stays cubic: where it starts is not known here.
 
-Accelerations and efforts are not looked at: ALMotion knows neither.
+Efforts are not looked at: ALMotion does not know them.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, List, Tuple
 
 from .errors import BadGoal
 from .function_chain import seconds
@@ -29,6 +31,7 @@ H25_BODY = tuple(
     RShoulderPitch RShoulderRoll RElbowYaw RElbowRoll RWristYaw RHand""".split()
 )
 """The chain Body of a NAO with moving wrists and hands. Poses written for it are sent to NAOs without them as well."""
+PIECES = 4
 BEZIER = 3
 """ALMotion's number for a control point with tangents."""
 
@@ -122,7 +125,13 @@ def read_trajectory(trajectory: Any, chains: Chains, relative: bool = False, fie
     times = _times(points, field)
     source = _body_order(names, joints, len(points[0].positions))
     values = [_row(point.positions, source, joints, f"{field}.points[{i}].positions") for i, point in enumerate(points)]
-    velocities = _velocities(points, source, joints, field)
+    velocities = _slopes("velocities", points, source, joints, field)
+    accelerations = _slopes("accelerations", points, source, joints, field)
+    if accelerations is not None:
+        if velocities is None:
+            name = f"{field}.points[0].velocities"
+            raise BadGoal(name, [], "velocities beside accelerations", problem="there are accelerations alone")
+        times, values, velocities = _quintic_pieces(times, values, velocities, accelerations)
     first = 1 if times[0] == 0.0 else 0
     return KeyFrames(
         joints,
@@ -203,17 +212,59 @@ def _times(points: Sequence[Any], field: str) -> list[float]:
     return times
 
 
-def _velocities(
-    points: Sequence[Any], source: Sequence[int] | None, joints: Sequence[str], field: str
+def _slopes(
+    what: str, points: Sequence[Any], source: Sequence[int] | None, joints: Sequence[str], field: str
 ) -> list[tuple[float, ...]] | None:
-    given = [len(point.velocities) > 0 for point in points]
-    if not any(given):
+    """Velocities or accelerations of the points; None if none has any."""
+    given = [getattr(point, what) for point in points]
+    if not any(map(len, given)):
         return None
-    if not all(given):
-        i = given.index(False)
-        problem = f"point {i} has no velocities, others have"
-        raise BadGoal(f"{field}.points[{i}].velocities", [], "velocities in every point or in none", problem=problem)
-    return [_row(point.velocities, source, joints, f"{field}.points[{i}].velocities") for i, point in enumerate(points)]
+    for i, numbers in enumerate(given):
+        if not len(numbers):
+            problem = f"point {i} has no {what}, others have"
+            raise BadGoal(f"{field}.points[{i}].{what}", [], f"{what} in every point or in none", problem=problem)
+    return [_row(numbers, source, joints, f"{field}.points[{i}].{what}") for i, numbers in enumerate(given)]
+
+
+Rows = List[Tuple[float, ...]]
+
+
+def _quintic_pieces(times: list[float], values: Rows, velocities: Rows, bends: Rows) -> tuple[list[float], Rows, Rows]:
+    """Times, values and velocities at the points, and between them on the quintic curves with these accelerations."""
+    new_times, new_values, new_velocities = times[:1], values[:1], velocities[:1]
+    for i in range(1, len(times)):
+        length = times[i] - times[i - 1]
+        curves = [
+            _quintic(length, start, end)
+            for start, end in zip(
+                zip(values[i - 1], velocities[i - 1], bends[i - 1]), zip(values[i], velocities[i], bends[i])
+            )
+        ]
+        for piece in range(1, PIECES):
+            at = length * piece / PIECES
+            new_times.append(times[i - 1] + at)
+            new_values.append(tuple(sum(c * at**n for n, c in enumerate(curve)) for curve in curves))
+            new_velocities.append(
+                tuple(sum(n * c * at ** (n - 1) for n, c in enumerate(curve) if n) for curve in curves)
+            )
+        new_times.append(times[i])
+        new_values.append(values[i])
+        new_velocities.append(velocities[i])
+    return new_times, new_values, new_velocities
+
+
+def _quintic(length: float, start: Sequence[float], end: Sequence[float]) -> tuple[float, ...]:
+    """Coefficients, constant first, of the curve between two places with given velocities and accelerations."""
+    (p, v, a), (q, w, b) = start, end
+    way, t = q - p, length
+    return (
+        p,
+        v,
+        a / 2.0,
+        (20.0 * way - (8.0 * w + 12.0 * v) * t - (3.0 * a - b) * t**2) / (2.0 * t**3),
+        (-30.0 * way + (14.0 * w + 16.0 * v) * t + (3.0 * a - 2.0 * b) * t**2) / (2.0 * t**4),
+        (12.0 * way - 6.0 * (w + v) * t - (a - b) * t**2) / (2.0 * t**5),
+    )
 
 
 def _body_order(names: Sequence[str], joints: Sequence[str], count: int) -> Sequence[int] | None:

@@ -14,7 +14,9 @@ from .answers import Outcome
 from .errors import PutToRest, RobotFell
 from .event_relay import EventRelay
 from .function_chain import Step
+from .launcher import LaunchPath
 from .memory_functions import MEMORY
+from .motion_by_driver import RobotByDriver
 from .motion_cartesian import CartesianFunctions
 from .motion_facts import MotionAccess
 from .motion_gait import GaitAccess
@@ -43,6 +45,8 @@ MOTIONS = Path("~/.ros/nao_motions")
 """Folder for recorded motions and pose libraries where none is configured."""
 SHIPPED = "motions"
 """Folder in `config` with motions that can be replayed without having been recorded."""
+PARAMETERS = {"motion_dir": str(MOTIONS), "by_driver": True}
+"""Private parameters of the node and their defaults."""
 # Functions whose joints only the client moves on: what setAngles began goes on after the function.
 ASKING = frozenset({"getAngles"})
 FALLING, MOVE_FAILED = "ALMotion/RobotIsFalling", "ALMotion/MoveFailed"
@@ -76,24 +80,41 @@ class NaoMotion(
         store: Recorded motions by name.
 
     ROS API:
-        Action `NaoMotion` (nao_library_actions/NaoMotionAction) and what NaoBasic offers. Parameter `~motion_dir`:
-        folder of recorded motions and pose libraries.
+        Action `NaoMotion` (nao_library_actions/NaoMotionAction) and what NaoBasic offers. Where there is a driver: the
+        actions and services of `NaoRobotDriver`. Parameters `~motion_dir`: folder of recorded motions and pose
+        libraries; `~by_driver` (true): false goes to NAOqi past the driver.
     """
 
     typed_answers = ASKING
     without_robot = frozenset({"listMotions", "renameMotion", "deleteMotion"})
 
-    def __init__(self, ip: str, port: int, motion_dir: str | Path = MOTIONS, **options: Any) -> None:
+    def __init__(
+        self,
+        ip: str,
+        port: int,
+        autostart: bool = False,
+        launchpath: LaunchPath | None = DRIVER,
+        motion_dir: str | Path = MOTIONS,
+        by_driver: bool = True,
+        **options: Any,
+    ) -> None:
         """Start the server.
 
         Args:
             ip: Address of the robot.
             port: Port of its NAOqi.
+            autostart: As NaoBasic takes it.
+            launchpath: As NaoBasic takes it; None stands for the driver.
             motion_dir: Folder of recorded motions and pose libraries.
+            by_driver: Whether calls that nao_robot has words for go through its driver, where there is one.
             options: As NaoBasic takes them.
         """
-        options["launchpath"] = options.get("launchpath") or DRIVER
-        super().__init__(ip, port, **options)
+        super().__init__(ip, port, autostart, launchpath or DRIVER, **options)
+        driver = self._edge.driver() if by_driver else None
+        if driver is not None:
+            self.robot = RobotByDriver(self.robot, driver)
+            self.driver_poses, self.take_driver_pose = driver.poses, driver.take_pose
+            self.walk_by_plan = driver.walk_to
         folder = Path(motion_dir).expanduser()
         self.access = MotionAccess(self.robot, self.call)
         self.gait = GaitAccess(self.robot, self.call)

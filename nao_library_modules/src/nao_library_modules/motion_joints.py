@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Any
+
+from naoqi.errors import NaoError
 
 from .errors import BadGoal
 from .function_chain import checked_by
 from .joint_trajectory import KeyFrames, read_trajectory
 from .motion_base import DEFAULT_SPEED, MotionBase
-from .motion_facts import one_each
+from .motion_facts import BODY, one_each
 from .motion_plan import MotionPlan, require_fraction, require_rising
 from .motion_poses import NamedPoses
+from .robot import wait_for_calls
 
 OPEN, CLOSED = 1.0, 0.0
 # A hand closes or opens in about this time, s.
@@ -140,6 +143,17 @@ def check_pose(
     stiffness: float,
 ) -> None:
     """Known stiff joints, angles in their limits, a speed or a time they can keep."""
+    if self.is_of_driver(str_param):
+        for field, value in (("names", names), ("angles", angles), ("speed", speed), ("duration", duration)):
+            if value:
+                raise BadGoal(field, value, f"nothing: the driver's pose {str_param.strip()!r} has its own")
+        if trajectory.points:
+            raise BadGoal("trajectory.points", len(trajectory.points), "none beside the name of a pose")
+        body = list(self.plan.facts.chains[BODY])
+        self.plan.require_stiff(body, stiffness)
+        self.plan.touch(body)
+        self.plan.forget(body)
+        return
     pose, time = self.pose(names, angles, str_param, trajectory, duration)
     self.plan.require_stiff(list(pose), stiffness)
     if time > 0.0:
@@ -165,6 +179,10 @@ class JointMotion(MotionBase):
     """Functions of ALMotion for angles, and poses and trajectories. Parameters are fields of MotionFunction."""
 
     poses: NamedPoses
+    driver_poses: Callable[[], Container[str]] = staticmethod(tuple)
+    """Names that the driver's pose_manager knows."""
+    take_driver_pose: Callable[[str], Any]
+    """Has it take one of them; gives a call."""
 
     def joint_functions(self) -> dict[str, Callable[..., Any]]:
         """Name -> function, to be put into the function table of a module."""
@@ -265,7 +283,17 @@ class JointMotion(MotionBase):
         duration: float,
         stiffness: float,
     ) -> None:
-        """Take a pose of one or several chains at a speed or in a time: angles, a point, or a pose by name."""
+        """Take a pose of one or several chains at a speed or in a time: angles, a point, or a pose by name.
+
+        Names that only the driver's pose_manager knows are left to it.
+        """
+        if self.is_of_driver(str_param):
+            self.stiffen(list(self.access.facts.chains[BODY]), stiffness)
+            call = self.take_driver_pose(str_param.strip())
+            if call is None:
+                raise NaoError("the driver's pose_manager has gone")
+            wait_for_calls([call], self.interrupt)
+            return
         pose, time = self.pose(names, angles, str_param, trajectory, duration)
         if time > 0.0:
             self.stiffen(list(pose), stiffness)
@@ -283,6 +311,11 @@ class JointMotion(MotionBase):
     def close_hand(self, names: Sequence[str]) -> None:
         """Close hands, and wait until they are; they are limp then."""
         self._hands("closeHand", names)
+
+    def is_of_driver(self, str_param: str) -> bool:
+        """Whether only the driver knows a pose of that name."""
+        name = str_param.strip()
+        return bool(name) and name in self.driver_poses() and name not in self.poses.names()
 
     def pose(
         self, names: Sequence[str], angles: Sequence[float], str_param: str, trajectory: Any, duration: float

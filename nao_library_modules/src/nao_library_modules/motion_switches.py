@@ -8,8 +8,9 @@ from typing import Any
 
 from .errors import BadGoal
 from .function_chain import checked_by
-from .motion_base import MotionBase
+from .motion_base import DEFAULT_SPEED, MotionBase
 from .motion_facts import BODY
+from .motion_plan import require_fraction
 from .suggestion import did_you_mean
 
 CHAINS = ("Body", "Head", "LArm", "RArm", "Arms", "LLeg", "RLeg", "Legs")
@@ -19,6 +20,8 @@ EFFECTORS = ("Head", "LArm", "RArm")
 LEGS = ("LLeg", "RLeg", "Legs")
 ONE_LEG_OR_BOTH = ("LLeg", "RLeg", "Legs")
 FOOT_STATES = ("Fixed", "Plane", "Free")
+BALANCE_TIME = 2.0
+"""s that a shift of weight is planned to take where a speed is given."""
 BREATH_KEYS = ("Bpm", "Amplitude")
 
 
@@ -65,6 +68,18 @@ def check_balance(self: MotionBase, str_param: str, duration: float) -> None:
     self.plan.walk.require_free(body)
     self.plan.forget(body)
     self.plan.takes(duration)
+
+
+def check_balance_speed(self: MotionBase, str_param: str, speed: float) -> None:
+    """A leg, or both, and a fraction of speed."""
+    require_fraction("speed", speed, DEFAULT_SPEED)
+    check_balance(self, str_param, BALANCE_TIME)
+
+
+def check_config(_self: object, texts: Sequence[str], values: Sequence[float]) -> None:
+    """Names of switches, a value each: 0 for off."""
+    if not texts or len(values) != len(texts):
+        raise BadGoal("values", list(values), f"one for each of {', '.join(texts) or 'the names in texts'}")
 
 
 def check_effector(_self: object, names: Sequence[str], values: Sequence[float]) -> None:
@@ -116,6 +131,11 @@ class MotionSwitches(MotionBase):
             "wbEnableEffectorControl": self.wb_enable_effector_control,
             "wbSetEffectorControl": self.wb_set_effector_control,
             "wbEnableEffectorOptimization": self.wb_enable_effector_optimization,
+            "wbGoToBalanceWithSpeed": self.wb_go_to_balance_with_speed,
+            "setMotionConfig": self.set_motion_config,
+            "setEnableNotifications": self.set_enable_notifications,
+            "areNotificationsEnabled": self.are_notifications_enabled,
+            "getChainClosestObstaclePosition": self.get_chain_closest_obstacle_position,
         }
 
     # Life-like motion
@@ -247,3 +267,28 @@ class MotionSwitches(MotionBase):
     def _each(self, method: str, names: Sequence[str], *args: Any) -> list[Any]:
         answers = [self.motion(method, name, *args) for name in names]
         return [answer for answer in answers if answer is not None]
+
+    @checked_by(check_balance_speed)
+    def wb_go_to_balance_with_speed(self, str_param: str, speed: float) -> bool:
+        """Move the centre of mass over one foot or both at a fraction of the top speed; tells whether it got there."""
+        return bool(self.motion("wbGoToBalanceWithSpeed", str_param, speed or DEFAULT_SPEED))
+
+    # Inside the motion
+
+    @checked_by(check_config)
+    def set_motion_config(self, texts: Sequence[str], values: Sequence[float]) -> None:
+        """Set switches of the motion by NAOqi's names, ENABLE_FOOT_CONTACT_PROTECTION and the like: 0 off, else on."""
+        self.motion("setMotionConfig", [[name, bool(value)] for name, value in zip(texts, values)])
+
+    def set_enable_notifications(self, enable: bool) -> None:
+        """Let the robot tell of hot motors and the like, or not."""
+        self.motion("setEnableNotifications", enable)
+
+    def are_notifications_enabled(self) -> bool:
+        """Whether it does."""
+        return bool(self.motion("areNotificationsEnabled"))
+
+    @checked_by(_chains_check(ARMS[:2]))
+    def get_chain_closest_obstacle_position(self, names: Sequence[str], frame: int) -> list[list[float]]:
+        """What is nearest to each arm: x, y, z in m in a frame (0 torso, 1 world, 2 robot)."""
+        return [list(self.motion("getChainClosestObstaclePosition", name, frame)) for name in names]

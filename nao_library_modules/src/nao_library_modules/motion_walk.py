@@ -53,6 +53,8 @@ class WalkFunctions(WalkBase):
 
     walk_failure: WalkFailure
     wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
+    walk_by_plan: Callable[[Place], Any] = staticmethod(lambda place: None)
+    """Has the driver walk to a place seen from the robot, the way it plans; gives a call, or None where it cannot."""
     _walk_begun = False  # by this chain
     _left_walking = False  # by a chain that succeeded
 
@@ -118,7 +120,7 @@ class WalkFunctions(WalkBase):
         points = [origin.then(point) for point in points]
         for point in points:
             require_way(point)
-        return self._walk_through(points, self.walk_config(gait, gait_values), 0.0)
+        return self._walk_through(points, self.walk_config(gait, gait_values), 0.0, planned=True)
 
     # At a speed
 
@@ -199,14 +201,19 @@ class WalkFunctions(WalkBase):
 
     # Inside
 
-    def _walk_through(self, points: Sequence[Place], config: GaitPairs, duration: float) -> list[float]:
+    def _walk_through(
+        self, points: Sequence[Place], config: GaitPairs, duration: float, planned: bool = False
+    ) -> list[float]:
         before = self._place()
         arguments: list[Any] = [list(map(list, points))] if len(points) > 1 else list(points[0])
         if duration > 0.0:
             arguments.append(duration)
         if config:
             arguments.append(config)
-        if self._walk("moveTo", *arguments) is False:
+        begin = lambda: self.robot.proxy(MOTION).call_async("moveTo", *arguments)  # noqa: E731
+        if planned and len(points) == 1 and not config:
+            direct, begin = begin, lambda: self.walk_by_plan(points[0]) or direct()
+        if self._await_walk(begin) is False:
             self._stopped(points[-1], before)
         return list(self._place().seen_from(before))
 
@@ -239,9 +246,12 @@ class WalkFunctions(WalkBase):
 
     def _walk(self, method: str, *arguments: Any) -> Any:
         """Call a method that takes as long as the robot walks; preemption stops the walk, and then ends this."""
+        return self._await_walk(lambda: self.robot.proxy(MOTION).call_async(method, *arguments))
+
+    def _await_walk(self, begin: Callable[[], Any]) -> Any:
         with self._on_two_feet_if_interrupted():
             self.interrupt.check()
-            call = self.robot.proxy(MOTION).call_async(method, *arguments)
+            call = begin()
             # Not cancelled on preemption: a walk that is told to stop ends on both feet, and its call with it.
             if not wait_for_call(call, self.interrupt):
                 self.interrupt.check()

@@ -18,8 +18,10 @@ from nao_sim_bridge.sim.motion.curves import SmoothCurve
 CHAINS = {"Body": ("HeadYaw", "HeadPitch", "LHand"), "Head": ("HeadYaw", "HeadPitch"), "LArm": ("LHand",)}
 
 
-def point(time, positions, velocities=()):
-    return SimpleNamespace(time_from_start=time, positions=positions, velocities=velocities)
+def point(time, positions, velocities=(), accelerations=()):
+    return SimpleNamespace(
+        time_from_start=time, positions=positions, velocities=velocities, accelerations=accelerations
+    )
 
 
 def read(names, *points, relative=False, chains=CHAINS):
@@ -48,6 +50,21 @@ def test_relative_values_are_told_to_the_robot_or_added_to_the_start():
     (_, _, (_, out, rise)), (_, (_, into, fall), _) = points[0]
     assert (names, times) == (["HeadYaw"], [[1.0, 4.0]]) and (out, rise) == pytest.approx((1.0, 0.3))
     assert (into, fall) == pytest.approx((-1.0, 0.1)), "time runs evenly; slopes are the velocities"
+
+
+def test_accelerations_bend_the_way_between_points():
+    frames = read(["HeadYaw"], point(0, [0.0], [0.0], [0.0]), point(2, [1.0], [0.0], [0.0]))
+    assert frames.times == (0.5, 1.0, 1.5, 2.0)
+    assert frames.values[0] == pytest.approx((0.103516, 0.5, 0.896484, 1.0), abs=1e-6), "of least jerk"
+    assert frames.velocities[0] == pytest.approx((0.527344, 0.9375, 0.527344, 0.0), abs=1e-6)
+    bent = read(["HeadYaw"], point(1, [0.0], [0.0], [2.0]), point(2, [1.0], [2.0], [2.0]))
+    assert bent.values[0] == pytest.approx([t**2 for t in (0.0, 0.25, 0.5, 0.75, 1.0)]), "a constant acceleration"
+    for points, text in (
+        ([point(1, [0.0], (), [0.0])], "accelerations alone"),
+        ([point(1, [0.0], [0.0], [0.0]), point(2, [0.0], [0.0])], "point 1 has no accelerations, others have"),
+    ):
+        with pytest.raises(BadGoal, match=text):
+            read(["HeadYaw"], *points)
 
 
 def test_a_pose_of_the_whole_h25_body_fits_a_robot_without_wrists_and_hands():

@@ -40,7 +40,7 @@ def joints(stiff_robot, driver_robot):
 
 
 def trajectory(names, *points):
-    rows = [SimpleNamespace(time_from_start=t, positions=p, velocities=v) for t, p, v in points]
+    rows = [SimpleNamespace(time_from_start=t, positions=p, velocities=v, accelerations=()) for t, p, v in points]
     return SimpleNamespace(joint_names=names, points=rows)
 
 

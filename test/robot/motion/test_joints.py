@@ -17,7 +17,8 @@ def lasted(seconds):
 
 def trajectory(*points, joints=("HeadYaw",)):
     points = [
-        JointTrajectoryPoint(positions=p, velocities=v, time_from_start=Duration.from_sec(t)) for t, p, v in points
+        JointTrajectoryPoint(positions=p, velocities=v, accelerations=sum(a, []), time_from_start=Duration.from_sec(t))
+        for t, p, v, *a in points
     ]
     return JointTrajectory(joint_names=list(joints), points=points)
 
@@ -90,6 +91,13 @@ def test_trajectories_with_and_without_velocities(robot, motion, angle, at):
     at(motion.succeed(f("setTrajectory", trajectory=line, stiffness=1.0)), HeadYaw=-0.4, HeadPitch=0.2)
     further = trajectory((0.6, [0.1], ()))
     at(motion.succeed(f("setTrajectory", trajectory=further, relative=True)), HeadYaw=-0.3)
+
+
+def test_accelerations_of_points_bend_the_way_between_them(robot, motion, angle, at):
+    there_and_back = trajectory((0.0, [0.0], [0.0], [0.0]), (2.0, [0.0], [0.0], [2.0]))
+    goal = motion.send(f("setTrajectory", trajectory=there_and_back, stiffness=1.0))
+    robot.advance_until(lambda: angle("HeadYaw") > 0.12, 2.0)  # without them the head would stay where it is
+    at(goal.finish().result, HeadYaw=0.0)
 
 
 def test_poses_of_chains_as_points_and_by_name(stiff_robot, motion, at):

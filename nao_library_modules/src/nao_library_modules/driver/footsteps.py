@@ -62,7 +62,7 @@ class NaoFootsteps:
         if not 0.0 <= self._init_stiffness <= 1.0:
             raise NaoError(f"~{START_STIFFNESS} is {self._init_stiffness:g}: 0 to 1")
         self._walk = FootstepWalk(robot, RosClock())
-        self._crowd = GoalCrowd(self._claims, self._execute, with_feedback=True)
+        self._crowd = GoalCrowd(self._claims, self._execute, with_feedback=True, robot=robot)
         name = "footsteps_execution"
         ActionServer(name, ExecFootstepsAction, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
         robot.connection.add_listener(self._connection_changed)

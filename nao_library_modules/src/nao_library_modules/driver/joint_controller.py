@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,9 +14,14 @@ from ..joint_names import MOTION, JointNames
 from ..joint_trajectory import KeyFrames, check_range, expand_names, one_each, read_trajectory
 from ..robot_task import run_task
 
+log = logging.getLogger(__name__)
+
+Tell = Callable[[Sequence[str], Sequence[float], Sequence[float]], None]
 LIFE = "ALAutonomousLife"
 STIFFEN_TIME = 0.5
 """s in which the whole body gets stiff or limp."""
+TELL_PERIOD = 0.1
+"""s of this computer between two reports of a motion under way."""
 QUICK_LIMIT = 2.0
 """s that a call which does not wait for motion may take."""
 SERVICE_LIMIT = 60.0
@@ -109,8 +116,13 @@ class JointController:
         """
         return expand_names(names, self.names.chains)
 
-    def follow(self, frames: KeyFrames, interrupt: Interrupt) -> Reached:
+    def follow(self, frames: KeyFrames, interrupt: Interrupt, tell: Tell | None = None) -> Reached:
         """Move joints along key frames, to the end or to the interrupt.
+
+        Args:
+            frames: Where they go.
+            interrupt: Ends it.
+            tell: Called ten times a second meanwhile with the joints, where they are to be and where they are, rad.
 
         Raises:
             NaoError: If the robot refuses or is lost.
@@ -123,7 +135,19 @@ class JointController:
             # From the commands, as the robot counts relative angles, and not from what a loaded joint sags to.
             start = self._quick("getAngles", joints, False) if frames.relative else ()
             call = motion.call_async("angleInterpolationBezier", *frames.absolute(start).bezier_arguments())
+        if tell is not None:
+            self._tell_until_over(call, joints, interrupt, tell)
         return self._motion_ended(call, joints, interrupt)
+
+    def _tell_until_over(self, call: Any, joints: list[str], interrupt: Interrupt, tell: Tell) -> None:
+        over = threading.Event()
+        call.add_done_callback(lambda _: over.set())
+        try:
+            with interrupt.waking(over.set):
+                while not over.wait(TELL_PERIOD):
+                    tell(joints, *(self._quick("getAngles", joints, measured) for measured in (False, True)))
+        except Exception as error:  # whoever moves joints sees them to their end, told or not
+            log.warning("%s: nothing more is told of the motion: %s", ", ".join(joints), error)
 
     def move(
         self, names: Sequence[str], angles: Sequence[float], speed: float, relative: bool, interrupt: Interrupt

@@ -39,7 +39,7 @@ class NaoBehaviors:
         """
         self._robot = robot
         self._behaviors = Behaviors(robot)
-        self._crowd = GoalCrowd(lambda _: ROBOT, self._run)
+        self._crowd = GoalCrowd(lambda _: ROBOT, self._run, robot=robot)
         name = "run_behavior"
         ActionServer(name, RunBehaviorAction, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
         robot.connection.add_listener(self._connection_changed)

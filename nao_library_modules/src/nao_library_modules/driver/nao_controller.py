@@ -15,6 +15,7 @@ from nao_library_actions.msg import (
     JointAnglesWithSpeedAction,
     JointAnglesWithSpeedResult,
     JointTrajectoryAction,
+    JointTrajectoryFeedback,
     JointTrajectoryResult,
 )
 from nao_library_msgs.msg import JointAnglesWithSpeed
@@ -45,8 +46,9 @@ class NaoController:
         name and effort).
         Publishes `get_life_state` (std_msgs/String, latched): state of autonomous life when a service asked or
         changed it.
-        Actions `joint_trajectory`, `joint_stiffness_trajectory` (nao_library_actions/JointTrajectory),
-        `joint_angles_action` (nao_library_actions/JointAnglesWithSpeed).
+        Actions `joint_trajectory` (its feedback tells ten times a second where the joints are to be, are, and how far
+        off), `joint_stiffness_trajectory` (nao_library_actions/JointTrajectory), `joint_angles_action`
+        (nao_library_actions/JointAnglesWithSpeed).
         Services `body_stiffness/enable`, `body_stiffness/disable`, `wakeup`, `rest`, `life/enable`, `life/disable`
         (std_srvs/Empty), `life/get_state` (std_srvs/Trigger).
         Parameter `~init_stiffness` (0): stiffness that the body gets when the robot is reached, if above 0.
@@ -64,7 +66,7 @@ class NaoController:
         if not 0.0 <= self._init_stiffness <= 1.0:
             raise NaoError(f"~{START_STIFFNESS} is {self._init_stiffness:g}: 0 to 1")
         self._crowds = [
-            self._serve("joint_trajectory", JointTrajectoryAction, self._trajectory_joints, self._trajectory),
+            self._serve("joint_trajectory", JointTrajectoryAction, self._trajectory_joints, self._trajectory, True),
             self._serve("joint_stiffness_trajectory", JointTrajectoryAction, self._trajectory_joints, self._stiffness),
             self._serve("joint_angles_action", JointAnglesWithSpeedAction, self._angles_joints, self._angles),
         ]
@@ -100,9 +102,10 @@ class NaoController:
         name: str,
         action: type,
         claims: Callable[[Any], frozenset[str]],
-        execute: Callable[[Any, Interrupt], Outcome],
+        execute: Callable[..., Outcome],
+        with_feedback: bool = False,
     ) -> GoalCrowd:
-        crowd = GoalCrowd(claims, execute)
+        crowd = GoalCrowd(claims, execute, with_feedback, self._robot)
         ActionServer(name, action, crowd.on_goal, crowd.on_cancel, auto_start=False).start()
         return crowd
 
@@ -112,9 +115,19 @@ class NaoController:
     def _angles_joints(self, goal: Any) -> frozenset[str]:
         return frozenset(self._joints.joints_of(goal.joint_angles.joint_names))
 
-    def _trajectory(self, goal: Any, interrupt: Interrupt) -> Outcome:
+    def _trajectory(self, goal: Any, interrupt: Interrupt, publish: Callable[[Any], None]) -> Outcome:
+        began = rospy.Time.now()
+
+        def tell(joints: Sequence[str], desired: Sequence[float], actual: Sequence[float]) -> None:
+            feedback = JointTrajectoryFeedback(joint_names=list(joints))
+            feedback.header.stamp = rospy.Time.now()
+            off = [wanted - there for wanted, there in zip(desired, actual)]
+            for point, values in ((feedback.desired, desired), (feedback.actual, actual), (feedback.error, off)):
+                point.positions, point.time_from_start = list(values), feedback.header.stamp - began
+            publish(feedback)
+
         frames = self._joints.trajectory(goal.trajectory, relative=goal.relative != 0)
-        reached = self._joints.follow(frames, interrupt)
+        reached = self._joints.follow(frames, interrupt, tell)
         return _outcome(JointTrajectoryResult(), goal.trajectory.joint_names, reached)
 
     def _stiffness(self, goal: Any, interrupt: Interrupt) -> Outcome:

@@ -45,7 +45,7 @@ class NaoLeds:
         self._clock = RosClock()
         self._chance = random.Random()
         self._interrupt = Interrupt()
-        self._crowd = GoalCrowd(lambda _: frozenset({EYES}), self._blink, with_feedback=True)
+        self._crowd = GoalCrowd(lambda _: frozenset({EYES}), self._blink, with_feedback=True, robot=robot)
         ActionServer("blink", BlinkAction, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
         robot.connection.add_listener(self._connection_changed)
         rospy.Subscriber("fade_rgb", FadeRGB, self._fade, queue_size=QUEUE)

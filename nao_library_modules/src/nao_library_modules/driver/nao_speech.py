@@ -100,8 +100,8 @@ class NaoSpeech:
         self._recognition = Recognition(robot, name_for_robot(), lambda: self._settings, self._publish)
         self._server = serve(PARAMETERS, self._changed)
         self._goals = {
-            "speech_action": GoalCrowd(lambda _: VOICE, self._say, with_feedback=True),
-            "speech_vocabulary_action": GoalCrowd(lambda _: VOCABULARY, self._set_vocabulary),
+            "speech_action": GoalCrowd(lambda _: VOICE, self._say, with_feedback=True, robot=robot),
+            "speech_vocabulary_action": GoalCrowd(lambda _: VOCABULARY, self._set_vocabulary, robot=robot),
         }
         for (name, crowd), action in zip(self._goals.items(), (SpeechWithFeedbackAction, SetSpeechVocabularyAction)):
             ActionServer(name, action, crowd.on_goal, crowd.on_cancel, auto_start=False).start()

@@ -83,7 +83,7 @@ class NaoPathFollower:
         self._touching = True
         self._aims = rospy.Publisher("~target_pose", PoseStamped, queue_size=1, latch=True)
         self._paths = rospy.Publisher("~path", Path, queue_size=1, latch=True)
-        self._crowd = GoalCrowd(self._claims, self._execute, with_feedback=True)
+        self._crowd = GoalCrowd(self._claims, self._execute, with_feedback=True, robot=robot)
         for name, action in (("walk_target", MoveBaseAction), ("walk_path", FollowPathAction)):
             ActionServer(name, action, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
         self._target_goals = rospy.Publisher("walk_target/goal", MoveBaseActionGoal, queue_size=1)

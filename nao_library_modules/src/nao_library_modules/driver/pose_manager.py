@@ -57,8 +57,8 @@ class PoseManager:
         self._trajectory = TrajectoryClient()
         self._stop_walk = rospy.ServiceProxy(STOP_WALK, Empty)
         self._crowds = {
-            "body_pose": GoalCrowd(lambda _: BODY, self._take_pose),
-            "body_pose_naoqi": GoalCrowd(lambda _: BODY, self._take_posture),
+            "body_pose": GoalCrowd(lambda _: BODY, self._take_pose, robot=robot),
+            "body_pose_naoqi": GoalCrowd(lambda _: BODY, self._take_posture, robot=robot),
         }
         for (name, crowd), action in zip(self._crowds.items(), (BodyPoseAction, BodyPoseWithSpeedAction)):
             ActionServer(name, action, crowd.on_goal, crowd.on_cancel, auto_start=False).start()

@@ -1,0 +1,214 @@
+"""Calls of a driver's actions and services, which can be waited for and cancelled as calls of the robot."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import actionlib
+import rospy
+
+from naoqi.errors import NaoError
+
+from .goal_watch import GoalWatch, server_connection
+
+LOOK_PERIOD = 0.005
+"""s of this computer between two looks whether a server is connected."""
+
+
+class DriverCall:
+    """A call under way; see `naoqi.calls.Call`. Any thread."""
+
+    def __init__(self) -> None:
+        self._over = threading.Event()
+        self._lock = threading.Lock()
+        self._callbacks: list[Callable[[Any], None]] = []
+        self._value: Any = None
+        self._error: NaoError | None = None
+
+    def done(self) -> bool:
+        """Whether it is over."""
+        return self._over.is_set()
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Wait for its end, at most so many s; whether it is over."""
+        return self._over.wait(timeout)
+
+    def result(self, timeout: float | None = None) -> Any:
+        """Wait for its end, and what it answered.
+
+        Raises:
+            NaoError: It failed, or is not over in time.
+        """
+        if not self._over.wait(timeout):
+            raise NaoError(f"{self}: no answer within {timeout:g} s")
+        if self._error is not None:
+            raise self._error
+        return self._value
+
+    def add_done_callback(self, callback: Callable[[Any], None]) -> None:
+        """Have a function called with this call at its end, at once if it is over."""
+        with self._lock:
+            if not self._over.is_set():
+                self._callbacks.append(callback)
+                return
+        callback(self)
+
+    def cancel(self) -> None:
+        """Give it up."""
+        self.end(error=NaoError(f"{self} was given up"))
+
+    def end(self, value: Any = None, error: NaoError | None = None) -> None:
+        """It is over; the first end counts."""
+        with self._lock:
+            if self._over.is_set():
+                return
+            self._value, self._error = value, error
+            self._over.set()
+            callbacks, self._callbacks = self._callbacks, []
+        for callback in callbacks:
+            callback(self)
+
+    def end_by(self, read: Callable[[], Any]) -> None:
+        """It is over: with what a function answers, or with the error that it raises."""
+        try:
+            value = read()
+        except NaoError as error:
+            self.end(error=NaoError(f"{self}: {error}"))
+        else:
+            self.end(value)
+
+    def __str__(self) -> str:
+        return "a call of the driver"
+
+
+class ServiceCall(DriverCall):
+    """A service that is called in a thread of its own; it cannot be taken back.
+
+    Args:
+        name: Relative name.
+        kind: Its type.
+        read: What the call answers, of the text of the error, which is empty if there is none; may raise NaoError.
+        arguments: What the service gets.
+    """
+
+    def __init__(self, name: str, kind: type, read: Callable[[str], Any], *arguments: Any) -> None:
+        super().__init__()
+        self._name = rospy.resolve_name(name)
+        self._read = read
+        service = rospy.ServiceProxy(name, kind)
+        threading.Thread(target=self._run, args=(service, arguments), name=name, daemon=True).start()
+
+    def _run(self, service: Any, arguments: Sequence[Any]) -> None:
+        problem = ""
+        try:
+            service(*arguments)
+        except Exception as error:  # of a connection that breaks as well: the call has to end
+            problem = str(error) or repr(error)
+        self.end_by(lambda: self._read(problem))
+
+    def __str__(self) -> str:
+        return f"the service {self._name}"
+
+
+class GoalCall(DriverCall):
+    """A goal.
+
+    Attributes:
+        server: The connection that it went through.
+
+    Args:
+        action: Whose goal it is.
+        read: What the call answers, of the end state and the text; may raise NaoError.
+    """
+
+    def __init__(self, action: DriverAction, read: Callable[[int, str], Any]) -> None:
+        super().__init__()
+        self.server = server_connection(action.client)
+        self._action = action
+        self._read = read
+        self._watch = GoalWatch()
+        self._handle: Any = None
+
+    def send(self, goal: Any) -> None:
+        """Send the goal."""
+        self._handle = self._action.client.send_goal(goal, self._look)
+
+    def cancel(self) -> None:
+        """Cancel the goal; the call is over when it has ended."""
+        # Not here: the server's acknowledgement is waited for, and whoever cancels cancels many.
+        threading.Thread(target=self._watch.cancel, args=(self._handle,), name="cancel", daemon=True).start()
+
+    def lose(self) -> None:
+        """The server is gone."""
+        self._watch.acknowledged.set()
+        self._watch.over.set()
+        self.end(error=NaoError(f"{self}: the driver has gone, and the goal with it"))
+
+    def _look(self, handle: Any) -> None:
+        self._watch.look(handle)
+        if self._watch.over.is_set():
+            self.end_by(lambda: self._read(handle.get_terminal_state(), handle.get_goal_status_text()))
+
+    def __str__(self) -> str:
+        return f"the action {self._action.name}"
+
+
+class DriverAction(rospy.SubscribeListener):
+    """An action of the driver.
+
+    Attributes:
+        name: Full name.
+        client: actionlib's.
+
+    Args:
+        name: Relative name.
+        action: Its type.
+    """
+
+    def __init__(self, name: str, action: type) -> None:
+        super().__init__()
+        self.name = rospy.resolve_name(name)
+        self.client = actionlib.ActionClient(name, action)
+        self._lock = threading.Lock()
+        self._running: list[GoalCall] = []
+        self.client.pub_goal.impl.add_subscriber_listener(self)
+
+    @property
+    def running(self) -> list[GoalCall]:
+        """Goals that have not ended."""
+        with self._lock:
+            self._running = [call for call in self._running if not call.done()]
+            return list(self._running)
+
+    def there(self) -> bool:
+        """Whether there is a server, goals get to it, and all that it says comes back."""
+        client = self.client
+        ways = (client.pub_cancel, client.status_sub, client.result_sub, client.feedback_sub)
+        return server_connection(client) is not None and all(way.get_num_connections() > 0 for way in ways)
+
+    def wait(self, limit: float) -> bool:
+        """Wait for the server, s of this computer; whether it is there."""
+        deadline = time.monotonic() + limit
+        while not self.there():
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(LOOK_PERIOD)  # nothing tells of connections that come
+        return True
+
+    def send(self, goal: Any, read: Callable[[int, str], Any]) -> GoalCall:
+        """Send a goal; see `GoalCall`."""
+        call = GoalCall(self, read)
+        with self._lock:
+            self._running = [*(other for other in self._running if not other.done()), call]
+        call.send(goal)
+        return call
+
+    def peer_unsubscribe(self, _topic_name: str, _num_peers: int) -> None:
+        """Somebody takes goals no more; called by rospy."""
+        left = self.client.pub_goal.impl.connections
+        for call in self.running:
+            if call.server not in left:  # it was the server: nothing would ever come
+                call.lose()

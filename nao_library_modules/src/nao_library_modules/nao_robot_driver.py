@@ -1,0 +1,243 @@
+"""The driver of a robot with the interface of nao_robot, as its clients have it: actions and services."""
+
+from __future__ import annotations
+
+import http.client
+import logging
+import math
+import threading
+import time
+import xmlrpc.client
+from collections.abc import Callable, Container, Sequence
+from typing import Any
+
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import Pose2D, Twist
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from trajectory_msgs.msg import JointTrajectoryPoint
+
+from nao_library_actions.msg import (
+    BodyPoseAction,
+    BodyPoseGoal,
+    BodyPoseWithSpeedAction,
+    BodyPoseWithSpeedGoal,
+    JointAnglesWithSpeedAction,
+    JointAnglesWithSpeedGoal,
+    JointTrajectoryAction,
+    JointTrajectoryGoal,
+)
+from nao_library_msgs.srv import CmdPoseService, CmdVelService
+from naoqi.errors import NaoError
+
+from .driver_calls import DriverAction, DriverCall, GoalCall, ServiceCall
+from .joint_trajectory import KeyFrames
+from .places import Place
+from .pose_tables import built_in
+from .robot_frames import tf_prefix
+
+log = logging.getLogger(__name__)
+
+ACTIONS = {
+    "joint_trajectory": JointTrajectoryAction,
+    "joint_angles_action": JointAnglesWithSpeedAction,
+    "joint_stiffness_trajectory": JointTrajectoryAction,
+    "body_pose": BodyPoseAction,
+    "body_pose_naoqi": BodyPoseWithSpeedAction,
+    "walk_target": MoveBaseAction,
+}
+SIGN_OF_LIFE = "wakeup"
+"""A service that every such driver offers."""
+LOOK_PERIOD = 1.0
+"""s of this computer between two looks for a driver that is not there."""
+CONNECT_LIMIT = 2.0
+"""s of this computer that the server of an action may take to be connected, once."""
+NO_MASTER = (OSError, http.client.HTTPException, xmlrpc.client.Error)
+NOT_THERE = "ended before time"
+"""In the text of nao_walker for a walk that somebody or something stopped."""
+
+
+class NaoRobotDriver:
+    """Implements `motion_by_driver.Driver` by the names of nao_robot, relative to the namespace of the node.
+
+    Clients are made when the first call goes that way.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._actions: dict[str, DriverAction] = {}
+        self._looked = -math.inf
+        self._deaf = ""  # the address of a driver that the master knows, and that does not answer
+
+    def there(self) -> bool:
+        """Whether there is a driver: asked for once in a while, of the ROS master, as long as there is none."""
+        with self._lock:
+            joints = self._actions.get("joint_trajectory")
+            if joints is not None and joints.there():
+                return True
+            if time.monotonic() - self._looked < LOOK_PERIOD:
+                return False
+            address = _address_of(SIGN_OF_LIFE)
+            # One that has died without a word is in the master's books for ever: it is waited for once.
+            found = bool(address) and address != self._deaf and self._action("joint_trajectory").wait(CONNECT_LIMIT)
+            self._deaf = "" if found else address
+            self._looked = time.monotonic()
+            return found
+
+    def follow(self, frames: KeyFrames) -> DriverCall:
+        """Move joints along key frames."""
+        return self._send("joint_trajectory", _trajectory(frames))
+
+    def go(self, joints: Sequence[str], angles: Sequence[float], speed: float) -> DriverCall:
+        """Move joints to angles at a fraction of their top speed."""
+        return self._send("joint_angles_action", _angles(joints, angles, speed))
+
+    def stiffen(self, frames: KeyFrames) -> DriverCall:
+        """Bring stiffnesses along key frames."""
+        return self._send("joint_stiffness_trajectory", _trajectory(frames))
+
+    def walk_by(self, place: Place) -> DriverCall | None:
+        """Walk to a place seen from the robot by dead reckoning; False if the robot did not get there."""
+        return self._ask("cmd_pose_srv", CmdPoseService, _arrived, Pose2D(place.x, place.y, place.yaw))
+
+    def walk_to(self, place: Place) -> DriverCall | None:
+        """Walk to a place seen from the robot, by who plans walks; False if somebody stopped it."""
+        goal = MoveBaseGoal()
+        goal.target_pose.header.frame_id = tf_prefix() + "base_footprint"
+        pose = goal.target_pose.pose
+        pose.position.x, pose.position.y = place.x, place.y
+        pose.orientation.z, pose.orientation.w = math.sin(place.yaw / 2.0), math.cos(place.yaw / 2.0)
+        return self._send("walk_target", goal, _walked) if self.there() else None
+
+    def walk_at(self, x: float, y: float, theta: float) -> DriverCall | None:
+        """Begin to walk at shares -1..1 of the top speed, at the driver's step frequency."""
+        twist = Twist()
+        twist.linear.x, twist.linear.y, twist.angular.z = x, y, theta
+        return self._ask("cmd_vel_srv", CmdVelService, _no_answer, twist)
+
+    def leave_walk(self) -> None:
+        """Want no walk any more that was begun."""
+        with self._lock:
+            action = self._actions.get("walk_target")
+        for call in action.running if action else ():
+            call.cancel()
+
+    def take_pose(self, name: str) -> DriverCall | None:
+        """Take a pose of the pose_manager's tables."""
+        return self._send("body_pose", BodyPoseGoal(name))
+
+    def poses(self) -> Container[str]:
+        """Names of these poses, as the node's parameters and its package have them; none where nobody takes them."""
+        if not (self.there() and self._connected("body_pose")):
+            return ()
+        try:
+            return {*built_in(), *rospy.get_param("pose_manager/poses", {})}
+        except NO_MASTER:
+            return ()
+
+    def take_posture(self, name: str, speed: float) -> DriverCall | None:
+        """Take a posture; False if the robot did not get there."""
+        return self._send("body_pose_naoqi", BodyPoseWithSpeedGoal(name, speed), _posture_reached)
+
+    def _action(self, name: str) -> DriverAction:
+        if name not in self._actions:
+            self._actions[name] = DriverAction(name, ACTIONS[name])
+        return self._actions[name]
+
+    def _connected(self, name: str) -> bool:
+        """Whether the server of an action is there; one that was never asked is waited for."""
+        with self._lock:
+            new = name not in self._actions
+            action = self._action(name)
+        return action.there() or (new and action.wait(CONNECT_LIMIT))
+
+    def _send(self, name: str, goal: Any, read: Callable[[int, str], Any] | None = None) -> GoalCall | None:
+        """Send a goal; None if nobody takes it."""
+        return self._actions[name].send(goal, read or _succeeded) if self._connected(name) else None
+
+    @staticmethod
+    def _ask(name: str, kind: type, read: Callable[[str], Any], *arguments: Any) -> ServiceCall | None:
+        """Call a service; None if there is none."""
+        return ServiceCall(name, kind, read, *arguments) if _address_of(name) else None
+
+
+def _address_of(service: str) -> str:
+    """Where the master says that a service is; empty if nowhere, or without a master."""
+    try:
+        code, _, address = rospy.get_master().lookupService(rospy.resolve_name(service))
+    except NO_MASTER as error:
+        log.debug("no driver is looked for: %s", error)
+        return ""
+    return address if code == 1 else ""
+
+
+def _succeeded(state: int, text: str) -> None:
+    """Nothing.
+
+    Raises:
+        NaoError: It failed, or somebody else ended it.
+    """
+    if state != GoalStatus.SUCCEEDED:
+        raise NaoError(text or f"it ended {GoalStatus.to_string(state).lower()}, and the driver does not say why")
+
+
+def _walked(state: int, text: str) -> bool | None:
+    """None; False if somebody else ended it.
+
+    Raises:
+        NaoError: It failed.
+    """
+    if state in (GoalStatus.PREEMPTED, GoalStatus.RECALLED):
+        return False
+    return _succeeded(state, text)
+
+
+def _posture_reached(state: int, text: str) -> bool:
+    """Whether it was reached.
+
+    Raises:
+        NaoError: It failed for another reason.
+    """
+    if state == GoalStatus.ABORTED and "did not reach the posture" in text:
+        return False
+    _succeeded(state, text)
+    return True
+
+
+def _no_answer(error: str) -> None:
+    """Nothing.
+
+    Raises:
+        NaoError: There is an error.
+    """
+    if error:
+        raise NaoError(error)
+
+
+def _arrived(error: str) -> bool | None:
+    """None; False if the robot did not get there.
+
+    Raises:
+        NaoError: There is another error.
+    """
+    return False if NOT_THERE in error else _no_answer(error)
+
+
+def _trajectory(frames: KeyFrames) -> JointTrajectoryGoal:
+    goal = JointTrajectoryGoal(relative=int(frames.relative))
+    goal.trajectory.joint_names = list(frames.joints)
+    velocities = frames.velocities or [()] * len(frames.joints)
+    for i, at in enumerate(frames.times):
+        point = JointTrajectoryPoint(time_from_start=rospy.Duration.from_sec(at))
+        point.positions = [values[i] for values in frames.values]
+        point.velocities = [row[i] for row in velocities if row]
+        goal.trajectory.points.append(point)
+    return goal
+
+
+def _angles(joints: Sequence[str], angles: Sequence[float], speed: float) -> JointAnglesWithSpeedGoal:
+    goal = JointAnglesWithSpeedGoal()
+    goal.joint_angles.joint_names = list(joints)
+    goal.joint_angles.joint_angles = list(angles)
+    goal.joint_angles.speed = speed
+    return goal

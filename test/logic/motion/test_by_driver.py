@@ -1,0 +1,86 @@
+"""Which calls of ALMotion have words in nao_robot's interface, and which go to NAOqi."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from nao_library_modules.joint_trajectory import KeyFrames
+from nao_library_modules.motion_by_driver import RobotByDriver
+from nao_library_modules.places import Place
+
+FRAMES = KeyFrames(("HeadYaw", "HeadPitch"), (0.5, 1.25), ((0.1, 0.2), (0.0, -0.1)), ((0.3, 0.0), (-0.2, 0.1)))
+YAW = ["HeadYaw"]
+
+
+class Calls:
+    """Keeps what is called; `there` says whether it is."""
+
+    def __init__(self, there=True):
+        self.calls, self._there = [], there
+
+    def there(self):
+        return self._there
+
+    def __getattr__(self, name):
+        return lambda *arguments: self.calls.append((name, *arguments)) or name
+
+
+@pytest.fixture
+def robot():
+    return Calls()
+
+
+def call(robot, driver, method, *arguments, module="ALMotion"):
+    proxies = RobotByDriver(SimpleNamespace(proxy=lambda name: robot), driver)
+    return proxies.proxy(module).call_async(method, *arguments)
+
+
+@pytest.mark.parametrize("method, arguments, words", [
+    ("angleInterpolation", (YAW, [[0.1, 0.2]], [[1.0, 2.0]], False),
+     ("follow", KeyFrames(("HeadYaw",), (1.0, 2.0), ((0.1, 0.2),), None, True))),
+    ("angleInterpolationBezier", FRAMES.bezier_arguments(), ("follow", FRAMES)),
+    ("angleInterpolationWithSpeed", (YAW, [0.1], 0.2), ("go", YAW, [0.1], 0.2)),
+    ("stiffnessInterpolation", (YAW, [[1.0]], [[0.5]]), ("stiffen", KeyFrames(("HeadYaw",), (0.5,), ((1.0,),)))),
+    ("moveTo", (0.1, 0.2, 0.3), ("walk_by", Place(0.1, 0.2, 0.3))),
+    ("moveToward", (1.0, 0.0, 0.0), ("walk_at", 1.0, 0.0, 0.0)),
+])  # fmt: skip
+def test_what_has_words_goes_to_the_driver_if_it_is_there(robot, method, arguments, words):
+    driver, absent = Calls(), Calls(there=False)
+    call(robot, driver, method, *arguments)
+    ((name, *told),) = driver.calls
+    assert name == words[0] and not robot.calls
+    for mine, theirs in zip(told, words[1:]):
+        if isinstance(theirs, KeyFrames) and theirs.velocities:
+            assert mine.velocities[0] == pytest.approx(theirs.velocities[0]), method
+            theirs = KeyFrames(theirs.joints, theirs.times, theirs.values, mine.velocities)
+        assert mine == theirs
+    call(robot, absent, method, *arguments)
+    assert robot.calls == [("call_async", method, *arguments)] and not absent.calls
+
+
+@pytest.mark.parametrize("method, arguments", [
+    ("getAngles", (YAW, True)),
+    ("wakeUp", ()),
+    ("angleInterpolation", ([*YAW, "LHand"], [[0.1], [0.2]], [[1.0], [2.0]], True)),
+    ("angleInterpolationBezier", (YAW, [[1.0]], [[[0.5, [3, -0.5, 0.0], [3, 0.0, 0.0]]]])),
+    ("setAngles", (YAW, [0.1], 0.2)),
+    ("moveTo", (0.1, 0.2, 0.3, [["MaxStepX", 0.04]])),
+    ("moveTo", ([[0.1, 0.0, 0.0], [0.2, 0.0, 0.0]],)),
+    ("positionInterpolations", (["LArm"], 0, [], [], [])),
+])  # fmt: skip
+def test_what_has_no_words_goes_to_the_robot(robot, method, arguments):
+    driver = Calls()
+    call(robot, driver, method, *arguments)
+    assert robot.calls == [("call_async", method, *arguments)] and not driver.calls
+
+
+def test_a_stop_is_told_to_the_robot_whatever_the_driver_does(robot):
+    class Driver(Calls):
+        def leave_walk(self):
+            self.calls.append("leave_walk")
+
+    driver = Driver()
+    call(robot, driver, "stopMove")
+    assert driver.calls == ["leave_walk"] and robot.calls == [("call_async", "stopMove")]
