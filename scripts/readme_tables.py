@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import ast
 import inspect
+import json
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -17,6 +18,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import yaml
 
 from nao_library_modules.describe import Description
 from nao_library_modules.describe_offline import offline_servers
@@ -29,6 +32,8 @@ from nao_sim_bridge.services.nao_simulation import NaoSimulation
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
 CLIENT = ROOT / "nao_library_modules" / "examples" / "green_eyes.py"
+NAOQI = ROOT / "nao_sim_bridge" / "config" / "naoqi_api.json"
+NOT_WRAPPED = ROOT / "scripts" / "not_wrapped.yaml"
 LAUNCH_FILES = ROOT / "launch" / "launch"
 MARKED = re.compile(r"<!-- begin: (?P<name>[^>]+) -->\n(?P<body>.*?)<!-- end: (?P<end>[^>]+) -->", re.DOTALL)
 
@@ -168,6 +173,47 @@ def memory_functions() -> Mapping[str, Callable[..., Any]]:
     return MemoryFunctions.memory_functions(MemoryFunctions())
 
 
+def wrapped(servers: Sequence[Server]) -> str:
+    """What of NAOqi's modules the functions of the servers do, and why they do not do the rest.
+
+    Raises:
+        ReadmeError: A method is neither a function nor told why not, or both.
+    """
+    api = json.loads(NAOQI.read_text(encoding="utf-8"))
+    tables: dict[str, Mapping[str, Any]] = {server.name: server.functions for server in servers}
+    tables["every server"] = memory_functions()
+    rows = []
+    for server, modules in yaml.safe_load(NOT_WRAPPED.read_text(encoding="utf-8")).items():
+        for module, told in modules.items():
+            methods = {name: facts for name, facts in api[module].items() if not name.startswith("_")}
+            rows.append((code(server), code(module), *_of_module(module, methods, tables[server], dict(told))))
+    return table(("server", "module of NAOqi", "its methods as functions", "not, and why"), rows)
+
+
+def _of_module(
+    module: str, methods: Mapping[str, Any], functions: Mapping[str, Any], told: dict[str, Any]
+) -> tuple[str, str]:
+    """Which methods of a module are functions, and why others are not."""
+    others = told.pop("as", {})
+    done = {name: name for name in methods if name in functions}
+    done.update({name: function for name, function in others.items() if function in functions})
+    reasons = {name: reason for reason, names in told.items() for name in names if name != "*"}
+    rest = next((reason for reason, names in told.items() if "*" in names), None)
+    left: dict[str, list[str]] = {}
+    for name, facts in methods.items():
+        if name in done:
+            continue
+        reason = "deprecated" if facts.get("deprecated") else reasons.get(name, rest)
+        if reason is None:
+            raise ReadmeError(f"{NOT_WRAPPED.name}: {module}.{name} is no function, and nothing says why")
+        left.setdefault(reason, []).append(code(name))
+    odd = [name for name in (*reasons, *others) if name not in methods or (name in reasons and name in done)]
+    if odd or len(done) < len(others):
+        raise ReadmeError(f"{NOT_WRAPPED.name}: {module}: {', '.join(odd) or 'as'} does not fit")
+    told_done = ", ".join(code(name) if name == by else f"{code(name)} as {code(by)}" for name, by in done.items())
+    return told_done or "–", "; ".join(f"{', '.join(names)}: {reason}" for reason, names in left.items()) or "–"
+
+
 def simulator_options() -> str:
     """Options of the simulator's command line."""
     # argparse has no public list of its options; its help text differs between versions of Python.
@@ -214,6 +260,7 @@ def all_tables() -> dict[str, str]:
         "servers": servers_table(servers),
         **{f"functions {server.name}": functions_table(server.functions) for server in servers},
         "memory functions": functions_table(memory_functions()),
+        "wrapped": wrapped(servers),
         "simulator options": simulator_options(),
         "simulator only": simulator_only(),
         "naoqi": naoqi_methods(),

@@ -14,18 +14,28 @@ from .audio import NaoAudio
 from .audio_checks import DEVICE_PARAMETERS
 from .audio_in_base import subscriber_name
 from .audio_in_checks import SENSES, check_parameter, check_setting
+from .audio_in_contexts import ContextFunctions
 from .audio_in_energy import EnergyFunctions
 from .audio_in_heard import Heard
 from .audio_in_recognition import RECOGNITION, RecognitionFunctions
 from .audio_in_recording import RecordingFunctions
 from .audio_in_sounds import SoundFunctions
 from .function_chain import checked_by
+from .launcher import LaunchPath
 from .nao_basic import NaoBasic
 
 log = logging.getLogger(__name__)
 
 
-class NaoAudioInput(NaoBasic, NaoAudio, RecordingFunctions, RecognitionFunctions, SoundFunctions, EnergyFunctions):
+class NaoAudioInput(
+    NaoBasic,
+    NaoAudio,
+    RecordingFunctions,
+    RecognitionFunctions,
+    ContextFunctions,
+    SoundFunctions,
+    EnergyFunctions,
+):
     """Hearing goals: recordings, words, sounds and where they come from, and NAOqi's sound card.
 
     What a function begins ends with it, however it ends; only what startRecording, startRecognition,
@@ -56,15 +66,19 @@ class NaoAudioInput(NaoBasic, NaoAudio, RecordingFunctions, RecognitionFunctions
         }
     )
 
-    def __init__(self, ip: str, port: int, **options: Any) -> None:
+    def __init__(
+        self, ip: str, port: int, autostart: bool = False, launchpath: LaunchPath | None = None, **options: Any
+    ) -> None:
         """Start the server.
 
         Args:
             ip: Address of the robot.
             port: Port of its NAOqi.
+            autostart: As NaoBasic takes it.
+            launchpath: As NaoBasic takes it.
             options: As NaoBasic takes them.
         """
-        super().__init__(ip, port, **options)
+        super().__init__(ip, port, autostart, launchpath, **options)
         self.heard = Heard()
         self.subscriber = subscriber_name(str(self._edge.namespace))
         self.frame_prefix = self._edge.frame_prefix()
@@ -73,6 +87,7 @@ class NaoAudioInput(NaoBasic, NaoAudio, RecordingFunctions, RecognitionFunctions
             self.audio_functions(),
             self.recording_functions(),
             self.recognition_functions(),
+            self.context_functions(),
             self.sound_functions(),
             self.energy_functions(),
             {"setParameter": self.set_parameter, "getParameter": self.get_parameter},

@@ -28,6 +28,39 @@ def parse_assignment(text: str) -> tuple[str, Any]:
         return key, value
 
 
+def parse_pairs(text: str) -> list[list[Any]]:
+    """Keys and values out of JSON: `{"key": value, ...}` or `[["key", value], ...]`.
+
+    Raises:
+        BadGoal: If it is something else.
+    """
+    try:
+        told = json.loads(text)
+    except ValueError:
+        told = None
+    pairs = list(told.items()) if isinstance(told, dict) else told
+    if pairs and isinstance(pairs, list) and all(map(_is_pair, pairs)):
+        return [list(pair) for pair in pairs]
+    raise BadGoal("str_param", text, 'JSON: {"key": value, ...} or [["key", value], ...]')
+
+
+def _is_pair(pair: Any) -> bool:
+    return isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str) and bool(pair[0].strip())
+
+
+def parse_mapping(text: str) -> tuple[str, str, str]:
+    """Service, signal and event out of `service.signal=event`.
+
+    Raises:
+        BadGoal: If it is something else.
+    """
+    source, _, event = text.partition("=")
+    service, _, signal = (part.strip() for part in source.rpartition("."))
+    if not (service and signal and event.strip()):
+        raise BadGoal("str_param", text, "'service.signal=event'")
+    return service, signal, event.strip()
+
+
 def parse_keys(text: str) -> list[str]:
     """Split keys at commas."""
     return [key.strip() for key in text.split(",") if key.strip()]
@@ -40,6 +73,14 @@ def _check_assignment(_self: MemoryFunctions, str_param: str) -> None:
 def _check_key(_self: MemoryFunctions, str_param: str) -> None:
     if not str_param.strip():
         raise BadGoal("str_param", str_param, "the name of a key or an event", problem="it is empty")
+
+
+def _check_pairs(_self: MemoryFunctions, str_param: str) -> None:
+    parse_pairs(str_param)
+
+
+def _check_mapping(_self: MemoryFunctions, str_param: str) -> None:
+    parse_mapping(str_param)
 
 
 def _check_keys(_self: MemoryFunctions, str_param: str) -> None:
@@ -60,17 +101,30 @@ class MemoryFunctions:
             "getData": self.get_data,
             "getListData": self.get_list_data,
             "getDataList": self.get_data_list,
+            "getDataListName": self.get_data_list_name,
+            "getDataOnChange": self.get_data_on_change,
+            "getDescriptionList": self.get_description_list,
+            "setDescription": self.set_description,
             "getEventList": self.get_event_list,
             "getMicroEventList": self.get_micro_event_list,
             "getEventHistory": self.get_event_history,
             "getType": self.get_type,
             "getTimestamp": self.get_timestamp,
             "insertData": self.insert_data,
+            "insertListData": self.insert_list_data,
             "removeData": self.remove_data,
+            "declareEvent": self.declare_event,
+            "removeEvent": self.remove_event,
+            "removeMicroEvent": self.remove_micro_event,
+            "getSubscribers": self.get_subscribers,
+            "getExtractorEvent": self.get_extractor_event,
+            "addMapping": self.add_mapping,
             "raiseEvent": self.raise_event,
             "raiseMicroEvent": self.raise_micro_event,
             "subscribeToEvent": self.subscribe_to_event,
             "unsubscribeToEvent": self.unsubscribe_to_event,
+            "subscribeToMicroEvent": self.subscribe_to_event,
+            "unsubscribeToMicroEvent": self.unsubscribe_to_event,
             "ping": self.ping,
         }
 
@@ -90,6 +144,25 @@ class MemoryFunctions:
     def get_data_list(self, str_param: str) -> list[str]:
         """The keys whose name contains a text; all keys for an empty text."""
         return list(self._memory("getDataList", str_param))
+
+    def get_data_list_name(self) -> list[str]:
+        """All keys."""
+        return list(self._memory("getDataListName"))
+
+    @checked_by(_check_key)
+    def get_data_on_change(self, str_param: str) -> list[Any]:
+        """The value of a key when it changes next."""
+        return [self._memory("getDataOnChange", str_param.strip(), 0)]
+
+    def get_description_list(self, str_param: str) -> list[Any]:
+        """Name, type and description of keys; of all that have one for an empty text."""
+        return list(self._memory("getDescriptionList", parse_keys(str_param)))
+
+    @checked_by(_check_assignment)
+    def set_description(self, str_param: str) -> None:
+        """Describe a key: `key=description`."""
+        key, _, description = str_param.partition("=")
+        self._memory("setDescription", key.strip(), description)
 
     def get_event_list(self) -> list[str]:
         """The names of all events."""
@@ -119,6 +192,42 @@ class MemoryFunctions:
         """Write a key: `key=value`."""
         self._memory("insertData", *parse_assignment(str_param))
 
+    @checked_by(_check_pairs)
+    def insert_list_data(self, str_param: str) -> None:
+        """Write several keys: `{"key": value, ...}` as JSON."""
+        self._memory("insertListData", parse_pairs(str_param))
+
+    @checked_by(_check_key)
+    def declare_event(self, str_param: str) -> None:
+        """Make an event known: `name`, or `name=extractor` to say what raises it."""
+        name, equals, extractor = (part.strip() for part in str_param.partition("="))
+        self._memory("declareEvent", *([name, extractor] if equals else [name]))
+
+    @checked_by(_check_key)
+    def remove_event(self, str_param: str) -> None:
+        """Delete an event and its subscriptions."""
+        self._memory("removeEvent", str_param.strip())
+
+    @checked_by(_check_key)
+    def remove_micro_event(self, str_param: str) -> None:
+        """Delete a micro event and its subscriptions."""
+        self._memory("removeMicroEvent", str_param.strip())
+
+    @checked_by(_check_key)
+    def get_subscribers(self, str_param: str) -> list[str]:
+        """The names of the modules that are subscribed to an event."""
+        return list(self._memory("getSubscribers", str_param.strip()))
+
+    @checked_by(_check_key)
+    def get_extractor_event(self, str_param: str) -> list[str]:
+        """The names of the events that an extractor raises."""
+        return list(self._memory("getExtractorEvent", str_param.strip()))
+
+    @checked_by(_check_mapping)
+    def add_mapping(self, str_param: str) -> None:
+        """Have an event raised whenever a service emits a signal: `service.signal=event`."""
+        self._memory("addMapping", *parse_mapping(str_param))
+
     @checked_by(_check_key)
     def remove_data(self, str_param: str) -> None:
         """Delete a key."""
@@ -136,7 +245,7 @@ class MemoryFunctions:
 
     @checked_by(_check_key)
     def subscribe_to_event(self, str_param: str) -> None:
-        """Republish an event on the topic `memory_events` from now on."""
+        """Republish an event, or a micro event, on the topic `memory_events` from now on."""
         self.events.subscribe(str_param.strip())
 
     @checked_by(_check_key)

@@ -34,11 +34,48 @@ def test_events_raised_through_a_goal_reach_the_robot(robot, lights):
     assert json.loads(entry)[0] == {"word": "yes"}
 
 
+def test_events_are_declared_described_listed_mapped_and_removed(robot, lights):
+    ask(lights, ("declareEvent", "Test/Wave=Waver"), ("setDescription", "Test/Wave=somebody waves"))
+    assert ask(lights, ("getExtractorEvent", "Waver")) == ["Test/Wave"]
+    assert json.loads(ask(lights, ("getDescriptionList", "Test/Wave"))[0])[-1] == "somebody waves"
+    ask(lights, ("subscribeToEvent", "Test/Wave"))
+    assert ask(lights, ("getSubscribers", "Test/Wave")) == robot.ALMemory.getSubscribers("Test/Wave")
+    ask(lights, ("removeEvent", "Test/Wave"), ("raiseMicroEvent", "Test/Nod=1"), ("removeMicroEvent", "Test/Nod"))
+    names = ask(lights, ("getEventList",), ("getMicroEventList",))
+    assert not {"Test/Wave", "Test/Nod"} & set(names)
+
+
+def test_a_signal_of_a_service_becomes_an_event(robot, lights):
+    ask(lights, ("addMapping", "ALTactileGesture.onGesture=Test/Gesture"))
+    heard = robot.heard("Test/Gesture")
+    for sensors in (["Head/Touch/Front"], []):
+        robot.server.press(sensors)
+        robot.advance(0.2)
+    robot.advance(1.0)
+    assert heard.get(timeout=15.0) == "SingleFront"
+
+
+def test_several_keys_are_written_at_once_and_one_is_waited_for(robot, lights):
+    ask(lights, ("insertListData", '{"Test/A": 1, "Test/B": [2]}'), ("insertListData", '[["Test/C", "three"]]'))
+    assert ask(lights, ("getListData", "Test/A, Test/B, Test/C")) == ["1", "[2]", "three"]
+    assert {"Test/A", "Test/B"} <= set(ask(lights, ("getDataListName",)))
+    goal = lights.send(f("getDataOnChange", "Test/A"))
+    robot.advance(0.5)
+    robot.ALMemory.insertData("Test/A", 5)
+    assert goal.finish().result.memList == ["5"]
+
+
 def events_until(robot, events, last):
     """Raise `last` and wait for it; the events before it, which came in order."""
     robot.ALMemory.raiseEvent(last, 0)
     robot.advance_until(lambda: (last, 0) in events, 15.0, what=last)
     return [event for event in events if event[0] != last]
+
+
+def test_micro_events_are_passed_on_as_well(robot, lights):
+    ask(lights, ("subscribeToMicroEvent", "Test/Micro"), ("subscribeToEvent", "Last"))
+    robot.ALMemory.raiseMicroEvent("Test/Micro", 1)
+    assert events_until(robot, lights.edge.events, "Last") == [("Test/Micro", 1)]
 
 
 def test_events_are_passed_on_from_subscription_to_its_end(robot, lights):
@@ -60,6 +97,8 @@ def test_bad_arguments_stop_the_chain_before_it_begins(robot, lights):
         ("insertData", "Level", "field str_param: 'Level' is not allowed: 'key=value'"),
         ("raiseEvent", "", "'key=value'"),
         ("raiseMicroEvent", "=1", "'key=value'"),
+        ("insertListData", '{"": 1}', 'JSON: {"key": value, ...}'),
+        ("addMapping", "ALLeds=Test/Event", "'service.signal=event'"),
         *((name, "", "it is empty") for name in ("getEventHistory", "getType", "getTimestamp", "removeData")),
         *((name, "", "it is empty") for name in ("subscribeToEvent", "unsubscribeToEvent")),
     ):
