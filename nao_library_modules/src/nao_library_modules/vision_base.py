@@ -17,7 +17,7 @@ class VisionBase:
 
     Attributes:
         active_camera: The one that functions take which name none: top or bottom.
-        camera_topics: Camera -> topic of its pictures.
+        camera_topic: Camera -> topic of its pictures.
         camera_servers: Camera -> where its node takes dynamic_reconfigure.
         files: Folder for pictures and videos.
         threads: Streams and recordings.
@@ -32,7 +32,7 @@ class VisionBase:
     call_now: Callable[..., Any]  # of NaoBasic: a call that it does not
     after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
     active_camera: str
-    camera_topics: Mapping[str, str]
+    camera_topic: Callable[[str], str]
     camera_servers: Mapping[str, str]
     files: VisionFiles
     threads: VisionThreads
@@ -48,4 +48,4 @@ class VisionBase:
             topic: Likewise.
         """
         named = topic.strip()
-        return self.topics.resolved(named or self.camera_topics[camera_name(camera, self.active_camera)])
+        return self.topics.resolved(named or self.camera_topic(camera_name(camera, self.active_camera)))

@@ -90,6 +90,14 @@ class VisionTopics:
         """Publish messages of a kind on a topic."""
         return Publisher(rospy.Publisher(topic, kind, queue_size=QUEUE))
 
+    def images_of(self, nodes: frozenset[str]) -> list[str]:
+        """Topics of images that some nodes publish now, those named image_raw first."""
+        master = rosgraph.Master(rospy.get_name())
+        types = dict(master.getTopicTypes())
+        published = [name for name, publishers in master.getSystemState()[0] if not nodes.isdisjoint(publishers)]
+        images = [name for name in published if types.get(name) == Image._type]
+        return sorted(images, key=lambda name: (not name.endswith("/image_raw"), name))
+
     def resolved(self, topic: str) -> str:
         """Full name of a topic."""
         return rospy.resolve_name(topic)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from typing import Any
 
 from nao_library_actions.msg import NaoVisionAction
 
 from ..answers import Outcome
+from ..errors import BadGoal
 from ..extractor_use import subscriber_name
+from ..launcher import LaunchPath, launched_nodes
 from ..nao_basic import NaoBasic
 from ..vision_detect import TYPED, DetectionFunctions
 from ..vision_faces import FaceFunctions
@@ -21,6 +24,10 @@ from ..vision_takes import PictureFunctions
 from ..vision_threads import VisionThreads
 from ..vision_track import TrackingFunctions
 
+CAMERAS = ("nao_library", "cameras.launch")
+"""Launch file of the robot's cameras."""
+IMAGES_LIMIT, IMAGES_LOOK = 15.0, 0.1
+"""s of wall time that the cameras of another launch file may take to come, and between two looks for them."""
 PARAMETERS = {
     "record_dir": DEFAULT_RECORD_DIR,
     "camera_top": "nao_robot/camera/top/image_raw",
@@ -68,6 +75,8 @@ class NaoVision(
         self,
         ip: str,
         port: int,
+        autostart: bool = False,
+        launchpath: LaunchPath | None = CAMERAS,
         record_dir: str = PARAMETERS["record_dir"],
         camera_top: str = PARAMETERS["camera_top"],
         camera_bottom: str = PARAMETERS["camera_bottom"],
@@ -81,6 +90,9 @@ class NaoVision(
         Args:
             ip: Address of the robot.
             port: Port of its NAOqi.
+            autostart: As NaoBasic takes it.
+            launchpath: As NaoBasic takes it, None stands for the robot's cameras. The images of any other
+                launch file are the camera top, and those of a second topic the camera bottom.
             record_dir: Folder for pictures and videos; "~" stands for the home of the user.
             camera_top: Topic of the pictures of the camera that goals call top.
             camera_bottom: Topic of those of the one that they call bottom.
@@ -90,10 +102,10 @@ class NaoVision(
             options: As NaoBasic takes them.
         """
         if topics is None:
-            from .vision_topics import VisionTopics
+            from ..vision_topics import VisionTopics
 
             topics = VisionTopics()
-        super().__init__(ip, port, **options)
+        super().__init__(ip, port, autostart, launchpath or CAMERAS, **options)
         self.topics = topics
         self.files = VisionFiles(record_dir)
         self.threads = VisionThreads()
@@ -105,6 +117,9 @@ class NaoVision(
         self.subscriber = subscriber_name("NaoVision", str(self._edge.namespace))
         self.frame_prefix = self._edge.frame_prefix()
         self._took_over = False
+        self._brought: Any = None  # the launch file that nodes and images here are of
+        self._nodes: frozenset[str] = frozenset()
+        self._images: list[str] = []
         for functions in (
             self.streaming_functions(),
             self.picture_functions(),
@@ -117,6 +132,38 @@ class NaoVision(
         # They take topics, of any camera.
         self.without_robot = frozenset({**self.streaming_functions(), **self.picture_functions()})
         self.serve("NaoVision", NaoVisionAction)
+
+    def camera_topic(self, camera: str) -> str:
+        """Topic of a camera's pictures.
+
+        A launch file of one's own brings its cameras: the topic of the robot's own if that is among its images, else
+        those named image_raw first, then by name.
+
+        Raises:
+            BadGoal: If the nodes of the launch file publish no image for it.
+        """
+        topic = self.camera_topics[camera]
+        if tuple(self.launchpath) == CAMERAS or topic != PARAMETERS[f"camera_{camera}"]:
+            return topic
+        if self._brought != self.launchpath:
+            self._nodes = launched_nodes(self.launchpath, self.ip, self.port, str(self._edge.namespace))
+            self._brought, self._images = self.launchpath, []
+        place, give_up = list(self.camera_topics).index(camera), time.monotonic() + IMAGES_LIMIT
+        while True:
+            published = self.topics.images_of(self._nodes)
+            if self.topics.resolved(topic) in published:
+                return topic
+            # One that comes later stands behind those that were there: a camera goes on being the one that it was.
+            self._images += [image for image in published if image not in self._images]
+            if len(self._images) > place:
+                return self._images[place]
+            if published or time.monotonic() > give_up:
+                break
+            self.interrupt.wait(IMAGES_LOOK)
+            self.interrupt.check()
+        shown = ", ".join(published) if published else "no image"
+        found = f"{' '.join(self.launchpath)} brings no camera {camera!r}: its nodes publish {shown}"
+        raise BadGoal("camera", camera, "a camera of the launch file, or a topic in `topic`", problem=found)
 
     # The life of a goal
 

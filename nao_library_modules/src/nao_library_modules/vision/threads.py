@@ -1,0 +1,142 @@
+"""Threads for the pictures of any camera on ROS topics: streams in another size or rate, and recordings.
+
+    rospy.init_node("lab_camera")
+    with ImageThreads("~/videos") as threads:
+        threads.stream("small", "usb_cam/image_raw", "usb_cam/small/image_raw", width=320, rate=5.0)
+        film = threads.record("trial", "usb_cam/image_raw", "trial_1.mp4")
+        ...
+        print(film.stop().duration)
+
+No robot is needed. Topics are of sensor_msgs/Image or CompressedImage and need not be there yet. Each thread has a
+name, runs beside the others and tells how it is (`report`).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nao_library_msgs.msg import RecordedVideo, VisionThread
+
+from ..ros_clock import RosClock
+from ..vision_files import DEFAULT_RECORD_DIR, VisionFiles
+from ..vision_recorder import Recording, VideoWish
+from ..vision_stream import Stream
+from ..vision_thread import FrameThread
+from ..vision_threads import VisionThreads
+from ..vision_topics import VisionTopics
+from ..vision_video import VIDEO_TYPES, codec_name
+
+
+class ImageThread:
+    """A stream or a recording that runs.
+
+    Attributes:
+        name: Its name.
+    """
+
+    def __init__(self, thread: FrameThread, threads: VisionThreads) -> None:
+        """Take over a thread that runs."""
+        self.name = thread.ident
+        self._thread = thread
+        self._threads = threads
+
+    def report(self) -> VisionThread:
+        """State, frames, rate and size now."""
+        return self._thread.report()
+
+    def stop(self) -> VisionThread | RecordedVideo:
+        """End it; a recording's file is complete then.
+
+        Returns:
+            How it was; of a recording, what its file holds.
+        """
+        self._thread.stop()
+        self._threads.remove(self.name)
+        return self._thread.video if isinstance(self._thread, Recording) else self._thread.report()
+
+
+class ImageThreads:
+    """Streams and recordings of this node. Any thread; `close`, or the end of a `with`, ends them all.
+
+    Args:
+        folder: For videos; names lead nowhere else. "~" stands for the home of the user.
+        topics: Subscriptions and publishers, where not those of this process's node.
+        clock: Time, where not ROS time.
+    """
+
+    def __init__(self, folder: str = DEFAULT_RECORD_DIR, topics: Any = None, clock: Any = None) -> None:
+        self._topics = topics or VisionTopics()
+        self._clock = clock or RosClock()
+        self._files = VisionFiles(folder)
+        self._threads = VisionThreads()
+
+    def stream(
+        self, name: str, topic: str, topic_out: str, width: int = 0, height: int = 0, rate: float = 0.0
+    ) -> ImageThread:
+        """Pass the pictures of a topic on to another one, with their camera_info if there is one.
+
+        Args:
+            name: Of the thread.
+            topic: Where pictures come from.
+            topic_out: Where they go; as JPEG if it ends in /compressed.
+            width: Pixels; 0: as the height wants it, or as they are.
+            height: Pixels; 0: likewise.
+            rate: Pictures a second at most; 0: all.
+
+        Raises:
+            NaoError: A thread of that name runs, or the topic holds no pictures.
+        """
+        return self._start(Stream(name, topic, rate, self._topics, self._clock, topic_out, width, height))
+
+    def record(
+        self,
+        name: str,
+        topic: str,
+        file: str,
+        width: int = 0,
+        height: int = 0,
+        rate: float = 0.0,
+        codec: str = "",
+        overwrite: bool = False,
+    ) -> ImageThread:
+        """Record the pictures of a topic, each at the time at which it was taken.
+
+        Args:
+            name: Of the thread.
+            topic: Where pictures come from.
+            file: Name in the folder, .mp4 or .avi.
+            width: As `stream` takes it.
+            height: Likewise.
+            rate: Pictures a second at most; 0: all.
+            codec: h264, mpeg4, mjpeg or ffv1; empty: what fits the file.
+            overwrite: Whether a file that is there may be replaced.
+
+        Raises:
+            NaoError: A thread of that name runs, the topic holds no pictures, or the file cannot be written.
+        """
+        kind = self._files.file_type(file, "", VIDEO_TYPES)
+        wish = VideoWish(self._files.path(file, kind), kind, codec_name(codec, kind), width, height, overwrite)
+        return self._start(Recording(name, topic, rate, self._topics, self._clock, self._files, wish))
+
+    def reports(self) -> list[VisionThread]:
+        """How all are now, by name."""
+        return [thread.report() for thread in self._threads.known.values()]
+
+    def close(self) -> None:
+        """End all; files are complete afterwards."""
+        self._threads.close()
+
+    def __enter__(self) -> ImageThreads:
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+    def _start(self, thread: FrameThread) -> ImageThread:
+        self._threads.add(thread)
+        try:
+            thread.start()
+        except Exception:
+            self._threads.remove(thread.ident)
+            raise
+        return ImageThread(thread, self._threads)
