@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+"""Section III.C: the angles of the right arm are read, and a new pose is made of them."""
+
+import actionlib
+import rospy
+from rospy import Duration
+from trajectory_msgs.msg import JointTrajectory
+
+import nao_library_actions.msg
+from nao_library_modules.new_functions import JointTrajectoryPoint, newMotionFunction
+
+rospy.init_node("animation_of_the_paper")
+motion_client = actionlib.SimpleActionClient("NaoMotion", nao_library_actions.msg.NaoMotionAction)
+motion_client.wait_for_server()
+
+time_from_start = Duration(1.0)
+getAngles = newMotionFunction("getAngles", ["RArm"])
+motion_client.send_goal(nao_library_actions.msg.NaoMotionGoal([getAngles]))
+motion_client.wait_for_result()  # the result is there when the goal is over; the paper leaves this line out
+result = motion_client.get_result()
+new_pose = []
+for name, angle in zip(result.name, result.position):
+    if name == "RShoulderRoll":
+        new_pose.append(angle)
+    else:
+        new_pose.append(min(angle + 0.5, 1))
+point_1 = JointTrajectoryPoint(time_from_start, new_pose)
+
+# "Now the point can be called again in a setPose() function to return to the pose"
+trajectory = JointTrajectory(joint_names=result.name, points=[point_1])
+setPose = newMotionFunction("setPose", trajectory, stiffness=1.0)
+motion_client.send_goal(nao_library_actions.msg.NaoMotionGoal([setPose]))
+motion_client.wait_for_result()
+print("setPose:", motion_client.get_goal_status_text() or "done")
+for name, wanted, angle in zip(result.name, new_pose, motion_client.get_result().position):
+    print(f"    {name:<14}  to {wanted:6.2f}  is at {angle:6.2f}")

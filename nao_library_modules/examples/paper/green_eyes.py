@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""Section III.A: a light at half intensity, and green eyes, over NAOqi's proxy and as goals of NaoLights."""
+
+import os
+
+import actionlib
+import rospy
+from rospy import Duration
+
+import nao_library_actions.msg
+from nao_library_msgs.msg import LedFunction
+from naoqi import ALProxy
+
+rospy.init_node("green_eyes_of_the_paper")
+address = os.environ.get("NAO_IP", "127.0.0.1"), int(os.environ.get("NAO_PORT", "9559"))
+ledsProxy = ALProxy("ALLeds", *address)
+led_client = actionlib.SimpleActionClient("NaoLights", nao_library_actions.msg.NaoLedAction)
+led_client.wait_for_server()
+
+# One light on the head to half intensity: NAOqi, then NaoLights
+ledsProxy.setIntensity("Brain0", 0.5)
+
+brain_half = LedFunction(function="setIntensity", lights=["Brain0"], i_values=[0.5])
+led_client.send_goal_and_wait(nao_library_actions.msg.LedGoal([brain_half]))
+print("half:", ledsProxy.getIntensity("Brain0"))
+
+# Turn both eyes green: NAOqi
+ledsProxy.setIntensity("LeftFaceLedsRed", 0)
+ledsProxy.setIntensity("RightFaceLedsRed", 0)
+ledsProxy.setIntensity("LeftFaceLedsGreen", 1)
+ledsProxy.setIntensity("RightFaceLedsGreen", 1)
+ledsProxy.setIntensity("LeftFaceLedsBlue", 0)
+ledsProxy.setIntensity("RightFaceLedsBlue", 0)
+
+# Turn both eyes green: nao_library
+green_eyes = LedFunction(function="setColor", lights=["LeftFaceLeds", "RightFaceLeds"], i_values=[0, 1, 0])
+led_goal = nao_library_actions.msg.LedGoal([green_eyes])
+led_client.send_goal(led_goal)
+led_client.wait_for_result(Duration(30))
+print("green:", *led_client.get_result().lights)
+
+# nao_library: Turn both eyes green, then back after two seconds
+green_eyes = LedFunction(
+    function="setColor",
+    lights=["LeftFaceLeds", "RightFaceLeds"],
+    i_values=[0, 1, 0],
+    time=Duration(2),
+    revert=True,
+)
+led_goal = nao_library_actions.msg.LedGoal([green_eyes])
+led_client.send_goal(led_goal)
+led_client.wait_for_result(Duration(30))
+print("back:", led_client.get_goal_status_text() or "as before")

@@ -1,0 +1,134 @@
+"""Function messages written as calls: newMotionFunction("getAngles", ["RArm"]), newLedFunction("off", ["Brain0"]).
+
+Each value goes to the next field of its kind in the order of the message: a text to `str_param`, a list of texts to
+`lights` or `names`, a list of numbers to the first list of numbers, a duration to `time`. What has no value has its
+default; fields may also be named, as in the messages themselves, and `on_error` has to be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from numbers import Real
+from typing import Any
+
+import genpy
+from trajectory_msgs.msg import JointTrajectory
+from trajectory_msgs.msg import JointTrajectoryPoint as _JointTrajectoryPoint
+
+from nao_library_msgs.msg import (
+    AudioInFunction,
+    AudioOutFunction,
+    BehaviorFunction,
+    LedFunction,
+    MotionFunction,
+    TactileFunction,
+    VisionFunction,
+)
+
+FITS: dict[str, Callable[[Any], bool]] = {
+    "bool": lambda value: isinstance(value, bool),
+    "string": lambda value: isinstance(value, str),
+    "duration": lambda value: isinstance(value, genpy.Duration),
+    "int32": lambda value: isinstance(value, int) and not isinstance(value, bool),
+    "float64": lambda value: isinstance(value, Real) and not isinstance(value, bool),
+    "trajectory_msgs/JointTrajectory": lambda value: isinstance(value, JointTrajectory),
+}
+"""Type of a field -> whether a value is one for it; of a list each member has to be."""
+
+
+def new_function(kind: type, function: str, *values: Any, **fields: Any) -> Any:
+    """A function message.
+
+    Args:
+        kind: Its class.
+        function: Name of the function.
+        values: Each for the next field of its kind.
+        fields: Fields by name.
+
+    Raises:
+        TypeError: If there is no such field, or none is left for a value.
+    """
+    message = kind(function=function)
+    for name, value in fields.items():
+        if name not in message.__slots__:
+            raise TypeError(f"{kind.__name__} has no field {name!r}, it has {', '.join(message.__slots__)}")
+        setattr(message, name, value)
+    taken = ("function", "on_error", *fields)
+    left = [pair for pair in zip(message.__slots__, message._slot_types) if pair[0] not in taken]
+    for value in values:
+        place = next((place for place, (_, type_) in enumerate(left) if _fits(type_, value)), None)
+        if place is None:
+            raise TypeError(
+                f"{kind.__name__} has no field left for {value!r}, after {function!r} and the values before"
+            )
+        setattr(message, left[place][0], value)
+        del left[: place + 1]
+    return message
+
+
+def _fits(type_: str, value: Any) -> bool:
+    if type_.endswith("[]"):
+        return isinstance(value, (list, tuple)) and all(FITS[type_[:-2]](member) for member in value)
+    return FITS[type_](value)
+
+
+# The names are those of the paper.
+
+
+def newLedFunction(function: str, *values: Any, **fields: Any) -> LedFunction:  # noqa: N802
+    """A function of NaoLights, as in `newLedFunction("setIntensity", ["Brain0"], [0.5])`."""
+    return new_function(LedFunction, function, *values, **fields)
+
+
+def newMotionFunction(function: str, *values: Any, **fields: Any) -> MotionFunction:  # noqa: N802
+    """A function of NaoMotion, as in `newMotionFunction("setAngles", ["HeadYaw"], [0.5])`."""
+    return new_function(MotionFunction, function, *values, **fields)
+
+
+def newAudioOutFunction(function: str, *values: Any, **fields: Any) -> AudioOutFunction:  # noqa: N802
+    """A function of nao_audio_out, as in `newAudioOutFunction("say", "Hello")`."""
+    return new_function(AudioOutFunction, function, *values, **fields)
+
+
+def newAudioInFunction(function: str, *values: Any, **fields: Any) -> AudioInFunction:  # noqa: N802
+    """A function of nao_audio_in, as in `newAudioInFunction("listen", ["yes", "no"])`."""
+    return new_function(AudioInFunction, function, *values, **fields)
+
+
+def newVisionFunction(function: str, *values: Any, **fields: Any) -> VisionFunction:  # noqa: N802
+    """A function of NaoVision, as in `newVisionFunction("takePicture", "desk.png")`."""
+    return new_function(VisionFunction, function, *values, **fields)
+
+
+def newTactileFunction(function: str, *values: Any, **fields: Any) -> TactileFunction:  # noqa: N802
+    """A function of NaoTactile, as in `newTactileFunction("waitForTouch", ["head"], timeout=30.0)`."""
+    return new_function(TactileFunction, function, *values, **fields)
+
+
+def newBehaviorFunction(function: str, *values: Any, **fields: Any) -> BehaviorFunction:  # noqa: N802
+    """A function of NaoBehavior, as in `newBehaviorFunction("runBehavior", "greet", ["name=Ada"])`."""
+    return new_function(BehaviorFunction, function, *values, **fields)
+
+
+def JointTrajectoryPoint(  # noqa: N802
+    time_from_start: Any,
+    positions: Sequence[float],
+    velocities: Sequence[float] = (),
+    accelerations: Sequence[float] = (),
+) -> _JointTrajectoryPoint:
+    """A point of a trajectory.
+
+    Args:
+        time_from_start: ROS duration, or s.
+        positions: rad, hands 0 to 1; one a joint.
+        velocities: rad/s likewise, or none.
+        accelerations: rad/s2 likewise, or none.
+    """
+    if isinstance(time_from_start, Real):
+        time_from_start = genpy.Duration.from_sec(time_from_start)
+    return _JointTrajectoryPoint(
+        time_from_start=time_from_start,
+        positions=list(positions),
+        velocities=list(velocities),
+        accelerations=list(accelerations),
+    )
