@@ -11,45 +11,17 @@ import sys
 
 import rospy
 
-from nao_library_modules.process_modules.control import do, par
-from nao_library_modules.process_modules.designators.designator import action, an
-from nao_library_modules.process_modules.goals import achieve, declare_goal, def_goal
-from nao_library_modules.process_modules.low_level import this_robot
+from nao_library_modules.process_modules import Position, achieve, do, par
+from nao_library_modules.process_modules.nao_goals import moveHead, openGripper
 from nao_library_modules.process_modules.plan_runner import run_and_tell, wake_up
-from nao_library_modules.process_modules.registry import perform
-
-OPEN = 0.9
-
-
-@declare_goal
-def gripper_open(side: str) -> bool:
-    """Whether a hand is open."""
-    return this_robot().angles()[f"{side[0].upper()}Hand"] > OPEN
-
-
-@declare_goal
-def looking_at(x: float, y: float) -> None:
-    """The head looks at a place: nobody can tell before it has turned."""
-
-
-@def_goal(gripper_open)
-def open_gripper(side: str) -> None:
-    """Open a hand."""
-    perform(an(action, type="opening", gripper=side))
-
-
-@def_goal(looking_at)
-def move_head(x: float, y: float) -> None:
-    """Look at a place."""
-    perform(an(action, type="looking", target=[x, y]))
 
 
 def abstract_plan(x: float, y: float) -> None:
-    """Both hands open, and the head looks at a place, all at once."""
+    """Both hands open, and the head looks at a position, all at once."""
     par(
-        do(achieve, gripper_open("left")),
-        do(achieve, gripper_open("right")),
-        do(achieve, looking_at(x, y)),
+        do(achieve, openGripper, "left"),
+        do(achieve, openGripper, "right"),
+        do(achieve, moveHead, Position(x, y)),
     )
 
 

@@ -4,10 +4,15 @@ import math
 import threading
 import unittest
 
+import actionlib
 import rospy
+from actionlib_msgs.msg import GoalStatus
+from diagnostic_msgs.msg import KeyValue
+from examples_fixture import start
 from news import News
 from std_msgs.msg import String
 
+from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorGoal
 from nao_library_modules.places import Place
 from nao_library_modules.process_modules import action_rules  # noqa: F401
 from nao_library_modules.process_modules.control import do, par, pursue, seq, top_level
@@ -37,7 +42,7 @@ from nao_library_modules.process_modules.tasks import TaskState
 from nao_library_modules.process_modules.trace import trace_of
 from nao_library_modules.process_modules.waiting import wait_for
 from nao_library_msgs.msg import PlanTree
-from nao_sim_bridge.testing import SimulatedRobot, wait_until
+from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 SENSOR = "Device/SubDeviceList/{}/Position/Sensor/Value"
 FRAME_TORSO = 0
@@ -159,6 +164,34 @@ class ProcessModules(unittest.TestCase):
             news.wait(lambda: String("I am here.") in said, "the sentence on the topic")
         memory, keys = self.robot.module("ALMemory"), ["ALTextToSpeech/CurrentSentence"]  # it may hold nothing yet
         wait_until(lambda: memory.getListData(keys) == ["I am here."], 20.0, "the sentence on the robot")
+
+    # --- designators from elsewhere -----------------------------------------------------------------------------------
+
+    def test_designators_come_by_an_action_and_by_a_topic(self):
+        server = start("../nodes/process_modules")
+        self.addCleanup(server.communicate)
+        self.addCleanup(server.kill)
+        client = actionlib.SimpleActionClient("perform_designator", PerformDesignatorAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(60)))
+        run = send(client, PerformDesignatorGoal("(an action (type opening) (gripper left))", "", [])).wait(30.0)
+        self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
+        self.assertGreater(float(run.result.result), 0.9)
+        self.assertEqual(run.feedback[-1][1].state, "succeeded")
+        self.assertGreater(self.angle("LHand"), 0.9)
+        pairs = [KeyValue("type", "reaching"), KeyValue("side", "left"), KeyValue("target", "[0.6, 0.13, 0.08]")]
+        run = send(client, PerformDesignatorGoal("", "action", pairs)).wait(30.0)
+        self.assertEqual((run.state, run.result.failure), (GoalStatus.ABORTED, "ManipulationPoseUnreachable"))
+        self.assertRegex(run.result.text, "the left hand cannot get to")
+        walk = send(client, PerformDesignatorGoal("{type: going, target: [2, 0]}", "", []))
+        wait_until(self.motion.moveIsActive, 30.0, "the walk")
+        walk.cancel()
+        self.assertEqual(walk.wait(30.0).state, GoalStatus.PREEMPTED)
+        self.assert_stands()
+        topic = rospy.Publisher("designators", String, queue_size=1)
+        wait_until(lambda: topic.get_num_connections(), 20.0, "process_modules")
+        topic.publish("{type: saying, text: Here I am.}")
+        memory, keys = self.robot.module("ALMemory"), ["ALTextToSpeech/CurrentSentence"]
+        wait_until(lambda: memory.getListData(keys) == ["Here I am."], 20.0, "the sentence on the robot")
 
     # --- ends ---------------------------------------------------------------------------------------------------------
 

@@ -196,6 +196,8 @@ def test_points_are_in_the_torso_frame_and_places_in_odom_unless_they_name_anoth
         ("{type: going, target: [1, 0, 0, base_footprint]}", "navigation", "walk_to", {"frame": "base_footprint"}),
         ("{name: to say, text: Hello}", "speech", "say", {"text": "Hello"}),
         ("{name: go stable}", "manipulation", "go_stable", {}),
+        ([("left", "open")], "manipulation", "open_gripper", {"side": "left"}),
+        ([("right", "grasp")], "manipulation", "close_gripper", {"side": "right", "grasp": True}),
         ("{type: moving-gripper-joint, gripper: left, joint_angle: 1}", "manipulation", "move_gripper", {"opening": 1}),
     ],
 )  # fmt: skip
@@ -298,3 +300,20 @@ def test_users_give_places_and_judge_them_and_the_next_is_really_another_one():
     finally:
         register_location_validation_function(50, lambda *_: Verdict.UNKNOWN, "not_behind")
         register_location_validation_function(40, lambda *_: Verdict.UNKNOWN, "rather_far")
+
+
+def test_designators_are_read_as_lisp_writes_them():
+    desig = p.designator('(an action (type looking) (target (a location (at "the table") (height 0.7))))')
+    place = desig["target"]
+    assert (desig.kind, desig["type"], place.kind, place["at"]) == ("action", "looking", "location", "the table")
+    assert place["height"] == 0.7
+    told = p.designator("(type: action (name:(to open)) (side :left))")
+    assert (told.kind, told["name"], told["side"]) == ("action", "to open", "left")
+    for text, problem in (
+        ("(an action (type opening)", r"the bracket at 1 is not closed"),
+        ("(an action (type opening)))", r"a bracket too many at 27"),
+        ('(an action (type "opening))', "an open quotation mark"),
+        ("(an action opening)", "opening is no key with a value"),
+    ):
+        with pytest.raises(p.PlanError, match=problem):
+            p.designator(text)

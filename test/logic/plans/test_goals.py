@@ -55,6 +55,11 @@ def test_only_what_does_not_hold_is_done_also_for_goals_beside_each_other(is_ope
     assert sorted(opened[1:]) == [str(number) for number in range(8)]
 
 
+def test_a_state_is_perceived_and_nothing_is_done(is_open):
+    assert p.top_level(lambda: p.perceive_state(is_open, "right")) == {"side": "right", "share": 1.0}
+    assert p.top_level(lambda: p.perceive_state(is_open("left"))) is None
+
+
 def test_the_most_specific_pattern_is_tried_first(is_open, grippers):
     chosen = []
 

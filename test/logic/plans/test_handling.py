@@ -14,6 +14,7 @@ from nao_library_modules.process_modules.failures import (
     PerceptionObjectNotFound,
     PlanTimedOut,
     PolicyCheckConditionMet,
+    PolicyNotFound,
 )
 
 
@@ -136,3 +137,17 @@ def test_a_function_is_asked_again_and_again_and_what_it_raises_breaks_the_plan(
     fails(PolicyCheckConditionMet, "third time", lambda: p.with_policy(third, forever))
     assert len(asked) == 3
     fails(ZeroDivisionError, "", lambda: p.with_policy(p.Policy("broken", lambda: 1 / 0, period=0.001), forever))
+
+
+def test_policies_have_names_and_several_watch_one_body(stays):
+    @p.define_policy("until told")
+    def until(fluent, word):
+        return p.Policy(f"until {word}", fluent)
+
+    slow = stays("slow").call
+    met = lambda: p.with_named_policy("until told", (stays.there, "noon"), slow)  # noqa: E731
+    fails(PolicyCheckConditionMet, "policy 'until noon'", met)
+    both = lambda: p.with_named_policies([("timeout", [0.01]), ("timeout", [1000.0])], forever)  # noqa: E731
+    fails(PlanTimedOut, "policy 'at most 0.01 s'", both)
+    assert p.top_level(lambda: p.with_policies([p.timeout_policy(1000.0)] * 2, lambda: "there")) == "there"
+    fails(PolicyNotFound, "no policy 'untold': there are timeout, until told", lambda: p.named_policy("untold"))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 from plan_tools import Beside, seen, stays_false
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.process_modules.failures import TaskEvaporatedFailure
+from naoqi.errors import NaoError
 
 
 def test_an_end_in_the_middle_of_a_protected_part_counts_afterwards():
@@ -142,3 +145,23 @@ def test_what_cannot_pause_is_ended_and_begun_again():
     go.value = True
     assert plan.ended() == "arrived"
     assert (sent.value, cancelled.value) == (2, 1)
+
+
+def test_a_plan_that_is_started_runs_beside_and_is_waited_for_or_cancelled():
+    begun, go_on = threading.Event(), p.Fluent("go on", False)
+
+    @p.def_top_level_plan
+    def wait_for_it(answer):
+        begun.set()
+        p.wait_for(go_on)
+        return answer
+
+    first, second = wait_for_it.start("done"), wait_for_it.start("never")
+    assert begun.wait(5.0) and not first.done()
+    with pytest.raises(NaoError, match="the plan wait_for_it is not over after 0.01 s; it goes on"):
+        first.result(0.01)
+    second.cancel()
+    with pytest.raises(TaskEvaporatedFailure, match="cancelled"):
+        second.result(5.0)
+    go_on.value = True
+    assert first.result(5.0) == "done"

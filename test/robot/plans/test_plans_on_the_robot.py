@@ -16,9 +16,11 @@ import nao_library_modules.process_modules as p
 from nao_library_modules.driver.joint_controller import JointController
 from nao_library_modules.places import Place
 from nao_library_modules.process_modules import low_level
+from nao_library_modules.process_modules import nao_goals as goals
 from nao_library_modules.process_modules.action_client import ActionEnd
 from nao_library_modules.process_modules.chains import Chain
 from nao_library_modules.process_modules.failures import (
+    DesignatorError,
     GripperClosedCompletely,
     GripperGoalNotReached,
     LightsLowLevelFailure,
@@ -50,7 +52,7 @@ class Link:
         robot = WatchedRobot(*simulator.address, simulator.lockstep)
         self.settings = load_settings()
         self.clock = lights.edge.clock
-        self.answers, self.goals = {}, {}
+        self.answers, self.goals, self.held = {}, {}, {}
         self._motion = robot.proxy("ALMotion")
         self._joints = JointController(robot)
         self._now = lambda: simulator.lockstep.time()
@@ -182,12 +184,48 @@ def test_the_abstract_plan_moves_hands_and_head_at_once(perform, robot, link, an
     assert times.count(link.settings.gripper_time) == 2 and max(times) <= took < max(times) + 0.2
 
 
-def test_hands_grip_what_is_there_and_tell_what_did_not_open(perform, robot, link):
+def test_one_call_starts_the_process_modules(robot, link, angle):
+    modules = p.StartProcessModules(link)
+    try:
+        kinds = {p.ManipulationProcessModule, p.NavigationProcessModule, p.SpeechProcessModule}
+        assert kinds < set(map(type, modules)) and p.StartProcessModules is p.start_process_modules
+        OnTheRobot(robot, lambda: p.perform(to(type="opening", gripper="left")), link.clock).ended()
+        assert angle("LHand") > 0.9
+    finally:
+        p.stop_process_modules()
+
+
+def test_goals_have_the_names_of_the_thesis(begin, robot, link, angle):
+    def abstract_plan():
+        p.par(
+            p.do(p.achieve, goals.openGripper, "left"),
+            p.do(p.achieve, low_level.open_gripper, "right"),
+            p.do(p.achieve, goals.moveHead, p.Position(2, 3)),
+        )
+
+    begin(abstract_plan).ended()
+    assert min(angle("LHand"), angle("RHand")) > 0.9 and angle("HeadYaw") == pytest.approx(math.atan2(3, 2), abs=0.03)
+    sent = len(link.goals["joint_trajectory"])
+    begin(lambda: p.achieve(goals.opened_gripper("left"))).ended()  # it is
+    assert len(link.goals["joint_trajectory"]) == sent == 3
+    assert begin(lambda: p.achieve(goals.closeGripper, "left")).ended() == pytest.approx(0.0, abs=0.05)
+
+
+def test_hands_close_around_what_is_there_and_tell_what_did_not_move(perform, robot, link):
     with pytest.raises(GripperClosedCompletely, match="the left hand closed, and there is nothing in it"):
         perform(to(type="gripping", gripper="left"))
+    empty = perform(to(type="closing", gripper="left"))
+    assert not empty.holds and empty == pytest.approx(0.0, abs=0.05)
+    assert perform(to(type="opening", gripper="left")) == pytest.approx(1.0, abs=0.05)
+    cup = SimpleNamespace(name=["LHand"], position=[0.4])
+    link.answers["joint_trajectory"] = ActionEnd(GoalStatus.SUCCEEDED, "", SimpleNamespace(goal_position=cup))
+    for kind in ("closing", "gripping"):
+        grip = perform(to(type=kind, gripper="left"))
+        assert grip.holds and grip == pytest.approx(0.4) and str(grip) == "0.40 open, holds something"
+    assert low_level_call(perform, low_level.close_gripper, "left").holds
+    del link.answers["joint_trajectory"]
     assert perform(to(type="moving-gripper-joint", gripper="left", joint_angle=0.5)) == pytest.approx(0.5, abs=0.05)
     limp(robot, "LHand", "RHand")
-    assert perform(to(type="gripping", gripper="left")) == pytest.approx(0.5, abs=0.05)
     with pytest.raises(GripperGoalNotReached, match="the left hand is 0.5. open instead of 0.00"):
         perform(to(type="closing", gripper="left"))
     with pytest.raises(GripperGoalNotReached, match=r"the right hand is 0.\d\d open instead of 1.00") as caught:
@@ -232,6 +270,8 @@ def test_arms_go_by_words_and_point_with_the_nearer_one(perform, link):
     forward = {"left_target": "forward"}, {"right_target": "forward"}
     left, right = perform(*(p.an(p.motion, type="moving-tcp", **each) for each in forward))
     assert (left.x, left.y) == pytest.approx((right.x, -right.y), abs=0.01)
+    with pytest.raises(DesignatorError, match=r"left hand is to get to Position.*: not .*a point"):  # how high?
+        perform(to(type="reaching", side="left", target=p.Position(0.2, 0.1)))
     hand = perform(to(type="pointing", at=[1.0, -1.0, 0.1]))
     assert hand.y < -0.2 and link.goals["joint_trajectory"][-1].trajectory.joint_names[0] == "RShoulderPitch"
 
@@ -255,6 +295,7 @@ def walking(begin, robot, on_its_feet):
 
 
 def test_the_robot_walks_to_its_target_seen_from_odom_and_from_itself(perform, robot, on_its_feet):
+    perform(to(type="standing"))  # everything can begin from there
     reached = perform(to(type="going", target=[0.2, 0.05, 0.3]))
     assert reached.distance_to(Place(0.2, 0.05, 0.3)) < 0.05 and abs(reached.yaw - 0.3) < 0.1
     assert get_process_module("navigation").position.value == (Place(0.5, 0.0, 0.0), "odom")
@@ -264,6 +305,9 @@ def test_the_robot_walks_to_its_target_seen_from_odom_and_from_itself(perform, r
     assert then.distance_to(reached.then(Place(0.1, 0.0, 0.0))) < 0.05
     x, y, _ = robot.now.torso.position
     assert math.hypot(x - then.x, y - then.y) < 0.1 and stands(robot)
+    point = p.Position(then.x + 0.15, then.y + 0.1, 0.4)  # of a point on a table, the place below is meant, and no yaw
+    there = perform(to(name="walkTo", target=point))
+    assert math.hypot(there.x - point.x, there.y - point.y) < 0.05
 
 
 def test_a_walk_that_misses_its_target_or_is_refused_fails(perform, walking, robot, link):

@@ -1,10 +1,13 @@
 """Process modules and plans on a NAO: designators, rules, modules, goals and CRAM's plan language.
 
-What plans are written with can be imported from here. What needs ROS is in `low_level`, `plan_runner`, `modules` and
-`robot_link`.
+What plans are written with can be imported from here, and what starts the modules of a NAO. What else needs ROS is in
+`low_level`, `nao_goals`, `plan_runner`, `modules` and `robot_link`.
 """
 
 from __future__ import annotations
+
+import importlib
+from typing import Any
 
 from .control import (
     do,
@@ -40,11 +43,20 @@ from .designators.rules import Command, command, rule
 from .failures import CompositeFailure, PlanError, PlanFailure, SimplePlanFailure, fail
 from .flow import checkpoint, retry_after_suspension, sleep, uninterrupted, wait_until
 from .fluents import Fluent, fl_and, fl_eq, fl_funcall, fl_not, fl_or, fl_value_changed, pulsed
-from .goals import ANY, achieve, declare_goal, def_goal, holds
+from .goals import ANY, achieve, declare_goal, def_goal, holds, perceive_state
 from .handling import do_retry, get_counter, give, reset_counter, retry, with_failure_handling, with_retry_counters
 from .perception import at_location, examine, go_to, perceive
-from .plans import def_plan, def_top_level_plan
-from .policies import Policy, timeout_policy, with_policy
+from .plans import StartedPlan, def_plan, def_top_level_plan
+from .policies import (
+    Policy,
+    define_policy,
+    named_policy,
+    timeout_policy,
+    with_named_policies,
+    with_named_policy,
+    with_policies,
+    with_policy,
+)
 from .process_module import AsynchronousProcessModule, ProcessModule, pm_cancel, pm_run, pm_status
 from .registry import (
     available_process_module,
@@ -53,13 +65,31 @@ from .registry import (
     perform,
     pm_execute,
     pm_execute_matching,
+    stop_process_modules,
     with_process_module_aliases,
     with_process_modules_running,
 )
-from .space import Point3
+from .space import Point3, Position
 from .tasks import Task, TaskState, current_task
 from .trace import Trace, trace_of
 from .waiting import wait_for, whenever
+
+_IN_ROS = {
+    "start_process_modules": ("low_level", "start_process_modules"),
+    "StartProcessModules": ("low_level", "start_process_modules"),
+    "ManipulationProcessModule": ("modules.manipulation", "Manipulation"),
+    "NavigationProcessModule": ("modules.navigation", "Navigation"),
+    "SpeechProcessModule": ("modules.speech", "Speech"),
+}
+"""Name -> module and name there, of what is loaded when it is asked for: plans alone need no ROS."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _IN_ROS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module, attribute = _IN_ROS[name]
+    return getattr(importlib.import_module(f".{module}", __name__), attribute)
+
 
 __all__ = [
     "ANY",
@@ -69,12 +99,18 @@ __all__ = [
     "CompositeFailure",
     "Designator",
     "Fluent",
+    "ManipulationProcessModule",
+    "NavigationProcessModule",
     "PlanError",
     "PlanFailure",
     "Point3",
     "Policy",
+    "Position",
     "ProcessModule",
     "SimplePlanFailure",
+    "SpeechProcessModule",
+    "StartProcessModules",
+    "StartedPlan",
     "Task",
     "TaskState",
     "Trace",
@@ -93,6 +129,7 @@ __all__ = [
     "def_goal",
     "def_plan",
     "def_top_level_plan",
+    "define_policy",
     "desig_equal",
     "designator",
     "do",
@@ -115,11 +152,13 @@ __all__ = [
     "matching_process_module",
     "monitor_process_module",
     "motion",
+    "named_policy",
     "object_",
     "par",
     "par_loop",
     "partial_order",
     "perceive",
+    "perceive_state",
     "perform",
     "pm_cancel",
     "pm_execute",
@@ -134,6 +173,8 @@ __all__ = [
     "rule",
     "seq",
     "sleep",
+    "start_process_modules",
+    "stop_process_modules",
     "subtask",
     "the",
     "timeout_policy",
@@ -147,6 +188,9 @@ __all__ = [
     "wait_until",
     "whenever",
     "with_failure_handling",
+    "with_named_policies",
+    "with_named_policy",
+    "with_policies",
     "with_policy",
     "with_process_module_aliases",
     "with_process_modules_running",

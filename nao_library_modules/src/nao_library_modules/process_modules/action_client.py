@@ -13,7 +13,7 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from ..goal_watch import GoalWatch
+from ..goal_watch import GoalWatch, server_connection
 from .control import Step, subtask
 from .failures import ActionlibActionTimedOut, LowLevelFailure
 from .flow import retry_after_suspension, uninterrupted, wait_until
@@ -107,7 +107,7 @@ class PlanActionClient:
             ActionlibActionTimedOut: There is none.
         """
         deadline = time.monotonic() + timeout
-        while not wait_until(lambda: self._there.value and self._connection(), [self._there], LOOK_PERIOD):
+        while not wait_until(lambda: self._there.value and server_connection(self._client), [self._there], LOOK_PERIOD):
             if time.monotonic() < deadline:
                 continue
             where = rospy.resolve_name(self.name)
@@ -123,18 +123,9 @@ class PlanActionClient:
             period = LOOK_PERIOD if limit is None else min(LOOK_PERIOD, limit)
             if wait_until(lambda: done.value, [done], period):
                 return
-            if self._connection() is not connection:
+            if server_connection(self._client) is not connection:
                 raise LowLevelFailure(f"the server of {self.name} has gone, and its goal with it")
             limit = None if limit is None else limit - period
-
-    def _connection(self) -> Any:
-        """What goals go through to the server; None while there is none. Another one after it was started again."""
-        status = self._client.last_status_msg
-        if status is None:
-            return None
-        server = status._connection_header["callerid"]
-        connections = self._client.pub_goal.impl.connections
-        return next((each for each in connections if each.endpoint_id == server), None)
 
     def _look_for_server(self) -> None:
         if self._client.wait_for_server():
@@ -154,7 +145,7 @@ class PlanActionClient:
             done.value = True
 
         watch, cancelled = GoalWatch(end), False
-        connection = self._connection()
+        connection = server_connection(self._client)
         told = None if on_feedback is None else lambda _, feedback: on_feedback(feedback)
         handle = self._client.send_goal(goal, watch.look, told)
         try:

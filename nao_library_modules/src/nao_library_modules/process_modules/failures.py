@@ -8,6 +8,7 @@ PlanFailure                          (a NaoError) root: what plans signal with `
         PolicyCheckConditionMet      its condition came true
             PlanTimedOut             the time was over
         PolicyInitFailed             it could not begin
+        PolicyNotFound               no policy has that name
     DesignatorError                  a designator cannot be resolved: designator, problem
         AmbiguousPerception          several objects fit a description that means one
     ProcessModuleError               about the modules, not about what they do
@@ -111,6 +112,10 @@ class PlanTimedOut(PolicyCheckConditionMet):
 
 class PolicyInitFailed(PolicyFailure):
     """A policy could not begin, so its body did not either."""
+
+
+class PolicyNotFound(PolicyFailure):
+    """No policy has that name."""
 
 
 # --- designators and process modules ----------------------------------------------------------------------------------

@@ -179,5 +179,5 @@ def retry_after_suspension(body: Callable[[], Any]) -> Any:
 def _flow() -> Flow:
     flow = here()
     if flow is None:
-        raise PlanError("this waits outside of a plan: begin it with top_level")
+        raise PlanError("this waits outside of a plan: begin it with top_level, or run_and_tell")
     return flow

@@ -131,11 +131,33 @@ def def_goal(goal: Goal, *pattern: Any) -> Callable[[Plan], Plan]:
     return add
 
 
+_achieved_by: dict[Plan, Goal] = {}
+
+
+def achieved_by(function: Plan, goal: Goal) -> None:
+    """Have `achieve(function, ...)` mean the goal of what a function does."""
+    _achieved_by[function] = goal
+
+
 def holds(goal: Occasion | Goal, *arguments: Any) -> bool:
     """Whether an occasion is true of the world now, as far as its goal can tell."""
     occasion = _occasion(goal, arguments)
     check = occasion.goal.check
     return bool(check(*occasion.arguments)) if check is not None else False
+
+
+def perceive_state(goal: Occasion | Goal, *arguments: Any) -> dict[str, Any] | None:
+    """Look whether an occasion is true of the world now.
+
+    Returns:
+        Name of each argument -> its value, if it is; None if it is not, or nobody can tell.
+    """
+    occasion = _occasion(goal, arguments)
+
+    def body() -> dict[str, Any] | None:
+        return dict(zip(occasion.goal.parameters, occasion.arguments)) if holds(occasion) else None
+
+    return subtask(Step(f"perceive {occasion}", body))
 
 
 def achieve(goal: Occasion | Goal, *arguments: Any) -> Any:
@@ -169,6 +191,8 @@ def achieve(goal: Occasion | Goal, *arguments: Any) -> Any:
 
 
 def _occasion(goal: Occasion | Goal, arguments: tuple[Any, ...]) -> Occasion:
+    if callable(goal) and not isinstance(goal, (Goal, Occasion)):
+        goal = _achieved_by.get(goal, goal)
     if isinstance(goal, Goal):
         return goal(*arguments)
     if not isinstance(goal, Occasion) or arguments:

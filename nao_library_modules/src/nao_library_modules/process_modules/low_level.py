@@ -15,7 +15,7 @@ from .action_rules.values import a_place, a_point, a_position
 from .designators.patterns import Mismatch, Pattern
 from .failures import PlanError
 from .modules.lights import Lights
-from .modules.manipulation import Manipulation
+from .modules.manipulation import Grip, Manipulation
 from .modules.navigation import Navigation
 from .modules.speech import Speech
 from .modules.vision import Vision
@@ -64,8 +64,12 @@ def open_gripper(side: str) -> float:
 
 
 @def_top_level_plan
-def close_gripper(side: str, grasp: bool = False) -> float:
-    """Close a hand, left or right; answers how far it is open, 0..1. With `grasp` there has to be something in it."""
+def close_gripper(side: str, grasp: bool = False) -> Grip:
+    """Close a hand, left or right, around something or not; with `grasp` there has to be something in it.
+
+    Returns:
+        How far it is open, 0..1; `holds` tells whether there is something in it.
+    """
     return Manipulation(this_robot()).close_gripper(side, grasp)
 
 

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import functools
+import logging
+import threading
 from collections.abc import Callable
 from typing import Any
 
+from naoqi.errors import NaoError
+
 from .control import do, name_of, subtask, top_level
+from .failures import PlanFailure
 from .flow import here
+from .tasks import Task
+
+log = logging.getLogger(__name__)
 
 
 def def_plan(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -21,8 +29,77 @@ def def_plan(function: Callable[..., Any]) -> Callable[..., Any]:
     return plan
 
 
+class StartedPlan:
+    """A plan that runs beside whoever has started it.
+
+    Args:
+        name: For people.
+        run: The plan, to which an observer of its tree is given.
+    """
+
+    def __init__(self, name: str, run: Callable[[Callable[[Task], None]], Any]) -> None:
+        self.name = name
+        self._over = threading.Event()
+        self._lock = threading.Lock()
+        self._root: Task | None = None
+        self._cancelled = False
+        self._value: Any = None
+        self._error: BaseException | None = None
+        threading.Thread(target=self._run, args=(run,), name=f"plan {name}", daemon=True).start()
+
+    def done(self) -> bool:
+        """Whether it is over."""
+        return self._over.is_set()
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Wait for its end, at most so many s of this computer; whether it is over."""
+        return self._over.wait(timeout)
+
+    def result(self, timeout: float | None = None) -> Any:
+        """Wait for its end, at most so many s of this computer; what it answered.
+
+        Raises:
+            PlanFailure: What it failed with.
+            NaoError: It is not over in time; it goes on.
+        """
+        if not self.wait(timeout):
+            raise NaoError(f"the plan {self.name} is not over after {timeout:g} s; it goes on")
+        if self._error is not None:
+            raise self._error
+        return self._value
+
+    def cancel(self) -> None:
+        """End it; `wait` tells when it has come to that."""
+        with self._lock:
+            self._cancelled = True
+            root = self._root
+        if root is not None:
+            root.evaporate("cancelled")
+
+    def _see(self, task: Task) -> None:
+        with self._lock:
+            first, self._root = self._root is None, self._root or task
+            cancelled = first and self._cancelled
+        if cancelled:
+            task.evaporate("cancelled")
+
+    def _run(self, run: Callable[[Callable[[Task], None]], Any]) -> None:
+        try:
+            self._value = run(self._see)
+        except PlanFailure as failure:
+            self._error = failure
+        except BaseException as error:  # a mistake in the plan: nobody may ever ask for the result
+            log.exception("the plan %s ended by an unexpected error", self.name)
+            self._error = error
+        finally:
+            self._over.set()
+
+
 def def_top_level_plan(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A plan that may be called anywhere: outside of plans it begins a tree of its own."""
+    """A plan that may be called anywhere: outside of plans it begins a tree of its own.
+
+    `plan.start(...)` does not wait for its end: it gives a `StartedPlan`.
+    """
     plan = def_plan(function)
 
     @functools.wraps(function)
@@ -31,5 +108,10 @@ def def_top_level_plan(function: Callable[..., Any]) -> Callable[..., Any]:
             return plan(*arguments, **keywords)
         return top_level(do(plan, *arguments, **keywords), name=name_of(function))
 
+    def start(*arguments: Any, **keywords: Any) -> StartedPlan:
+        name, body = name_of(function), do(plan, *arguments, **keywords)
+        return StartedPlan(name, lambda see: top_level(body, name=name, observers=[see]))
+
     begun.plan_body = function  # type: ignore[attr-defined]
+    begun.start = start  # type: ignore[attr-defined]
     return begun

@@ -1,19 +1,25 @@
 """Policies: a plan under a condition that is watched beside it.
 
-Two examples:
-
 with_policy(timeout_policy(10.0), do(walk_to, table))
 with_policy(Policy("upright", check=robot_has_fallen, recover=stop_walking), do(walk_to, table))
+
+One that has a name may be used where its function is not known:
+
+@define_policy("near")
+def near(place, distance):
+    return Policy(f"within {distance} m", check=lambda: place_of_robot().distance_to(place) > distance)
+
+with_named_policy("near", (table, 2.0), do(look_around))
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, Type, Union
+from typing import Any, Tuple, Type, Union
 
 from .control import Branch, Step, do, pursue, subtask
-from .failures import PlanTimedOut, PolicyCheckConditionMet, PolicyInitFailed
+from .failures import PlanTimedOut, PolicyCheckConditionMet, PolicyInitFailed, PolicyNotFound
 from .flow import sleep, uninterrupted
 from .fluents import AnyFluent
 from .waiting import wait_for
@@ -44,6 +50,31 @@ class Policy:
     failure: Type[PolicyCheckConditionMet] = PolicyCheckConditionMet
 
 
+_named: dict[str, Callable[..., Policy]] = {}
+
+
+def define_policy(name: str) -> Callable[[Callable[..., Policy]], Callable[..., Policy]]:
+    """Make a function that gives a policy known by a name; a newer one takes the place of an older one."""
+
+    def keep(function: Callable[..., Policy]) -> Callable[..., Policy]:
+        _named[name] = function
+        return function
+
+    return keep
+
+
+def named_policy(name: str) -> Callable[..., Policy]:
+    """What gives the policy of a name.
+
+    Raises:
+        PolicyNotFound: There is none.
+    """
+    if name not in _named:
+        raise PolicyNotFound(f"no policy {name!r}: there are {', '.join(sorted(_named)) or 'none'}", policy=name)
+    return _named[name]
+
+
+@define_policy("timeout")
 def timeout_policy(time: float) -> Policy:
     """The body may take so long, s of the plan's clock."""
 
@@ -92,3 +123,32 @@ def with_policy(policy: Policy, body: Branch) -> Any:
                     policy.clean_up()
 
     return subtask(Step("with_policy", run))
+
+
+def with_named_policy(name: str, parameters: Iterable[Any], body: Branch) -> Any:
+    """As `with_policy`, with the policy of a name for these parameters.
+
+    Raises:
+        PolicyNotFound: There is none.
+    """
+    return with_policy(named_policy(name)(*parameters), body)
+
+
+def with_policies(policies: Iterable[Policy], body: Branch) -> Any:
+    """Run a body while several policies watch, the first one outermost; see `with_policy`."""
+    inner = body
+    for policy in reversed(list(policies)):
+        inner = do(with_policy, policy, inner)
+    return subtask(inner)
+
+
+NamedPolicies = Iterable[Tuple[str, Iterable[Any]]]
+
+
+def with_named_policies(policies: NamedPolicies, body: Branch) -> Any:
+    """As `with_policies`, with pairs of a name and parameters.
+
+    Raises:
+        PolicyNotFound: There is none of a name.
+    """
+    return with_policies([named_policy(name)(*parameters) for name, parameters in policies], body)

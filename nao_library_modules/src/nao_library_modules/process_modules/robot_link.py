@@ -37,6 +37,7 @@ class RobotLink:
         settings: Numbers, see `settings`.
         clock: ROS time.
         joints: A fluent with the last joint states: angles in rad by name.
+        held: Side of a hand that was closed last -> how far it stayed open, 0..1.
 
     Args:
         settings: See above; those of the package if there are none.
@@ -46,6 +47,7 @@ class RobotLink:
         self.settings = settings or load_settings()
         self.clock = RosClock()
         self.joints = Fluent("joint states", {})
+        self.held: dict[str, float] = {}
         self._clients: dict[str, PlanActionClient] = {}
         self._topics: dict[str, ToldTopic] = {}
         self._lock = threading.Lock()

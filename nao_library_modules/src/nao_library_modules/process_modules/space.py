@@ -30,6 +30,22 @@ class Point3(NamedTuple):
         return f"({self.x:.3f}, {self.y:.3f}, {self.z:.3f}) m in {self.frame}"
 
 
+class Position(NamedTuple):
+    """Where something is meant to be, as plans say it: `Position(2, 3)`. It is a point, and has no heading.
+
+    Attributes:
+        x: m.
+        y: m.
+        z: m; None leaves the height to who takes it: the eyes for the head, the floor for walking.
+        frame: Of /tf; empty leaves it to who takes it: torso for arms and head, odom for walking.
+    """
+
+    x: float
+    y: float
+    z: float | None = None
+    frame: str = ""
+
+
 def turned(point: Sequence[float], quaternion: Sequence[float]) -> tuple[float, float, float]:
     """A point turned by a unit quaternion (x, y, z, w)."""
     px, py, pz = point

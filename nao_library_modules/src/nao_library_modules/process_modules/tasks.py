@@ -135,7 +135,7 @@ class Task:
         """
         flow = here()
         if flow is None:
-            raise PlanError(f"the task {self.name} is outside of a plan: use top_level")
+            raise PlanError(f"the task {self.name} is outside of a plan: use top_level, or run_and_tell")
         self._begin(flow)
         flow.tasks.append(self)
         try:
@@ -332,7 +332,7 @@ def current_task() -> Task:
     """
     flow = here()
     if flow is None or not flow.tasks:
-        raise PlanError("this is outside of a plan: begin it with top_level")
+        raise PlanError("this is outside of a plan: begin it with top_level, or run_and_tell")
     return flow.tasks[-1]
 
 

@@ -10,6 +10,7 @@ from .values import BOTH, SIDE
 MANIPULATION = "manipulation"
 OPENING = ("open", "to open", "opening")
 CLOSING = ("close", "to close", "closing")
+HOW = one_of("open", "close", "grasp")
 
 
 @rule(BOTH, type="opening", gripper=SIDE)
@@ -46,6 +47,24 @@ def to_open(side: str) -> Command:
 def to_close(side: str) -> Command:
     """Resolve {name: to close, side: left}."""
     return command(MANIPULATION, "close_gripper", side=side)
+
+
+@rule(BOTH, left=HOW)
+def left_hand(left: str) -> Command:
+    """Resolve the pair (left, open), or close, or grasp."""
+    return _by_word("left", left)
+
+
+@rule(BOTH, right=HOW)
+def right_hand(right: str) -> Command:
+    """Resolve the pair (right, open), or close, or grasp."""
+    return _by_word("right", right)
+
+
+def _by_word(side: str, word: str) -> Command:
+    if word == "open":
+        return command(MANIPULATION, "open_gripper", side=side)
+    return command(MANIPULATION, "close_gripper", side=side, grasp=word == "grasp")
 
 
 @rule(action, type="trajectory", to=one_of("open"), side=SIDE)

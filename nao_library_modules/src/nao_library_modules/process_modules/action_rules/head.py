@@ -57,7 +57,7 @@ def trajectory_to_see(at: Any, desig: Designator) -> Iterator[Command]:
     return _looking(desig, at)
 
 
-@rule(action, name=one_of("to look", "to move head", "move head"), position=anything())
+@rule(action, name=one_of("to look", "to move head", "move head", "to turn head", "turn head"), position=anything())
 def to_look(position: Any, desig: Designator) -> Iterator[Command]:
     """Resolve {name: to look, position: [2, 3]}."""
     return _looking(desig, position)

@@ -41,3 +41,9 @@ def detecting(object: Designator, timeout: float, desig: Designator) -> Command:
 def to_say(desig: Designator) -> Command:
     """Resolve {name: to say, text: Hello}."""
     return command(SPEECH, "say", text=desig["text"])
+
+
+@rule(action, name=one_of("to say", "text to speech"), sentence=text())
+def to_say_a_sentence(sentence: str) -> Command:
+    """Resolve {name: to say, sentence: Hello}."""
+    return command(SPEECH, "say", text=sentence)

@@ -11,9 +11,9 @@ from ..designators.designator import Designator, action, motion
 from ..designators.patterns import Mismatch, Pattern, one_of
 from ..failures import DesignatorError
 from ..settings import numbers_of_nao
-from ..space import Point3
+from ..space import Point3, Position
 
-ODOM = "odom"
+ODOM, TORSO = "odom", "torso"
 SIDE = one_of("left", "right")
 BOTH = (action, motion)
 
@@ -24,6 +24,10 @@ def a_point() -> Pattern:
     def take(value: Any) -> Point3:
         if isinstance(value, Point3):
             return value
+        if isinstance(value, Position):
+            if value.z is None:
+                raise Mismatch
+            return Point3(*_finite(value[:3]), value.frame or TORSO)
         if isinstance(value, Mapping) and set(value) <= {"x", "y", "z", "frame"}:
             value = [*(value.get(axis, 0.0) for axis in "xyz"), *([value["frame"]] if "frame" in value else [])]
         if isinstance(value, str) or not isinstance(value, Sequence) or not 3 <= len(value) <= 4:
@@ -38,6 +42,8 @@ def a_position() -> Pattern:
     point = a_point()
 
     def take(value: Any) -> Point3:
+        if isinstance(value, Position) and value.z is None:
+            return Point3(*_finite(value[:2]), numbers_of_nao().eyes, value.frame or TORSO)
         if not isinstance(value, (str, Mapping)) and isinstance(value, Sequence) and len(value) == 2:
             return Point3(*_finite(value), numbers_of_nao().eyes)
         return point.take(value)
@@ -46,11 +52,16 @@ def a_position() -> Pattern:
 
 
 def a_place() -> Pattern:
-    """A place: x, y in m and a heading in rad in odom, with a frame behind them; a `Place`, or one with its frame."""
+    """A place: x, y in m and a heading in rad in odom, with a frame behind them; a `Place`, or one with its frame.
+
+    A `Position` or `Point3` is a point: the robot gets there with the heading of its way, which nan stands for.
+    """
 
     def take(value: Any) -> tuple[Place, str]:
         if isinstance(value, Place):
             return value, ODOM
+        if isinstance(value, (Position, Point3)):
+            return Place(*_finite(value[:2]), math.nan), value.frame or ODOM
         if isinstance(value, tuple) and len(value) == 2 and isinstance(value[0], Place):
             return value[0], str(value[1])
         if isinstance(value, Mapping) and {"x", "y"} <= set(value) <= {"x", "y", "yaw", "frame"}:

@@ -40,7 +40,7 @@ def navigation(goal: Any, desig: Designator) -> Iterator[Command]:
     return _going(desig, goal)
 
 
-@rule(action, name=one_of("to walk", "to go", "walk to"), target=anything())
+@rule(action, name=one_of("to walk", "to go", "walk to", "walkTo"), target=anything())
 def to_walk(target: Any, desig: Designator) -> Iterator[Command]:
     """Resolve {name: to walk, target: [1, 0, 0]}."""
     return _going(desig, target)

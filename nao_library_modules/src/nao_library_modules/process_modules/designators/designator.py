@@ -21,6 +21,7 @@ import yaml
 
 from ..failures import DesignatorError, PlanError
 from ..telling import told
+from .lisp import read_lisp
 
 KINDS = ("action", "motion", "location", "object")
 QUANTIFIERS = ("a", "the", "all")
@@ -209,7 +210,7 @@ def all_(kind: str, **description: Any) -> Designator:
 
 
 def designator(description: Description, kind: str = "") -> Designator:
-    """A designator from a mapping, a list of pairs, or text in YAML.
+    """A designator from a mapping, a list of pairs, or text: YAML, or Lisp where it begins with a bracket.
 
     The kind is that of the argument, else the value of the key `type` where that is a kind, else an action: so both
     `{type: action, name: to open, side: left}` and `{type: opening, gripper: left}` are actions. Mappings inside that
@@ -218,10 +219,24 @@ def designator(description: Description, kind: str = "") -> Designator:
     Raises:
         PlanError: It is none of these.
     """
+    if isinstance(description, str) and description.lstrip().startswith("("):
+        return _of_lisp(read_lisp(description), kind)
     content = _mapping(description)
     if not kind and content.get("type") in KINDS:
         kind = content.pop("type")
     return Designator(kind or action, {key: _nested(value) for key, value in content.items()})
+
+
+def _of_lisp(form: Mapping[str, Any], kind: str) -> Designator:
+    pairs = {key: _lisp_value(value) for key, value in form["pairs"].items()}
+    kind = kind or form["kind"] or (pairs.pop("type") if pairs.get("type") in KINDS else action)
+    return Designator(kind, pairs, form["quantifier"])
+
+
+def _lisp_value(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_lisp_value(each) for each in value]
+    return _of_lisp(value, "") if isinstance(value, Mapping) else value
 
 
 def plain_key(key: str) -> str:

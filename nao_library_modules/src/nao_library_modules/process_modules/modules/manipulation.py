@@ -29,6 +29,31 @@ MARGIN = 5.0
 """s that a motion may take longer than it says."""
 SIDES = {"left": "L", "right": "R"}
 HEAD = ("HeadYaw", "HeadPitch")
+STIRRED = 0.02
+"""A hand that has moved by less, of its way from closed to open, has not moved."""
+
+
+class Grip(float):
+    """How far a hand is open, 0..1, that was closed.
+
+    Attributes:
+        holds: Whether there is something in it.
+    """
+
+    def __new__(cls, opening: float, holds: bool) -> Grip:
+        """Keep both."""
+        grip = super().__new__(cls, opening)
+        grip.holds = holds
+        return grip
+
+    holds: bool
+
+    def told(self) -> dict[str, float | bool]:
+        """As JSON has it: opening and holds."""
+        return {"opening": float(self), "holds": self.holds}
+
+    def __str__(self) -> str:
+        return f"{float(self):.2f} open, {'holds something' if self.holds else 'empty'}"
 
 
 class Manipulation(RobotModule):
@@ -72,25 +97,29 @@ class Manipulation(RobotModule):
         """
         return self.move_gripper(side, self.robot.settings.gripper["open"])
 
-    def close_gripper(self, side: str, grasp: bool = False) -> float:
-        """Close a hand; answers how far it is open, 0..1.
+    def close_gripper(self, side: str, grasp: bool = False) -> Grip:
+        """Close a hand, around something or not; answers how far it is open, 0..1, and whether it holds something.
 
         Args:
             side: left or right.
             grasp: Whether there is to be something in it.
 
         Raises:
-            GripperClosedCompletely: There is nothing in it.
-            GripperGoalNotReached: It does not close, although nothing is to be in it.
+            GripperClosedCompletely: There is nothing in it, and there is to be.
+            GripperGoalNotReached: It does not move.
         """
         settings = self.robot.settings
-        closed = settings.gripper["closed"]
+        closed, tolerance = settings.gripper["closed"], settings.gripper_tolerance
+        before = self.robot.angles()[f"{_letter(side)}Hand"]
         opening = self._gripper(side, closed)
-        if grasp and abs(opening - closed) < settings.gripper_tolerance:
+        holds = abs(opening - closed) >= tolerance
+        if grasp and not holds:
             raise GripperClosedCompletely(f"the {side} hand closed, and there is nothing in it", side=side)
-        if not grasp and abs(opening - closed) >= settings.gripper_tolerance:
-            raise self._not_reached(side, opening, closed)
-        return opening
+        held = self.robot.held.get(side)
+        if holds and abs(before - opening) < STIRRED and (held is None or abs(held - opening) >= tolerance):
+            raise self._not_reached(side, opening, closed)  # a hand without power
+        self.robot.held[side] = opening if holds else closed
+        return Grip(opening, holds)
 
     def move_gripper(self, side: str, opening: float) -> float:
         """Open a hand so far, 0..1; answers how far it is open.
@@ -105,6 +134,8 @@ class Manipulation(RobotModule):
 
     def _gripper(self, side: str, opening: float) -> float:
         joint = f"{_letter(side)}Hand"
+        if opening != self.robot.settings.gripper["closed"]:
+            self.robot.held.pop(side, None)
         return self._move({joint: float(opening)}, self.robot.settings.gripper_time, GripperGoalNotReached)[joint]
 
     @staticmethod

@@ -38,7 +38,7 @@ class Navigation(RobotModule):
         """Walk to a place; answers where the robot is then, in odom.
 
         Args:
-            target: Where to, m and rad.
+            target: Where to, m and rad; a heading of nan stands for that of the way there.
             frame: Of the target.
 
         Raises:
@@ -47,9 +47,13 @@ class Navigation(RobotModule):
                 be, in odom.
         """
         settings = self.robot.settings
+        here = self.robot.place(frame)
+        if math.isnan(target.yaw):
+            far = here.distance_to(target) > settings.walk_tolerance[0]  # who is there already need not turn
+            target = target._replace(yaw=math.atan2(target.y - here.y, target.x - here.x) if far else here.yaw)
         # The robot's own frames move along: what counts at the end is where the target was at the beginning.
-        wanted = self.robot.place(ODOM).then(target.seen_from(self.robot.place(frame)))
-        way = target.seen_from(self.robot.place(frame))
+        wanted = self.robot.place(ODOM).then(target.seen_from(here))
+        way = target.seen_from(here)
         slowest = way.distance / settings.walk_speed[0] + math.pi / settings.walk_speed[1]
         goal = MoveBaseGoal()
         goal.target_pose.header.frame_id = frame

@@ -1,0 +1,118 @@
+"""The node process_modules: carries out designators that others send, by the process modules of a NAO."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+import yaml
+from actionlib import ActionServer
+from std_msgs.msg import String
+
+from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorFeedback, PerformDesignatorResult
+
+from ..answers import json_of
+from ..goal_crowd import GoalCrowd, Outcome
+from ..interrupt import Interrupt
+from .control import do, top_level
+from .designators.designator import Designator, designator
+from .failures import PlanError, PlanFailure
+from .low_level import make_process_modules, this_robot
+from .modules.manipulation import Grip
+from .registry import perform, start_process_modules, stop_process_modules
+from .tasks import Task
+
+ACTION, TOPIC = "perform_designator", "designators"
+SHUTDOWN_LIMIT = 5.0
+"""s that the end of the node waits for what the modules do."""
+
+
+class DesignatorServer:
+    """Process modules with a door for plans that run elsewhere.
+
+    Goals run side by side; the modules see to it that what needs the same limb takes turns.
+
+    ROS API (relative names):
+        Action `perform_designator` (nao_library_actions/PerformDesignator): its result has the answer, or the class of
+        the failure and its text; feedback tells which task has changed, and how.
+        Subscribes `designators` (std_msgs/String): the same as text, without an answer; failures are logged.
+        And what the modules themselves use: `joint_trajectory`, `walk_target`, `speech`, `speech_action`, `NaoLights`,
+        `NaoVision`, `joint_states`, /tf.
+    """
+
+    def __init__(self) -> None:
+        """Start the modules and offer the action."""
+        self._robot = this_robot()
+        self._closing = Interrupt()
+        start_process_modules(*make_process_modules(self._robot))
+        self._crowd = GoalCrowd(lambda _: frozenset(), self._perform_goal, with_feedback=True)
+        ActionServer(ACTION, PerformDesignatorAction, self._crowd.on_goal, self._crowd.on_cancel, False).start()
+        rospy.Subscriber(TOPIC, String, self._on_text, queue_size=100)
+
+    def close(self) -> None:
+        """End what is done, and the modules."""
+        self._closing.trigger()
+        self._crowd.close(SHUTDOWN_LIMIT)
+        stop_process_modules()
+
+    def _perform_goal(self, goal: Any, interrupt: Interrupt, publish: Callable[[Any], None]) -> Outcome:
+        def tell(task: Task) -> None:
+            publish(PerformDesignatorFeedback(task=task.path, state=task.state.value))
+
+        try:
+            answer = self._perform(read(goal), interrupt, tell)
+        except (PlanFailure, PlanError) as failure:
+            result = PerformDesignatorResult(failure=type(failure).__name__, text=str(failure))
+            return Outcome(result, interrupt.is_set(), "" if interrupt.is_set() else str(failure))
+        told = answer.told() if isinstance(answer, Grip) else answer
+        return Outcome(PerformDesignatorResult(result=json_of(told)))
+
+    def _perform(self, desig: Designator, interrupt: Interrupt, tell: Callable[[Task], None]) -> Any:
+        roots: list[Task] = []
+
+        def see(task: Task) -> None:
+            if not roots:
+                roots.append(task)
+                if interrupt.is_set():  # before there was a task that it could have ended
+                    end()
+            tell(task)
+
+        def end() -> None:
+            for root in roots:
+                root.evaporate("the goal was cancelled")
+
+        with interrupt.waking(end):
+            return top_level(do(perform, desig), name=str(desig), clock=self._robot.clock, observers=[see])
+
+    def _on_text(self, message: String) -> None:
+        try:
+            self._perform(designator(message.data), self._closing, lambda _: None)
+        except (PlanFailure, PlanError) as failure:
+            rospy.logerr("%s: %s: %s", TOPIC, type(failure).__name__, failure)
+
+
+def read(goal: Any) -> Designator:
+    """The designator of a goal of PerformDesignator.
+
+    Raises:
+        PlanError: It has none, or it cannot be read.
+    """
+    if goal.designator.strip():
+        if goal.pairs:
+            raise PlanError("designator: there is text, and keys and values: one of the two")
+        return designator(goal.designator)
+    kind = goal.kind.strip() or "action"
+    if not goal.pairs:
+        raise PlanError("designator: there is neither text nor keys and values")
+    return designator([(pair.key, _value(pair.value)) for pair in goal.pairs], kind)
+
+
+def _value(text: str) -> Any:
+    """What a text stands for: a designator in Lisp, or YAML."""
+    if text.lstrip().startswith("("):
+        return designator(text)
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise PlanError(f"designator: the value {text!r} is no YAML: {error}") from error

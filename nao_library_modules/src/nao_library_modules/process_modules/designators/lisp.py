@@ -1,0 +1,113 @@
+"""Designators as Lisp writes them: `(an action (type opening) (gripper left))`. Pure.
+
+Two forms are read. CRAM's begins with a quantifier and a kind, and has pairs behind them. The other has pairs alone, as
+in `(type: action (name: (to open)) (side: left))`: there the first key and value may stand without brackets of their
+own. Colons before or after a word do not count, nor does the package of `desig:an`.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from ..failures import PlanError
+
+TOKEN = re.compile(r'\s*(?:(?P<bracket>[()])|"(?P<text>(?:[^"\\]|\\.)*)"|(?P<word>[^\s()"]+))')
+NUMBER, FRACTION = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"), re.compile(r"[.eE]")
+QUANTIFIERS = {"a": "a", "an": "a", "the": "the", "all": "all"}
+
+
+def read_lisp(text: str) -> dict[str, Any]:
+    """Keys and values of a designator: the kind under `type` with its pairs, or as one key with a mapping.
+
+    Returns:
+        `{"quantifier": "a", "kind": "action", "pairs": {...}}`; quantifier and kind are empty where there are none.
+
+    Raises:
+        PlanError: Brackets are missing or too many, or it has another form.
+    """
+    forms = _read(text)
+    if len(forms) != 1 or not isinstance(forms[0], list):
+        raise PlanError(f"designator: {text!r} is not one form in brackets")
+    return _designator(forms[0], text)
+
+
+def _read(text: str) -> list[Any]:
+    """Nested lists of words; numbers are numbers, what was in quotes is a `_Quoted`."""
+    stack: list[list[Any]] = [[]]
+    opened: list[int] = []
+    position = 0
+    end = len(text.rstrip())
+    while position < end:
+        match = TOKEN.match(text, position)
+        if match is None:
+            raise PlanError(f"designator: {text!r} has an open quotation mark at {position + 1}")
+        if match["bracket"] == "(":
+            opened.append(match.start("bracket") + 1)
+            stack.append([])
+        elif match["bracket"] == ")":
+            if not opened:
+                raise PlanError(f"designator: {text!r} has a bracket too many at {match.start('bracket') + 1}")
+            opened.pop()
+            form = stack.pop()
+            stack[-1].append(form)
+        elif match["word"] is not None:
+            word = match["word"].strip(":")
+            if word:
+                stack[-1].append(_value(word))
+        else:
+            stack[-1].append(_Quoted(re.sub(r"\\(.)", r"\1", match["text"])))
+        position = match.end()
+    if opened:
+        raise PlanError(f"designator: {text!r}: the bracket at {opened[-1]} is not closed")
+    return stack[0]
+
+
+class _Quoted(str):
+    """A text that was in quotes: it is no key and no number."""
+
+
+def _value(word: str) -> Any:
+    if NUMBER.fullmatch(word):
+        return float(word) if FRACTION.search(word) else int(word)
+    return {"t": True, "nil": False}.get(word.lower(), word)
+
+
+def _designator(form: list[Any], text: str) -> dict[str, Any]:
+    head = [str(each).rpartition(":")[2].lower() for each in form[:2]]
+    if len(form) >= 2 and head[0] in QUANTIFIERS and isinstance(form[1], str):
+        return {"quantifier": QUANTIFIERS[head[0]], "kind": head[1], "pairs": _pairs(form[2:], text)}
+    return {"quantifier": "a", "kind": "", "pairs": _pairs(form, text)}
+
+
+def _pairs(forms: list[Any], text: str) -> dict[str, Any]:
+    pairs: dict[str, Any] = {}
+    rest = list(forms)
+    while rest:
+        entry = rest.pop(0)
+        if isinstance(entry, str) and not isinstance(entry, _Quoted) and rest:
+            key, values = entry, [rest.pop(0)]
+        elif isinstance(entry, list) and len(entry) >= 2 and isinstance(entry[0], str):
+            key, values = entry[0], entry[1:]
+        else:
+            raise PlanError(f"designator: {text!r}: {_shown(entry)} is no key with a value")
+        pairs[key.lower()] = _meant(values, text)
+    return pairs
+
+
+def _meant(values: list[Any], text: str) -> Any:
+    """What stands behind a key: one value, words that are one text, or a list."""
+    if len(values) == 1:
+        value = values[0]
+        if isinstance(value, list):
+            if value and str(value[0]).rpartition(":")[2].lower() in QUANTIFIERS and len(value) >= 2:
+                return _designator(value, text)
+            return _meant(value, text) if value else []
+        return str(value) if isinstance(value, _Quoted) else value
+    if all(isinstance(value, str) for value in values):
+        return " ".join(values)
+    return [_meant([value], text) for value in values]
+
+
+def _shown(form: Any) -> str:
+    return f"({' '.join(map(_shown, form))})" if isinstance(form, list) else str(form)

@@ -1,0 +1,150 @@
+"""What the process modules of a NAO can achieve, as goals, each under CRAM's kind of name and under its action's.
+
+These are the same:
+
+    achieve(opened_gripper("left"))
+    achieve(open_gripper, "left")
+    achieve(openGripper, "left")
+    achieve(low_level.open_gripper, "left")
+
+The process modules have to run, as `run_and_tell` and `start_process_modules` see to. In ROS.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..places import wrapped
+from . import low_level
+from .action_rules.values import ODOM, a_place
+from .designators.designator import action, an
+from .designators.patterns import Mismatch
+from .goals import achieved_by, declare_goal, def_goal
+from .low_level import this_robot
+from .registry import perform
+
+
+def _there(reached: bool) -> bool | None:
+    """True where nothing is to be done; otherwise nobody can tell: what achieves it fails by itself."""
+    return True if reached else None
+
+
+def _opening(side: str) -> float:
+    return this_robot().angles().get(f"{str(side)[:1].upper()}Hand", -1.0)
+
+
+@declare_goal
+def opened_gripper(side: str) -> bool | None:
+    """A hand, left or right, is open."""
+    settings = this_robot().settings
+    return _there(abs(_opening(side) - settings.gripper["open"]) < settings.gripper_tolerance)
+
+
+@declare_goal
+def closed_gripper(side: str) -> bool | None:
+    """A hand is closed, around something or not."""
+    settings = this_robot().settings
+    return _there(abs(_opening(side) - settings.gripper["closed"]) < settings.gripper_tolerance)
+
+
+@declare_goal
+def gripped(side: str) -> None:
+    """There is something in a closed hand."""
+
+
+@declare_goal
+def moved_arm(target: Any, side: str) -> None:
+    """A hand is at a point."""
+
+
+@declare_goal
+def looking_at(target: Any, y: float | None = None, z: float | None = None) -> None:
+    """The head looks at a position, a thing, or in a direction by its word; or at x, y and z."""
+
+
+@declare_goal
+def stable() -> bool | None:
+    """The robot is in the pose from which everything else can begin."""
+    robot = this_robot()
+    now, tolerance = robot.angles(), robot.settings.head_tolerance
+    return _there(all(abs(now.get(name, 9.0) - angle) < tolerance for name, angle in robot.settings.stable.items()))
+
+
+@declare_goal
+def at_place(target: Any) -> bool | None:
+    """The robot is at a place."""
+    try:
+        place, frame = a_place().take(target)
+    except Mismatch:
+        return None  # a designator
+    robot = this_robot()
+    here, (near, _) = robot.place(frame or ODOM), robot.settings.walk_tolerance
+    turned_well = place.yaw != place.yaw or abs(wrapped(here.yaw - place.yaw)) < robot.settings.walk_tolerance[1]
+    return _there(here.distance_to(place) < near and turned_well)
+
+
+@declare_goal
+def said(sentence: str) -> None:
+    """A sentence has been said."""
+
+
+@def_goal(opened_gripper)
+def _open(side: str) -> Any:
+    return perform(an(action, type="opening", gripper=side))
+
+
+@def_goal(closed_gripper)
+def _close(side: str) -> Any:
+    return perform(an(action, type="closing", gripper=side))
+
+
+@def_goal(gripped)
+def _grip(side: str) -> Any:
+    return perform(an(action, type="gripping", gripper=side))
+
+
+@def_goal(moved_arm)
+def _reach(target: Any, side: str) -> Any:
+    return perform(an(action, type="reaching", side=side, target=target))
+
+
+@def_goal(looking_at)
+def _look(target: Any, y: float | None, z: float | None) -> Any:
+    if y is not None:
+        target = [target, y] if z is None else [target, y, z]
+    return perform(an(action, type="looking", target=target))
+
+
+@def_goal(stable)
+def _stand() -> Any:
+    return perform(an(action, type="standing"))
+
+
+@def_goal(at_place)
+def _go(target: Any) -> Any:
+    return perform(an(action, type="going", target=target))
+
+
+@def_goal(said)
+def _say(sentence: str) -> Any:
+    return perform(an(action, type="saying", text=sentence))
+
+
+open_gripper = openGripper = opened_gripper  # noqa: N816  names of the thesis, here and below
+close_gripper = closeGripper = closed_gripper  # noqa: N816
+move_arm = moveArm = moved_arm  # noqa: N816
+move_head = moveHead = turn_head = turnHead = looking_at  # noqa: N816
+go_stable = goStable = stable  # noqa: N816
+walk_to = walkTo = at_place  # noqa: N816
+text_to_speech = textToSpeech = said  # noqa: N816
+
+for _function, _goal in (
+    (low_level.open_gripper, opened_gripper),
+    (low_level.close_gripper, closed_gripper),
+    (low_level.move_arm, moved_arm),
+    (low_level.move_head, looking_at),
+    (low_level.go_stable, stable),
+    (low_level.walk_to, at_place),
+    (low_level.text_to_speech, said),
+):
+    achieved_by(_function, _goal)
