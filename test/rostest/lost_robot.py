@@ -63,7 +63,7 @@ class LostRobot(MortalSimulator, unittest.TestCase):
         early = self.play(HALF).wait()
         self.assertEqual(early.state, GoalStatus.ABORTED)
         self.assertIn(str(PORT), early.text)
-        node = rosnode.get_api_uri(rosgraph.Master("/lost_robot_test"), "/nao_lights")
+        node = rosnode.get_api_uri(rosgraph.Master("/lost_robot_test"), "/NaoLights")
         self.wait_for_level(DiagnosticStatus.ERROR)
 
         self.start()
@@ -89,7 +89,7 @@ class LostRobot(MortalSimulator, unittest.TestCase):
             self.start()
             self.wait_until_it_works()
             self.wait_for_level(DiagnosticStatus.OK)
-        self.assertEqual(rosnode.get_api_uri(rosgraph.Master("/lost_robot_test"), "/nao_lights"), node)
+        self.assertEqual(rosnode.get_api_uri(rosgraph.Master("/lost_robot_test"), "/NaoLights"), node)
 
 
 if __name__ == "__main__":
