@@ -179,3 +179,11 @@ def test_modules_are_told_apart_and_relative_imports_followed(monkeypatch, tmp_p
     file.write_text("from . import led\nfrom ..lights import NaoLights\nif True:\n    import qi.path\n")
     found = ["nao_library_modules.driver.led", "nao_library_modules.lights.NaoLights", "qi.path"]
     assert list(imported(file)) == found
+
+
+def test_messages_and_actions_are_apart():
+    kinds = {
+        name: {path.suffix for path in ROOT.glob(f"{name}/*/*")} & {".msg", ".srv", ".action"}
+        for name in OWN_DEFINITIONS
+    }
+    assert kinds == {"nao_library_msgs": {".msg", ".srv"}, "nao_library_actions": {".action"}}
