@@ -12,7 +12,7 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from .errors import Preempted
-from .first_contact import PATIENCE, FirstContact
+from .first_contact import FirstContact
 from .health import GoalCounter
 from .interrupt import Interrupt
 from .soonest_end import let_the_client_note_the_goal
@@ -21,6 +21,8 @@ log = logging.getLogger(__name__)
 
 NEWER_GOAL = "a newer goal needs {}"
 CANCELED = "canceled"
+PATIENCE = 10.0
+"""s from the start of a node for which goals wait for a robot that was never reached yet."""
 
 
 class Replaced(Preempted):  # noqa: N818  a signal, like Preempted

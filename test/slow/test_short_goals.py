@@ -1,0 +1,54 @@
+"""Goals that are over at once, through actionlib's own client, which loses ends that come too early."""
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from nao_library_modules.own_stack import free_port
+
+pytestmark = pytest.mark.alone
+SERVER = """
+import rospy
+from actionlib.msg import TestAction
+from nao_library_modules.action_server import PromptActionServer
+rospy.init_node("server")
+server = PromptActionServer("short", TestAction, lambda goal: server.set_succeeded(), auto_start=False)
+server.start()
+rospy.spin()
+"""
+CLIENT = """
+import rospy
+from actionlib import SimpleActionClient
+from actionlib.msg import TestAction, TestGoal
+from actionlib_msgs.msg import GoalStatusArray
+rospy.init_node("client")
+client, lengths = SimpleActionClient("short", TestAction), []
+assert client.wait_for_server(rospy.Duration(30))
+rospy.Subscriber("short/status", GoalStatusArray, lambda told: lengths.append(len(told.status_list)))
+lost = 0
+for _ in range(2000):
+    client.send_goal(TestGoal())
+    lost += not client.wait_for_result(rospy.Duration(5))
+assert lost <= 1, f"{lost} of 2000 lost"
+assert 0 < max(lengths) < 20, f"{max(lengths)} goals in the status"
+"""
+
+
+def test_their_ends_are_not_lost_and_the_status_stays_short(tmp_path):
+    port = free_port()
+    environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_LOG_DIR": str(tmp_path)}
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment}
+    master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], **quiet)
+    server = subprocess.Popen([sys.executable, "-c", SERVER], **quiet)
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", CLIENT], env=environment, capture_output=True, text=True, timeout=120
+        )
+        assert done.returncode == 0, done.stderr
+    finally:
+        for process in (server, master):
+            process.send_signal(signal.SIGINT)
+            process.wait(30.0)
