@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import logging
 import os
 import signal
@@ -14,6 +15,7 @@ from nao_sim_bridge.sim.errors import SimulationError
 
 def main() -> int:
     """Run until a signal, a client's shutdown or a failure; returns the exit status."""
+    faulthandler.register(signal.SIGUSR1)  # kill -USR1: where every thread is
     arguments = parse("python -m nao_sim_bridge")
     logging.basicConfig(
         level=logging.DEBUG if arguments.verbose else logging.INFO, format="[nao_sim] %(levelname)s %(message)s"

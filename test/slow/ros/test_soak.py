@@ -23,7 +23,8 @@ class Soak(unittest.TestCase):
                 env={**os.environ, "PYTHONUNBUFFERED": "1"},
                 check=False,
             )
-            self.assertEqual(done.returncode, 0, f"{done.stdout}\n{done.stderr}")
+            simulator = (Path(folder) / "nao_sim.log").read_text(encoding="utf-8", errors="replace")[-20000:]
+            self.assertEqual(done.returncode, 0, f"{done.stdout}\n{done.stderr}\n{simulator}")
             report = json.loads((Path(folder) / "report.json").read_text(encoding="utf-8"))
             said = (Path(folder) / "roslaunch.log").read_text(encoding="utf-8", errors="replace")[-20000:]
         self.assertEqual(len(report["accidents"]), 2)

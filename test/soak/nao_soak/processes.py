@@ -151,6 +151,12 @@ class Simulator:
             self._process.wait()
             self._process = None
 
+    def tell_where_it_is(self) -> str:
+        """Have it write into its log where each of its threads is; whether it takes connections."""
+        os.kill(self.pid, signal.SIGUSR1)
+        takes = _listens(self._machines.robot, self._machines.nao_port)
+        return f"the simulator {'takes' if takes else 'does not take'} connections; its threads are in nao_sim.log"
+
     @property
     def pid(self) -> int:
         """Its process id.

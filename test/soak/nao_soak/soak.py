@@ -151,6 +151,8 @@ class _Soak:
                 rospy.wait_for_message(topic, kind, left())
             except rospy.ROSException:
                 faults.append(f"{topic}: nothing comes {when}")
+        if faults:
+            faults.append(self._simulator.tell_where_it_is())
         self._findings.faults += faults
         return not faults
 
