@@ -1,5 +1,7 @@
 """The first clients of lights, sound and touch, started as users start them."""
 
+import subprocess
+
 from examples_fixture import ExampleTest, start
 from sound_fixture import Loudspeakers
 
@@ -55,5 +57,8 @@ class LightAndSoundExamples(ExampleTest):
             text, _ = example.communicate(timeout=self.limit)
             self.assertEqual(example.returncode, 0, text)
             self.assertIn("nod: succeeded", text)
+        except subprocess.TimeoutExpired:
+            example.kill()
+            self.fail(f"it does not end: {example.communicate()[0]}")
         finally:
             example.kill()
