@@ -269,6 +269,10 @@ class Behaviors(unittest.TestCase):
 
     # --- examples -----------------------------------------------------------------------------------------------------
 
+    def sees_a_goal(self, news):
+        send(self.lights, NaoLedGoal([LedFunction(function="off", lights=[EYES])])).wait(10.0)
+        return any(m.feedback.state == "recorded" for m in news)
+
     def test_the_examples_run_and_record(self):
         running = start("run_behavior.py", "three", "colour=red")
         told, _ = running.communicate(timeout=60)
@@ -279,7 +283,8 @@ class Behaviors(unittest.TestCase):
         with News().messages("NaoBehavior/feedback", NaoBehaviorActionFeedback) as news:
             recording = start("record_behavior.py", "watched", "--seconds", "2")
             wait_until(lambda: any(m.feedback.function == "recordBehavior" for m in news), 30.0, "the recording")
-        send(self.lights, NaoLedGoal([LedFunction(function="off", lights=[EYES])])).wait(10.0)
+            # It begins a moment after it was told that the function does: so a goal is sent until one is recorded.
+            wait_until(lambda: self.sees_a_goal(news), 10.0, "a goal that is recorded")
         told, _ = recording.communicate(timeout=60)
         self.assertIn("recording for 2 s", told)
         self.assertEqual(recording.returncode, 0, told)
