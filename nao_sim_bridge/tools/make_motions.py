@@ -15,8 +15,8 @@ from choreography import Choreographer
 from motion_dance import dance
 from motion_tables import bow_deep, bow_small, look_around, offer, point_to_self, tai_chi, wave
 
-from nao_library_modules.motion_store import MotionStore
-from nao_library_modules.recorded_motion import recorded
+from nao_library_modules.motion.recorded_motion import recorded
+from nao_library_modules.motion.store import MotionStore
 from nao_sim_bridge.sim.model import load_model
 
 FOLDER = Path(__file__).resolve().parents[2] / "nao_library_modules" / "config" / "motions"

@@ -9,6 +9,7 @@ import signal
 import sys
 
 from nao_sim_bridge.cli import parse, server_options
+from nao_sim_bridge.closing import REFUSED, close_all, exit_in_time, wait_for_end
 from nao_sim_bridge.robots_server import open_server
 from nao_sim_bridge.sim.errors import SimulationError
 
@@ -27,13 +28,11 @@ def main() -> int:
         server.start()
     except (SimulationError, RuntimeError) as error:
         logging.getLogger("nao_sim").error("%s", error)
-        return 1
-    while not server.ended.wait(0.5):
-        if not server.runner.running:
-            server.stop()
-            return 1
-    server.stop()
-    return 0
+        return REFUSED
+    status = wait_for_end(server)
+    exit_in_time()
+    close_all(*server.ending())
+    return status
 
 
 if __name__ == "__main__":

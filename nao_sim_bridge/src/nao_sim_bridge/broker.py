@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import logging
-import os
-import queue
 import socket
-import struct
 import threading
 import time
-from pathlib import Path
+from collections import deque
 from typing import Any, Callable
 
 import qi
+
+from nao_sim_bridge.own_sockets import StuckClients, free_port_on_exit, has_clients
+from nao_sim_bridge.services.client_calls import NoAnswer, answer, worth_telling
+from nao_sim_bridge.sim.sizes import load_sizes
 
 log = logging.getLogger("nao_sim.broker")
 
@@ -21,8 +22,10 @@ BIND_PATIENCE = 65.0
 BIND_PAUSE = 0.5
 # The thread that calls a client's module ends after this time without a call, s.
 CALLER_IDLE = 20.0
-# State of a listening socket in the tables of /proc.
-LISTENS = "0A"
+# Calls that wait for a client's module; with more it loses the oldest.
+WAITING = load_sizes().clients.calls
+# How long a module may take to be found, s: one of a program that has stopped is never connected to.
+PATIENCE = 10.0
 # libqi reports each service it registers, and warns that it deduces paths it has no use for here.
 QUIET_LIBQI = "qi.path.sdklayout=silent:qimessaging.servicedirectory=warning"
 
@@ -45,6 +48,8 @@ class Broker:
         self._session = qi.Session()
         self._services: dict[str, tuple[int, Any]] = {}
         self._callers: dict[str, _Caller] = {}
+        self._gone: Callable[[str], None] = lambda module: None
+        self._watch: StuckClients | None = None
         self._closed = False
         self._lock = threading.Lock()
 
@@ -73,7 +78,8 @@ class Broker:
                 time.sleep(BIND_PAUSE)
                 self._session = qi.Session()
         self.port = int(self._session.endpoints()[0].rsplit(":", 1)[1])
-        _free_port_on_exit(self.port)
+        free_port_on_exit(self.port)
+        self._watch = StuckClients(self.port)
 
     def register(self, module: str, service: Any) -> None:
         """Serve an object under a name."""
@@ -99,12 +105,25 @@ class Broker:
             self._session.unregisterService(entry[0])
 
     def when_gone(self, callback: Callable[[str], None]) -> None:
-        """Have `callback(module)` called, in a thread of libqi, when a module has left; only after `listen`."""
-        self._session.serviceUnregistered.connect(lambda _, module: callback(module))
+        """Have `callback(module)` called, in a thread of ours, when a client's module has left or is given up.
+
+        Only after `listen`. Not when one of that name is there again, whose subscriptions may be new.
+        """
+        self._gone = callback
+        self._session.serviceUnregistered.connect(lambda _, module: self._left(module))
+
+    def has_clients(self) -> bool:
+        """Whether somebody is connected; true where the system does not tell."""
+        return has_clients(self.port)
 
     def service(self, module: str) -> Any:
-        """The service of that name, of the simulator or of a client."""
-        return self._session.service(module)
+        """The service of that name, of the simulator or of a client.
+
+        Raises:
+            RuntimeError: There is none, or its program does not answer.
+        """
+        found = self._session.service(module, _async=True)
+        return answer(found, threading.Condition(), lambda: True, PATIENCE)
 
     def call(self, module: str, method: str, arguments: list) -> None:
         """Call a module of a client without waiting, in the order of the calls; failures are logged."""
@@ -113,17 +132,42 @@ class Broker:
                 return
             caller = self._callers.get(module)
             if caller is None:
-                caller = self._callers[module] = _Caller(module, self._session, self._end_if_idle)
-            caller.calls.put((method, arguments))
+                caller = self._callers[module] = _Caller(module, self.service, self._end_if_idle, self._give_up)
+            caller.add(method, arguments)
 
     def _end_if_idle(self, caller: _Caller) -> bool:
         """Forget a caller that has nothing to do; under the lock, so that no call is handed to a thread that ends."""
         with self._lock:
-            if not caller.calls.empty():
+            if caller.waits:
                 return False
-            if self._callers.get(caller.module) is caller:
-                del self._callers[caller.module]
+            self._forget(caller)
             return True
+
+    def _give_up(self, caller: _Caller) -> None:
+        with self._lock:
+            self._forget(caller)
+        self._gone(caller.module)
+
+    def _forget(self, caller: _Caller) -> None:
+        if self._callers.get(caller.module) is caller:
+            del self._callers[caller.module]
+
+    def _left(self, module: str) -> None:
+        with self._lock:
+            ours = module in self._services
+            caller = self._callers.pop(module, None)
+        if caller is not None:
+            caller.end()
+        if not ours:  # in a thread of its own: libqi's must not wait for an answer of libqi
+            threading.Thread(target=self._tell_of, args=(module,), name=f"{module} has left", daemon=True).start()
+
+    def _tell_of(self, module: str) -> None:
+        try:
+            back = any(served["name"] == module for served in self._session.services())
+        except RuntimeError:
+            return  # the session has closed
+        if not back:
+            self._gone(module)
 
     def close(self) -> None:
         """Stop listening and drop all connections; calls that wait for their turn are not made any more."""
@@ -132,6 +176,8 @@ class Broker:
             callers = list(self._callers.values())
         for caller in callers:
             caller.end()
+        if self._watch is not None:
+            self._watch.close()
         self._session.close()
 
 
@@ -141,89 +187,89 @@ class _Caller:
     Not in libqi's callbacks: a call made in one needs the very thread that runs it, now and then.
     """
 
-    def __init__(self, module: str, session: Any, ends: Callable[[_Caller], bool]) -> None:
+    def __init__(
+        self,
+        module: str,
+        service: Callable[[str], Any],
+        ends: Callable[[_Caller], bool],
+        gives_up: Callable[[_Caller], None],
+    ) -> None:
         self.module = module
-        self.calls: queue.Queue[tuple[str, list] | None] = queue.Queue()
-        self._session = session
+        self._service = service
         self._ends = ends
+        self._gives_up = gives_up
+        self._news = threading.Condition()
+        self._calls: deque[tuple[str, list]] = deque()
+        self._ended = False
+        self._lost = self._failed = 0
         threading.Thread(target=self._run, name=f"calls of {module}", daemon=True).start()
 
+    @property
+    def waits(self) -> bool:
+        """Whether calls wait for their turn."""
+        return bool(self._calls)
+
+    def add(self, method: str, arguments: list) -> None:
+        """Make a call when those before it are over; of too many the oldest is lost."""
+        with self._news:
+            if len(self._calls) >= WAITING:
+                self._calls.popleft()
+                self._lost += 1
+                if worth_telling(self._lost):
+                    log.warning("%s does not keep up: %d calls lost so far", self.module, self._lost)
+            self._calls.append((method, arguments))
+            self._news.notify_all()
+
     def end(self) -> None:
-        """End the thread once the call it makes, if any, is over; drop the calls behind it."""
+        """End the thread; a call that is under way is not waited for, those behind it are dropped."""
+        with self._news:
+            self._ended = True
+            self._news.notify_all()
         self.drop()
-        self.calls.put(None)
 
     def drop(self) -> None:
         """Forget the calls that wait for their turn."""
-        while True:
-            try:
-                self.calls.get_nowait()
-            except queue.Empty:
-                return
+        with self._news:
+            self._calls.clear()
 
     def _run(self) -> None:
         while True:
-            try:
-                call = self.calls.get(timeout=CALLER_IDLE)
-            except queue.Empty:
-                if self._ends(self):
+            with self._news:
+                self._news.wait_for(lambda: self._calls or self._ended, CALLER_IDLE)
+                if self._ended:
                     return
-                continue
-            if call is None:
+                call = self._calls.popleft() if self._calls else None
+            if call is not None:
+                if not self._make(*call):
+                    return
+            elif self._ends(self):
                 return
-            self._make(*call)
 
-    def _make(self, method: str, arguments: list) -> None:
+    def _make(self, method: str, arguments: list) -> bool:
+        """Make a call and wait for its end; whether to go on."""
         try:
-            service = self._session.service(self.module)
+            service = self._service(self.module)
         except RuntimeError as error:
-            log.warning("callback %s.%s lost: no such module: %s", self.module, method, error)
-            return
+            self._tell(method, f"lost: {error}")
+            return True
         try:
-            service.call(method, *arguments)
+            answer(service.call(method, *arguments, _async=True), self._news, lambda: not self._ended)
+        except NoAnswer as error:
+            if not self._ended:
+                log.warning("%s.%s: %s; %s is called no more", self.module, method, error, self.module)
+                self._gives_up(self)
+            return False
         except (RuntimeError, AttributeError) as error:
-            log.warning("callback %s.%s failed: %s", self.module, method, error)
+            self._tell(method, f"failed: {error}")
+        return True
+
+    def _tell(self, method: str, what: str) -> None:
+        self._failed += 1
+        if worth_telling(self._failed):
+            log.warning("callback %s.%s %s (%d so far)", self.module, method, what, self._failed)
 
 
 def _somebody_listens(address: str, port: int) -> bool:
     with socket.socket() as probe:
         probe.settimeout(0.5)
         return probe.connect_ex((address if address != "0.0.0.0" else "127.0.0.1", port)) == 0
-
-
-def _free_port_on_exit(port: int) -> None:
-    """Let the port be taken again at once after this process ends, however it ends.
-
-    libqi binds without SO_REUSEADDR, so connections in TIME_WAIT would keep a killed simulator's port for a minute.
-    With a linger time of 0, which accepted sockets inherit from the listening one, they are reset instead.
-    """
-    folder = "/proc/self/fd"
-    if not os.path.isdir(folder):
-        return
-    listening = _listening_sockets(port)
-    for descriptor in os.listdir(folder):
-        try:
-            if os.readlink(f"{folder}/{descriptor}") not in listening:
-                continue
-            blocking = os.get_blocking(int(descriptor))
-            with socket.socket(fileno=os.dup(int(descriptor))) as candidate:
-                # A copy shares its mode with the original, and where Python has a default timeout (rospy sets one) it
-                # makes every socket non-blocking that it gets to see.
-                os.set_blocking(int(descriptor), blocking)
-                candidate.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-        except OSError:
-            continue  # a descriptor that closed meanwhile
-
-
-def _listening_sockets(port: int) -> set[str]:
-    """What the descriptors of sockets that listen on a TCP port lead to, as /proc spells it."""
-    found = set()
-    for table in ("/proc/self/net/tcp", "/proc/self/net/tcp6"):
-        try:
-            lines = Path(table).read_text(encoding="ascii").splitlines()[1:]
-        except OSError:
-            continue  # a kernel without this family
-        for _, local, _, state, *_, inode in (line.split()[:10] for line in lines):
-            if state == LISTENS and int(local.rsplit(":", 1)[1], 16) == port:
-                found.add(f"socket:[{inode}]")
-    return found

@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import Sequence
+from typing import Callable, Sequence
 
 from nao_sim_bridge.record_dir import DEFAULT_RECORD_DIR
 from nao_sim_bridge.server import ServerOptions
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.limits import kind, world_kind
 from nao_sim_bridge.sim.model import VERSIONS
 from nao_sim_bridge.sim.places import MOST_ROBOTS, RobotPlace, parse_places
 from nao_sim_bridge.sim.postures import load_postures
@@ -40,11 +41,18 @@ def parser(prog: str) -> argparse.ArgumentParser:
     options.add_argument(
         "--friction", type=_friction, default="world", help="coefficient between soles and floor; world: as it says"
     )
-    options.add_argument("--payload", type=_amount, default=0.0, help="mass that the torso carries besides its own, kg")
     options.add_argument(
-        "--sensor-noise", type=_amount, default=0.0, help="errors of the sensors: 0 none, 1 as those of a real robot"
+        "--payload", type=_amount("payload"), default=0.0, help="mass that the torso carries besides its own, kg"
     )
-    options.add_argument("--sensor-delay", type=_amount, default=0.0, help="how late readings of sensors arrive, s")
+    options.add_argument(
+        "--sensor-noise",
+        type=_amount("sensor_noise"),
+        default=0.0,
+        help="errors of the sensors: 0 none, 1 as those of a real robot",
+    )
+    options.add_argument(
+        "--sensor-delay", type=_amount("sensor_delay"), default=0.0, help="how late readings of sensors arrive, s"
+    )
     options.add_argument("--charger", action="store_true", help="the charger is plugged in from the start")
     options.add_argument(
         "--record-dir", type=Path, default=DEFAULT_RECORD_DIR, help="folder for pictures, recordings and other files"
@@ -77,6 +85,11 @@ def parser(prog: str) -> argparse.ArgumentParser:
         metavar="X,Y,HEADING;...",
         help="where they stand, in m and deg; empty: where the world says, or on a circle, facing each other",
     )
+    options.add_argument(
+        "--allow-private-streams",
+        action="store_true",
+        help="playWebStream may fetch from this computer and from private networks",
+    )
     options.add_argument("--paused", action="store_true", help="start without time passing")
     options.add_argument("--verbose", action="store_true", help="log more")
     return options
@@ -108,6 +121,7 @@ def server_options(arguments: argparse.Namespace) -> ServerOptions:
         arguments.renderer,
         robots=arguments.robots,
         places=arguments.places,
+        allow_private_streams=arguments.allow_private_streams,
     )
 
 
@@ -125,22 +139,30 @@ def _speed(text: str) -> float:
         speed = math.nan
     if speed == 0.0:
         return math.inf
-    if not speed > 0.0:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a speed: a number above 0, or max")
+    pace = kind("pace")
+    if not pace.fits(speed):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a speed: a number above 0, or max ({pace.smallest:g} to {pace.highest:g})"
+        )
     return speed
 
 
 def _friction(text: str) -> float | None:
-    return None if text == "world" else _amount(text)
+    return None if text == "world" else _amount("friction")(text)
 
 
-def _amount(text: str) -> float:
-    try:
-        amount = float(text)
-    except ValueError:
-        amount = math.nan
-    if not 0.0 <= amount < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is not an amount: a number of 0 or more")
+def _amount(option: str) -> Callable[[str], float]:
+    most = world_kind(option).highest
+
+    def amount(text: str) -> float:
+        try:
+            number = float(text)
+        except ValueError:
+            number = math.nan
+        if not 0.0 <= number <= most:
+            raise argparse.ArgumentTypeError(f"{text!r} is not an amount: a number of 0 or more, {most:g} at most")
+        return number
+
     return amount
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections import deque
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +30,8 @@ TOO_MANY_WAITING = 4000
 """Likewise, of time that does not wait: further ones are left out."""
 END_LIMIT = 1800.0
 """s of wall time; at the end everything that waits is drawn."""
+FOLLOWER_LIMIT = 5.0
+"""s of wall time; likewise for what is heard."""
 
 
 @dataclass(frozen=True)
@@ -116,27 +119,45 @@ class Film:
         """Write a text into the pictures from now on; any thread."""
         self._put("caption", text)
 
-    def end(self) -> FilmReport:
+    def end(self, limit: float = END_LIMIT) -> FilmReport:
         """Draw what waits and complete the file; after `pause`.
 
+        Args:
+            limit: s of wall time. After that the file is completed with what the film process has by then.
+
         Raises:
-            RenderError: Something went wrong on the way.
+            RenderError: Something went wrong on the way, or it has taken too long.
         """
+        deadline = time.monotonic() + limit
         if self._follower is not None:
-            self._follower.close()
+            self._follower.close(min(FOLLOWER_LIMIT, limit))
         with self._news:
             self._ending = True
             self._news.notify_all()
-        self._thread.join()
+        self._thread.join(max(0.0, deadline - time.monotonic()))
+        late = self._thread.is_alive()
+        if not late and self._failure is None:
+            self._worker.send("end", None, "film")
+            late = not self._worker.pipe.poll(max(0.0, deadline - time.monotonic()))
+        if late:
+            self._leave(RenderError(f"{self.path} ends early: it could not be drawn within {limit:g} s"))
         try:
             if self._failure is not None:
                 raise self._failure
-            frames, duration = self._worker.ask("end", None, END_LIMIT, "film")
+            frames, duration = self._worker.receive(0.0, "film")
         finally:
-            self._worker.stop()
+            if not late:
+                self._worker.stop()
         if self._left_out:
             log.warning("%d frames are missing in %s: the computer is too slow for them", self._left_out, self.path)
         return FilmReport(self.path, frames, duration, self._left_out)
+
+    def _leave(self, reason: RenderError) -> None:
+        """Leave the process to itself: it completes the file with what it has."""
+        with self._news:
+            self._failure = reason
+            self._waiting.clear()
+        self._worker.leave()
 
     def _look(self, snapshot: Snapshot) -> None:
         """Take a frame if one is due; after every tick."""
@@ -175,10 +196,11 @@ class Film:
                 if kind == "frame":
                     content = (content[0], self._sender.pack(content[1]))
                 self._worker.send(kind, content, "film")
-            except RenderError as error:
-                log.warning("%s is incomplete: %s", self.path, error)
+            except Exception as error:
                 with self._news:
-                    self._failure = error
+                    if self._failure is None:
+                        log.warning("%s is incomplete: %s", self.path, error)
+                        self._failure = error if isinstance(error, RenderError) else RenderError(repr(error))
                     self._waiting.clear()
             if len(self._waiting) <= MANY_WAITING:
                 self._simulation.wake()

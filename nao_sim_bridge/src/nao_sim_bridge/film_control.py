@@ -6,13 +6,14 @@ import logging
 import threading
 from typing import Any
 
-from nao_sim_bridge.film import Film, FilmReport
-from nao_sim_bridge.record_dir import ClientFiles
+from nao_sim_bridge.film import END_LIMIT, Film, FilmReport
+from nao_sim_bridge.record_dir import ClientFiles, unused
 from nao_sim_bridge.sim.errors import BadValue, NotAllowed, UnknownName
 from nao_sim_bridge.sim.render.client import RenderError
 from nao_sim_bridge.sim.render.scene import PRESETS
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.tasks import Task, TaskIds
 
 log = logging.getLogger("nao_sim.film")
@@ -48,7 +49,8 @@ class FilmControl:
         """Begin a film; the task ends with its path, as text, when the camera runs.
 
         Args:
-            file: Name inside the folder for recordings, ending with .mp4; empty for film.mp4.
+            file: Name inside the folder for recordings, ending with .mp4; one that is there is replaced. Empty for
+                film.mp4, or film-2.mp4, ...: the first one that is not there.
             view: A view of pictures; empty for three_quarter.
             width: Pixels, even; 0 for 480.
             height: Likewise.
@@ -58,7 +60,7 @@ class FilmControl:
             SimulationError: One of them is wrong.
             ValueError: There can be no such file.
         """
-        file, view, frame_rate = file or FILE, view or VIEW, frame_rate or FRAME_RATE
+        view, frame_rate = view or VIEW, frame_rate or FRAME_RATE
         size = (width or SIZE[0], height or SIZE[1])
         if view not in PRESETS:
             raise UnknownName("view", view, PRESETS)
@@ -66,9 +68,9 @@ class FilmControl:
             raise BadValue("film size", size, f"even numbers, 16 to {MAX_SIZE} pixels each way")
         if not 1.0 <= frame_rate <= MAX_FRAME_RATE:
             raise BadValue("frame_rate", frame_rate, f"1 to {MAX_FRAME_RATE:g} a second")
-        if not file.endswith(TYPE):
+        if file and not file.endswith(TYPE):
             raise BadValue("file", file, f"a name that ends with {TYPE}")
-        path = self._files.to_keep(file)
+        path = self._files.to_keep(file) if file else unused(self._files.to_keep(FILE))
 
         def start() -> str:
             with self._lock:
@@ -85,8 +87,12 @@ class FilmControl:
         """Write a text into the film from now on; empty for none.
 
         Raises:
+            BadValue: It is too long.
             NotAllowed: Nothing is filmed.
         """
+        longest = load_sizes().film.caption_characters
+        if len(text) > longest:
+            raise BadValue("caption", f"{text[:40]}... of {len(text)} characters", f"{longest} characters at most")
         self._running().caption(text)
 
     def stop(self) -> Task:
@@ -101,14 +107,18 @@ class FilmControl:
 
         return self._in_background(stop, "stopFilm")
 
-    def close(self) -> None:
-        """End the film that is being taken, if there is one; before the simulation ends."""
+    def close(self, limit: float = END_LIMIT) -> None:
+        """End the film that is being taken, if there is one; before the simulation ends.
+
+        Args:
+            limit: s of wall time, after which what is not drawn yet is left out.
+        """
         with self._lock:
             film, self._film = self._film, None
         if film is not None:
             self._runner.call(film.pause)
             try:
-                log.info("%s is complete", film.end().path)
+                log.info("%s is complete", film.end(limit).path)
             except RenderError as error:
                 log.warning("%s", error)
 

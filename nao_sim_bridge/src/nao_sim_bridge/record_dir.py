@@ -8,11 +8,14 @@ import posixpath
 from pathlib import Path
 from typing import Sequence
 
+from nao_sim_bridge.sim.whole_file import tidy
+
 DEFAULT_RECORD_DIR = Path("~/.ros/nao_recordings")
 # Where a real robot keeps the files of its users. Scripts that were written for one name it in full.
 ROBOT_HOME = "/home/nao"
 # Longest part of a path, and longest path, in bytes; no file system here has longer ones.
 LONGEST_PART, LONGEST_PATH = 255, 4000
+WORLD_ENDINGS = (".yaml", ".yml")
 log = logging.getLogger("nao_sim.files")
 
 
@@ -43,6 +46,7 @@ class ClientFiles:
     def __init__(self, folder: Path | str, shipped: Sequence[Path] = ()) -> None:
         self.folder = Path(folder).expanduser().absolute()
         self.shipped = tuple(shipped)
+        tidy(self.folder)
         self._made: dict[Path, None] = {}  # in the order in which they were asked for; any thread
 
     def to_write(self, name: str) -> Path:
@@ -102,6 +106,29 @@ class ClientFiles:
         if any(path.is_dir() for path in found):
             raise NoSuchFile(f"{name!r} is a folder, not a file")
         raise NoSuchFile(f"no file {name!r} in {self.folder}")
+
+
+def world_of_client(name: str, files: ClientFiles, first: str) -> str:
+    """A world that a client names: one that comes along, or a file in the folder for recordings or beside the first.
+
+    Args:
+        name: Of the world, or path of its file, in full or from one of these folders.
+        files: Files of the client.
+        first: The world in which the simulator was started, which may be elsewhere.
+
+    Raises:
+        NoSuchFile: There is no such file in these folders.
+        UnusableName: It is too long.
+    """
+    if name in ("", first) or Path(name).suffix not in WORLD_ENDINGS:
+        return name
+    folders = [files.folder, *([Path(first).absolute().parent] if Path(first).suffix in WORLD_ENDINGS else [])]
+    for folder in folders:
+        in_full = Path(name).is_absolute() and "\0" not in name
+        path = _inside(folder, os.path.relpath(os.path.realpath(name), folder.resolve()) if in_full else name)
+        if path is not None and path.is_file():
+            return str(path)
+    raise NoSuchFile(f"no world file {name!r} in {' or '.join(map(str, folders))}")
 
 
 def unused(path: Path) -> Path:

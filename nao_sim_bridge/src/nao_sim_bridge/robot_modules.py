@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import logging
+from functools import partial
 from typing import TYPE_CHECKING, Any, Callable
 
+from nao_sim_bridge.closing import Step
+from nao_sim_bridge.film import END_LIMIT
 from nao_sim_bridge.film_control import FilmControl
 from nao_sim_bridge.hands_control import HandsControl
 from nao_sim_bridge.health_control import HealthControl
@@ -11,6 +15,7 @@ from nao_sim_bridge.paths import sounds_directory
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services import motion
 from nao_sim_bridge.services.audio import sound_detection, sound_localization
+from nao_sim_bridge.services.audio.sound_files import SoundFiles
 from nao_sim_bridge.services.audio.speech_recognition import RecognitionModule
 from nao_sim_bridge.services.audio.speech_wiring import SpeechModules
 from nao_sim_bridge.services.audio.wiring import AudioModules
@@ -36,6 +41,7 @@ from nao_sim_bridge.sim.hearing.recogniser import SpareProcess
 from nao_sim_bridge.sim.robot_runner import RobotRunner
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.sound.reader import SoundReader
 from nao_sim_bridge.sim.speech.studio import Studio
 from nao_sim_bridge.sim.vision.client import VisionProcess
 from nao_sim_bridge.things_control import ThingsControl
@@ -44,6 +50,8 @@ from nao_sim_bridge.world_sounds_control import WorldSoundsControl
 if TYPE_CHECKING:
     from nao_sim_bridge.broker import Broker
     from nao_sim_bridge.server import ServerOptions
+
+log = logging.getLogger("nao_sim.robot")
 
 
 class Workers:
@@ -54,6 +62,7 @@ class Workers:
         persons: Makes the speech of persons: they may speak while the robot does.
         vision: Where detectors look at pictures.
         recogniser: Recognises speech.
+        sounds: Reads sound files.
     """
 
     def __init__(self) -> None:
@@ -61,17 +70,15 @@ class Workers:
         self.persons = Studio()
         self.vision = VisionProcess()
         self.recogniser = SpareProcess()
+        self.sounds = SoundReader()
 
     def begin(self) -> None:
         """Have the voice ready for the first text."""
         self.voice.warm_up()
 
-    def close(self) -> None:
-        """End them."""
-        self.vision.close()
-        self.persons.close()
-        self.voice.close()
-        self.recogniser.close()
+    def closing(self) -> list[Step]:
+        """Steps that end them."""
+        return [one.close for one in (self.vision, self.persons, self.voice, self.recogniser, self.sounds)]
 
 
 class RobotModules:
@@ -106,9 +113,10 @@ class RobotModules:
         self.simulation = simulation
         self.runner = runner = RobotRunner(runner, simulation)
         self.began = 0.0
-        self.memory = memory = MemoryStore(lambda: simulation.snapshot.time)
+        self.memory = memory = MemoryStore(lambda: simulation.snapshot.time, simulation.shared.guard)
         self.files = files = ClientFiles(options.record_dir, [sounds_directory()])
-        self._audio = AudioModules(simulation, runner, files, broker)
+        sounds = SoundFiles(files, workers.sounds)
+        self._audio = AudioModules(simulation, runner, sounds, broker, memory, options.allow_private_streams)
         self.speech = SpeechModules(simulation, runner, memory, files, broker, workers.voice)
         posture = ALRobotPosture(simulation, runner, memory)
         behaviors = BehaviorModules(simulation, runner, memory, files, self.speech, posture)
@@ -119,7 +127,7 @@ class RobotModules:
         self.vision = VisionModules(simulation, memory, files, workers.vision)
         self._pictures_taken = PictureModules(simulation, runner, files)
         self._senses = SenseModules(simulation, runner, memory)
-        self.sounds = WorldSoundsControl(simulation, runner, files, workers.persons)
+        self.sounds = WorldSoundsControl(simulation, runner, sounds, workers.persons)
         self.things = ThingsControl(simulation, runner, files)
         self.hands = HandsControl(simulation, runner)
         self.film = FilmControl(simulation, runner, files, options.renderer)
@@ -165,16 +173,31 @@ class RobotModules:
         simulation.after_tick.append(DiagnosisEvents(simulation, memory))
         self._body.begin()
 
-    def leave(self) -> None:
-        """First part of the end, while the simulation runs or has been left behind: complete what is under way."""
-        self._life.close()
-        self.film.close()
-        self._audio.close()
-        self.vision.close()  # before what has files to complete, and needs the pictures that are drawn
-        self._pictures_taken.close()
-        self.video.close()
+    def client_gone(self, module: str) -> None:
+        """A module of a client has left: what is subscribed under its name ends, in every module of the robot."""
+        for name, parts in self.modules.items():
+            for part in parts:
+                if hasattr(part, "client_gone"):
+                    try:
+                        part.client_gone(module)
+                    except Exception:
+                        log.exception("%s does not let go of %s", name, module)
 
-    def close(self) -> None:
-        """Last part of the end, when the simulation has ended."""
-        self.speech.close()
-        self.recognition.close()
+    def leaving(self, film_limit: float = END_LIMIT) -> list[Step]:
+        """First steps of the end, while the simulation runs or has been left behind: complete what is under way.
+
+        Args:
+            film_limit: See `FilmControl.close`.
+        """
+        return [
+            self._life.close,
+            *self._audio.closing(),
+            *self.vision.closing(),  # before what has files to complete, and needs the pictures that are drawn
+            *self._pictures_taken.closing(),
+            *self.video.closing(),
+            partial(self.film.close, film_limit),  # what takes longest
+        ]
+
+    def closing(self) -> list[Step]:
+        """Last steps of the end, when the simulation has ended."""
+        return [self.speech.close, self.recognition.close]

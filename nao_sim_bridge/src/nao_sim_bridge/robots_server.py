@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Callable
 
+from nao_sim_bridge.closing import Step, close_all
 from nao_sim_bridge.server import ServerOptions, SimulatorServer, renderer_for, scene_in
 from nao_sim_bridge.sim.errors import BadValue, NotAllowed, SimulationStopped
 from nao_sim_bridge.sim.places import RobotPlace, checked_places, on_circle
@@ -77,12 +78,13 @@ class RobotsServer:
 
     def stop(self) -> None:
         """Leave the network and end the simulation."""
+        close_all(*self.ending())
+
+    def ending(self) -> list[Step]:
+        """The steps of `stop`; the robots leave with the first call."""
         self.ended.set()
-        for server in self.servers:
-            self._take_off(server)
-        self.runner.stop()
-        for server in self.servers:
-            server.close()
+        leaving = [step for server in self.servers for step in self._leaving(server)]
+        return [*leaving, self.runner.stop, *(step for server in self.servers for step in server.closing())]
 
     def factory_reset(self, world: str = "") -> None:
         """Begin anew with all robots; see `SimulatorServer.factory_reset`. Those that were shut down stay limp."""
@@ -121,7 +123,7 @@ class RobotsServer:
         if self.ended.wait(ANSWER_TIME):
             return
         log.info("%s was shut down", server.options.name)
-        self._take_off(server)
+        close_all(*self._leaving(server))
         try:
             server.runner.call(lambda: _go_limp(server.simulation))
         except SimulationStopped:
@@ -129,12 +131,13 @@ class RobotsServer:
         if len(self._left) == len(self.servers):
             self.ended.set()
 
-    def _take_off(self, server: SimulatorServer) -> None:
+    def _leaving(self, server: SimulatorServer) -> list[Step]:
+        """Steps that take a robot off the network; none where that has been done."""
         with self._lock:
             if server in self._left:
-                return
+                return []
             self._left.append(server)
-            server.leave()
+        return server.leaving()
 
 
 def open_server(options: ServerOptions) -> SimulatorServer | RobotsServer:

@@ -15,6 +15,7 @@ from nao_library_msgs.srv import (
     StopFilmRequest,
     StopFilmResponse,
 )
+from nao_sim_bridge.ros_limits import checked
 from nao_sim_bridge.server import SimulatorServer
 
 ERRORS = (RuntimeError, ValueError, OSError)
@@ -39,6 +40,7 @@ class RosFilm:
 
     def _on_start(self, request: StartFilmRequest) -> StartFilmResponse:
         try:
+            checked(request)
             path = self._server.film.start(
                 request.file, request.view, request.width, request.height, request.frame_rate
             ).result()
@@ -48,7 +50,7 @@ class RosFilm:
 
     def _on_caption(self, request: CaptionFilmRequest) -> CaptionFilmResponse:
         try:
-            self._server.film.caption(request.text)
+            self._server.film.caption(checked(request).text)
         except ERRORS as error:
             return CaptionFilmResponse(False, str(error))
         return CaptionFilmResponse(True, "")

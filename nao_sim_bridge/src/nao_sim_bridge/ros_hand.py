@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Callable
+
+import rospy
+
 from nao_library_msgs.srv import (
     ReleaseSensors,
     ReleaseSensorsRequest,
@@ -10,9 +14,11 @@ from nao_library_msgs.srv import (
     TouchSensorsRequest,
     TouchSensorsResponse,
 )
+from nao_sim_bridge.ros_limits import checked
 from nao_sim_bridge.ros_success import success_service
 from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.task_success import success_of
 
 KILLED = "the hand was sent away"
 
@@ -25,17 +31,31 @@ class RosHand:
     Args:
         server: The running simulator.
         private: What the names of its services begin with.
+        stamp: ROS time of a time of the server's `now`, s.
     """
 
-    def __init__(self, server: SimulatorServer, private: str = "~") -> None:
+    def __init__(self, server: SimulatorServer, private: str, stamp: Callable[[float], rospy.Time]) -> None:
         self._server = server
+        self._stamp = stamp
         self._services = [
-            success_service(f"{private}touch", TouchSensors, TouchSensorsResponse, self._touch, KILLED),
+            rospy.Service(f"{private}touch", TouchSensors, self._on_touch),
             success_service(f"{private}release", ReleaseSensors, ReleaseSensorsResponse, self._release, KILLED),
         ]
 
-    def _touch(self, request: TouchSensorsRequest) -> Task:
-        return self._server.hands.touch(request.sensors, request.time.to_sec(), request.wait)
+    def _on_touch(self, request: TouchSensorsRequest) -> TouchSensorsResponse:
+        contacts: list[float | None] = []
+
+        def begin() -> Task:
+            checked(request)
+            called = self._server.hands.touch(request.sensors, request.time.to_sec(), request.wait)
+            return called.then(lambda hand: hand and hand.then(contacts.append))
+
+        began = self._server.began
+        success, message = success_of(begin, KILLED)
+        response = TouchSensorsResponse(success=success, message=message)
+        if contacts and contacts[0] is not None:
+            response.contact = self._stamp(began + contacts[0])
+        return response
 
     def _release(self, request: ReleaseSensorsRequest) -> Task:
         return self._server.hands.release(request.sensors)

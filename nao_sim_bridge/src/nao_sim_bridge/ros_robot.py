@@ -23,12 +23,16 @@ from nao_library_msgs.srv import (
     TakePictureRequest,
     TakePictureResponse,
 )
+from nao_sim_bridge.record_dir import unused
 from nao_sim_bridge.ros_hand import RosHand
 from nao_sim_bridge.ros_health import RosHealth
+from nao_sim_bridge.ros_limits import checked
 from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.whole_file import write_whole
 
 TRUTH_PERIOD = 0.02
+PICTURE = "picture.png"
 WORLD_FRAME, TORSO_FRAME = "world", "torso"
 
 
@@ -61,7 +65,7 @@ class RosRobot:
             rospy.Service(f"{public}get_truepose", GetTruepose, self._on_true_pose),
         ]
         self._health = RosHealth(server, private)
-        self._hand = RosHand(server, private)
+        self._hand = RosHand(server, private, self._stamp)
 
     def tick(self) -> None:
         """Publish what is due."""
@@ -72,14 +76,17 @@ class RosRobot:
                 self._truth.publish(self._odometry(snapshot, now))
 
     def on_picture(self, request: TakePictureRequest) -> TakePictureResponse:
-        """Take a picture."""
+        """Take a picture; one without a name replaces none."""
         size = (request.width or 640, request.height or 480)
         path = Path()
 
         def take() -> None:
             nonlocal path
-            path = self._server.files.to_keep(request.file or "picture.png")
-            path.write_bytes(self._server.picture(request.view or "three_quarter", *size))
+            checked(request)
+            path = self._server.files.to_keep(request.file or PICTURE)
+            picture = self._server.picture(request.view or "three_quarter", *size)
+            path = path if request.file else unused(path)
+            write_whole(path, picture)
 
         success, message = _success(take)
         return TakePictureResponse(success, message, str(path) if success else "")
@@ -94,16 +101,22 @@ class RosRobot:
         return message
 
     def _stamp(self, now: float) -> rospy.Time:
-        """ROS time of a snapshot: the server's `now` when this node publishes the clock, else that of the computer."""
-        return rospy.Time.from_sec(now) if self._simulated_time else rospy.Time.now()
+        """ROS time of a time of the server's `now`, s: the same if this node publishes the clock."""
+        if self._simulated_time:
+            return rospy.Time.from_sec(now)
+        return rospy.Time.now() - rospy.Duration.from_sec(self._server.now[1] - now)
 
     def _on_push(self, request: PushRobotRequest) -> PushRobotResponse:
         force = (request.force.x, request.force.y, request.force.z)
-        push = lambda: self._server.push(force, request.time.to_sec(), request.link or TORSO_FRAME)  # noqa: E731
+
+        def push() -> None:
+            checked(request)
+            self._server.push(force, request.time.to_sec(), request.link or TORSO_FRAME)
+
         return PushRobotResponse(*_success(push))
 
     def _on_press(self, request: PressSensorsRequest) -> PressSensorsResponse:
-        return PressSensorsResponse(*_success(lambda: self._server.press(request.sensors)))
+        return PressSensorsResponse(*_success(lambda: self._server.press(checked(request).sensors)))
 
     def _on_true_pose(self, _request: GetTrueposeRequest) -> GetTrueposeResponse:
         snapshot, now = self._server.now

@@ -18,7 +18,10 @@ from nao_library_msgs.srv import (
     ResetWorldResponse,
     TakePicture,
 )
+from nao_sim_bridge.record_dir import world_of_client
+from nao_sim_bridge.ros_diagnostics import RosDiagnostics
 from nao_sim_bridge.ros_film import RosFilm
+from nao_sim_bridge.ros_limits import checked
 from nao_sim_bridge.ros_robot import RosRobot
 from nao_sim_bridge.ros_sounds import RosSounds
 from nao_sim_bridge.ros_things import RosThings
@@ -36,6 +39,7 @@ class RosSide:
         Services `~advance` (nao_library_msgs), `~reset`, `~factory_reset`, `~pause`, `~resume` (std_srvs/Empty),
         `~reset_world` (nao_library_msgs/ResetWorld), with more than one robot `~picture` (nao_library_msgs),
         which shows the first one, and those of `RosRobot` for each robot, `RosSounds`, `RosThings` and `RosFilm`.
+        Publishes `/diagnostics`, see `RosDiagnostics`.
 
     Time in ROS goes on when a factory reset begins that of the robot anew.
 
@@ -64,10 +68,11 @@ class RosSide:
         self._sounds = RosSounds(server)
         self._things = RosThings(server)
         self._film = RosFilm(server)
+        self._diagnostics = RosDiagnostics(server)
         self._closing = threading.Event()
-        rospy.on_shutdown(self.close)  # topics close next
         self._thread = threading.Thread(target=self._publish, name="ros publisher", daemon=True)
         self._thread.start()
+        rospy.on_shutdown(self.close)  # topics close next
 
     def close(self) -> None:
         """Stop publishing."""
@@ -80,21 +85,27 @@ class RosSide:
             runner = self._server.runner
             passed = runner.wait_for_tick(last, timeout=0.5) is not None
             last = runner.ticks
-            if self._clock is not None:  # also while time stands still: a node that has just started wants to know it
-                self._clock.publish(rospy.Time.from_sec(self._server.now[1]))
+            call = self._server.simulation.shared.guard.call  # that of the present simulation
+            call(self._diagnostics.tick)
+            call(self._tell_time)  # also while time stands still: a node that has just started wants to know it
             if not passed:
                 continue
             for robot in self._robots:
-                robot.tick()
+                call(robot.tick)
             self._closing.wait(CLOCK_WALL_PERIOD)
 
+    def _tell_time(self) -> None:
+        if self._clock is not None:
+            self._clock.publish(rospy.Time.from_sec(self._server.now[1]))
+
     def _on_advance(self, request: AdvanceTimeRequest) -> AdvanceTimeResponse:
-        snapshot = self._server.runner.advance(request.time.to_sec()).result()
+        snapshot = self._server.runner.advance(checked(request).time.to_sec()).result()
         return AdvanceTimeResponse(rospy.Time.from_sec(self._server.began + snapshot.time))
 
     def _on_reset_world(self, request: ResetWorldRequest) -> ResetWorldResponse:
         try:
-            self._server.factory_reset(request.world)
+            server = self._server
+            server.factory_reset(world_of_client(checked(request).world, server.files, server.options.scene.world))
         except (RuntimeError, ValueError, OSError) as error:
             return ResetWorldResponse(False, str(error))
         return ResetWorldResponse(True, "")

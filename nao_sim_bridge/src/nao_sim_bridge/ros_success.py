@@ -6,6 +6,7 @@ from typing import Any, Callable
 
 import rospy
 
+from nao_sim_bridge.ros_limits import checked
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.task_success import success_of
 
@@ -24,7 +25,7 @@ def success_service(
     """
 
     def handle(request: Any) -> Any:
-        success, message = success_of(lambda: begin(request), when_killed)
+        success, message = success_of(lambda: begin(checked(request)), when_killed)
         return answer(success=success, message=message)
 
     return rospy.Service(name, kind, handle)

@@ -22,6 +22,7 @@ from nao_sim_bridge.server import SimulatorServer
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.rotations import roll_pitch_yaw
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.sim.world_objects import THINGS
 
 SHAPES = ("box", "sphere", "ball", "cylinder", "capsule")
 SINGLE = ("sphere", "ball")
@@ -67,6 +68,9 @@ class RosThings:
 
 def entry_of(request: PlaceObjectRequest) -> dict[str, Any]:
     """The entry of a world file that the fields of a request stand for."""
+    kinds = [*SHAPES, *(kind for kind in THINGS if kind not in (*SHAPES, "parts"))]  # parts have no content in a text
+    if request.kind not in kinds:
+        raise BadValue("kind", request.kind, f"one of {', '.join(kinds)}", kinds)
     entry: dict[str, Any] = {"name": request.name, "position": _position(request.pose)}
     turn = _turn(request.pose)
     if turn:

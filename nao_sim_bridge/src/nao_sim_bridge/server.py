@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import logging
 import sys
 import threading
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.broker import Broker
+from nao_sim_bridge.closing import Step, close_all
 from nao_sim_bridge.film_control import FilmControl
 from nao_sim_bridge.hands_control import HandsControl
 from nao_sim_bridge.health_control import HealthControl
@@ -32,6 +34,7 @@ from nao_sim_bridge.sim.robot_runner import RobotRunner
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Scene, Simulation
 from nao_sim_bridge.sim.snapshot import Snapshot
+from nao_sim_bridge.sim.sound.reader import SoundReader
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.sim.world import world_names
 from nao_sim_bridge.sound_outlets import SoundCard, SoundFile
@@ -42,6 +45,11 @@ MAX_PUSH = 60.0
 # How long a thread that computes keeps Python's interpreter when another wants it, s. The simulation computes nearly
 # all the time when it runs as fast as possible; Python's own 5 ms would be felt in every call.
 SWITCH_INTERVAL = 0.0005
+# glibc gives threads heaps of their own, up to eight a core, and keeps what they have held: with threads that come and
+# go with clients, memory would grow for hours.
+HEAPS, M_ARENA_MAX = 2, -8
+FILM_LIMIT = 2.0
+"""s of wall time that a film may take to be completed at the end of the program; see `Film.end`."""
 READY = "NAOqiReady"
 """The event that clients know a robot by that has started, or started again."""
 log = logging.getLogger("nao_sim.server")
@@ -65,6 +73,7 @@ class ServerOptions:
         name: What the robot is called.
         robots: How many there are in the world; with more than one the port is that of the first.
         places: Where they stand; empty for where the world says, or else the usual places.
+        allow_private_streams: Whether playWebStream may fetch from this computer and from private networks.
     """
 
     scene: Scene = field(default_factory=Scene)
@@ -80,6 +89,7 @@ class ServerOptions:
     name: str = "nao"
     robots: int = 1
     places: tuple[RobotPlace, ...] = ()
+    allow_private_streams: bool = False
 
 
 class SimulatorServer:
@@ -107,6 +117,7 @@ class SimulatorServer:
         runner: SimulationRunner | None = None,
         factory_reset: Callable[[str], None] | None = None,
     ) -> None:
+        _share_heaps()
         self.options = options
         self.ended = threading.Event()
         simulation = simulation or _alone(options)
@@ -142,6 +153,11 @@ class SimulatorServer:
     def files(self) -> ClientFiles:
         """Where clients may have files written to and read from."""
         return self._robot.files
+
+    @property
+    def sound_reader(self) -> SoundReader:
+        """What reads sound files."""
+        return self._workers.sounds
 
     @property
     def speech(self) -> SpeechModules:
@@ -214,7 +230,7 @@ class SimulatorServer:
         self._open_outlets()
         sys.setswitchinterval(SWITCH_INTERVAL)
         self.broker.listen(self.options.address, self.options.port, lambda: not self.ended.is_set())
-        self.broker.when_gone(lambda module: self._robot.video.client_gone(module))
+        self.broker.when_gone(lambda module: self._robot.client_gone(module))
 
     def serve(self) -> None:
         """Last part of `start`, when time passes: register the modules."""
@@ -229,25 +245,30 @@ class SimulatorServer:
 
     def stop(self) -> None:
         """Leave the network and end the simulation."""
-        self.leave()
-        self.runner.stop()
-        self.close()
+        close_all(*self.ending())
 
-    def leave(self) -> None:
-        """First part of `stop`: leave the network."""
-        self.ended.set()
-        self._workers.vision.close()  # first: who waits for an answer gets none
-        self._robot.leave()
-        self._workers.persons.close()
-        self.broker.close()
+    def ending(self) -> list[Step]:
+        """The steps of `stop`."""
+        return [*self.leaving(), self.runner.stop, *self.closing()]
 
-    def close(self) -> None:
-        """Last part of `stop`: end everything else that works for the robot."""
-        self._robot.close()
-        self._workers.close()
-        self.pictures.close()
-        for outlet in self._outlets:
-            outlet.close()
+    def leaving(self) -> list[Step]:
+        """First steps of `stop`: leave the network."""
+        return [
+            self.ended.set,
+            self._workers.vision.close,  # first: who waits for an answer gets none
+            *self._robot.leaving(FILM_LIMIT),
+            self._workers.persons.close,
+            self.broker.close,
+        ]
+
+    def closing(self) -> list[Step]:
+        """Last steps of `stop`: end everything else that works for the robot."""
+        return [
+            *self._robot.closing(),
+            *self._workers.closing(),
+            self.pictures.close,
+            *(outlet.close for outlet in self._outlets),
+        ]
 
     def _open_outlets(self) -> None:
         if self.options.sound_card and self.options.speed != 1.0:
@@ -323,12 +344,15 @@ class SimulatorServer:
         robot.memory.raise_event(READY, None)
 
         def close_former() -> None:
-            former.leave()
+            guarded = robot.simulation.shared.guard.call
+            for step in former.leaving():
+                guarded(step)
             former.runner.end()
             former.simulation.shared.close(keep_renderer=True)
             for end in ends:
                 end()
-            former.close()
+            for step in former.closing():
+                guarded(step)
             former.files.forget()  # what was completed meanwhile
             self._serve_again()
             self.pictures.follow(robot.simulation)
@@ -380,6 +404,7 @@ class SimulatorServer:
 
     def reset_task(self) -> Task:
         """As `reset`, without waiting."""
+        self._thread.end_advances("a reset")
         return self.runner.execute(lambda: self.simulation.reset(), "reset")
 
     def reboot_task(self) -> Task:
@@ -389,6 +414,13 @@ class SimulatorServer:
     def _system(self, memory: MemoryStore, zone: TimeZone) -> ALSystem:
         icon = lambda size: self.pictures.png("face", size, size)  # noqa: E731
         return ALSystem(memory, self.reboot_task, self.ended.set, icon, self.options.name, zone)
+
+
+def _share_heaps() -> None:
+    """Have all threads of this process share a few heaps, where the C library is glibc."""
+    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
+    if mallopt is not None:
+        mallopt(M_ARENA_MAX, HEAPS)
 
 
 def scene_in(scene: Scene, world: str) -> Scene:

@@ -13,6 +13,7 @@ from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.sound.follower import Follower
 from nao_sim_bridge.sim.sound.samples import RATE, pcm16
 from nao_sim_bridge.sim.sound.wav_file import WavFile
+from nao_sim_bridge.sim.whole_file import FileTrouble
 
 log = logging.getLogger("nao_sim.sound")
 
@@ -33,18 +34,22 @@ class SoundCardError(SimulationError):
 class SoundFile:
     """A WAV of everything that the loudspeakers play from now on, silence included; whole at any moment.
 
+    While the disk is full, it is silent.
+
     Args:
         simulation: Whose loudspeakers.
-        path: The file; one that is there is replaced.
+        path: The file; one that is there is replaced in the end.
+
+    Raises:
+        FileTrouble: It cannot be written.
     """
 
     def __init__(self, simulation: Simulation, path: Path) -> None:
         self._loudspeakers = simulation.sound.loudspeakers
         self._wake = simulation.wake
-        try:
-            self._file = WavFile(path, RATE, 2)
-        except OSError as error:
-            raise SimulationError(f"sound file {path}: cannot be written: {error}") from error
+        self._path = path
+        self._file = WavFile(path, RATE, 2)
+        self._lost = 0  # frames that the disk had no room for
         self._follower = Follower("sound file", simulation.sound.timeline, self._write, FILE_STEP)
         simulation.holds.append(self.behind)
 
@@ -66,7 +71,18 @@ class SoundFile:
 
     def _write(self, first: int, last: int) -> None:
         mixed = self._loudspeakers.mixed(first, last)
-        self._file.write(np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed))
+        samples = np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
+        try:
+            self._file.write(samples, self._lost)
+        except FileTrouble as error:
+            if not self._lost:
+                log.error("%s; there is silence in it until there is room", error)
+            self._lost += last - first
+            self._file.recover()
+        else:
+            if self._lost:
+                log.warning("%.1f s are silent in %s", self._lost / RATE, self._path)
+            self._lost = 0
 
 
 class SoundCard:

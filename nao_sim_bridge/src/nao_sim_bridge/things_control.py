@@ -13,6 +13,7 @@ from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.sim.world_objects import read_object
+from nao_sim_bridge.sim.yaml_values import load_yaml
 
 LONGEST_DESCRIPTION = 20000
 WHERE = "object"
@@ -42,8 +43,8 @@ class ThingsControl:
         if not isinstance(description, str) or len(description) > LONGEST_DESCRIPTION:
             raise BadValue("description", str(description)[:40], f"{LONGEST_DESCRIPTION} characters at most")
         try:
-            entry = yaml.load(description, _PlainLoader)  # noqa: S506  a SafeLoader
-        except (yaml.YAMLError, RecursionError) as error:
+            entry = load_yaml(description)
+        except yaml.YAMLError as error:
             raise BadValue("description", description[:80], f"an entry of a world file: {error}") from error
         return self.place(entry)
 
@@ -90,13 +91,3 @@ class ThingsControl:
         """A task that ends with where everything is: [x, y, z, roll, pitch, yaw] by name."""
         listed = lambda: {name: list(place) for name, place in self._simulation.things.places().items()}  # noqa: E731
         return self._runner.execute(listed, "objects")
-
-
-class _PlainLoader(yaml.SafeLoader):
-    """YAML without aliases: with them, a short text can stand for one that fills the memory."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        """A node of the text."""
-        if self.check_event(yaml.AliasEvent):
-            raise yaml.YAMLError("aliases are not allowed here")
-        return super().compose_node(parent, index)

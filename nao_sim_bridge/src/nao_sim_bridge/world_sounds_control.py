@@ -5,9 +5,8 @@ from __future__ import annotations
 import threading
 from typing import Any, Sequence
 
-from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.arguments import number, numbers
-from nao_sim_bridge.services.audio.sound_files import read_client_file
+from nao_sim_bridge.services.audio.sound_files import SoundFiles
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.rotations import Vector3
 from nao_sim_bridge.sim.runner import SimulationRunner
@@ -31,14 +30,14 @@ class WorldSoundsControl:
     Args:
         simulation: Whose world it is.
         runner: Its thread.
-        files: Where clients may have files read from.
+        sounds: Reads sound files.
         studio: Makes the voices of persons: not that of the robot, for both may speak at the same time.
     """
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles, studio: Studio) -> None:
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, sounds: SoundFiles, studio: Studio) -> None:
         self._simulation = simulation
         self._runner = runner
-        self._files = files
+        self._sounds = sounds
         self._studio = studio
         self._numbers = simulation.sound.numbers
         self._lock = threading.Lock()
@@ -52,7 +51,7 @@ class WorldSoundsControl:
             SimulationError: One of them cannot be had.
         """
         world = self._simulation.scene.load_world(self._simulation.settings.contact.sole_friction)
-        WorldSounds(self._simulation, world, self._speak).begin()
+        WorldSounds(self._simulation, world, self._speak, self._sounds.reader.read).begin()
 
     def add(self, name: str, sound: str, position: Sequence[float], level_db: float, loop: bool) -> Task:
         """Place a sound; the task ends when it has begun.
@@ -128,7 +127,7 @@ class WorldSoundsControl:
             except ValueError as error:
                 raise BadValue("sound", text, '"tone:" and a frequency in Hz, "tone:440"') from error
             return tone([number(frequency, "frequency", 1.0, HIGHEST_TONE)]), True
-        return read_client_file(self._files, text).mono(), False
+        return self._sounds.read(text).mono(), False
 
 
 def _position(value: Any) -> Vector3:

@@ -17,6 +17,7 @@ from typing import Any, Callable, Iterable, Mapping, Sequence
 import qi
 
 from nao_sim_bridge.services.api import Method, Overload, module_methods, qi_type
+from nao_sim_bridge.services.argument_sizes import check_sizes
 from nao_sim_bridge.services.common import CommonModule
 from nao_sim_bridge.services.wire_types import fitted, fitted_to
 from nao_sim_bridge.sim.tasks import Task
@@ -80,7 +81,7 @@ class Service:
         for name, method in table.items():
             target = None if name in NATIVE else _find(name, [*parts, common])
             if target is not None:
-                common.targets[name] = _checked(method, target)
+                common.targets[name] = _checked(self._module, method, target)
         return _Targets({**common.targets, "pCall": common.pCall})
 
     def _published(self, method: Method, overload: Overload) -> Callable[..., Any]:
@@ -150,13 +151,14 @@ def typed(
 
     def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
         names = list(inspect.signature(method).parameters)[1:]
+        called, letters = name or method.__name__, [str(kind) for kind in types]
 
         def checked(*args: Any) -> Any:
-            return method(args[0], *fitted_to(names, [str(kind) for kind in types], args[1:]))
+            return method(args[0], *fitted_to(names, letters, args[1:], module, called))
 
         @wraps(method)
         def published(*args: Any) -> Any:
-            return answer(module, name or method.__name__, checked, args)
+            return answer(module, called, checked, args)
 
         return qi.bind(returns, types, name)(published)
 
@@ -193,7 +195,9 @@ def answer(
         args: Of the call.
         note: Called with each task that the client waits for.
     """
+    args = tuple(args)
     try:
+        check_sizes(args)
         result = call(*args)
     except Exception as error:
         return _failed(_text(f"{module}::{method}", error))
@@ -237,9 +241,9 @@ def _settle(promise: Any, cancelled: threading.Event, label: str, note: Callable
         promise.setValue(done.value)
 
 
-def _checked(method: Method, target: Callable[..., Any]) -> Callable[..., Any]:
+def _checked(module: str, method: Method, target: Callable[..., Any]) -> Callable[..., Any]:
     def checked(*args: Any) -> Any:
-        return target(*fitted(method, args))
+        return target(*fitted(method, args, module))
 
     return checked
 

@@ -7,6 +7,8 @@ import threading
 from collections import OrderedDict
 from typing import Any, Callable, Mapping
 
+import qi
+
 from nao_sim_bridge.services.api import Method
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
@@ -100,19 +102,21 @@ class CommonModule:
         task = self._task(call_id)
         if not _runs(task):
             return False
-        ended = Task("wait", call_id)
+        ended = Task("wait", call_id, ask=lambda asked: asked.kill())
+        awaited = [task]
 
         def settle(done: Task) -> None:
             if isinstance(done.value, Task):
+                awaited[0] = done.value
                 done.value.add_done_callback(settle)
             else:
                 ended.finish(False)
 
         task.add_done_callback(settle)
+        ended.add_done_callback(lambda _: awaited[0].remove_done_callback(settle))
         if timeout > 0:
-            timer = threading.Timer(timeout / 1000.0, ended.finish, [True])
-            timer.daemon = True
-            timer.start()
+            time_is_up = qi.runAsync(ended.finish, True, delay=int(timeout * 1000))  # a timer in a thread of libqi
+            ended.add_done_callback(lambda _: time_is_up.cancel())
         return ended
 
     def _method(self, name: str) -> Method:

@@ -15,6 +15,7 @@ from nao_sim_bridge.sim.device_commands import DeviceCommands, index_of
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.sizes import require_few
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.sim.timed_commands import MERGE
 
@@ -56,7 +57,9 @@ class DCM:
         name, devices = str(alias[0]), [self._device(str(device)) for device in alias[1]]
         if not name or not devices:
             raise BadValue("alias", alias, "[name, [devices]], with at least one device")
+        require_few("alias[1]", len(devices), "devices")
         with self._lock:
+            require_few("alias", len({*self._aliases, name}), "aliases")
             self._aliases[name] = devices
         return [name, devices]
 
@@ -86,10 +89,12 @@ class DCM:
                 raise BadValue("keyName", key, f"one that was saved for {target!r}")
             if action == REMOVE:
                 del self._saved[target, key]
+                self._memory.release(key, (NAME, target))
                 return DONE
             new = self._saved[target, key] if action == LOAD else value
-            self._memory.insert(key, new)
+            self._memory.insert(key, new, by_client=True)
             if action == SAVE:
+                self._memory.hold(key, (NAME, target), target, new)
                 self._saved[target, key] = new
         return DONE
 

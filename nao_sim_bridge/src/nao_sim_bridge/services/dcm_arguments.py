@@ -6,12 +6,11 @@ from typing import Any, Mapping, Sequence
 
 from nao_sim_bridge.services.arguments import number, whole_number
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.sizes import require_few
 from nao_sim_bridge.sim.timed_commands import Point
 
 SEPARATE, MIXED = "time-separate", "time-mixed"
 LATEST = 2**31 - 1
-# More commands than this for one actuator are a mistake, and would take the simulation's time.
-MOST = 10000
 
 
 def timed_points(values: Any, field: str) -> list[Point]:
@@ -69,8 +68,9 @@ def _one_each(values: Any, devices: Sequence[str], field: str) -> Sequence[Any]:
 
 
 def _rows(values: Any, field: str) -> Sequence[Any]:
-    if not isinstance(values, (list, tuple)) or not 1 <= len(values) <= MOST:
-        raise BadValue(field, values, f"a list of 1 to {MOST} entries")
+    if not isinstance(values, (list, tuple)) or not values:
+        raise BadValue(field, values, "a list of at least one entry")
+    require_few(field, len(values), "commands")
     return values
 
 

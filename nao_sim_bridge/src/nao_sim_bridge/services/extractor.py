@@ -6,6 +6,7 @@ the first subscriber to the last; periods and precisions are kept and answered, 
 
 from __future__ import annotations
 
+import logging
 import threading
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping, Sequence
@@ -14,10 +15,15 @@ from nao_sim_bridge.services.arguments import number
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.tasks import Task
 
 DEFAULT_PERIOD_MS = 30
 DEFAULT_PRECISION = 0.0
+# Names that are subscribed at the same time. Who has gone without a word is not known by a name alone, so of too many
+# the one that came first is taken off.
+MOST = load_sizes().clients.subscribers
+log = logging.getLogger("nao_sim.services")
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,7 @@ class Extractor:
     ) -> None:
         self._start = start
         self._stop = stop
+        self._module = module
         self._events = tuple(events)
         self._keys = tuple(keys)
         self._default = default
@@ -87,6 +94,10 @@ class Extractor:
             if not self._subscriptions:
                 self._started = self._start()
             started = self._started
+            if name not in self._subscriptions and len(self._subscriptions) >= MOST:
+                oldest = next(iter(self._subscriptions))
+                log.warning("%s: more than %d are subscribed, %r is taken off", self._module, MOST, oldest)
+                del self._subscriptions[oldest]
             self._set(name, subscription)
         return started if isinstance(started, Task) and not started.finished else None
 
@@ -98,6 +109,11 @@ class Extractor:
             self._changed(dict(self._subscriptions))
             if not self._subscriptions:
                 self._stop()
+
+    def client_gone(self, module: str) -> None:
+        """A module of a client has left: it is subscribed no longer."""
+        if module in self._all():
+            self.unsubscribe(module)
 
     def updatePeriod(self, name: str, period: int) -> None:
         """Change the period of a subscriber, ms."""

@@ -12,6 +12,7 @@ from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.leds import LedKeyframe, uniform
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.sizes import require_few
 from nao_sim_bridge.sim.tasks import Task
 
 
@@ -62,6 +63,7 @@ class ALLeds:
     def fadeListRGB(self, name: str, colors: Any, times: Any) -> Task:
         devices = self._names.devices(name)
         times = numbers(times, "timeList", 0.0)
+        require_few("timeList", len(times), "colours")
         if not isinstance(colors, (list, tuple)) or len(colors) != len(times) or not times:
             raise BadValue("rgbList", colors, f"as many colours as times, {len(times)}, at least 1")
         if any(b <= a for a, b in zip(times, times[1:])):

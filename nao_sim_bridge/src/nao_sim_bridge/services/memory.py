@@ -2,20 +2,44 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import qi
 
+from nao_sim_bridge.services.audio.background import Background
+from nao_sim_bridge.services.client_calls import answer
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.memory_store import EVENT, MICRO_EVENT, MemoryStore
 from nao_sim_bridge.sim.tasks import Task
+
+PATIENCE = 10.0
+"""s of wall time that a client's service has to have its signal connected to."""
 
 
 class EventSubscriber:
     """What `ALMemory.subscriber` returns: an object whose member `signal` fires with each value of the event."""
 
     def __init__(self) -> None:
-        self.signal = qi.Signal("m")
+        # No qi.Signal: qi 3.1.5 never lets go of what one was raised with; of a property it keeps the last value.
+        self.signal = qi.Property("m")
+
+
+class EventSignal:
+    """Tells the clients that are connected to an event; called with each of its values.
+
+    Attributes:
+        answer: What `ALMemory.subscriber` answers, made once: of each Python object that qi hands over kilobytes stay.
+    """
+
+    def __init__(self) -> None:
+        subscriber = EventSubscriber()
+        self._signal = subscriber.signal
+        self.answer = _done(_done(subscriber).value())
+
+    def __call__(self, value: Any) -> None:
+        """Fire, without waiting."""
+        self._signal.setValue(value, _async=True)
 
 
 class ALMemory:
@@ -29,8 +53,9 @@ class ALMemory:
     def __init__(self, store: MemoryStore, broker: Any) -> None:
         self._store = store
         self._broker = broker
-        self._signals: dict[str, EventSubscriber] = {}
-        self._mappings: list[tuple[Any, int]] = []  # signals of clients, and links to them
+        self._signals: dict[str, EventSignal] = {}
+        # What was mapped: service, signal and event; with the signal, and the link to it.
+        self._mappings: dict[tuple[str, str, str], tuple[Any, int]] = {}
 
     def getData(self, key: str, *_deprecated: Any) -> Any:
         return self._store.get(key)
@@ -45,10 +70,7 @@ class ALMemory:
         return self._store.names()
 
     def getDataOnChange(self, key: str, _deprecated: int) -> Task:
-        self._store.kind(key)
-        change = Task("getDataOnChange", 0)
-        self._store.on_next_change(key, change.finish)
-        return change
+        return self._store.next_change(key)
 
     def getDataPtr(self, key: str) -> None:
         self._no_pointer(key)
@@ -73,7 +95,7 @@ class ALMemory:
         return [value, *_split_time(seconds)]
 
     def insertData(self, key: str, value: Any) -> None:
-        self._store.insert(_name(key), value)
+        self._store.insert(_name(key), value, by_client=True)
 
     def insertListData(self, pairs: Any) -> None:
         if not isinstance(pairs, (list, tuple)):
@@ -82,20 +104,20 @@ class ALMemory:
             if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not isinstance(pair[0], str):
                 raise NaoqiError(f"list holds {pair!r}, allowed is [[key, value], ...]")
         for key, value in pairs:
-            self._store.insert(_name(key), value)
+            self._store.insert(_name(key), value, by_client=True)
 
     def removeData(self, key: str) -> None:
         self._store.remove(key)
         self._signals.pop(key, None)
 
     def declareEvent(self, name: str, extractor: str = "") -> None:
-        self._store.declare_event(_name(name), extractor)
+        self._store.declare_event(_name(name), extractor, by_client=True)
 
     def raiseEvent(self, name: str, value: Any) -> None:
-        self._store.raise_event(_name(name), value)
+        self._store.raise_event(_name(name), value, by_client=True)
 
     def raiseMicroEvent(self, name: str, value: Any) -> None:
-        self._store.raise_micro_event(_name(name), value)
+        self._store.raise_micro_event(_name(name), value, by_client=True)
 
     def removeEvent(self, name: str) -> None:
         self._store.remove(name, EVENT)
@@ -120,12 +142,12 @@ class ALMemory:
     def getSubscribers(self, name: str) -> list[str]:
         return self._store.subscribers(name)
 
-    def subscriber(self, name: str) -> EventSubscriber:
+    def subscriber(self, name: str) -> Any:
         if name not in self._signals:
-            self._signals[name] = EventSubscriber()
-        subscriber = self._signals[name]
-        self._store.listen(name, subscriber.signal)
-        return subscriber
+            self._store.hold(name)
+            self._signals[name] = EventSignal()
+        self._store.listen(name, self._signals[name])
+        return self._signals[name].answer
 
     def subscribeToEvent(self, name: str, module: str, *rest: str) -> None:
         message, method = rest if len(rest) == 2 else ("", rest[0])
@@ -143,17 +165,28 @@ class ALMemory:
     def unregisterModuleReference(self, module: str) -> None:
         self._store.forget_module(module)
 
-    def addMapping(self, service: str, *rest: Any) -> None:
+    def client_gone(self, module: str) -> None:
+        """A module of a client has left: it is told nothing more, and its signals are no events any more."""
+        self._store.forget_module(module)
+        self._mappings = {mapped: link for mapped, link in self._mappings.items() if mapped[0] != module}
+
+    def addMapping(self, service: str, *rest: Any) -> Task:
         pairs = rest[0] if len(rest) == 1 else {rest[0]: rest[1]}
-        for signal, event in pairs.items():
-            self._connect_signal(service, signal, event)
+
+        def connect(_: Any) -> None:
+            for signal, event in pairs.items():
+                self._connect_signal(service, signal, event)
+
+        # Not in libqi's own thread: the client may not answer, and others want to call this module meanwhile.
+        return Background().beside(connect, "addMapping")
 
     def take_over(self, former: ALMemory) -> None:
         """Go on with the signals that clients are connected to; nobody is told of what the former one had."""
         self._signals = former._signals
-        for name, subscriber in self._signals.items():
-            self._store.listen(name, subscriber.signal, declare=False)
-        for signal, link in former._mappings:
+        for name, signal in self._signals.items():
+            self._store.hold(name)
+            self._store.listen(name, signal, declare=False)
+        for signal, link in former._mappings.values():
             try:
                 signal.disconnect(link)
             except RuntimeError:
@@ -163,20 +196,32 @@ class ALMemory:
         def notify(event: str, value: Any, text: str) -> None:
             self._broker.call(module, method, [event, value, text])
 
-        self._store.subscribe(_name(name), module, notify, message, kind)
+        self._store.subscribe(_name(name), module, notify, message, kind, by_client=True)
 
     def _connect_signal(self, service: str, signal: str, event: str) -> None:
+        if (service, signal, event) in self._mappings:
+            return
         source = self._broker.service(service)
         if not hasattr(source, signal):
             raise NaoqiError(f"service {service!r} has no signal {signal!r}")
-        self._store.declare_event(event)
+        self._store.declare_event(_name(event), by_client=True)
         raising = getattr(source, signal)
-        link = raising.connect(lambda *values: self._store.raise_event(event, _one(values)))
-        self._mappings.append((raising, link))
+        connecting = raising.connect(
+            lambda *values: self._store.raise_event(event, _one(values), by_client=True), _async=True
+        )
+        link = answer(connecting, threading.Condition(), lambda: True, PATIENCE)
+        self._mappings[service, signal, event] = raising, link
 
     def _no_pointer(self, key: str) -> None:
         self._store.kind(key)
         raise NaoqiError("pointers are for modules inside the robot's own process; use getData")
+
+
+def _done(value: Any) -> Any:
+    """A libqi future that has a value; an object in it is one of libqi."""
+    promise = qi.Promise()
+    promise.setValue(value)
+    return promise.future()
 
 
 def _one(values: tuple) -> Any:

@@ -6,19 +6,24 @@ Any thread may call anything; subscribers are called outside the lock, in the th
 
 from __future__ import annotations
 
-import logging
 import threading
-from collections import deque
 from dataclasses import dataclass, field
-from typing import Any, Callable, Iterable, Mapping
+from typing import Any, Callable, Hashable, Iterable, Mapping
 
 from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.services.memory_room import History, MemoryRoom, empty_history, size_of
 from nao_sim_bridge.sim.errors import UnknownName
-
-log = logging.getLogger("nao_sim.memory")
+from nao_sim_bridge.sim.guard import Guard
+from nao_sim_bridge.sim.sizes import load_sizes
+from nao_sim_bridge.sim.tasks import Task
 
 DATA, EVENT, MICRO_EVENT = "Data", "Event", "MicroEvent"
 HISTORY_LENGTH = 32
+# Calls that wait for a change; with one more the oldest is given up, as libqi does not tell when who waits has gone.
+MOST_WAITING = load_sizes().clients.changes
+# What clients make beside values and subscriptions.
+KEY, DESCRIPTION, SIGNAL = object(), object(), object()
+NOTHING = empty_history(HISTORY_LENGTH)
 KEY_ADDED, KEY_REMOVED = "ALMemory/KeyAdded", "ALMemory/KeyRemoved"
 
 Subscriber = Callable[[str, Any, str], None]
@@ -33,24 +38,29 @@ class _Entry:
     exists: bool = False
     description: str = ""
     extractor: str = ""
-    history: deque = field(default_factory=lambda: deque(maxlen=HISTORY_LENGTH))
+    history: History = field(default_factory=lambda: empty_history(HISTORY_LENGTH))
 
 
 class MemoryStore:
     """Keys and what they hold.
 
+    What is written `by_client` counts (see `MemoryRoom`), and is refused with a NaoqiError where there is no room.
+
     Args:
         clock: Time for time stamps, s since 1970 (or since the start of the simulation).
+        guard: Calls subscribers, listeners and watchers; None for one of its own.
     """
 
-    def __init__(self, clock: Callable[[], float]) -> None:
+    def __init__(self, clock: Callable[[], float], guard: Guard | None = None) -> None:
         self._clock = clock
+        self._guard = guard or Guard()
         self._lock = threading.RLock()
         self._entries: dict[str, _Entry] = {}
+        self._room = MemoryRoom()
         self._live: dict[str, tuple[Reader, Callable[[Any], None] | None]] = {}
         self._subscribers: dict[str, dict[str, tuple[Subscriber, str]]] = {}
         self._listeners: dict[str, list[Callable[[Any], None]]] = {}
-        self._changes: dict[str, list[Callable[[Any], None]]] = {}
+        self._changes: dict[Task, str] = {}  # what waits for a change of which key, first come first
         self._watchers: dict[str, Callable[[str, list[str]], None]] = {}
 
     # --- data -----------------------------------------------------------------------------------------------------
@@ -79,11 +89,11 @@ class MemoryStore:
         with self._lock:
             return [self.get(k) if self._holds(k) else None for k in keys]
 
-    def insert(self, key: str, value: Any) -> None:
+    def insert(self, key: str, value: Any, by_client: bool = False) -> None:
         """Write one key, creating it when needed.
 
         Raises:
-            NaoqiError: The key belongs to a sensor.
+            NaoqiError: The key belongs to a sensor, or a client has no room for it.
         """
         if key in self._live:
             writer = self._live[key][1]
@@ -91,7 +101,7 @@ class MemoryStore:
                 raise NaoqiError(f"{key} is a sensor of the robot and cannot be written")
             writer(value)
             return
-        self._write(key, value, DATA)
+        self._write(key, value, DATA, by_client)
 
     def remove(self, key: str, kind: str | None = None) -> None:
         """Delete a key, its description and its subscribers.
@@ -106,7 +116,11 @@ class MemoryStore:
             if entry is None or (kind is not None and entry.kind != kind):
                 raise UnknownName(kind or "key", key, self._names(kind))
             del self._entries[key]
-            self._subscribers.pop(key, None)
+            self._room.forget(entry.history)
+            for holder in (KEY, DESCRIPTION, SIGNAL):
+                self._room.release((holder, key))
+            for module in self._subscribers.pop(key, ()):
+                self._room.release((key, module))
             self._listeners.pop(key, None)
         self._announce(KEY_REMOVED, key)
 
@@ -131,10 +145,11 @@ class MemoryStore:
             return sorted(n for n in self._names(kind) if containing in n)
 
     def set_description(self, key: str, text: str) -> None:
-        """Attach a text to a key."""
+        """Attach a text to a key, for a client."""
         with self._lock:
             if key not in self._entries:
                 raise UnknownName("key", key, self._entries)
+            self._room.hold((DESCRIPTION, key), text)
             self._entries[key].description = text
 
     def describe(self, keys: Iterable[str]) -> list[list[str]]:
@@ -143,27 +158,41 @@ class MemoryStore:
             chosen = list(keys) or sorted(self._entries)
             return [[k, self.kind(k), self._entries[k].description] for k in chosen]
 
-    def on_next_change(self, key: str, callback: Callable[[Any], None]) -> None:
-        """Call `callback(value)` once when the key is written next."""
+    def next_change(self, key: str) -> Task:
+        """A task that ends with the value that is written next; nothing is left of one that is killed.
+
+        Raises:
+            UnknownName: There is no such key.
+            NaoqiError: The key is never written.
+        """
+        change = Task("getDataOnChange", 0, ask=lambda task: task.kill())
         with self._lock:
-            self._changes.setdefault(key, []).append(callback)
+            self.kind(key)
+            if key in self._live:
+                raise NaoqiError(f"{key} is measured when it is read and never written; read it with getData")
+            given_up = next(iter(self._changes)) if len(self._changes) >= MOST_WAITING else None
+            self._changes[change] = key
+        change.add_done_callback(self._forget_change)
+        if given_up is not None:
+            given_up.finish(error=NaoqiError(f"given up: more than {MOST_WAITING} calls wait for changes"))
+        return change
 
     # --- events ---------------------------------------------------------------------------------------------------
 
-    def declare_event(self, name: str, extractor: str = "") -> None:
+    def declare_event(self, name: str, extractor: str = "", by_client: bool = False) -> None:
         """Make an event known, which becomes a key without a value yet."""
         with self._lock:
-            entry = self._entries.setdefault(name, _Entry(EVENT))
+            entry = self._made(name, EVENT, by_client, extractor)
             entry.kind = EVENT
             entry.extractor = extractor or entry.extractor
 
-    def raise_event(self, name: str, value: Any) -> None:
+    def raise_event(self, name: str, value: Any, by_client: bool = False) -> None:
         """Write an event and tell its subscribers."""
-        self._write(name, value, EVENT)
+        self._write(name, value, EVENT, by_client)
 
-    def raise_micro_event(self, name: str, value: Any) -> None:
+    def raise_micro_event(self, name: str, value: Any, by_client: bool = False) -> None:
         """Write a micro event and tell its subscribers."""
-        self._write(name, value, MICRO_EVENT)
+        self._write(name, value, MICRO_EVENT, by_client)
 
     def events_of(self, extractor: str) -> list[str]:
         """Events that an extractor declared."""
@@ -181,12 +210,22 @@ class MemoryStore:
         with self._lock:
             if name not in self._entries:
                 raise UnknownName("event", name, self._names(EVENT))
-            return list(self._entries[name].history)
+            return [(value, time) for value, time, _ in self._entries[name].history]
 
-    def subscribe(self, name: str, module: str, callback: Subscriber, message: str = "", kind: str = EVENT) -> None:
+    def subscribe(
+        self,
+        name: str,
+        module: str,
+        callback: Subscriber,
+        message: str = "",
+        kind: str = EVENT,
+        by_client: bool = False,
+    ) -> None:
         """Call `callback(name, value, message)` at each event; one subscription for each module and event."""
         with self._lock:
-            entry = self._entries.setdefault(name, _Entry(kind))
+            entry = self._made(name, kind, by_client)
+            if by_client:
+                self._room.hold((name, module), name, module, message)
             if entry.kind == DATA:
                 entry.kind = kind
             self._subscribers.setdefault(name, {})[module] = (callback, message)
@@ -203,12 +242,15 @@ class MemoryStore:
                 known = ", ".join(self.subscribers(name)) or "nobody"
                 raise NaoqiError(f"module {module!r} is not subscribed to {name!r}; subscribed is {known}")
             del self._subscribers[name][module]
+            self._room.release((name, module))
         self._tell_watcher(name)
 
     def forget_module(self, module: str) -> None:
         """End every subscription of a module that is gone."""
         with self._lock:
             left = [name for name, modules in self._subscribers.items() if modules.pop(module, None)]
+            for name in left:
+                self._room.release((name, module))
         for name in left:
             self._tell_watcher(name)
 
@@ -222,8 +264,22 @@ class MemoryStore:
         with self._lock:
             return sorted(self._subscribers.get(name, {}))
 
+    def hold(self, name: str, what: Hashable = SIGNAL, *values: Any) -> None:
+        """Count what a client has made beside keys: the signal of an event, or something else with its values.
+
+        Raises:
+            NaoqiError: There is no room for it.
+        """
+        with self._lock:
+            self._room.hold((what, name), name, *values)
+
+    def release(self, name: str, what: Hashable) -> None:
+        """Count it no more."""
+        with self._lock:
+            self._room.release((what, name))
+
     def listen(self, name: str, listener: Callable[[Any], None], declare: bool = True) -> None:
-        """Call `listener(value)` once at each event; for the signals of qi-style subscribers.
+        """Call `listener(value)` once at each event; for the signals of qi-style subscribers, which clients make.
 
         Args:
             name: Of the event.
@@ -232,7 +288,7 @@ class MemoryStore:
         """
         with self._lock:
             if declare:
-                self._entries.setdefault(name, _Entry(EVENT))
+                self._made(name, EVENT, by_client=True)
             listeners = self._listeners.setdefault(name, [])
             if not any(known is listener for known in listeners):
                 listeners.append(listener)
@@ -245,30 +301,44 @@ class MemoryStore:
 
     # --- inside ---------------------------------------------------------------------------------------------------
 
+    def _forget_change(self, change: Task) -> None:
+        with self._lock:
+            self._changes.pop(change, None)
+
     def _tell_watcher(self, name: str) -> None:
         watcher = self._watchers.get(name)
         if watcher is not None:
-            watcher(name, self.subscribers(name))
+            self._guard.call(watcher, name, self.subscribers(name))
 
-    def _write(self, key: str, value: Any, kind: str) -> None:
-        now = self._clock()
+    def _made(self, key: str, kind: str, by_client: bool, extractor: str = "") -> _Entry:
+        """The entry of a key, made when there is none."""
+        entry = self._entries.get(key)
+        if entry is None:
+            if by_client:
+                self._room.hold((KEY, key), key, extractor)
+            entry = self._entries[key] = _Entry(kind)
+        return entry
+
+    def _write(self, key: str, value: Any, kind: str, by_client: bool = False) -> None:
+        now, size = self._clock(), size_of(value) if by_client else 0
         with self._lock:
-            entry = self._entries.setdefault(key, _Entry(kind))
+            if by_client:  # before the key is made: it stays away when there is no room
+                self._room.make(self._entries[key].history if key in self._entries else NOTHING, size)
+            entry = self._made(key, kind, by_client)
             if kind != DATA:
                 entry.kind = kind
             is_new = not entry.exists
             entry.value, entry.time, entry.exists = value, now, True
-            entry.history.append((value, now))
-            changes = self._changes.pop(key, [])
+            self._room.add(entry.history, value, now, size)
+            changes = [change for change, awaited in self._changes.items() if awaited == key]
             listeners = list(self._listeners.get(key, ())) if entry.kind != DATA else []
             subscribers = list(self._subscribers.get(key, {}).values()) if entry.kind != DATA else []
-        for callback in [*changes, *listeners]:
-            callback(value)
+        for change in changes:
+            change.finish(value)
+        for listener in listeners:
+            self._guard.call(listener, value)
         for subscriber, message in subscribers:
-            try:
-                subscriber(key, value, message)
-            except Exception:
-                log.exception("a subscriber of %s failed", key)
+            self._guard.call(subscriber, key, value, message)
         if is_new and key not in (KEY_ADDED, KEY_REMOVED):
             self._announce(KEY_ADDED, key)
 

@@ -6,8 +6,11 @@ from typing import Any, Sequence
 
 import qi
 
+from nao_sim_bridge.record_dir import world_of_client
 from nao_sim_bridge.services.binding import typed
+from nao_sim_bridge.services.client_watch import ClientWatch
 from nao_sim_bridge.sim.runner import FASTEST
+from nao_sim_bridge.sim.tasks import Task
 
 NAME = "NaoSimulation"
 
@@ -16,12 +19,13 @@ class NaoSimulation:
     """Control of the simulation over libqi; a real robot has no such service.
 
     Args:
-        host: The server: its `runner`, `sounds`, `things`, `hands`, `film`, `health`, and its methods `push`, `press`,
-            `picture`, `reset_task`, `factory_reset_task`.
+        host: The server: its `broker`, `runner`, `sounds`, `things`, `hands`, `film`, `health`, `files`, `options`, and
+            its methods `push`, `press`, `picture`, `reset_task`, `factory_reset_task`.
     """
 
     def __init__(self, host: Any) -> None:
         self._host = host
+        self._watch = ClientWatch(lambda: host.broker.has_clients())
 
     @property
     def _runner(self) -> Any:
@@ -59,8 +63,11 @@ class NaoSimulation:
 
     @typed(NAME, qi.Float, [qi.Float])
     def advance(self, seconds: float) -> Any:
-        """Let `seconds` of simulated time pass as fast as possible; returns the time after it, s."""
-        return self._runner.advance(seconds).then(lambda snapshot: snapshot.time)
+        """Let `seconds` of simulated time pass as fast as possible; returns the time after it, s.
+
+        A pause or a reset before that is over ends it with an error; it ends, too, when no client is left.
+        """
+        return self._watch.add(self._runner.advance(seconds)).then(lambda snapshot: snapshot and snapshot.time)
 
     @typed(NAME, qi.Void, [])
     def reset(self) -> Any:
@@ -69,8 +76,9 @@ class NaoSimulation:
 
     @typed(NAME, qi.Void, [qi.String], "reset")
     def resetTo(self, world: str) -> Any:
-        """Begin anew in another world, a name or the path of a file; all that clients have changed is forgotten."""
-        return self._host.factory_reset_task(world)
+        """Begin anew in another world, a name or a file in `record_dir`; all that clients have changed is forgotten."""
+        named = world_of_client(world, self._host.files, self._host.options.scene.world)
+        return self._host.factory_reset_task(named)
 
     @typed(NAME, qi.Void, [])
     def factoryReset(self) -> Any:
@@ -87,18 +95,22 @@ class NaoSimulation:
         """Simulated fingers on these touch sensors ("Head/Touch/Front"...) and no others; an empty list lets go."""
         return self._host.press(sensors)
 
-    @typed(NAME, qi.Void, [qi.String, qi.Float])
+    @typed(NAME, qi.Float, [qi.String, qi.Float])
     def touch(self, sensor: str, duration: float) -> Any:
         """A hand comes, touches a sensor ("Head/Touch/Front", "FrontTactilTouched"...) for `duration` s, and goes.
 
-        Ends when it has gone; with a duration of 0, which is until `release`, when it is felt.
+        Ends when it has gone; with a duration of 0, which is until `release`, when it is felt. Returns the simulated
+        time at which it was felt first, s; 0 if it was sent away before.
         """
-        return self._host.hands.touch([sensor], duration)
+        return _first_contact(self._host.hands.touch([sensor], duration))
 
-    @typed(NAME, qi.Void, [qi.List(qi.String), qi.Float])
+    @typed(NAME, qi.Float, [qi.List(qi.String), qi.Float])
     def stroke(self, sensors: Sequence[str], duration: float) -> Any:
-        """A hand strokes over sensors of one part of the robot in this order in `duration` s; ends when it has gone."""
-        return self._host.hands.touch(sensors, duration)
+        """A hand strokes over sensors of one part of the robot in this order in `duration` s; ends when it has gone.
+
+        Returns as `touch` does.
+        """
+        return _first_contact(self._host.hands.touch(sensors, duration))
 
     @typed(NAME, qi.Void, [qi.List(qi.String)])
     def release(self, sensors: Sequence[str]) -> Any:
@@ -219,3 +231,8 @@ class NaoSimulation:
         `voice` is one of those of ALTextToSpeech, "" for the first; `level_db` is that at 1 m, 0 for a person's (65).
         """
         return self._host.sounds.person_says(text, position, voice, level_db)
+
+
+def _first_contact(called: Task) -> Task:
+    """The time at the end of a touch, also of one that was sent away."""
+    return called.then(lambda hand: hand.then(lambda contact: contact or 0.0))

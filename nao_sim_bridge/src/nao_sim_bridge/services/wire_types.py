@@ -1,7 +1,7 @@
-"""Whether what came over the wire is of the types that NAOqi's table has.
+"""Whether what came over the wire is of the types that NAOqi's table has, and its numbers within their bounds.
 
 libqi looks at the number of arguments only: it hands a list to a method whose signature says int. Which values make
-sense is up to the methods, which have better words for what is wrong with them.
+sense is up to the methods, which have better words for what is wrong with them; see `limits.py` for the bounds.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.services.api import Method, Overload, qi_type
 from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.services.limits import check_arguments
 from nao_sim_bridge.sim.errors import BadValue
 
 ANYTHING, INT, TEXTS = "ALValue", "int", "list<string>"
@@ -18,34 +19,41 @@ LARGEST_INT = 2**31 - 1
 Test = Callable[[Any], bool]
 
 
-def fitted(method: Method, arguments: Sequence[Any]) -> list[Any]:
+def fitted(method: Method, arguments: Sequence[Any], module: str = "") -> list[Any]:
     """The arguments of a call as the method takes them.
 
     A text where it takes a list of texts is a list of this one; a whole number is an int, also where it came as 2.0 or
     as true. Of overloads that take the same number of arguments, the one counts for which least has to be changed.
 
+    Args:
+        method: Of the table.
+        arguments: Of the call.
+        module: Of the method: some numbers have bounds of their own there.
+
     Raises:
         NaoqiError: It takes another number of arguments.
-        BadValue: One of them is of another type.
+        BadValue: One of them is of another type, or a number in it is out of bounds.
     """
     overloads = [overload for overload in method.overloads if len(overload.types) == len(arguments)]
     if not overloads:
         ways = " or ".join(f"{method.name}({overload})" for overload in method.overloads)
         raise NaoqiError(f"was called with {len(arguments)} arguments, allowed is {ways}")
-    return _fitted(overloads, arguments)
+    return _fitted(module, method.name, overloads, arguments)
 
 
-def fitted_to(names: Sequence[str], signatures: Sequence[str], values: Sequence[Any]) -> list[Any]:
+def fitted_to(
+    names: Sequence[str], signatures: Sequence[str], values: Sequence[Any], module: str = "", method: str = ""
+) -> list[Any]:
     """As `fitted`, with types in libqi's letters.
 
     Raises:
-        BadValue: One of the values is of another type.
+        BadValue: One of the values is of another type, or a number in it is out of bounds.
     """
     types = tuple(_BY_SIGNATURE.get(signature, ANYTHING) for signature in signatures)
-    return _fitted([Overload(types, tuple(names))], values)
+    return _fitted(module, method, [Overload(types, tuple(names))], values)
 
 
-def _fitted(overloads: Sequence[Overload], values: Sequence[Any]) -> list[Any]:
+def _fitted(module: str, method: str, overloads: Sequence[Overload], values: Sequence[Any]) -> list[Any]:
     left = list(overloads)
     for i, value in enumerate(values):
         fitting = [overload for overload in left if _fits(value, overload.types[i])]
@@ -53,8 +61,10 @@ def _fitted(overloads: Sequence[Overload], values: Sequence[Any]) -> list[Any]:
             kinds = dict.fromkeys(overload.types[i] for overload in left)
             raise BadValue(left[0].names[i], value, " or ".join(_TYPES[kind][0] for kind in kinds))
         left = fitting
-    ways = [[_as_type(*given) for given in zip(values, overload.types)] for overload in left]
-    return min(ways, key=lambda way: sum(new is not old for new, old in zip(way, values)))
+    ways = [([_as_type(*given) for given in zip(values, overload.types)], overload) for overload in left]
+    way, chosen = min(ways, key=lambda found: sum(new is not old for new, old in zip(found[0], values)))
+    check_arguments(module, method, chosen.names, way)
+    return way
 
 
 def _fits(value: Any, kind: str) -> bool:

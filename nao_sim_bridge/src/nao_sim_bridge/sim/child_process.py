@@ -1,12 +1,16 @@
 """A Python module in a process of its own, and the pipe to it: for work that must not hold the simulation up.
 
 The process is started by name, not forked or spawned by multiprocessing: it must not run the caller's main program
-again. It ends by itself when the other end of its pipe is closed, so it cannot outlive its parent.
+again. It does not outlive its parent: nothing is sent through a second pipe, and when that is closed, be it because the
+parent has died, the system ends the process in the middle of its work, whatever that is.
 """
 
 from __future__ import annotations
 
+import fcntl
 import os
+import resource
+import select
 import signal
 import subprocess
 import sys
@@ -31,11 +35,11 @@ class ChildProcess:
     Attributes:
         process: The process.
         pipe: This side of the pipe.
-        over: Whether it failed or was ended: nothing can be asked any more.
+        over: Whether it failed, was ended or was left: nothing can be asked any more.
         late: Whether it was ended because an answer did not come in time.
 
     Args:
-        module: Full name of the module that is run; it gets the number of its pipe as the first argument.
+        module: Full name of the module that is run; its first argument is for `pipe_to_parent`.
         arguments: What else it gets.
         name: What error texts call it, for example "picture process".
         failed: Class of the error for a process that died or is late.
@@ -57,17 +61,19 @@ class ChildProcess:
         self._refused = refused
         self.over = self.late = False
         here, there = Pipe(duplex=True)
+        ended, self._life = Pipe(duplex=False)
         paths = [str(SOURCES), os.environ.get("PYTHONPATH", "")]
         try:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", module, str(there.fileno()), *arguments],
-                pass_fds=(there.fileno(),),
+                [sys.executable, "-m", module, f"{there.fileno()},{ended.fileno()}", *arguments],
+                pass_fds=(there.fileno(), ended.fileno()),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL if silent else None,
                 env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
             )
         finally:
             there.close()
+            ended.close()
         self.pipe = here
 
     def send(self, kind: str, content: Any, what: str) -> None:
@@ -129,18 +135,22 @@ class ChildProcess:
             return f"the {self._name} closed its pipe"
 
     def stop(self) -> None:
-        """End it: by closing the pipe, and if that does not help, by force."""
-        self.over = True
-        self.pipe.close()
+        """End it: by closing the pipes, and if that does not help, by force."""
+        self.leave()
         try:
             self.process.wait(STOP_TIMEOUT)
         except subprocess.TimeoutExpired:
             self.kill()
 
-    def kill(self) -> None:
-        """End it by force."""
+    def leave(self) -> None:
+        """Close the pipes without waiting for its end: for one that has something to complete."""
         self.over = True
         self.pipe.close()
+        self._life.close()
+
+    def kill(self) -> None:
+        """End it by force."""
+        self.leave()
         self.process.kill()
         self.process.wait()
 
@@ -149,18 +159,47 @@ class ChildProcess:
         words = self.last_words()
         if self.process.poll() is None:
             words += f" ({error!r})"
-        self.kill()
+        if not self.over:
+            self.kill()
         return self._failed(f"{what}: {words}")
 
 
 # --- in the process -------------------------------------------------------------------------------------------------
 
 
-def pipe_to_parent(descriptor: str) -> Connection:
-    """The pipe that the process was given, by its first argument."""
+def pipe_to_parent(descriptors: str, completes: bool = False) -> Connection:
+    """The pipe that the process was given.
+
+    Args:
+        descriptors: Its first argument.
+        completes: It ends by itself when its pipe is closed, as it has something to complete.
+    """
     # Ctrl-C in a terminal goes to all processes; the owner of the pipe decides when this one ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    return Connection(int(descriptor))
+    pipe, life = map(int, descriptors.split(","))
+    if not completes:
+        _end_with(life)
+    return Connection(pipe)
+
+
+def _end_with(life: int) -> None:
+    """Have the system end this process when the other end of a pipe is closed.
+
+    By its signal SIGIO, not by a thread: C code that keeps Python's interpreter would keep that from it.
+    """
+    signal.signal(signal.SIGIO, signal.SIG_DFL)
+    fcntl.fcntl(life, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(life, fcntl.F_SETFL, fcntl.fcntl(life, fcntl.F_GETFL) | os.O_ASYNC)
+    closed = select.poll()
+    closed.register(life, 0)
+    if closed.poll(0):  # before this
+        os._exit(0)
+
+
+def limit_memory(size: int) -> None:
+    """Give this process at most `size` bytes of address space; what asks for more gets a MemoryError or crashes."""
+    resource.setrlimit(resource.RLIMIT_AS, (size, size))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # a crash over a broken file is no news
 
 
 def error_text(error: Exception) -> str:

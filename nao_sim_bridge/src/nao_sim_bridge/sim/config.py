@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-import difflib
 import json
-from collections.abc import Iterable, Mapping
-from dataclasses import fields
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import is_dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_origin, get_type_hints
 
 import numpy as np
 
-from nao_sim_bridge.sim.errors import ConfigError
+from nao_sim_bridge.sim.bounded_files import read_bounded
+from nao_sim_bridge.sim.errors import ConfigError, did_you_mean
 
 T = TypeVar("T")
+LARGEST_FILE = 20_000_000
+"""Bytes of a data file; clients bring some, too."""
 
 
 def read_json(path: Path) -> dict:
     """Content of a JSON file whose top level is an object."""
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        content = json.loads(read_bounded(path, LARGEST_FILE))
+    except (OSError, ValueError, RecursionError) as error:
         raise ConfigError(path.name, f"cannot be read: {error}") from error
     if not isinstance(content, dict):
         raise ConfigError(path.name, f"top level is a {type(content).__name__}, not an object")
@@ -52,30 +54,49 @@ def check_keys(
     allowed = required + optional
     for key in entry:
         if key not in allowed:
-            near = difflib.get_close_matches(str(key), allowed, n=1)
-            hint = f", did you mean {near[0]!r}?" if near else ""
-            raise error(where, f"unknown key {key!r}{hint} (allowed: {', '.join(allowed)})")
+            raise error(where, f"unknown key {key!r}{did_you_mean(key, allowed)} (allowed: {', '.join(allowed)})")
     missing = [key for key in required if key not in entry]
     if missing:
         raise error(where, f"missing {', '.join(map(repr, missing))}")
     return entry
 
 
-def section(cls: type[T], entry: Any, where: str, optional: Iterable[str] = ()) -> T:
-    """A dataclass from an entry with a key for each of its fields; lists become tuples.
-
-    Args:
-        cls: The dataclass.
-        entry: What the file holds at this place.
-        where: File and path of the entry, for the error text.
-        optional: Keys that may be there and are no fields.
+def read_settings(cls: type[T], path: Path, notes: Sequence[str] = ("_meta",)) -> T:
+    """All of a settings file, as a dataclass.
 
     Raises:
-        ConfigError: As `check_keys`.
+        ConfigError: As `read_json` and `section`.
     """
-    names = [field.name for field in fields(cls)]  # type: ignore[arg-type]
-    check_keys(entry, where, names, optional)
-    return cls(**{name: tuple(entry[name]) if isinstance(entry[name], list) else entry[name] for name in names})
+    return section(cls, read_json(path), path.name, notes)
+
+
+def section(cls: type[T], entry: Any, where: str, notes: Sequence[str] = ()) -> T:
+    """A dataclass from an entry with a key for each of its fields.
+
+    Args:
+        cls: The dataclass; a field that is one itself is a section of the entry, one that is a tuple is a list there.
+        entry: What the file holds at this place.
+        where: File and path of the entry, for the error text.
+        notes: Key that the entry may have for its readers only, then that of its sections.
+
+    Raises:
+        ConfigError: As `check_keys`, or there is something else where a number or a list belongs.
+    """
+    kinds = get_type_hints(cls)
+    check_keys(entry, where, kinds, notes[:1])
+    return cls(**{name: _value(kind, entry[name], f"{where}: {name}", notes[1:]) for name, kind in kinds.items()})
+
+
+def _value(kind: Any, value: Any, where: str, notes: Sequence[str]) -> Any:
+    if is_dataclass(kind):
+        return section(kind, value, where, notes)
+    if get_origin(kind) is tuple:
+        if not isinstance(value, list):
+            raise ConfigError(where, f"is {value!r}, not a list")
+        return tuple(value)
+    if kind in (int, float) and (isinstance(value, bool) or not isinstance(value, (int, float))):
+        raise ConfigError(where, f"is {value!r}, not a number")
+    return value
 
 
 def vector(value: Any, where: str, size: int = 3, error: type[ConfigError] = ConfigError) -> np.ndarray:

@@ -10,6 +10,7 @@ from typing import Callable, Mapping, Sequence
 from nao_sim_bridge.sim.errors import MoveRefused, UnknownName
 from nao_sim_bridge.sim.leds import LedKeyframe
 from nao_sim_bridge.sim.robot import SimulatedRobot
+from nao_sim_bridge.sim.sizes import require_few
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.sim.timed_commands import Point, Polyline, merged, polyline
 
@@ -41,7 +42,7 @@ class DeviceCommands:
             update: See `merged`.
 
         Raises:
-            BadValue: There is no such update.
+            BadValue: There is no such update, or an actuator would have too many commands.
             MoveRefused: The robot walks with one of the joints.
         """
         robot = self._robot_now()
@@ -51,7 +52,9 @@ class DeviceCommands:
         now = self._milliseconds()
         for device, new in commands.items():
             old = [point for point in self._points.get(device, ()) if point[1] > now]
-            self._points[device] = merged(old, new, update)
+            points = merged(old, new, update)
+            require_few(device, len(points), "commands")
+            self._points[device] = points
             self._follow(robot, device, now)
 
     def _follow(self, robot: SimulatedRobot, device: str, now: int) -> None:

@@ -24,6 +24,21 @@ def shortened(value: Any) -> str:
     return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]}... ({len(shown)} characters)"
 
 
+def closest(name: Any, known: Iterable[str]) -> list[str]:
+    """Up to three known names that look like one, the best first; upper and lower case do not matter."""
+    lowered: dict[str, list[str]] = {}
+    for candidate in known:
+        lowered.setdefault(candidate.lower(), []).append(candidate)
+    close = difflib.get_close_matches(str(name).lower(), lowered, n=3, cutoff=0.5)
+    return [candidate for key in close for candidate in lowered[key]][:3]
+
+
+def did_you_mean(name: Any, known: Iterable[str]) -> str:
+    """Text to append to "unknown ...": the closest names; nothing when none is close."""
+    close = closest(name, known)
+    return f": did you mean {' or '.join(map(repr, close))}?" if close else ""
+
+
 class SimulationError(RuntimeError):
     """Root of everything the simulation core raises on purpose."""
 
@@ -54,9 +69,9 @@ class UnknownName(SimulationError):
     def __init__(self, kind: str, name: Any, known: Iterable[str]) -> None:
         self.kind = kind
         self.name = name
-        self.close = difflib.get_close_matches(str(name), list(known), n=3, cutoff=0.5)
-        hint = f": did you mean {' or '.join(repr(c) for c in self.close)}?" if self.close else ""
-        super().__init__(f"unknown {kind} {shortened(name)}{hint}")
+        known = list(known)
+        self.close = closest(name, known)
+        super().__init__(f"unknown {kind} {shortened(name)}{did_you_mean(name, known)}")
 
 
 class BadValue(SimulationError):
@@ -66,13 +81,15 @@ class BadValue(SimulationError):
         field: Name of the argument.
         value: The value as given.
         allowed: What would have been right, in words.
+        known: The names that would have been right, where they are a list: the text has those that come close.
     """
 
-    def __init__(self, field: str, value: Any, allowed: str) -> None:
+    def __init__(self, field: str, value: Any, allowed: str, known: Iterable[str] = ()) -> None:
         self.field = field
         self.value = value
         self.allowed = allowed
-        super().__init__(f"{field} is {shortened(value)}, allowed is {allowed}")
+        hint = did_you_mean(value, known)
+        super().__init__(f"{field} is {shortened(value)}{hint}{'' if hint else ','} allowed is {allowed}")
 
 
 class NotAllowed(SimulationError):

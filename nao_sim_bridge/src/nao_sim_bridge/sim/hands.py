@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Dict, Sequence
 import pybullet
 
 from nao_sim_bridge.sim.errors import BadValue, NotAllowed, SimulationError
+from nao_sim_bridge.sim.finite import check_finite
 from nao_sim_bridge.sim.hand_path import AWAY, DEPTH, HandPath
 from nao_sim_bridge.sim.hand_shape import TIP_RADIUS, make_hand
 from nao_sim_bridge.sim.model import RobotModel
@@ -54,6 +55,7 @@ class _Hand:
         constraint: What holds it.
         state: What it does.
         since: Since when it does it, s.
+        contact: Simulated time at which it was felt first, s; None before that.
     """
 
     path: HandPath
@@ -63,6 +65,7 @@ class _Hand:
     constraint: int
     state: str
     since: float
+    contact: float | None = None
 
 
 class Hands:
@@ -105,8 +108,9 @@ class Hands:
             duration: How long it touches, or takes for the stroke, s from when it is felt; 0: until it is released.
 
         Returns:
-            A task that ends when the hand has gone or, without a duration, when it is felt. It fails when nothing is
-            felt. When it is killed, the hand goes.
+            A task that ends when the hand has gone or, without a duration, when it is felt; its result is the simulated
+            time, s, of the first contact, None if the hand was sent away before. It fails when nothing is felt. When it
+            is killed, the hand goes.
 
         Raises:
             UnknownName: There is no such sensor.
@@ -152,9 +156,9 @@ class Hands:
         """Go on with the next part of a touch when it is time."""
         elapsed = self._robot.time - hand.since
         if hand.state == COMING and self._felt(hand):
-            hand.state, hand.since = TOUCHING, self._robot.time
+            hand.state, hand.since, hand.contact = TOUCHING, self._robot.time, self._robot.snapshot.time
             if hand.duration == 0.0:
-                hand.task.finish()
+                hand.task.finish(hand.contact)
         elif hand.state == COMING and elapsed > COME_TIME + PATIENCE:
             self._leave(hand)
             hand.task.finish(error=SimulationError(f"the hand is not felt at {hand.path.sensors[0]}"))
@@ -163,7 +167,7 @@ class Hands:
         elif hand.state == LEAVING and elapsed >= LEAVE_TIME - 1e-9:
             self._remove(hand)
             del self._hands[hand.name]
-            hand.task.finish()
+            hand.task.finish(hand.contact)
 
     def _felt(self, hand: _Hand) -> bool:
         sensed = self._robot.snapshot
@@ -180,6 +184,7 @@ class Hands:
     def _move(self, hand: _Hand) -> None:
         """Pull a hand to where it is to be at the end of this tick."""
         pose = self._aim(hand.path, *self._where(hand))
+        check_finite(hand.name, (*pose.position, *pose.orientation))
         pybullet.changeConstraint(
             hand.constraint,
             jointChildPivot=pose.position,

@@ -32,7 +32,7 @@ class _Fade:
     """One device on its way through points (time in s of the simulation, intensity)."""
 
     points: list[tuple[float, float]]
-    task: Task | None
+    task: Task
 
     def value(self, now: float) -> float:
         before = self.points[0]
@@ -94,12 +94,25 @@ class LedBank:
         """Advance all fades to time `now` (s) and end the tasks whose time has come."""
         if not self._ends:
             return
-        changed = {index: fade.value(now) for index, fade in self._fades.items()}
+        changed: dict[int, float] = {}
+        for index, fade in list(self._fades.items()):
+            if fade.task.finished:  # by the failure of another of its fades
+                continue
+            try:
+                changed[index] = fade.value(now)
+            except Exception as error:
+                self._fail(fade.task, error)
         for task in [t for t, end in self._ends.items() if now >= end - ROUNDING]:
             del self._ends[task]
             self._release(task)
             task.finish()
         self._write(changed)
+
+    def _fail(self, task: Task, error: Exception) -> None:
+        """End an animation that has raised: whoever waits for it gets the error."""
+        self._ids.guard.caught(f"task {task.name}", error)
+        self._stop(task)
+        task.finish(error=error)
 
     def kill_all(self) -> None:
         """End every animation where it is."""

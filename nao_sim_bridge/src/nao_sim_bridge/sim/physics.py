@@ -10,6 +10,7 @@ from typing import Callable, Mapping, Sequence
 
 import pybullet
 
+from nao_sim_bridge.sim.finite import check_finite
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.motion.joints import JointCommands
 from nao_sim_bridge.sim.physics_body import (
@@ -142,6 +143,7 @@ class Physics:
                 the floor. Without it the left sole is flat on the floor.
             roll: Of the torso over the floor, rad, positive with the left side up; of no meaning without a pitch.
         """
+        check_finite("angles of the robot", angles)
         for index, angle in zip(self._indices, self._to_engine(angles)):
             pybullet.resetJointState(self.robot, index, angle, 0.0, physicsClientId=self.client)
         if pitch is not None:
@@ -160,7 +162,11 @@ class Physics:
         self._put_over_floor(xy, -min(soles), orientation)
 
     def drive(self, joints: JointCommands) -> None:
-        """Tell the motors commands and stiffnesses; a limp joint has only the friction of its gears."""
+        """Tell the motors commands and stiffnesses; a limp joint has only the friction of its gears.
+
+        Raises:
+            NotFinite: One of the numbers is not; the motors go on with what they were told before.
+        """
         share = self._settings.motor.feed_forward
         if joints.efforts is not self._efforts:  # replaced as a whole and never changed
             self._take_efforts(joints.efforts)
@@ -170,6 +176,7 @@ class Physics:
             rests = self._to_engine(joints.rests)
             for index in self._limp:
                 targets[index], velocities[index] = rests[index], 0.0
+        check_finite("targets, speeds and torques of the motors", [*targets, *velocities, *self._forces])
         pybullet.setJointMotorControlArray(
             self.robot,
             self._indices,
@@ -199,7 +206,13 @@ class Physics:
         self.shared.step(self.pushing(pushes))
 
     def pushing(self, pushes: Mapping[str, Vector3]) -> Sequence[Callable[[], None]]:
-        """What `PhysicsWorld.step` calls for pushes: link name -> force in N, in world, on its centre of mass."""
+        """What `PhysicsWorld.step` calls for pushes: link name -> force in N, in world, on its centre of mass.
+
+        Raises:
+            NotFinite: A force is not.
+        """
+        for link, force in pushes.items():
+            check_finite(f"push of {link}", force)
         return [partial(self._push, link, force) for link, force in pushes.items()]
 
     def _push(self, link: str, force: Vector3) -> None:
@@ -216,17 +229,27 @@ class Physics:
     # --- reading --------------------------------------------------------------------------------------------------
 
     def read_joints(self) -> JointReadings:
-        """Angles, speeds and torques of the 26 joints."""
+        """Angles, speeds and torques of the 26 joints.
+
+        Raises:
+            NotFinite: The engine has lost the body.
+        """
         states = pybullet.getJointStates(self.robot, self._indices, physicsClientId=self.client)
         positions, velocities, _, torques = map(list, zip(*states))
+        check_finite("joints of the robot", positions)
         for index in self._hands:
             positions[index] = positions[index] / self._travel + 1.0
             velocities[index] /= self._travel
         return JointReadings(tuple(positions), tuple(velocities), tuple(torques))
 
     def read_body(self) -> BodyReadings:
-        """Pose and velocities of the torso frame."""
+        """Pose and velocities of the torso frame.
+
+        Raises:
+            NotFinite: The engine has lost the body.
+        """
         com, orientation = pybullet.getBasePositionAndOrientation(self.robot, physicsClientId=self.client)
+        check_finite("torso of the robot", (*com, *orientation))
         position, orientation = pybullet.multiplyTransforms(com, orientation, *self._com_to_torso)
         velocity, angular = pybullet.getBaseVelocity(self.robot, physicsClientId=self.client)
         rx, ry, rz = position[0] - com[0], position[1] - com[1], position[2] - com[2]
@@ -279,6 +302,7 @@ class Physics:
 
     def _reset_base(self, position: Vector3, orientation: Sequence[float]) -> None:
         com, turn = pybullet.multiplyTransforms(position, orientation, *self._torso_to_com)
+        check_finite("place of the robot", (*com, *turn))
         pybullet.resetBasePositionAndOrientation(self.robot, com, turn, physicsClientId=self.client)
         pybullet.resetBaseVelocity(self.robot, (0, 0, 0), (0, 0, 0), physicsClientId=self.client)
 

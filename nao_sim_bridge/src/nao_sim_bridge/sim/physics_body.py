@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Mapping
 
 import pybullet
@@ -12,6 +10,7 @@ from nao_sim_bridge.sim.collision import LOAD_FLAGS, apart
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.settings import ContactSettings
 from nao_sim_bridge.sim.urdf import physics_urdf
+from nao_sim_bridge.sim.whole_file import memory_file
 
 # Columns of PyBullet's joint info.
 JOINT_NAME, LINK_NAME = 1, 12
@@ -19,13 +18,8 @@ JOINT_NAME, LINK_NAME = 1, 12
 
 def load_robot(client: int, model: RobotModel) -> int:
     """Put a robot into a world; PyBullet's body id of it."""
-    descriptor, path = tempfile.mkstemp(suffix=".urdf")
-    try:
-        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-            file.write(physics_urdf(model))
+    with memory_file(physics_urdf(model).encode()) as path:
         return pybullet.loadURDF(path, flags=LOAD_FLAGS, physicsClientId=client)
-    finally:
-        os.remove(path)
 
 
 def index_by(client: int, robot: int, column: int) -> dict[str, int]:

@@ -8,6 +8,7 @@ from typing import Iterable, Mapping, Sequence
 
 from nao_sim_bridge.sim.errors import UnknownName
 from nao_sim_bridge.sim.faults import Faults
+from nao_sim_bridge.sim.finite import NotFinite, check_finite
 from nao_sim_bridge.sim.led_animations import power_on
 from nao_sim_bridge.sim.leds import LedBank
 from nao_sim_bridge.sim.leds_layout import LedLayout
@@ -152,6 +153,7 @@ class SimulatedRobot:
         """Push a link with `force` (N, in world) for `duration` s from now on."""
         if link != "torso" and link not in self._physics.links:
             raise UnknownName("link", link, ["torso", *self._physics.links])
+        check_finite(f"push of {link}", (*force, duration))
         self._pushes.append(_Push(link, force, self.time + duration))
 
     def press(self, sensors: Iterable[str]) -> None:
@@ -183,7 +185,7 @@ class SimulatedRobot:
         """First half of a tick: LEDs, motion and motors up to its end, before the step of physics."""
         self._ticks += 1
         now = self.time
-        self.leds.tick(now)
+        self.task_ids.guard.call(self.leds.tick, now)
         self.whole_body.suspended = self.getting_up or self.locomotion.active
         self.reflexes.prepare(self._sensed, self.getting_up or self.stability.falls.falling, self.stability.on_feet)
         if self.locomotion.active:
@@ -197,8 +199,17 @@ class SimulatedRobot:
         if self._sensed is not None:
             self.reflexes.limit_efforts(self._sensed, self._dt)
         if self.joints.changed:
-            self._physics.drive(self.joints)
+            try:
+                self._physics.drive(self.joints)
+            except NotFinite as error:
+                self._put_right(error)
             self.joints.changed = False
+
+    def _put_right(self, error: NotFinite) -> None:
+        """Leave joints where they are whose commands are not finite; what moves them ends."""
+        self.task_ids.guard.caught("motion", error)
+        self.motion.kill_using(self.joints.put_right(self._measured))
+        self._physics.drive(self.joints)
 
     def take_pushes(self) -> Mapping[str, Vector3]:
         """Forces on links in the coming step of physics, N, in world, by link."""

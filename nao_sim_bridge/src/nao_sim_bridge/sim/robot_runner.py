@@ -57,6 +57,11 @@ class RobotRunner:
         """True until the thread has ended."""
         return self.thread.running
 
+    @property
+    def failed(self) -> bool:
+        """See `SimulationRunner`."""
+        return self.thread.failed
+
     def execute(self, command: Callable[[], Any], name: str = "command") -> Task:
         """Run `command()` in the simulation thread; the task ends with what it returns or raises."""
         if not self._left_behind:

@@ -11,9 +11,11 @@ import math
 import threading
 import time
 from collections import deque
+from dataclasses import dataclass
 from typing import Any, Callable
 
-from nao_sim_bridge.sim.errors import BadValue, SimulationStopped
+from nao_sim_bridge.sim.errors import BadValue, SimulationStopped, TaskKilled
+from nao_sim_bridge.sim.limits import kind
 from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.snapshot import Snapshot
 from nao_sim_bridge.sim.tasks import Task, TaskIds, stopped_error
@@ -25,10 +27,15 @@ MAX_LAG = 0.1
 FASTEST = math.inf
 # How soon to look again at what time waits for when nobody said that it is ready, s of wall time.
 HOLD_LOOK = 0.005
+# The longest wait for a tick before its time is worked out again, s of wall time: the system takes no wait of years.
+LONGEST_WAIT = 60.0
 
 
 class SimulationRunner:
     """Runs a simulation in its own thread; `take` gives it another one, as if the first had never been.
+
+    Attributes:
+        failed: Whether the thread has ended because the simulation failed.
 
     Args:
         simulation: What to run, with all robots of its world; from `start` on they belong to the thread.
@@ -51,10 +58,11 @@ class SimulationRunner:
         self._on_end = on_end
         self._ids = TaskIds()
         self._commands: deque[tuple[Task, Callable[[], Any]]] = deque()
-        self._advances: deque[tuple[Task, int]] = deque()
+        self._advances: deque[_Advance] = deque()  # changed under `_wake`
         self._wake = threading.Condition()
         self._ticked = threading.Condition()
         self._stopping = False
+        self.failed = False
         self._pace_wall = 0.0
         self._pace_time = 0.0
         self._connect(simulation)
@@ -123,9 +131,10 @@ class SimulationRunner:
             self._wake.notify()
 
     def pause(self) -> None:
-        """Let time stand still; commands are still taken."""
+        """Let time stand still; commands are still taken. What `advance` has begun before ends."""
         with self._wake:
             self._paused = True
+            self.end_advances("a pause")
 
     def resume(self) -> None:
         """Let time pass again."""
@@ -135,16 +144,40 @@ class SimulationRunner:
             self._wake.notify()
 
     def advance(self, seconds: float) -> Task:
-        """Let `seconds` of simulated time pass as fast as possible; the task ends with the snapshot after it."""
-        if not 0.0 <= seconds < math.inf:
-            raise BadValue("seconds", seconds, "0 or more, finite")
-        task = self._ids.make("advance")
+        """Let `seconds` of simulated time pass as fast as possible; the task ends with the snapshot after it.
+
+        It fails when a pause or a reset comes before that time is over.
+        """
+        if not (seconds >= 0.0 and kind("time").fits(seconds)):
+            raise BadValue("seconds", seconds, f"0 or more, finite, {kind('time').highest:g} s at most")
+        ticks = round(seconds / self._simulation.settings.tick_s)
         with self._wake:
             if self._stopping:
                 raise stopped_error()
-            self._advances.append((task, round(seconds / self._simulation.settings.tick_s)))
+            named = self._ids.make("advance")
+            task = Task(named.name, named.task_id, self._drop_advance, self._kill_later, self._simulation.shared.guard)
+            self._advances.append(_Advance(task, seconds, ticks, ticks))
             self._wake.notify()
         return task
+
+    def end_advances(self, by: str) -> None:
+        """Let what `advance` has begun fail, with the words for what has ended it."""
+        with self._wake:
+            ended, self._advances = self._advances, deque()
+            if not ended or self._stopping:
+                return
+            self._restart_pace()
+            tick_s = self._simulation.settings.tick_s
+
+            def fail() -> None:
+                for one in ended:
+                    passed = (one.ticks - one.left) * tick_s
+                    one.task.finish(
+                        error=TaskKilled(f"was ended by {by} after {passed:g} of {one.seconds:g} s of simulated time")
+                    )
+
+            self._commands.append((self._ids.make("end of advances"), fail))
+            self._wake.notify()
 
     def wait_for_tick(self, after: int, timeout: float) -> Snapshot | None:
         """The first snapshot at which `ticks` is above `after`, None when none came within `timeout` (wall time, s)."""
@@ -156,6 +189,11 @@ class SimulationRunner:
     def _notify(self) -> None:
         with self._wake:
             self._wake.notify()
+
+    def _drop_advance(self, task: Task) -> None:
+        with self._wake:
+            self._advances = deque(one for one in self._advances if one.task is not task)
+            self._restart_pace()
 
     def _kill_later(self, task: Task) -> None:
         with self._wake:
@@ -170,12 +208,13 @@ class SimulationRunner:
     # --- in the simulation thread ---------------------------------------------------------------------------------
 
     def take(self, simulation: Simulation) -> float:
-        """Run another simulation from now on; pace, pause and what `advance` has begun stay.
+        """Run another simulation from now on; pace and pause stay, what `advance` has begun ends.
 
         Returns:
             How much time the ones before have had in all, s.
         """
         before = self.ticks
+        self.end_advances("a reset")
         self._connect(simulation)
         self._simulation = simulation
         self._run_now = (simulation, before)
@@ -192,14 +231,15 @@ class SimulationRunner:
             while self._next_work():
                 pass
         except Exception as failure:
+            self.failed = True
             log.exception("the simulation failed at tick %d", self._simulation.ticks)
             error = SimulationStopped(f"the simulation failed: {failure}")
         with self._wake:
             self._stopping = True
-            waiting = [task for task, _ in self._commands] + [task for task, _ in self._advances]
+            waiting = [task for task, _ in self._commands] + [one.task for one in self._advances]
         for task in waiting:
             task.finish(error=error)
-        self._simulation.close()
+        self._simulation.shared.guard.call(self._simulation.close)
         with self._ticked:
             self._ticked.notify_all()
         self._on_end()
@@ -209,13 +249,15 @@ class SimulationRunner:
         with self._wake:
             delay = self._delay()
             while not (self._stopping or self._commands or delay <= 0.0):
-                self._wake.wait(None if delay == math.inf else delay)
+                self._wake.wait(None if delay == math.inf else min(delay, LONGEST_WAIT))
                 delay = self._delay()
             if self._stopping:
                 return False
         while self._commands:
             self._run_command(*self._commands.popleft())
-        if self._delay() <= 0.0:
+        with self._wake:
+            due = self._delay() <= 0.0
+        if due:
             self._tick()
         return True
 
@@ -234,23 +276,27 @@ class SimulationRunner:
         # Time that passes without a wait would keep every other thread from the interpreter.
         time.sleep(0.0)
         if self._advances:
-            task, left = self._advances[0]
-            if left > 1:
-                self._advances[0] = (task, left - 1)
-            else:
-                self._finish_advance(snapshot)
+            self._count_down(snapshot)
 
-    def _finish_advance(self, snapshot: Snapshot) -> None:
-        task, _ = self._advances.popleft()
-        if not self._advances:
-            self._restart_pace()
-        task.finish(snapshot)
+    def _count_down(self, snapshot: Snapshot) -> None:
+        """One tick less to go for the first of what `advance` has begun, if any; it is over when none is left."""
+        with self._wake:
+            if not self._advances:
+                return
+            first = self._advances[0]
+            first.left -= 1
+            if first.left > 0:
+                return
+            self._advances.popleft()
+            if not self._advances:
+                self._restart_pace()
+        first.task.finish(snapshot)
 
     def _delay(self) -> float:
         """Wall time in s until the next tick is due; infinite while time stands still."""
         if self._advances:
-            if self._advances[0][1] == 0:
-                self._finish_advance(self.snapshot)
+            if self._advances[0].left == 0:
+                self._count_down(self.snapshot)
                 return self._delay()
             return self._hold()
         if self._paused:
@@ -274,7 +320,26 @@ class SimulationRunner:
         self._pace_time = self._simulation.time
 
 
+@dataclass
+class _Advance:
+    """Time that somebody has asked for.
+
+    Attributes:
+        task: Ends when it has passed.
+        seconds: How much it was.
+        ticks: The same in ticks.
+        left: How many of them are to come.
+    """
+
+    task: Task
+    seconds: float
+    ticks: int
+    left: int
+
+
 def _checked_speed(speed: float) -> float:
-    if not speed > 0.0:
-        raise BadValue("speed", speed, "above 0; infinity for as fast as possible")
+    pace = kind("pace")
+    if not (speed > 0.0 and pace.fits(speed)):
+        allowed = f"{pace.smallest:g} to {pace.highest:g}, above 0; infinity for as fast as possible"
+        raise BadValue("speed", speed, allowed)
     return float(speed)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.limits import world_kind
 from nao_sim_bridge.sim.world import World, load_world
 
 MAX_DELAY = 1.0
@@ -43,10 +43,11 @@ class Scene:
     def __post_init__(self) -> None:
         for name in ("friction", "payload", "sensor_noise", "sensor_delay"):
             value = getattr(self, name)
-            most = MAX_DELAY if name == "sensor_delay" else math.inf
-            if value is not None and not (0.0 <= value <= most and math.isfinite(value)):
-                allowed = "0 or more, finite" if most == math.inf else f"0 to {most:g} s"
-                raise BadValue(name, value, allowed)
+            bounds = world_kind(name)
+            most = MAX_DELAY if name == "sensor_delay" else bounds.highest
+            if value is not None and not 0.0 <= value <= most:
+                unit = "" if bounds.unit == "none" else f" {bounds.unit}"
+                raise BadValue(name, value, f"0 to {most:g}{unit}")
 
     def load_world(self, sole_friction: float) -> World:
         """The world, with the friction asked for.

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Any, Mapping, Tuple
+from dataclasses import dataclass
+from typing import Tuple
 
 from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.config import check_keys, read_json, section
+from nao_sim_bridge.sim.config import read_settings
 
 FILE = "physics.json"
 
@@ -102,9 +102,4 @@ def load_settings() -> Settings:
     Raises:
         ConfigError: The file cannot be read, or a key is unknown or missing.
     """
-    content: Mapping[str, Any] = read_json(config_file(FILE))
-    names = [f.name for f in fields(Settings)]
-    check_keys(content, FILE, names, ["_meta"])
-    sections = {"motor": MotorSettings, "contact": ContactSettings, "head": HeadSettings, "battery": BatterySettings}
-    values = {n: section(sections[n], content[n], f"{FILE}: {n}") if n in sections else content[n] for n in names}
-    return Settings(**values)
+    return read_settings(Settings, config_file(FILE))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Callable
 
+from nao_sim_bridge.sim.finite import NotFinite
 from nao_sim_bridge.sim.physics_world import PhysicsWorld
 from nao_sim_bridge.sim.places import ORIGIN, RobotPlace
 from nao_sim_bridge.sim.render.client import Renderer
@@ -31,6 +32,7 @@ class SharedWorld:
         robots: Those that are in it, in the order of their numbers.
         physics: The engine; replaced at a reset.
         task_ids: Source of the numbers of all tasks.
+        guard: Calls what belongs to a tick besides physics and sensors, and knows what of it has failed.
         things: What is in the world and may come, move and go; a reset puts it to where the world file says.
         air: What sounds, and the clock of sound; it stays at a reset.
         renderer: What draws, for all robots.
@@ -54,6 +56,7 @@ class SharedWorld:
         self.ticks = 0
         self.after_reset: list[Callable[[], None]] = []
         self.task_ids = TaskIds()
+        self.guard = self.task_ids.guard
         self.wake: Callable[[], None] = lambda: None
         self.air = Air(self.task_ids, self.settings.tick_s)
         self.renderer = renderer if isinstance(renderer, Renderer) else Renderer(scene.world, scene.version, renderer)
@@ -74,8 +77,11 @@ class SharedWorld:
         """Whether time that runs faster than the wall clock should wait for one of the robots."""
         for robot in self.robots:
             for waits in robot.holds:
-                if waits():
-                    return True
+                try:
+                    if waits():
+                        return True
+                except Exception as error:
+                    self.guard.caught(waits, error)
         return False
 
     def join(self, robot: Simulation) -> None:
@@ -97,28 +103,46 @@ class SharedWorld:
         for robot in self.robots:
             robot.begin(self.physics)
         for call in self.after_reset:
-            call()
+            self.guard.call(call)
 
     def tick(self) -> None:
         """Advance by one tick: things, LEDs, motion, motors, physics, sensors, sound, cameras, in this order.
 
-        Each of them for all robots: none is a tick ahead of what it sees, hears and touches of another.
+        Each of them for all robots: none is a tick ahead of what it sees, hears and touches of another. What raises of
+        it fails alone, see `guard`, but for the engine: without it nothing can go on. Where that has lost a body, whose
+        place is no number any more, world and robots are put to their start, and `guard` tells why.
         """
         self.ticks += 1
-        self.things.tick()
-        robots = self.robots
+        call, robots = self.guard.call, self.robots
+        call(self.things.tick)
         pushes: list[Callable[[], None]] = []
         for robot in robots:
-            pushes += robot.act()
+            pushes += call(robot.act) or ()
         self.physics.step(pushes)
+        self._sense()
+        call(self.air.tick, self.ticks)
         for robot in robots:
-            robot.sense()
-        self.air.tick(self.ticks)
+            call(robot.perceive)
         for robot in robots:
-            robot.perceive()
-        for robot in robots:
+            snapshot = robot.snapshot
             for look in robot.after_tick:
-                look(robot.snapshot)
+                try:  # not by `call`: this is for each of many at every tick
+                    look(snapshot)
+                except Exception as error:
+                    self.guard.caught(look, error)
+
+    def _sense(self) -> None:
+        lost: NotFinite | None = None
+        for robot in self.robots:
+            try:
+                robot.sense()
+            except NotFinite as error:
+                lost = error
+            except Exception as error:
+                self.guard.caught(robot.sense, error)
+        if lost is not None:
+            self.guard.caught("physics, which begins anew,", lost)
+            self.reset()
 
     def looks_beside(self, robot: Simulation) -> tuple[RobotLook, ...]:
         """What all robots but one look like at the last tick. Any thread."""

@@ -79,6 +79,7 @@ class Simulation:
             self.render_state,
             self.scene.seed,
             released=lambda: self.wake(),
+            guard=self.shared.guard,
         )
         self.holds: list[Callable[[], bool]] = [self.sound.ears.holds, self.cameras.holds]
         self.things = self.shared.things
@@ -168,7 +169,7 @@ class Simulation:
 
     def act(self) -> Sequence[Callable[[], None]]:
         """First part of a tick, up to the step of physics; what is to be called before each step of the engine."""
-        self.hands.tick()
+        self.shared.guard.call(self.hands.tick)
         self.robot.command()
         pushes = self.robot.take_pushes()
         return self._physics.pushing(pushes) if pushes else ()
@@ -180,7 +181,7 @@ class Simulation:
 
     def perceive(self) -> None:
         """Third part of a tick: hear and see."""
-        self.sound.hear()
+        self.shared.guard.call(self.sound.hear)
         self.cameras.tick(self.snapshot)
 
     def end_tasks(self) -> None:
@@ -214,4 +215,4 @@ class Simulation:
         self.sound.begin(self.snapshot)
         self.cameras.begin(self.snapshot)
         for call in self.after_reset:
-            call()
+            self.shared.guard.call(call)

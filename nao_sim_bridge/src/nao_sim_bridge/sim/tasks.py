@@ -11,6 +11,7 @@ import threading
 from typing import Any, Callable
 
 from nao_sim_bridge.sim.errors import SimulationStopped, TaskKilled
+from nao_sim_bridge.sim.guard import Guard
 
 
 class Task:
@@ -20,6 +21,13 @@ class Task:
         name: NAOqi name of the call that made it, for example "angleInterpolation".
         task_id: Positive number, unique within its `TaskIds`.
         killed: True when it ended by `kill` and not by itself.
+
+    Args:
+        name: See above.
+        task_id: See above.
+        on_kill: Called in the simulation thread when the task is killed, to drop the work.
+        ask: Called with the task when another thread requests its end.
+        guard: Calls what is called at its end; None for one of its own.
     """
 
     def __init__(
@@ -28,12 +36,14 @@ class Task:
         task_id: int,
         on_kill: Callable[[Task], None] | None = None,
         ask: Callable[[Task], None] | None = None,
+        guard: Guard | None = None,
     ) -> None:
         self.name = name
         self.task_id = task_id
         self.killed = False
         self._on_kill = on_kill
         self._ask = ask
+        self._guard = guard or Guard()
         self._lock = threading.Lock()
         self._finished = threading.Event()
         self._callbacks: list[Callable[[Task], None]] = []
@@ -61,7 +71,7 @@ class Task:
             # Its owner mostly keeps the task, too: such a cycle would keep long sounds in memory for a while.
             self._on_kill = None
         for callback in callbacks:
-            callback(self)
+            self._guard.call(callback, self)
         return True
 
     @property
@@ -84,7 +94,7 @@ class Task:
             self.killed = True
             on_kill = self._on_kill
         if on_kill is not None:
-            on_kill(self)
+            self._guard.call(on_kill, self)
         self.finish()
         return True
 
@@ -94,18 +104,29 @@ class Task:
             if not self._finished.is_set():
                 self._callbacks.append(callback)
                 return
-        callback(self)
+        self._guard.call(callback, self)
+
+    def remove_done_callback(self, callback: Callable[[Task], None]) -> None:
+        """Do not call a callback that was added and has not been called yet."""
+        with self._lock:
+            if callback in self._callbacks:
+                self._callbacks.remove(callback)
 
     def then(self, change: Callable[[Any], Any]) -> Task:
-        """A task that ends with this one, its result passed through `change`."""
-        after = Task(self.name, self.task_id, ask=lambda _: self.request_kill())
+        """A task that ends with this one, its result passed through `change`; it fails where that raises."""
+        after = Task(self.name, self.task_id, ask=lambda _: self.request_kill(), guard=self._guard)
 
         def settle(done: Task) -> None:
             after.killed = done.killed
             if done.error is not None:
                 after.finish(error=done.error)
+                return
+            try:
+                result = change(done.value)
+            except Exception as error:
+                after.finish(error=error)
             else:
-                after.finish(change(done.value))
+                after.finish(result)
 
         self.add_done_callback(settle)
         return after
@@ -130,11 +151,13 @@ class TaskIds:
     Attributes:
         ask: Called with a task whose end another thread requests; who runs the simulation in a thread sets it to
             something that kills the task there.
+        guard: Calls what is called at the end of each task.
     """
 
     def __init__(self) -> None:
         self._count = itertools.count(1)
         self.ask: Callable[[Task], None] | None = None
+        self.guard = Guard()
 
     def make(self, name: str, on_kill: Callable[[Task], None] | None = None) -> Task:
         """A new task of the next number.
@@ -143,7 +166,7 @@ class TaskIds:
             name: NAOqi name of the call.
             on_kill: Called in the simulation thread when the task is killed, to drop the work.
         """
-        return Task(name, next(self._count), on_kill, lambda task: self.ask(task) if self.ask else None)
+        return Task(name, next(self._count), on_kill, lambda task: self.ask(task) if self.ask else None, self.guard)
 
 
 def killed_error(task: Task) -> TaskKilled:

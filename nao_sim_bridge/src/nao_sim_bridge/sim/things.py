@@ -19,6 +19,7 @@ from nao_sim_bridge.sim.rotations import (
     rotate_back,
 )
 from nao_sim_bridge.sim.shapes import Shape
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.tasks import Task, TaskIds
 from nao_sim_bridge.sim.world import FLOOR, MOST_PARTS, World, WorldObject
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from nao_sim_bridge.sim.physics_world import PhysicsWorld
     from nao_sim_bridge.sim.world_bodies import WorldBodies
 
-MOST_PLACED = 64
+MOST_PLACED = load_sizes().clients.things
 LONGEST_NAME = 64
 LARGEST = 10.0
 """Largest thing, m from its origin to its furthest point."""
@@ -91,10 +92,16 @@ class Things:
         now = self._now()
         for name, (glide, task) in list(self._glides.items()):
             ended = glide.ended(now)
-            if not ended:
-                self._bodies.put(name, glide.at(now), glide.velocity)
-            else:
+            try:
+                if not ended:
+                    self._bodies.put(name, glide.at(now), glide.velocity)
+                    continue
                 self._bodies.put(name, glide.target)
+            except Exception as error:
+                self._ids.guard.caught(f"task {task.name}", error)
+                del self._glides[name]
+                task.finish(error=error)
+            else:
                 del self._glides[name]
                 task.finish()
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
+import io
 from collections.abc import Sequence
 
 import pybullet
 from PIL import Image
 
 from nao_sim_bridge.sim.meshes import Mesh
+from nao_sim_bridge.sim.whole_file import memory_file
 from nao_sim_bridge.sim.world_pictures import WorldPicture, paint
 
 
@@ -41,10 +41,7 @@ def texture(picture: WorldPicture, client: int) -> int:
     Returns:
         Id of the texture, for `changeVisualShape`.
     """
-    descriptor, path = tempfile.mkstemp(suffix=".png")
-    os.close(descriptor)
-    try:
-        Image.fromarray(paint(picture)).save(path)
+    content = io.BytesIO()
+    Image.fromarray(paint(picture)).save(content, "PNG")
+    with memory_file(content.getvalue()) as path:
         return pybullet.loadTexture(path, physicsClientId=client)
-    finally:
-        os.remove(path)

@@ -13,12 +13,15 @@ from pathlib import Path
 import yaml
 
 from nao_sim_bridge.paths import world_directory
-from nao_sim_bridge.sim.errors import ConfigError
+from nao_sim_bridge.sim.bounded_files import read_bounded
+from nao_sim_bridge.sim.config import LARGEST_FILE
+from nao_sim_bridge.sim.errors import ConfigError, did_you_mean
 from nao_sim_bridge.sim.places import RobotPlace
 from nao_sim_bridge.sim.rotations import Quaternion, Vector3, from_roll_pitch_yaw
 from nao_sim_bridge.sim.shapes import Shape
 from nao_sim_bridge.sim.world_pictures import WorldPicture
 from nao_sim_bridge.sim.world_sounds import WorldSound
+from nao_sim_bridge.sim.yaml_values import load_yaml
 
 FLOOR = "floor"
 """A name that no object may have."""
@@ -221,11 +224,12 @@ def load_world(name_or_path: str) -> World:
     path = Path(name_or_path)
     if path.suffix not in (".yaml", ".yml"):
         if name_or_path not in world_names():
-            there = ", ".join(world_names())
-            raise WorldError("world", f"no world {name_or_path!r} (there are: {there}; or give a path to a .yaml)")
+            hint = did_you_mean(name_or_path, world_names())
+            there = f"there are: {', '.join(world_names())}; or give a path to a .yaml"
+            raise WorldError("world", f"no world {name_or_path!r}{hint} ({there})")
         path = world_directory() / f"{name_or_path}.yaml"
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, yaml.YAMLError) as error:
+        content = load_yaml(read_bounded(path, LARGEST_FILE).decode("utf-8"))
+    except (OSError, ValueError, yaml.YAMLError) as error:
         raise WorldError(path.name, f"cannot be read: {error}") from error
     return read_world(content, path.stem, path.name, path.parent)

@@ -6,6 +6,7 @@ from typing import Mapping, Sequence
 
 import pybullet
 
+from nao_sim_bridge.sim.finite import check_finite
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.rotations import Vector3
 from nao_sim_bridge.sim.world import World, WorldObject
@@ -49,11 +50,15 @@ class WorldBodies:
         return self._things
 
     def read(self) -> Mapping[str, Pose]:
-        """Poses of what can be moved, was placed, or was put elsewhere."""
-        poses = {
-            name: Pose(*pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client))
-            for name, body in self._loose.items()
-        }
+        """Poses of what can be moved, was placed, or was put elsewhere.
+
+        Raises:
+            NotFinite: The engine has lost one of them.
+        """
+        poses = {}
+        for name, body in self._loose.items():
+            poses[name] = pose = Pose(*pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client))
+            check_finite(name, (*pose.position, *pose.orientation))
         poses.update(self._fixed)
         return poses
 
@@ -86,7 +91,12 @@ class WorldBodies:
             self.gone |= {name}
 
     def put(self, name: str, pose: Pose, velocity: Vector3 = UNMOVED) -> None:
-        """Put a thing somewhere; it has that velocity (m/s, in world) until something changes it."""
+        """Put a thing somewhere; it has that velocity (m/s, in world) until something changes it.
+
+        Raises:
+            NotFinite: One of the numbers is not.
+        """
+        check_finite(f"place of {name}", (*pose.position, *pose.orientation, *velocity))
         body = self.ids[name]
         self._wake(self._around(body))
         pybullet.resetBasePositionAndOrientation(body, pose.position, pose.orientation, physicsClientId=self._client)

@@ -7,11 +7,24 @@ from collections.abc import Mapping
 from typing import Any
 
 from nao_sim_bridge.sim.config import vector
-from nao_sim_bridge.sim.errors import BadValue, UnknownName
+from nao_sim_bridge.sim.errors import BadValue, UnknownName, shortened
+from nao_sim_bridge.sim.limits import check_world
 from nao_sim_bridge.sim.world import Color, WorldError
 from nao_sim_bridge.sim.world_pictures import WorldPicture
 
 GREY = (0.6, 0.6, 0.6)
+
+
+def check_bounds(content: Any, where: str) -> None:
+    """Refuse numbers that are out of the bounds of their keys.
+
+    Raises:
+        WorldError: One of them is.
+    """
+    try:
+        check_world(content, where)
+    except BadValue as error:
+        raise WorldError(error.field, f"is {shortened(error.value)}, allowed is {error.allowed}") from error
 
 
 def entries(content: Mapping, key: str, where: str) -> list[tuple[str, Any]]:

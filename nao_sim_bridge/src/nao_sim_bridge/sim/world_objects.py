@@ -25,7 +25,7 @@ from nao_sim_bridge.sim.kinematics import rpy_matrix
 from nao_sim_bridge.sim.shapes import KINDS, Shape, read_shape
 from nao_sim_bridge.sim.world import MOST_PARTS, Part, WorldError, WorldObject
 from nao_sim_bridge.sim.world_cards import CARDS
-from nao_sim_bridge.sim.world_entries import GREY, color, entries, number, picture
+from nao_sim_bridge.sim.world_entries import GREY, check_bounds, color, entries, number, picture
 from nao_sim_bridge.sim.world_kinds import Kind, Made
 from nao_sim_bridge.sim.world_people import PERSON
 from nao_sim_bridge.sim.world_robots import NAO
@@ -82,6 +82,7 @@ def read_object(entry: Any, where: str, files: Callable[[str], Path]) -> WorldOb
     Raises:
         WorldError: The entry is wrong.
     """
+    check_bounds(entry, where)
     try:
         return _read(entry, where, files)
     except WorldError:

@@ -5,6 +5,7 @@ What is on a thing is a small value; who draws the world paints it when it is ne
 
 from __future__ import annotations
 
+import io
 import logging
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,18 +13,20 @@ from pathlib import Path
 
 import numpy as np
 
+from nao_sim_bridge.sim.bounded_files import read_bounded
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
+from nao_sim_bridge.sim.sizes import load_sizes
 
 log = logging.getLogger("nao_sim.pictures")
 
+DECODED = ("JPEG", "PNG", "WEBP")
+"""Kinds of picture files."""
 KINDS = ("landmark", "qr", "barcode", "face", "head", "poster", "pattern", "file")
 CODE128 = "code128:"
 """Begins the content of a barcode that is not an article number."""
 LONGEST_QR, LONGEST_BARCODE = 300, 40
 MOST_PIXELS = 2048
 """Edge of a picture, at most: larger files are made smaller."""
-LARGEST_FILE = 50_000_000
-"""Pixels of a picture file, at most: a small file may fill the memory when it is unpacked."""
 KEPT = 64
 GREY = 128
 ASPECTS = {"landmark": 1.0, "qr": 1.0, "face": 0.8, "poster": 0.75, "pattern": 1.0}
@@ -127,7 +130,7 @@ def _check(kind: str, content: str) -> None:
 
 def _one_of(kind: str, content: str, known) -> None:
     if content not in known:
-        raise BadValue(kind, content, f"one of {', '.join(known)}")
+        raise BadValue(kind, content, f"one of {', '.join(known)}", known)
 
 
 def _paint(kind: str, content: str) -> np.ndarray:
@@ -155,15 +158,22 @@ def _paint(kind: str, content: str) -> np.ndarray:
 
 
 def _read_file(path: str) -> np.ndarray:
-    from PIL import Image
+    from PIL import Image, UnidentifiedImageError
 
+    sizes = load_sizes().picture
     try:
-        with Image.open(path) as image:
+        content = read_bounded(Path(path), sizes.file_bytes)
+        with Image.open(io.BytesIO(content), formats=DECODED) as image:  # which reads its header only
+            width, height = image.size
+            if max(width, height) > sizes.side or width * height > sizes.pixels:
+                allowed = f"at most {sizes.side} a side and {sizes.pixels} of all are allowed"
+                raise ValueError(f"it has {width}x{height} pixels, {allowed}")
+            if image.format == "WEBP" and image.is_animated:
+                raise ValueError("it is WebP that moves")
             image.draft("RGB", (MOST_PIXELS, MOST_PIXELS))
-            if image.width * image.height > LARGEST_FILE:
-                raise ValueError(f"it has {image.width}x{image.height} pixels, more than {LARGEST_FILE}")
             image = image.convert("RGB")
             image.thumbnail((MOST_PIXELS, MOST_PIXELS))
             return np.array(image)
     except Exception as error:  # formats have errors of their own for broken files, a SyntaxError among them
-        raise BadValue("picture file", path, f"a picture: {error}") from error
+        reason = f"none of {', '.join(DECODED)}" if isinstance(error, UnidentifiedImageError) else error
+        raise BadValue("picture file", path, f"a picture: {reason}") from error

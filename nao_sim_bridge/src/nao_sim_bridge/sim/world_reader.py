@@ -23,7 +23,7 @@ from nao_sim_bridge.sim.errors import BadValue, ConfigError
 from nao_sim_bridge.sim.places import RobotPlace
 from nao_sim_bridge.sim.world import FLOOR, Background, Floor, Light, Rug, World, WorldError
 from nao_sim_bridge.sim.world_bumps import read_bumps
-from nao_sim_bridge.sim.world_entries import GREY, color, entries, number
+from nao_sim_bridge.sim.world_entries import GREY, check_bounds, color, entries, number
 from nao_sim_bridge.sim.world_objects import read_object
 from nao_sim_bridge.sim.world_sounds import read_sounds
 
@@ -46,6 +46,7 @@ def read_world(content: Any, name: str, where: str, folder: Path | None = None) 
         WorldError: If an entry is wrong, unknown or missing.
     """
     check_keys(content, where, ("floor",), SECTIONS, WorldError)
+    check_bounds(content, where)
     beside = lambda file: (folder or Path()) / file  # noqa: E731
     try:
         objects = tuple(read_object(entry, place, beside) for place, entry in entries(content, "objects", where))

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Sequence, Tuple, Union
 
 from nao_sim_bridge.sim.config import check_keys, vector
-from nao_sim_bridge.sim.errors import ConfigError
+from nao_sim_bridge.sim.errors import ConfigError, did_you_mean
 from nao_sim_bridge.sim.rotations import Vector3
 
 KINDS = ("file", "tone", "noise", "say")
@@ -96,7 +96,9 @@ def _read_sound(
     if on is None and "position" not in entry:
         raise error(where, "missing 'position', or 'on' with the name of an object")
     if on is not None and on not in objects:
-        raise error(f"{where}.on", f"is {on!r}, allowed is an object of this world ({', '.join(objects) or 'none'})")
+        there = ", ".join(objects) or "none"
+        hint = did_you_mean(on, objects)
+        raise error(f"{where}.on", f"is {on!r}{hint}{'' if hint else ','} allowed is an object of this world ({there})")
     if "voice" in entry and (kind != "say" or not isinstance(entry["voice"], str)):
         raise error(f"{where}.voice", "is for a text to say, and the name of a voice")
     lasting = kind in ("tone", "noise")

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import zlib
+from pathlib import Path
 from typing import Callable, Sequence
 
 import numpy as np
 
-from nao_sim_bridge.sim.sound.files import read_sound
 from nao_sim_bridge.sim.sound.samples import RATE, Sound
 from nao_sim_bridge.sim.world_sounds import WorldSound
 
 Speak = Callable[[str, str], Sound]
 """From a text and the name of a voice to its sound; blocking."""
+Read = Callable[[Path], Sound]
+"""From a file to its sound; blocking."""
 
 # A sound that does not end is one of this length, repeated, s. Frequencies become multiples of its inverse.
 ROUND = 10.0
@@ -24,7 +26,7 @@ LOWEST_NOISE = 20.0
 FADE = 0.005
 
 
-def make_sound(sound: WorldSound, speak: Speak) -> Sound:
+def make_sound(sound: WorldSound, speak: Speak, read: Read) -> Sound:
     """What a sound of a world sounds like, pause included, one channel.
 
     Raises:
@@ -32,7 +34,7 @@ def make_sound(sound: WorldSound, speak: Speak) -> Sound:
         SpeechError: Its text cannot be said.
     """
     if sound.kind == "file":
-        made = read_sound(sound.content).mono().at_rate(RATE)
+        made = read(sound.content).mono().at_rate(RATE)
     elif sound.kind == "say":
         made = speak(sound.content, sound.voice).mono().at_rate(RATE)
     elif sound.kind == "tone":

@@ -13,7 +13,7 @@ from nao_sim_bridge.sim.sound.samples import Sound
 from nao_sim_bridge.sim.sound.sources import SoundSource
 from nao_sim_bridge.sim.world import World, WorldError
 from nao_sim_bridge.sim.world_sounds import WorldSound
-from nao_sim_bridge.sim.world_sounds_made import Speak, make_sound
+from nao_sim_bridge.sim.world_sounds_made import Read, Speak, make_sound
 
 # How often a sound follows the object that it rides on, s.
 FOLLOW_PERIOD = 0.02
@@ -26,15 +26,16 @@ class WorldSounds:
         simulation: Whose world it is; nothing is added to its ticks when the world is silent.
         world: That world.
         speak: Says texts.
+        read: Reads files.
 
     Raises:
         WorldError: A file cannot be read, or a text cannot be said.
     """
 
-    def __init__(self, simulation: Simulation, world: World, speak: Speak) -> None:
+    def __init__(self, simulation: Simulation, world: World, speak: Speak, read: Read) -> None:
         self._simulation = simulation
         self._world = world
-        self._made = [(sound, _made(sound, speak, world)) for sound in world.sounds]
+        self._made = [(sound, _made(sound, speak, read, world)) for sound in world.sounds]
         self._due: list[tuple[float, WorldSound, Sound]] = []
         self._riding: list[WorldSound] = []
         self._next = math.inf
@@ -85,9 +86,9 @@ class WorldSounds:
             self._riding.append(sound)
 
 
-def _made(sound: WorldSound, speak: Speak, world: World) -> Sound:
+def _made(sound: WorldSound, speak: Speak, read: Read, world: World) -> Sound:
     try:
-        return make_sound(sound, speak)
+        return make_sound(sound, speak, read)
     except SimulationError as error:
         raise WorldError(f"world {world.name}: sound {sound.name!r}", str(error)) from error
 

@@ -48,6 +48,11 @@ class GoalRun:
         self._handle.comm_state_machine.update_feedback = self._on_any_feedback
 
     @property
+    def running(self) -> bool:
+        """Whether it has not ended yet; until then `state`, `text`, `result` and `ended` raise StackNotReady."""
+        return self._end is None
+
+    @property
     def state(self) -> int:
         """Terminal state (actionlib_msgs/GoalStatus); only after `wait`."""
         return self._ended().state

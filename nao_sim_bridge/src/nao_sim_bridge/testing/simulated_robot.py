@@ -102,7 +102,7 @@ class SimulatedRobot:
         The robot has started again, so that modules and drivers connect to it anew: goals that run end.
 
         Args:
-            world: Name of a world, or path of its file; empty for that of the start.
+            world: Name of a world, or path of its file, in `record_dir` or beside that of the start; empty for that.
 
         Raises:
             ValueError: The world cannot be used; everything stays as it is.

@@ -19,13 +19,15 @@ def wait_until(condition: Callable[[], bool], limit: float, what: str | Callable
     """Ask again and again until `condition()` holds.
 
     Raises:
-        StackNotReady: It does not hold within `limit` s of wall time.
+        StackNotReady: It does not hold within `limit` s of wall time, or before this node has been shut down.
     """
     give_up = time.monotonic() + limit
     while not condition():
-        if time.monotonic() > give_up or rospy.is_shutdown():
+        over = rospy.is_shutdown()
+        if time.monotonic() > give_up or over:
             text = what if isinstance(what, str) else what()
-            raise StackNotReady(f"not there within {limit:g} s: {text}")
+            when = "before rospy was shut down, as the end of rostest.rosrun does" if over else f"within {limit:g} s"
+            raise StackNotReady(f"not there {when}: {text}")
         time.sleep(PAUSE)
 
 

@@ -67,8 +67,15 @@ class ALAnimatedSpeech:
         memory.declare_event(END, "ALAnimatedSpeech")
 
     def say(self, text: str, configuration: Any = None) -> Task:
-        mode = self._mode if configuration is None else self._configured(configuration)
-        talk = AnimatedTalk(text, self._settings.style(), mode, self._studio, self._library, self._chance, self._call)
+        return self.say_with(text, self._mode if configuration is None else self._configured(configuration), self._call)
+
+    def say_without_calls(self, text: str) -> Task:
+        """What a behaviour says: instructions that call methods are left out."""
+        return self.say_with(text, self._mode, None)
+
+    def say_with(self, text: str, mode: str, call: Caller | None) -> Task:
+        """See `AnimatedTalk`."""
+        talk = AnimatedTalk(text, self._settings.style(), mode, self._studio, self._library, self._chance, call)
 
         def start() -> Task:
             task = talk.start(self._simulation, self._speaker, self._animator)

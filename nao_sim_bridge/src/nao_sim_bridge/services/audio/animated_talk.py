@@ -11,7 +11,7 @@ from nao_sim_bridge.sim.speech import body_language, speaker
 from nao_sim_bridge.sim.speech.animations import Animation, AnimationLibrary
 from nao_sim_bridge.sim.speech.animator import Animator
 from nao_sim_bridge.sim.speech.clips import Clip, SpokenWord, Style
-from nao_sim_bridge.sim.speech.sentences import Item, sentences
+from nao_sim_bridge.sim.speech.sentences import Item
 from nao_sim_bridge.sim.speech.speaker import Speaker, SpeechEvent
 from nao_sim_bridge.sim.speech.studio import Studio
 from nao_sim_bridge.sim.speech.tags import Cue, Gate, Piece
@@ -33,7 +33,10 @@ class AnimatedTalk:
         studio: Reads what is spoken.
         library: The animations.
         chance: Chooses gestures.
-        call: For the instructions that call methods.
+        call: For the instructions that call methods; None: they are left out.
+
+    Raises:
+        BadValue: The text is too long, or its pauses are together.
     """
 
     def __init__(
@@ -44,8 +47,9 @@ class AnimatedTalk:
         studio: Studio,
         library: AnimationLibrary,
         chance: random.Random,
-        call: Caller,
+        call: Caller | None,
     ) -> None:
+        studio.check_length(text)
         self._style = style
         self._mode = mode
         self._library = library
@@ -63,7 +67,7 @@ class AnimatedTalk:
                 pieces += self._piece(part)
             else:
                 pieces += studio.tags.read(part, style.prosody)
-        self._items: list[Item] = sentences(pieces)
+        self._items: list[Item] = studio.sentences_of(text, pieces)
 
     def start(self, simulation: Any, mouth: Speaker, animator: Animator) -> Task:
         """Speak; the task ends when the text is said and the joints are back. Killing it is silence at once."""
@@ -136,6 +140,9 @@ class AnimatedTalk:
         return [Gate(lambda: self._begin(animation))]
 
     def _call_piece(self, instruction: Instruction) -> list[Piece]:
+        if self._call is None:
+            log.warning("^%s is left out: behaviours call no methods", instruction.act)
+            return []
         try:
             module, method, arguments = method_call(instruction.value)
         except ValueError as error:

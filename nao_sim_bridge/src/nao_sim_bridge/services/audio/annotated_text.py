@@ -26,6 +26,10 @@ INSTRUCTIONS = {
     "pCall": ("post", CALL),
 }
 MARK = re.compile(r"\^([A-Za-z]+)\(")
+# So many instructions that never end are looked for to the end of the text; what comes behind them is text.
+MOST_UNENDED = 20
+# Characters: a parser may fail badly at deep brackets.
+LONGEST_ARGUMENTS = 2000
 METHOD = re.compile(r"\s*(\w+)\.(\w+)\s*\((.*)\)\s*", re.DOTALL)
 
 
@@ -47,6 +51,7 @@ class Instruction:
 def read(text: str) -> list[Union[str, Instruction]]:
     """Texts and instructions in their order; what is no instruction of NAOqi's is left out, and told in the log."""
     parts: list[Union[str, Instruction]] = []
+    unknown: dict[str, None] = {}
     place = 0
     for mark, end in _marks(text):
         parts.append(text[place : mark.start()])
@@ -54,9 +59,12 @@ def read(text: str) -> list[Union[str, Instruction]]:
         if name in INSTRUCTIONS:
             parts.append(Instruction(*INSTRUCTIONS[name], value))
         else:
-            log.warning("instruction ^%s(%s) is left out, there are ^%s", name, value, ", ^".join(INSTRUCTIONS))
+            unknown[name] = None
         place = end
     parts.append(text[place:])
+    if unknown:
+        left_out = ", ^".join(name[:20] for name in list(unknown)[:10])
+        log.warning("instructions ^%s are left out, there are ^%s", left_out, ", ^".join(INSTRUCTIONS))
     return [part for part in parts if part != ""]
 
 
@@ -68,25 +76,28 @@ def method_call(text: str) -> Tuple[str, str, list[Any]]:
     """
     found = METHOD.fullmatch(text)
     if found is None:
-        raise ValueError(f"{text!r} is no call like Module.method(arguments)")
+        raise ValueError(f"{text[:80]!r} is no call like Module.method(arguments)")
     module, method, arguments = found.groups()
+    if len(arguments) > LONGEST_ARGUMENTS:
+        raise ValueError(f"{text[:80]!r} has arguments of {len(arguments)} characters, at most {LONGEST_ARGUMENTS}")
     try:
         values = ast.literal_eval(f"({arguments},)") if arguments.strip() else ()
-    except (SyntaxError, ValueError) as error:
-        raise ValueError(f"{text!r} has arguments that are no texts, numbers or lists") from error
+    except (SyntaxError, ValueError, TypeError, MemoryError, RecursionError) as error:  # the last two: nested deep
+        raise ValueError(f"{text[:80]!r} has arguments that are no texts, numbers or lists") from error
     return module, method, list(values)
 
 
 def _marks(text: str) -> Iterator[tuple[re.Match, int]]:
     """The instructions in a text, and where each ends: at the bracket that closes its own."""
-    place = 0
-    while True:
+    place = unended = 0
+    while unended < MOST_UNENDED:
         mark = MARK.search(text, place)
         if mark is None:
             return
         end = _closing(text, mark.end())
         if end is None:
             place = mark.end()
+            unended += 1
             continue
         yield mark, end
         place = end

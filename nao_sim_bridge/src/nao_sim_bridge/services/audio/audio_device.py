@@ -5,14 +5,13 @@ from __future__ import annotations
 import threading
 from typing import Any, Callable
 
-from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.arguments import number
 from nao_sim_bridge.services.audio.microphone_clients import MicrophoneClients
 from nao_sim_bridge.services.audio.microphone_energy import MicrophoneEnergy
 from nao_sim_bridge.services.audio.microphone_formats import ALL, HIGH, LOW, MicrophoneFormat, microphone_format
 from nao_sim_bridge.services.audio.output_buffers import RATES, OutputBuffers, samples_of
 from nao_sim_bridge.services.audio.recorder import Recorder, RecordingOrder, kind_of
-from nao_sim_bridge.services.audio.sound_files import read_client_file
+from nao_sim_bridge.services.audio.sound_files import SoundFiles
 from nao_sim_bridge.services.audio.tones import side, sine
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
@@ -34,7 +33,7 @@ class ALAudioDevice:
     Args:
         simulation: Whose loudspeakers and microphones these are; touched in the simulation thread only.
         runner: That thread.
-        files: Where clients may have files read from and written to.
+        sounds: Reads files of clients.
         clients: Modules that hear the microphones.
         energy: How loud it is.
         recorder: Records to files.
@@ -44,14 +43,14 @@ class ALAudioDevice:
         self,
         simulation: Simulation,
         runner: SimulationRunner,
-        files: ClientFiles,
+        sounds: SoundFiles,
         clients: MicrophoneClients,
         energy: MicrophoneEnergy,
         recorder: Recorder,
     ) -> None:
         self._simulation = simulation
         self._runner = runner
-        self._files = files
+        self._sounds = sounds
         self._clients = clients
         self._energy = energy
         self._recorder = recorder
@@ -109,6 +108,10 @@ class ALAudioDevice:
     def unsubscribe(self, module: str) -> Task:
         return _in_thread(lambda: self._clients.unsubscribe(module), "unsubscribe")
 
+    def client_gone(self, module: str) -> None:
+        """A module of a client has left."""
+        self._clients.gone(module)
+
     def openAudioInputs(self) -> Task:
         return self._set_input_closed(False)
 
@@ -137,7 +140,7 @@ class ALAudioDevice:
         return self._energy.of("rear")
 
     def setFileAsInput(self, name: str) -> Task:
-        sound = read_client_file(self._files, name) if name else None
+        sound = self._sounds.read(name) if name else None
         if sound is not None and sound.channels == 2:  # of two channels nobody knows which microphones they are for
             sound = sound.mono()
         return self._do(lambda: setattr(self._simulation.sound.microphones, "replaced_by", sound), "setFileAsInput")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.arguments import number
 from nao_sim_bridge.services.audio.background import Background
 from nao_sim_bridge.services.audio.player import LoadedSound, Player
-from nao_sim_bridge.services.audio.sound_files import read_client_file
+from nao_sim_bridge.services.audio.sound_files import SoundFiles
 from nao_sim_bridge.services.audio.sound_sets import SoundSets
 from nao_sim_bridge.services.audio.tones import side, sine
-from nao_sim_bridge.services.audio.web_stream import fetch_sound
+from nao_sim_bridge.services.audio.web_stream import WebStreams
+from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
@@ -21,6 +21,8 @@ from nao_sim_bridge.sim.tasks import Task
 
 # Folder of sound sets that clients bring along, inside the folder for recordings.
 OWN_SETS = "soundsets"
+TIMES = "NaoSimulation/SoundTimes"
+"""A key that no robot has: [onset, end] of the sound that was played last, s: its first and its last sample."""
 
 
 class ALAudioPlayer:
@@ -29,21 +31,39 @@ class ALAudioPlayer:
     Args:
         simulation: Whose loudspeakers these are; touched in the simulation thread only.
         runner: That thread.
-        files: Where clients may have files read from.
+        sounds: Reads files of clients.
         background: Where sounds are read and changed.
+        memory: Keeps when the last one was played.
+        allow_private_streams: Whether streams may come from this computer and from private networks.
     """
 
     def __init__(
-        self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles, background: Background
+        self,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        sounds: SoundFiles,
+        background: Background,
+        memory: MemoryStore,
+        allow_private_streams: bool,
     ) -> None:
-        self._player = Player(simulation, runner, background)
-        self._files = files
-        self._sets = SoundSets(files.folder / OWN_SETS, *files.shipped)
+        memory.insert(TIMES, [])
+        self._sounds = sounds
+        self._streams = WebStreams(sounds, allow_private_streams)
+        folders = (sounds.files.folder / OWN_SETS, *sounds.files.shipped)
+        self._sets = SoundSets(sounds, lambda name, size: self._player.check_room(name, size), *folders)
+        self._player = Player(
+            simulation,
+            runner,
+            background,
+            lambda onset, end: memory.insert(TIMES, [onset, end]),
+            lambda: sounds.reader.sizes.loaded_sounds.bytes,
+            self._sets.kept,
+        )
 
     # --- files ----------------------------------------------------------------------------------------------------
 
     def loadFile(self, name: str) -> Task:
-        return self._player.load_when_there(lambda: read_client_file(self._files, name), name)
+        return self._player.load_when_there(lambda: self._sounds.read(name), name)
 
     def unloadFile(self, sound_id: int) -> Task:
         loaded = self._player.find(sound_id)
@@ -85,7 +105,7 @@ class ALAudioPlayer:
     def playWebStream(self, address: str, volume: float, pan: float) -> Task:
         name, checked = "playWebStream", _volume_and_pan((volume, pan))
         return self._player.play_when_there(
-            lambda wanted: fetch_sound(address, self._files, wanted),
+            lambda wanted: self._streams.fetch(address, wanted),
             lambda sound: self._begin_once(address, sound, checked, name),
             name,
             may_take_long=True,
@@ -186,7 +206,7 @@ class ALAudioPlayer:
     def _play_file(self, file: str, volume_and_pan: Any, name: str, position: float = 0.0, loop: bool = False) -> Task:
         checked = _volume_and_pan(volume_and_pan)
         return self._player.play_when_there(
-            lambda _: read_client_file(self._files, file),
+            lambda _: self._sounds.read(file),
             lambda sound: self._begin_once(file, sound, checked, name, _position(position, sound), loop),
             name,
         )

@@ -6,7 +6,9 @@ import json
 from pathlib import Path
 
 from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.sim.bounded_files import TooLarge, read_bounded
 from nao_sim_bridge.sim.hearing.bnf import BnfGrammar, GrammarError, parse_bnf
+from nao_sim_bridge.sim.whole_file import write_whole
 
 FORMAT = "nao_library compiled grammar 1"
 LARGEST = 1_000_000
@@ -18,14 +20,12 @@ def compile_grammar(source: Path, target: Path, language: str) -> None:
 
     Raises:
         NaoqiError: The source cannot be read, or is no grammar; the text tells the line.
+        FileTrouble: The target cannot be written.
     """
     text = _text(source)
     _parsed(text, source)
     content = {"format": FORMAT, "language": language, "grammar": text}
-    try:
-        target.write_text(json.dumps(content, indent=1), encoding="utf-8")
-    except OSError as error:
-        raise NaoqiError(f"file {target.name!r} cannot be written: {error}") from error
+    write_whole(target, json.dumps(content, indent=1).encode())
 
 
 def load_grammar(path: Path) -> BnfGrammar:
@@ -67,8 +67,8 @@ def _parsed(text: object, path: Path) -> BnfGrammar:
 
 def _text(path: Path) -> str:
     try:
-        if path.stat().st_size > LARGEST:
-            raise NaoqiError(f"file {path.name!r} is larger than {LARGEST} bytes")
-        return path.read_text(encoding="utf-8-sig")
+        return read_bounded(path, LARGEST).decode("utf-8-sig")
+    except TooLarge as error:
+        raise NaoqiError(f"file {path.name!r} {error}") from error
     except (OSError, UnicodeDecodeError) as error:
         raise NaoqiError(f"file {path.name!r} cannot be read: {error}") from error

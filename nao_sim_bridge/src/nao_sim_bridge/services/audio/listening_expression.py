@@ -16,8 +16,8 @@ BIP_S = 0.12
 BIP_AMPLITUDE = 0.25
 # Hz, when listening begins and when it ends.
 BIPS = {True: 880.0, False: 587.0}
-# How long the own bip may still be in the air and in the microphones' next blocks, s.
-AFTER_BIP_S = 0.1
+# How much later the own bip may begin than it is asked for, and how long it may still be in the air, s.
+AFTER_BIP_S = 0.04
 # What each mode lights up.
 MODES = {0: (), 1: ("FaceLeds",), 2: ("EarLeds",), 3: ("FaceLeds", "EarLeds")}
 BLUE = (0.0, 0.0, 1.0)

@@ -12,13 +12,15 @@ from typing import Any, Callable, Sequence
 import numpy as np
 
 from nao_sim_bridge.services.audio.microphone_formats import MicrophoneFormat
+from nao_sim_bridge.services.client_calls import NoAnswer, answer, worth_telling
 from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.sim.sizes import load_sizes
 
 log = logging.getLogger("nao_sim.microphones")
 
 METHOD = "processRemote"
 # Blocks that wait for a client, at 170 ms each; it loses the oldest when it is that far behind.
-WAITING = 12
+WAITING = load_sizes().clients.sound_blocks
 # Wall time, s: how long one call may take before the client counts as hanging, and its time is not waited for any more.
 PATIENCE = 5.0
 # While time runs faster than real time, it waits for a client with more blocks than this before it.
@@ -60,6 +62,8 @@ class MicrophoneClients:
         """
         try:
             remote = self._service(module)
+        except NoAnswer as error:
+            raise NaoqiError(f"module {module!r} gives {error}; its program may have stopped") from error
         except RuntimeError as error:
             raise NaoqiError(f"there is no module {module!r} to send sound to; register it first") from error
         with self._lock:
@@ -87,6 +91,15 @@ class MicrophoneClients:
         if client is None:
             raise NaoqiError(f"module {module!r} is not subscribed; subscribed are {known}")
         client.end()
+
+    def gone(self, module: str) -> None:
+        """A module has left."""
+        with self._lock:
+            client = self._clients.pop(module, None)
+            self._formats.pop(module, None)
+        if client is not None:
+            log.warning("%s is gone, so it is unsubscribed from the microphones", module)
+            client.end()
 
     def names(self) -> list[str]:
         """Subscribed modules."""
@@ -203,7 +216,7 @@ class _Client:
         """End the thread; a call that is under way is not waited for."""
         with self._news:
             self._ended = True
-            self._news.notify()
+            self._news.notify_all()
         self.silence()
 
     def _hear(self, wanted: MicrophoneFormat, begun: list[Any], block: Any) -> None:
@@ -220,10 +233,10 @@ class _Client:
             if len(self._blocks) >= WAITING:
                 self._blocks.popleft()
                 self.lost += 1
-                if self.lost & (self.lost - 1) == 0:  # the first, the second, the fourth...
+                if worth_telling(self.lost):
                     log.warning("%s is too slow for the microphones: %d blocks lost so far", self.module, self.lost)
             self._blocks.append((wanted, block))
-            self._news.notify()
+            self._news.notify_all()
 
     def _run(self) -> None:
         _warn_of_text(self.module, self._remote)
@@ -244,8 +257,14 @@ class _Client:
         stamp = [microseconds // 1000000, microseconds % 1000000]
         frames, channels = block.samples.shape
         try:
-            self._remote.call(METHOD, channels, frames, stamp, wanted.packed(block.samples))
+            call = self._remote.call(METHOD, channels, frames, stamp, wanted.packed(block.samples), _async=True)
+            answer(call, self._news, lambda: not self._ended)
             self._failing = False
+        except NoAnswer as error:
+            if not self._ended:
+                log.warning("%s: %s, so it is unsubscribed from the microphones", self.module, error)
+            self.end()
+            self._gone(self)
         except (RuntimeError, AttributeError) as error:
             if not self._is_there():
                 if not self._ended:

@@ -15,6 +15,9 @@ from nao_sim_bridge.sim.sound.pitch import shifted
 from nao_sim_bridge.sim.sound.samples import Sound
 from nao_sim_bridge.sim.tasks import Task
 
+SHOWN = 5
+"""How many sounds a refusal names."""
+
 
 @dataclass
 class LoadedSound:
@@ -43,6 +46,11 @@ class LoadedSound:
     run: Run | None = None
 
     @property
+    def size(self) -> int:
+        """Bytes that it takes."""
+        return self.sound.samples.nbytes + (self.altered.samples.nbytes if self.altered else 0)
+
+    @property
     def heard(self) -> Sound:
         """What sounds when it is played."""
         return self.altered or self.sound
@@ -50,11 +58,19 @@ class LoadedSound:
 
 @dataclass
 class Run:
-    """One time that a sound is played: a task for who waits for its end, which outlives a change of the sound."""
+    """One time that a sound is played.
+
+    Attributes:
+        task: For who waits for its end; it outlives a change of the sound.
+        playing: What sounds.
+        loop: Whether it begins again at its end.
+        begun: Simulated time of its first sample, s.
+    """
 
     task: Task
     playing: Any
     loop: bool
+    begun: float
 
 
 class Player:
@@ -64,9 +80,23 @@ class Player:
         simulation: Whose loudspeakers these are; touched in the simulation thread only.
         runner: That thread.
         background: Where sounds are read and changed.
+        on_end: Told the simulated times of first and last sample, s, when a sound has been played.
+        largest: Answers how many bytes all sounds may take together.
+        elsewhere: Names and bytes of other sounds that count with them.
     """
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, background: Background) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        background: Background,
+        on_end: Callable[[float, float], None],
+        largest: Callable[[], int],
+        elsewhere: Callable[[], list[tuple[str, int]]],
+    ) -> None:
+        self._largest = largest
+        self._elsewhere = elsewhere
+        self._on_end = on_end
         self._background = background
         self._simulation = simulation
         self._runner = runner
@@ -79,11 +109,34 @@ class Player:
     # --- from any thread ------------------------------------------------------------------------------------------
 
     def load(self, name: str, sound: Sound, temporary: bool = False) -> LoadedSound:
-        """Give a sound a number."""
+        """Give a sound a number.
+
+        Raises:
+            NaoqiError: There is no room for it.
+        """
+        self.check_room(name, sound.samples.nbytes)
         loaded = LoadedSound(next(self._numbers), name, sound, temporary=temporary)
         with self._lock:
             self._sounds[loaded.number] = loaded
         return loaded
+
+    def check_room(self, name: str, size: int) -> None:
+        """Raise an error unless there is room for a sound of so many bytes.
+
+        Raises:
+            NaoqiError: There is none; it names what takes the most.
+        """
+        largest = self._largest()
+        kept = [(loaded.name, loaded.size) for loaded in self.loaded()] + self._elsewhere()
+        if sum(each for _, each in kept) + size <= largest:
+            return
+        most = sorted(kept, key=lambda entry: -entry[1])[:SHOWN]
+        listed = ", ".join(f"{each!r} {_megabytes(taken)}" for each, taken in most) or "nothing"
+        raise NaoqiError(
+            f"no room for {name!r} ({_megabytes(size)}): {_megabytes(largest)} are allowed for all sounds, "
+            f"{len(kept)} are loaded or play ({listed}{', ...' if len(kept) > SHOWN else ''}); unloadFile, "
+            "unloadAllFiles, unloadSoundSet and stopAll make room"
+        )
 
     def loaded(self) -> list[LoadedSound]:
         """All sounds that have a number, in its order."""
@@ -143,6 +196,8 @@ class Player:
     def change_pitch(self, number: int, factor: float) -> Task:
         """Give a sound another pitch, 1 for its own; what plays goes on at the place where it is."""
         loaded = self.find(number)
+        if factor != 1.0 and loaded.altered is None:
+            self.check_room(loaded.name, loaded.sound.samples.nbytes)
 
         def work(_: Wanted) -> Task:
             sound = loaded.sound
@@ -163,7 +218,7 @@ class Player:
         if run is not None:
             run.task.kill()
         task = self._simulation.task_ids.make(name, lambda _: self._silence(loaded))
-        loaded.run = Run(task, None, loop)
+        loaded.run = Run(task, None, loop, self._simulation.sound.time)
         self._begin(loaded, loaded.begins)
         loaded.begins = 0.0
         return task
@@ -242,6 +297,8 @@ class Player:
             run.playing.stop()
 
     def _forget_run(self, loaded: LoadedSound) -> None:
+        if loaded.run is not None:
+            self._on_end(loaded.run.begun, self._simulation.sound.time)
         loaded.run = None
         if loaded.temporary:
             with self._lock:
@@ -267,3 +324,7 @@ class Player:
         if loaded.run is None:
             raise NaoqiError(f"the sound {loaded.number} ({loaded.name}) does not play")
         return loaded.run
+
+
+def _megabytes(size: int) -> str:
+    return f"{size / 1e6:.1f} MB"

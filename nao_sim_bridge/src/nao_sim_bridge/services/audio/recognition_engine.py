@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import threading
 from typing import Any, Callable, Mapping
 
 from nao_sim_bridge.services.errors import NaoqiError
@@ -10,9 +11,12 @@ from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.services.switch import Switch
 from nao_sim_bridge.sim.hearing.listening import Hypothesis, Listening, Recognised
 from nao_sim_bridge.sim.hearing.recogniser import Recogniser, SpareProcess
+from nao_sim_bridge.sim.hearing.settings import load_recognition
 from nao_sim_bridge.sim.hearing.voice_activity import SpeechChange
 from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.sound.ears import Listener, MicrophoneBlock
+from nao_sim_bridge.sim.sound.samples import frame_at
+from nao_sim_bridge.sim.sound.timeline import Alarm
 
 log = logging.getLogger("nao_sim.recognition")
 
@@ -22,6 +26,8 @@ SPEECH = "SpeechDetected"
 RUNNING, STATUS, ACTIVE = f"{NAME}/IsRunning", f"{NAME}/Status", f"{NAME}/ActiveListening"
 EVENTS = (WORD, WORD_AND_GRAMMAR, SPEECH, RUNNING, STATUS, ACTIVE)
 KEYS = (LAST_WORD,)
+TIMES = "NaoSimulation/WordTimes"
+"""A key that no robot has: [what WordRecognized says, [[onset, end], ...] of its phrases, s]."""
 # What the keys hold as long as nothing has been recognised.
 NO_WORD, NO_WORD_AND_GRAMMAR = ["", -3.0], ["", -3.0, ""]
 HOLD_LAG = 0.25
@@ -35,6 +41,7 @@ class RecognitionEngine(Switch):
 
     Args:
         simulation: Whose ears.
+        execute: Has something done in the simulation thread: what, and what to call it.
         memory: Where events go.
         on_listen: Called with True when listening begins and with False when it ends; it returns how long, in s, what
             is heard next should be left out (the bip that it makes).
@@ -45,6 +52,7 @@ class RecognitionEngine(Switch):
     def __init__(
         self,
         simulation: Simulation,
+        execute: Callable[[Callable[[], None], str], Any],
         memory: MemoryStore,
         on_listen: Callable[[bool], float],
         accepts: Callable[[Hypothesis], bool],
@@ -52,16 +60,19 @@ class RecognitionEngine(Switch):
     ) -> None:
         super().__init__()
         self._simulation = simulation
+        self._execute = execute
         self._memory = memory
         self._on_listen = on_listen
         self._accepts = accepts
         self._listener: Listener | None = None
-        self._deaf_until = 0.0
+        self._opening: Alarm | None = None
+        self._status_lock = threading.Lock()  # that it hears is not told when it does not any more
         self._speech = False
         self._recogniser = Recogniser(self._on_event, on_progress=lambda: simulation.wake(), spare=spare)
         simulation.holds.append(self.behind)
         for key in KEYS:
             memory.insert(key, NO_WORD)
+        memory.insert(TIMES, [NO_WORD, []])
         memory.put_quietly(WORD, NO_WORD)
         memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
         memory.put_quietly(SPEECH, False)
@@ -127,20 +138,44 @@ class RecognitionEngine(Switch):
         if runs:
             self._memory.put_quietly(WORD, NO_WORD)
             self._memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
-            self._deaf_until = self._simulation.time + self._on_listen(True)
-            self._listener = self._simulation.sound.ears.listen(NAME, self._hear, wants="16k1", channel="front")
+            self._open()
         else:
+            with self._status_lock:
+                self._opening = None
             listener, self._listener = self._listener, None
             listener.close()
             self._recogniser.finish()
             self._on_listen(False)
-        self._memory.raise_event(RUNNING, runs)
-        self._memory.raise_event(ACTIVE, runs)
-        self._memory.raise_event(STATUS, "ListenOn" if runs else "ListenOff")
+            self._memory.raise_event(RUNNING, False)
+            self._tell_hearing(False)
+
+    def _open(self) -> None:
+        """Listen from now on, or from when the own bip is over; what was heard before tells what the room is like."""
+        ears = self._simulation.sound.ears
+        background_s = load_recognition().voice_activity.background_s
+        self._recogniser.get_used_to(ears.past(background_s, wants="16k1", channel="front")[:, 0])
+        deaf = self._on_listen(True)
+        begin = self._simulation.time + deaf
+        self._listener = ears.listen(NAME, self._hear, wants="16k1", channel="front", begin=begin)
+        self._memory.raise_event(RUNNING, True)
+        if deaf <= 0.0:
+            self._tell_hearing(True)
+            return
+        self._opening = alarm = Alarm(frame_at(begin), lambda: self._opened(alarm))
+        self._execute(lambda: self._simulation.sound.timeline.add(alarm), "begin of listening")
+
+    def _opened(self, alarm: Alarm) -> None:
+        with self._status_lock:
+            if self._opening is alarm:
+                self._opening = None
+                self._tell_hearing(True)
+
+    def _tell_hearing(self, hears: bool) -> None:
+        self._memory.raise_event(ACTIVE, hears)
+        self._memory.raise_event(STATUS, "ListenOn" if hears else "ListenOff")
 
     def _hear(self, block: MicrophoneBlock) -> None:
-        if block.time >= self._deaf_until:
-            self._recogniser.hear(block.time, block.samples[:, 0])
+        self._recogniser.hear(block.time, block.samples[:, 0])
 
     def _on_event(self, event: SpeechChange | Recognised) -> None:
         if isinstance(event, Recognised):
@@ -165,6 +200,7 @@ class RecognitionEngine(Switch):
         with_grammar: list[Any] = [item for h in found for item in (h.phrase, h.confidence, h.grammar)]
         log.info("heard: %s (%.2f)", found[0].phrase, found[0].confidence)
         self._memory.insert(LAST_WORD, words)
+        self._memory.insert(TIMES, [words, [[h.onset, h.end] for h in found]])
         self._memory.raise_event(WORD, words)
         self._memory.raise_event(WORD_AND_GRAMMAR, with_grammar)
 

@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable
 
-from soundfile import LibsndfileError
-
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.audio.microphone_formats import ALL, MicrophoneFormat
 from nao_sim_bridge.services.errors import NaoqiError
@@ -18,6 +16,7 @@ from nao_sim_bridge.sim.errors import BadValue, SimulationStopped
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.sound.wav_file import OggFile, WavFile
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.sim.whole_file import FileTrouble
 
 log = logging.getLogger("nao_sim.recorder")
 
@@ -87,7 +86,8 @@ class Recorder:
         """Begin at the present moment of simulated time; the task ends when it has begun.
 
         Raises:
-            NaoqiError: A recording is under way, or the file cannot be written.
+            NaoqiError: A recording is under way.
+            FileTrouble: The file cannot be written.
             ValueError: The file is not inside the folder for recordings.
         """
         path = self._files.to_write(order.name)
@@ -97,10 +97,9 @@ class Recorder:
             self._in_use.take(path, order.name)
             try:
                 recording = self._recording = _Recording(order, path)
-            except (OSError, LibsndfileError) as error:
+            except Exception:
                 self._in_use.give_back(path)
-                reason = error.strerror if isinstance(error, OSError) else error.error_string.strip()
-                raise NaoqiError(f"{order.name!r} cannot be written: {reason or error}") from error
+                raise
         log.info("recording to %s", path)
         return self._runner.execute(lambda: recording.begin(self._simulation.sound.ears), "startMicrophonesRecording")
 
@@ -175,7 +174,10 @@ class _Recording:
         """
         if self._listener is not None:
             self._listener.close()
-        self._file.close()
+        try:
+            self._file.close()
+        except FileTrouble as error:
+            self._failure = self._failure or error
         if self._failure is not None:
             raise NaoqiError(f"{self.name!r} is not complete: {self._failure}")
 
@@ -186,7 +188,7 @@ class _Recording:
         try:
             left = max(0, round(min(self.until - block.time, len(block.samples)) * block.rate))
             self._file.write(block.samples[:left])
-        except (OSError, BadValue, RuntimeError) as error:
+        except RuntimeError as error:
             self._failure = error
             log.error("recording to %r ends early: %s", self.name, error)
 

@@ -4,44 +4,49 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import soundfile
-
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.sim.sound.files import SoundFileError, read_sound
+from nao_sim_bridge.sim.sound.files import SoundFileError
+from nao_sim_bridge.sim.sound.reader import SoundReader
 from nao_sim_bridge.sim.sound.samples import RATE, Sound
 
-# Sounds are kept in memory as a whole: a quarter of an hour in stereo takes 350 MB.
-LONGEST = 900.0
-FORMATS = "allowed are wav, ogg, flac and mp3"
 
+class SoundFiles:
+    """Reads sounds for clients.
 
-def read_client_file(files: ClientFiles, name: str) -> Sound:
-    """The sound in a file that a client names, at the rate of the simulated world.
-
-    Raises:
-        ValueError: The name leads out of the folder for recordings, or there is no such file.
-        NaoqiError: The file holds no sound that can be played.
-    """
-    return read_checked(files.to_read(name), name)
-
-
-def read_checked(path: Path, name: str) -> Sound:
-    """The sound in a file, at the rate of the simulated world.
+    Attributes:
+        files: Where they may have files read from.
+        reader: Decodes them.
 
     Args:
-        path: The file.
-        name: What to call it in errors.
-
-    Raises:
-        NaoqiError: It holds no sound that can be played.
+        files: See above.
+        reader: See above.
     """
-    try:
-        facts = soundfile.info(str(path))
-        if facts.frames > LONGEST * facts.samplerate:
-            raise NaoqiError(f"{name!r} is {facts.duration:.0f} s long, allowed are {LONGEST:.0f} s")
-        return read_sound(path).at_rate(RATE)
-    except soundfile.LibsndfileError as error:
-        raise NaoqiError(f"{name!r} cannot be read as sound ({error.error_string.strip()}); {FORMATS}") from error
-    except SoundFileError as error:
-        raise NaoqiError(f"{name!r} cannot be played: {str(error).replace(str(path), name)}") from error
+
+    def __init__(self, files: ClientFiles, reader: SoundReader) -> None:
+        self.files = files
+        self.reader = reader
+
+    def read(self, name: str) -> Sound:
+        """The sound in a file that a client names, at the rate of the simulated world.
+
+        Raises:
+            ValueError: The name leads out of the folder for recordings, or there is no such file.
+            NaoqiError: The file holds no sound that can be played, or too much of it.
+        """
+        return self.read_path(self.files.to_read(name), name)
+
+    def read_path(self, path: Path | str, name: str) -> Sound:
+        """The sound in a file, at the rate of the simulated world.
+
+        Args:
+            path: The file.
+            name: What to call it in errors.
+
+        Raises:
+            NaoqiError: As above.
+        """
+        try:
+            return self.reader.read(path, self.reader.sizes.sound.client_s).at_rate(RATE)
+        except SoundFileError as error:
+            raise NaoqiError(str(error).replace(f"sound file {path}:", repr(name))) from error

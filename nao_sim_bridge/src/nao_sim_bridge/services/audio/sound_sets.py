@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Iterable, Mapping
+from typing import Callable, Iterable, Mapping
 
-from nao_sim_bridge.services.audio.sound_files import read_checked
+from nao_sim_bridge.services.audio.sound_files import SoundFiles
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.sim.sound.samples import Sound
 
@@ -16,10 +16,15 @@ class SoundSets:
     """Installed and loaded sound sets.
 
     Args:
+        sounds: Reads their files.
+        check_room: Called with a name and bytes before a sound of that name is kept; raises an error if they are too
+            many.
         folders: Folders whose subfolders are the sets, the first that has one of a name counts.
     """
 
-    def __init__(self, *folders: Path) -> None:
+    def __init__(self, sounds: SoundFiles, check_room: Callable[[str, int], None], *folders: Path) -> None:
+        self._sounds = sounds
+        self._check_room = check_room
         self._folders = folders
         self._loaded: dict[str, Mapping[str, Sound]] = {}
 
@@ -48,10 +53,23 @@ class SoundSets:
         """Read all sounds of a set into memory.
 
         Raises:
-            NaoqiError: There is no such set, or one of its files cannot be read.
+            NaoqiError: There is no such set, one of its files cannot be read, or there is no room for it.
         """
-        if name not in self._loaded:
-            self._loaded[name] = {key: read_checked(path, path.name) for key, path in self.files(name).items()}
+        if name in self._loaded:
+            return
+        sounds: dict[str, Sound] = {}
+        for key, path in self.files(name).items():
+            sounds[key] = self._sounds.read_path(path, path.name)
+            self._check_room(f"sound set {name}", sum(sound.samples.nbytes for sound in sounds.values()))
+        self._loaded[name] = sounds
+
+    def kept(self) -> list[tuple[str, int]]:
+        """Names of the loaded sets and their bytes."""
+        loaded = dict(self._loaded)
+        return [
+            (f"sound set {name}", sum(sound.samples.nbytes for sound in sounds.values()))
+            for name, sounds in loaded.items()
+        ]
 
     def unload(self, name: str) -> None:
         """Forget a set.

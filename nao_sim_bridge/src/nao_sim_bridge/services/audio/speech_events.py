@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Callable
+
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.sim.speech import speaker as steps
 from nao_sim_bridge.sim.speech.speaker import SpeechEvent
@@ -16,6 +18,8 @@ SENTENCE = "ALTextToSpeech/CurrentSentence"
 BOOKMARK = "ALTextToSpeech/CurrentBookMark"
 STATUS = "ALTextToSpeech/Status"
 EVENTS = (STARTED, DONE, INTERRUPTED, WORD, POSITION, SENTENCE, BOOKMARK, STATUS)
+TIMES = "NaoSimulation/SpeechTimes"
+"""A key that no robot has: [onset, end] of the text that was spoken last, s: its first and its last sound."""
 STATES = (steps.ENQUEUED, steps.STARTED, steps.DONE, steps.STOPPED, steps.THROWN)
 
 
@@ -27,10 +31,14 @@ class SpeechEvents:
 
     Args:
         memory: Where.
+        clock: Simulated time, s.
     """
 
-    def __init__(self, memory: MemoryStore) -> None:
+    def __init__(self, memory: MemoryStore, clock: Callable[[], float]) -> None:
         self._memory = memory
+        self._clock = clock
+        self._span: list[float] = []  # of the text that is spoken
+        memory.insert(TIMES, [])
         self._speaking: int | None = None
         self.enabled = True
         for name in EVENTS:
@@ -39,6 +47,7 @@ class SpeechEvents:
     def __call__(self, event: SpeechEvent) -> None:
         """Raise what belongs to a step of speech."""
         begins, ends = self._follow(event)
+        self._note_span(event, begins, ends)
         if not self.enabled:
             return
         raise_event = self._memory.raise_event
@@ -59,6 +68,17 @@ class SpeechEvents:
         elif ends:
             raise_event(STARTED, False)
             raise_event(DONE if event.kind == steps.DONE else INTERRUPTED, True)
+
+    def _note_span(self, event: SpeechEvent, begins: bool, ends: bool) -> None:
+        if begins:
+            self._span = []
+        if event.kind == steps.SENTENCE:
+            span, now = event.value.span(), self._clock()
+            if span is not None:
+                self._span = [self._span[0] if self._span else now + span[0], now + span[1]]
+        if ends:
+            now = self._clock()
+            self._memory.insert(TIMES, [min(time, now) for time in self._span])
 
     def _follow(self, event: SpeechEvent) -> tuple[bool, bool]:
         """Whether a text begins, and whether the one that is spoken ends; texts that wait do neither."""

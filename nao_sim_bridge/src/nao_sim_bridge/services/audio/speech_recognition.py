@@ -6,10 +6,11 @@ import threading
 from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.record_dir import ClientFiles
-from nao_sim_bridge.services.arguments import number
+from nao_sim_bridge.services.arguments import number, text
 from nao_sim_bridge.services.audio.grammar_files import compile_grammar, load_grammar, read_vocabulary
 from nao_sim_bridge.services.audio.listening_expression import MODES, ListeningExpression
 from nao_sim_bridge.services.audio.recognition_engine import EVENTS, KEYS, NAME, RecognitionEngine, listening_of
+from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.extractor import Extractor
 from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
@@ -20,6 +21,7 @@ from nao_sim_bridge.sim.hearing.recogniser import SpareProcess
 from nao_sim_bridge.sim.hearing.settings import load_recognition
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.sizes import load_sizes
 
 # Name of the grammar that setVocabulary fills, as on the robot.
 VOCABULARY = "modifiable_grammar"
@@ -55,6 +57,11 @@ class ALSpeechRecognition:
 
     def setVocabulary(self, phrases: Sequence[str], spotting: bool) -> None:
         """Phrases to listen for; with word spotting also inside of longer speech."""
+        sizes = load_sizes().vocabulary
+        if len(phrases) > sizes.phrases:
+            raise BadValue("vocabulary", f"{len(phrases)} phrases", f"{sizes.phrases} at most")
+        for phrase in phrases:
+            text(phrase, "vocabulary", sizes.phrase_characters)
         grammar = vocabulary(VOCABULARY, phrases, spotting)
 
         def change() -> None:
@@ -148,6 +155,9 @@ class ALSpeechRecognition:
         """Put contexts and vocabulary aside."""
 
         def push() -> None:
+            most = load_sizes().vocabulary.put_aside
+            if len(self._vocabularies) >= most:
+                raise NaoqiError(f"contexts are put aside {most} times, which is the most allowed; popContexts first")
             self._contexts.push()
             self._vocabularies.append(self._vocabulary)
             self._vocabulary = None
@@ -282,7 +292,7 @@ class RecognitionModule:
         def accepts(hypothesis: Hypothesis) -> bool:
             return hypothesis.confidence >= contexts.threshold(hypothesis.grammar)
 
-        self.engine = RecognitionEngine(simulation, memory, expression.show, accepts, spare)
+        self.engine = RecognitionEngine(simulation, runner.execute, memory, expression.show, accepts, spare)
         service = ALSpeechRecognition(self.engine, expression, contexts, files)
         self._parts = [service, Extractor(NAME, memory, self.engine.start, self.engine.stop, EVENTS, KEYS)]
 

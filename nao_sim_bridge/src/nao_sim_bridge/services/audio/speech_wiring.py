@@ -56,7 +56,7 @@ class SpeechModules:
         self.animator = Animator(simulation)
         self.library = load_animations()
         self._settings = VoiceSettings(self.studio.engines)
-        events = SpeechEvents(memory)
+        events = SpeechEvents(memory, lambda: simulation.sound.time)
         self.speaker.listeners.append(events)
         self._text_to_speech = ALTextToSpeech(self.speaker, self.studio, self._settings, events, runner, files)
         self._animated_speech = ALAnimatedSpeech(
@@ -77,8 +77,8 @@ class SpeechModules:
         return {"ALTextToSpeech": [self._text_to_speech], "ALAnimatedSpeech": [self._animated_speech]}
 
     def say(self, text: str, animated: bool = False) -> Task:
-        """Say a text as a client has it said, with gestures or without."""
-        return (self._animated_speech if animated else self._text_to_speech).say(text)
+        """Say a text of a behaviour, with gestures or without; it calls no methods."""
+        return self._animated_speech.say_without_calls(text) if animated else self._text_to_speech.say(text)
 
     def close(self) -> None:
         """Whoever waits for speech gets an error. When the simulation has ended."""

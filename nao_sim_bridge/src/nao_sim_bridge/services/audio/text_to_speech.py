@@ -17,6 +17,7 @@ from nao_sim_bridge.sim.speech.clips import Style
 from nao_sim_bridge.sim.speech.speaker import Speaker
 from nao_sim_bridge.sim.speech.studio import Studio
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.sim.whole_file import write_whole
 
 log = logging.getLogger("nao_sim.speech")
 
@@ -175,6 +176,6 @@ class ALTextToSpeech:
     def _write(self, text: str, style: Style, path: Any) -> None:
         sound = self._studio.sound(text, style).at_rate(FILE_RATE)
         if path.suffix.lower() == ".raw":
-            path.write_bytes((np.clip(sound.samples[:, 0], -1.0, 1.0) * 32767.0).astype("<i2").tobytes())
+            write_whole(path, (np.clip(sound.samples[:, 0], -1.0, 1.0) * 32767.0).astype("<i2").tobytes())
         else:
             write_sound(path, sound)

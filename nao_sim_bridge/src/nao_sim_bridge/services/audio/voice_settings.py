@@ -9,7 +9,10 @@ from typing import Any
 
 from nao_sim_bridge.services.arguments import number
 from nao_sim_bridge.services.errors import NaoqiError
+from nao_sim_bridge.sim.bounded_files import read_bounded
+from nao_sim_bridge.sim.config import LARGEST_FILE
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.speech import parameters
 from nao_sim_bridge.sim.speech.clips import Style
 from nao_sim_bridge.sim.speech.dictionary import Pronunciations
@@ -141,7 +144,14 @@ class VoiceSettings:
         if not spoken.strip() or TAG.search(spoken):
             return False
         with self._lock:
-            known = self._pronunciations.get(self._language.name, Pronunciations())
+            known, most = (
+                self._pronunciations.get(self._language.name, Pronunciations()),
+                load_sizes().speech.dictionary_words,
+            )
+            if len(known.entries) >= most and not known.knows(word.strip()):
+                raise NaoqiError(
+                    f"the dictionary has {most} words, which is the most allowed; deleteFromDictionary makes room"
+                )
             self._pronunciations[self._language.name] = known.with_entry(word.strip(), spoken.strip())
         return True
 
@@ -165,8 +175,8 @@ class VoiceSettings:
             NaoqiError: The file is not what it should be.
         """
         try:
-            wanted = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
+            wanted = json.loads(read_bounded(path, LARGEST_FILE))
+        except (OSError, ValueError, RecursionError) as error:
             raise NaoqiError(f"voice preference {path.name} cannot be read: {error}") from error
         if not isinstance(wanted, dict) or not set(wanted) <= set(PREFERENCE_KEYS):
             raise NaoqiError(f"voice preference {path.name} may have {', '.join(PREFERENCE_KEYS)} and nothing else")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from functools import partial
+from typing import Any, Callable
 
-from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.audio.audio_device import ALAudioDevice
 from nao_sim_bridge.services.audio.audio_player import ALAudioPlayer
 from nao_sim_bridge.services.audio.audio_recorder import ALAudioRecorder
@@ -12,6 +12,8 @@ from nao_sim_bridge.services.audio.background import Background
 from nao_sim_bridge.services.audio.microphone_clients import MicrophoneClients
 from nao_sim_bridge.services.audio.microphone_energy import MicrophoneEnergy
 from nao_sim_bridge.services.audio.recorder import FilesInUse, Recorder
+from nao_sim_bridge.services.audio.sound_files import SoundFiles
+from nao_sim_bridge.services.memory_store import MemoryStore
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
 
@@ -26,19 +28,29 @@ class AudioModules:
     Args:
         simulation: Whose sound it is.
         runner: Its thread.
-        files: Where clients may have files read from and written to.
+        sounds: Reads sound files of clients, from where they may have files read from and written to.
         broker: Finds modules of clients: `service(name)`.
+        memory: Of the robot.
+        allow_private_streams: See `ALAudioPlayer`.
     """
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles, broker: Any) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        sounds: SoundFiles,
+        broker: Any,
+        memory: MemoryStore,
+        allow_private_streams: bool,
+    ) -> None:
         background = Background(released=lambda: simulation.wake())
         ears, settings = simulation.sound.ears, simulation.sound.settings
         self.clients = MicrophoneClients(ears, broker.service, released=lambda: simulation.wake())
         in_use = FilesInUse()
-        self.recorders = [Recorder(simulation, runner, files, in_use) for _ in range(2)]
+        self.recorders = [Recorder(simulation, runner, sounds.files, in_use) for _ in range(2)]
         self._energy = MicrophoneEnergy(ears, {side: settings.energy_channels(side) for side in settings.energies})
-        self._player = ALAudioPlayer(simulation, runner, files, background)
-        self._device = ALAudioDevice(simulation, runner, files, self.clients, self._energy, self.recorders[0])
+        self._player = ALAudioPlayer(simulation, runner, sounds, background, memory, allow_private_streams)
+        self._device = ALAudioDevice(simulation, runner, sounds, self.clients, self._energy, self.recorders[0])
         self._recorder = ALAudioRecorder(self.recorders[1])
         simulation.holds += [self.clients.behind, background.holds]
 
@@ -50,9 +62,10 @@ class AudioModules:
             "ALAudioRecorder": [self._recorder],
         }
 
-    def close(self) -> None:
-        """Complete recordings and call no client any more; blocking."""
-        for recorder in self.recorders:
-            recorder.close()
-        self._energy.enable(False)
-        self.clients.close()
+    def closing(self) -> list[Callable[[], None]]:
+        """Steps that complete recordings and call no client any more; blocking."""
+        return [
+            *(recorder.close for recorder in self.recorders),
+            partial(self._energy.enable, False),
+            self.clients.close,
+        ]

@@ -12,8 +12,9 @@ from nao_sim_bridge.sim.behaviors.packages import read_package
 from nao_sim_bridge.sim.behaviors.reader import checked_name
 from nao_sim_bridge.sim.behaviors.steps import Behavior, Step, length_of
 from nao_sim_bridge.sim.behaviors.xar import xar_step
-from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.errors import NotAllowed, UnknownName
 from nao_sim_bridge.sim.runner import SimulationRunner
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.tasks import Task
 
 NAME = "ALFrameManager"
@@ -117,7 +118,10 @@ class ALFrameManager:
     # --- inside ---------------------------------------------------------------------------------------------------
 
     def _make(self, step: Step, path: str) -> str:
+        most = load_sizes().behaviors.made
         with self._lock:
+            if len(self._made) >= most:
+                raise NotAllowed(f"there are {most} behaviors already: deleteBehavior or cleanBehaviors first")
             number = f"FrameManager/{next(self._ids)}"
             self._made[number] = _Made(Behavior(number, step, path), path)
         return number

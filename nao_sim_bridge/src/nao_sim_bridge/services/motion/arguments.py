@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any, Sequence
 
 from nao_sim_bridge.services.arguments import number, numbers
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.model import RobotModel
+from nao_sim_bridge.sim.sizes import require_few
 
 
 def joint_names(names: Any, model: RobotModel) -> list[str]:
@@ -41,7 +43,7 @@ def joint_indices(names: Any, model: RobotModel) -> list[int]:
         NaoqiError: A joint is named twice.
     """
     found = joint_names(names, model)
-    twice = sorted({n for n in found if found.count(n) > 1})
+    twice = sorted(name for name, count in Counter(found).items() if count > 1)
     if twice:
         raise NaoqiError(f"named twice: {', '.join(twice)}")
     return [model.joint_index[name] for name in found]
@@ -54,9 +56,10 @@ def key_frames(count: int, values: Any, times: Any, field: str) -> list[tuple[li
     each. Times likewise; one number or one list of times serves all joints.
 
     Raises:
-        BadValue: A size does not fit, or times do not rise from above 0.
+        BadValue: A size does not fit, there are too many, or times do not rise from above 0.
     """
     value_lists = _one_each(values, count, field)
+    require_few(field, sum(map(len, value_lists)), "key_frames")
     time_lists = _time_lists(times, count, [len(v) for v in value_lists])
     for joint_values, joint_times in zip(value_lists, time_lists):
         if len(joint_values) != len(joint_times):

@@ -7,6 +7,7 @@ from typing import Any, Sequence
 from nao_sim_bridge.services.arguments import number, numbers
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.motion.bezier import BezierCurve, Handle, Interpolation, KeyPoint
+from nao_sim_bridge.sim.sizes import require_few
 
 TYPES = ", ".join(f"{kind.value} ({kind.name})" for kind in Interpolation)
 POINT_FORM = "an angle, or [angle, [type, dTime, dAngle], [type, dTime, dAngle]] with the handles before and after"
@@ -21,12 +22,14 @@ def bezier_key_points(count: int, times: Any, points: Any) -> list[list[KeyPoint
         points: As many control points for each joint; a single joint may have its points alone when its times are.
 
     Raises:
-        BadValue: Something has another shape, times do not rise from above 0, or a handle points the wrong way.
+        BadValue: Something has another shape, there are too many points, times do not rise from above 0, or a handle
+            points the wrong way.
     """
     if count == 1 and isinstance(times, (list, tuple)) and times and not isinstance(times[0], (list, tuple)):
         times, points = [times], [points]
     time_lists = _one_list_each(times, count, "times")
     point_lists = _one_list_each(points, count, "controlPoints")
+    require_few("controlPoints", sum(map(len, point_lists)), "key_frames")
     return [_joint(joint_times, joint_points) for joint_times, joint_points in zip(time_lists, point_lists)]
 
 

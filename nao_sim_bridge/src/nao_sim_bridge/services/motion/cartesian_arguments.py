@@ -9,6 +9,7 @@ import numpy as np
 from nao_sim_bridge.services.arguments import numbers
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.kinematics import matrix_rpy, rpy_matrix, transform
+from nao_sim_bridge.sim.sizes import require_few
 
 EFFECTORS = ("Head", "LArm", "RArm", "LLeg", "RLeg", "Torso")
 LARGEST_MASK = 63
@@ -85,7 +86,7 @@ def paths_of(
     A path is one pose or a list of poses; times are one number or list for all effectors, or one list each.
 
     Raises:
-        BadValue: A size does not fit, or times do not rise from above 0.
+        BadValue: A size does not fit, there are too many poses, or times do not rise from above 0.
     """
     if not isinstance(paths, (list, tuple)) or not paths:
         raise BadValue("paths", paths, "one pose or list of poses for each effector")
@@ -98,6 +99,7 @@ def paths_of(
         raise BadValue("paths", paths, f"{count} entries, one for each effector")
     nested = isinstance(times, (list, tuple)) and any(isinstance(t, (list, tuple)) for t in times)
     time_lists = one_each(times, count, "times") if nested else [times] * count
+    require_few("paths", sum(len(path) for path in paths if isinstance(path, (list, tuple))), "poses")
     found = []
     for path, at in zip(paths, time_lists):
         if not isinstance(path, (list, tuple)) or not path:

@@ -7,6 +7,7 @@ from typing import Any, Iterable
 from nao_sim_bridge.services.arguments import numbers
 from nao_sim_bridge.services.motion.walking import WalkPart
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.sizes import require_few
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.sim.walk.footstep_plan import SIDES, FootstepPlan, PlannedStep
 from nao_sim_bridge.sim.walk.footsteps import FootPose
@@ -55,8 +56,10 @@ def _placed(legs: Any, steps: Any) -> list[tuple[int, FootPose]]:
     """Side and place of each step.
 
     Raises:
-        BadValue: A leg has another name, a step other numbers, or there is not one step for each leg.
+        BadValue: A leg has another name, a step other numbers, there is not one step for each leg, or too many are.
     """
+    if isinstance(steps, (list, tuple)):
+        require_few("footSteps", len(steps), "steps")
     if not isinstance(legs, (list, tuple)) or not legs or any(leg not in SIDES for leg in legs):
         raise BadValue("legName", legs, f"a list of {' and '.join(SIDES)}, at least one")
     if not isinstance(steps, (list, tuple)) or len(steps) != len(legs):

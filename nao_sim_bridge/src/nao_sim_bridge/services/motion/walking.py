@@ -11,6 +11,7 @@ from nao_sim_bridge.services.walk_events import MoveFailures
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.sim.sizes import require_few
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.sim.walk.footsteps import FootPose
 from nao_sim_bridge.sim.walk.gait import FeetGait
@@ -161,6 +162,7 @@ def _control_points(points: Any) -> list[FootPose]:
     allowed = "a list of at least one [x, y, theta], in m, m, rad"
     if not isinstance(points, (list, tuple)) or not points:
         raise BadValue("controlPoint", points, allowed)
+    require_few("controlPoint", len(points), "places")
     if any(not isinstance(point, (list, tuple)) or len(point) != 3 for point in points):
         raise BadValue("controlPoint", points, allowed)
     return [FootPose(*_three(*point)) for point in points]

@@ -13,6 +13,7 @@ from nao_sim_bridge.services.vision.watching import BGR
 from nao_sim_bridge.sim.cameras.optics import Optics
 from nao_sim_bridge.sim.cameras.stream import CameraClosed
 from nao_sim_bridge.sim.errors import BadValue, SimulationError
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.sim.vision.faces import FaceSettings
 
@@ -23,7 +24,7 @@ PICTURES, RATE, VGA = 5, 10, 2
 LEAST_WIDTH = 24.0
 """Smaller faces are found but not learnt, px in a VGA picture: they show too little."""
 LOOK_AGAIN = 1.0
-MOST_WAITING = 16
+MOST_WAITING = load_sizes().clients.faces
 """Calls that learn a face at the same time, that is one after the other."""
 
 

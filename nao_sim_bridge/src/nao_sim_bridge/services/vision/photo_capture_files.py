@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import posixpath
-import threading
 from pathlib import Path
-from typing import Callable
 
 import cv2
 import numpy as np
@@ -19,8 +16,6 @@ JPEG_QUALITY = 95
 GREY_ONLY = ("pbm", "pgm")
 """Formats that hold no colour: a colour picture becomes grey, in "pbm" black and white."""
 FORMATS = ("bmp", "dib", "jpeg", "jpg", "jpe", "png", "pbm", "pgm", "ppm", "sr", "ras", "tiff", "tif")
-PART = ".part"
-"""Ending of a picture that is not complete."""
 
 
 def picture_files(files: ClientFiles, folder: str, name: str, kind: str, count: int, overwrite: bool) -> list[Path]:
@@ -63,24 +58,3 @@ def encoded(picture: np.ndarray, kind: str) -> bytes:
     if not written:
         raise NaoqiError(f"a picture of {picture.shape[1]}x{picture.shape[0]} cannot be written as {kind!r}")
     return content.tobytes()
-
-
-def save(path: Path, content: bytes, write: Callable[[Path, bytes], object] = Path.write_bytes) -> None:
-    """Write a file as a whole or not at all: it takes its name when it is complete.
-
-    Args:
-        path: The file.
-        content: What is in it.
-        write: Writes a file.
-
-    Raises:
-        NaoqiError: It cannot be written; nothing is left of it, and what had the name before is still there.
-    """
-    # Two threads may write pictures of the same name; the later one is the one that stays.
-    part = path.with_name(f"{path.name}.{threading.get_ident()}{PART}")
-    try:
-        write(part, content)
-        os.replace(part, path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise NaoqiError(f"{str(path)!r} cannot be written: {error.strerror or error}") from error

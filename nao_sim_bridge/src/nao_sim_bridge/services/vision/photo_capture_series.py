@@ -6,19 +6,21 @@ import logging
 import threading
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from typing import Any, Sequence
 
 from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.services.vision.photo_capture_files import encoded, save
+from nao_sim_bridge.services.vision.photo_capture_files import encoded
 from nao_sim_bridge.sim.cameras.stream import CameraClosed
 from nao_sim_bridge.sim.errors import BadValue, SimulationError
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.sim.whole_file import write_whole
 
 log = logging.getLogger("nao_sim.photos")
 
 HIGHEST_RATE = 30.0
 """Pictures per second that a camera gives at most."""
-MOST_SERIES = 32
+MOST_SERIES = load_sizes().clients.series
 LOOK_AGAIN = 1.0
 """How long a wait for a picture lasts before it is looked whether it is still wanted, s of wall time: a paused
 simulation takes none for hours."""
@@ -50,13 +52,11 @@ class Photographer:
     Args:
         cameras: Of the robot.
         name: What its streams are called.
-        write: Writes content to a path; see `save`.
     """
 
-    def __init__(self, cameras: Any, name: str, write: Callable[[Path, bytes], None] = save) -> None:
+    def __init__(self, cameras: Any, name: str) -> None:
         self._cameras = cameras
         self._name = name
-        self._write = write
         self._lock = threading.Lock()
         self._held: tuple[Any, PhotoSettings] | None = None
         self._series: set[_Series] = set()
@@ -107,7 +107,7 @@ class Photographer:
             stream = None
             if held is None or len(paths) > 1:
                 stream = self._open(settings, every=True)
-            series = _Series(paths, settings.interval, held, stream, self._write)
+            series = _Series(paths, settings.interval, held, stream)
             self._series.add(series)
         series.task.add_done_callback(lambda _: self._series.discard(series))
         series.start()
@@ -144,16 +144,12 @@ class _Series:
         interval: Simulated time from one to the next, s.
         held: Stream of a camera that is held ready, or None; it gives the first picture, at once.
         stream: Gives the others, or None when there are none.
-        write: Writes content to a path.
     """
 
-    def __init__(
-        self, paths: Sequence[Path], interval: float, held: Any, stream: Any, write: Callable[[Path, bytes], None]
-    ) -> None:
+    def __init__(self, paths: Sequence[Path], interval: float, held: Any, stream: Any) -> None:
         self._paths = paths
         self._interval = interval
         self._held, self._stream = held, stream
-        self._write = write
         self._ended = threading.Event()
         self.task = Task("takePictures", 0, ask=self._cancel)
         self._thread = threading.Thread(target=self._run, name="pictures", daemon=True)
@@ -180,7 +176,7 @@ class _Series:
                 frame = self._first() if last is None else self._next(last)
                 if frame is None:
                     return
-                self._write(path, encoded(frame.array(), path.suffix[1:]))
+                write_whole(path, encoded(frame.array(), path.suffix[1:]))
                 last = frame.time
         except CameraClosed as error:
             self.task.finish(error=NaoqiError(f"the camera was closed before all pictures were taken: {error}"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Callable
 
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.vision import photo_capture, video_recorder
@@ -36,7 +36,7 @@ class PictureModules:
         """The modules by name, as `make_service` wants them."""
         return {photo_capture.NAME: [self._photos], video_recorder.NAME: [self._films]}
 
-    def close(self) -> None:
-        """Complete the film that is recorded, and take no more photos; blocking."""
-        self.photographer.close()  # first: the last frames of the film need not wait for photos
-        self.recorder.close()
+    def closing(self) -> list[Callable[[], None]]:
+        """Steps that take no more photos and complete the film that is recorded; blocking."""
+        # Photos first: the last frames of the film need not wait for them.
+        return [self.photographer.close, self.recorder.close]

@@ -56,14 +56,9 @@ class VideoDevice:
             VideoDeviceOld(self._cameras, self.subscribers, settings, cameras, angles),
         ]
 
-    def client_gone(self, module: str) -> None:
-        """A module of a client has left: whatever it has subscribed under its name ends."""
-        self.subscribers.remove_all(module)
-
-    def close(self) -> None:
-        """End of recordings and of all subscriptions."""
-        self._recordings.close()
-        self.subscribers.close()
+    def closing(self) -> list[Callable[[], None]]:
+        """Steps that end recordings and all subscriptions."""
+        return [self._recordings.close, self.subscribers.close]
 
 
 class ALVideoDevice:
@@ -104,6 +99,10 @@ class ALVideoDevice:
 
     def unsubscribeAllInstances(self, name: str) -> None:
         self._subscribers.remove_all(name)
+
+    def client_gone(self, module: str) -> None:
+        """A module of a client has left."""
+        self._subscribers.remove_all(module)
 
     def onClientDisconnected(self, _event: str, contents: Any, _message: str) -> None:
         self._subscribers.remove_all(str(contents))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import threading
 from pathlib import Path
-from typing import BinaryIO
 
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.arguments import number
@@ -14,6 +13,7 @@ from nao_sim_bridge.services.vision.video_device_subscribers import Subscriber
 from nao_sim_bridge.sim.cameras.cameras import Cameras, CameraStream
 from nao_sim_bridge.sim.cameras.stream import CameraClosed
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.sim.whole_file import WholeFile
 
 log = logging.getLogger("nao_sim.cameras")
 
@@ -46,7 +46,8 @@ class RawRecordings:
             period: Of how many pictures that fall due one is recorded.
 
         Raises:
-            NaoqiError: It records already, or the file cannot be written.
+            NaoqiError: It records already.
+            FileTrouble: The file cannot be written.
             BadValue: A number is out of range.
         """
         number(total, "totalNumber", 1, MOST_PICTURES)
@@ -54,12 +55,10 @@ class RawRecordings:
         target = self._files.to_write(path)
         view = subscriber.views[0]
         with self._lock:
-            if subscriber.handle in self._running:
+            before = self._running.get(subscriber.handle)
+            if before is not None and not before.task.finished:
                 raise NaoqiError(f"{subscriber.handle!r} records already; end that with stopVideo first")
-            try:
-                file = target.open("wb")
-            except OSError as error:
-                raise NaoqiError(f"{path!r} cannot be written: {error.strerror}") from error
+            file = WholeFile(target)
             look = (view.camera, view.resolution, view.color_space, subscriber.fps)
             stream = self._cameras.open(f"recording of {subscriber.handle}", *look, every=True, keep=WAITING)
             recording = _Recording(stream, file, target, total, period, lambda: self._ended(subscriber.handle))
@@ -67,13 +66,15 @@ class RawRecordings:
         recording.start()
 
     def stop(self, handle: str) -> Task:
-        """End the recording of a subscriber; the task ends when the file is complete.
+        """End the recording of a subscriber; the task ends when the file is complete, or tells why it ended early.
 
         Raises:
             NaoqiError: It does not record.
         """
         with self._lock:
             recording = self._running.get(handle)
+            if recording is not None and recording.task.finished:
+                del self._running[handle]
             known = ", ".join(map(repr, self._running)) or "nobody"
         if recording is None:
             raise NaoqiError(f"{handle!r} does not record; recording is {known}")
@@ -97,7 +98,7 @@ class _Recording:
     """One file that grows, in a thread of its own."""
 
     def __init__(
-        self, stream: CameraStream, file: BinaryIO, path: Path, total: int, period: int, on_end: object
+        self, stream: CameraStream, file: WholeFile, path: Path, total: int, period: int, on_end: object
     ) -> None:
         self.task = Task("stopVideo", 0)
         self._stream = stream
@@ -120,16 +121,16 @@ class _Recording:
     def _run(self) -> None:
         error: Exception | None = None
         try:
-            with self._file:
+            try:
                 self._record()
-        except OSError as failure:
-            error = NaoqiError(f"{self._path.name!r} ends early: {failure.strerror}")
-            log.warning("%s", error)
+            finally:
+                self._file.close()
         except Exception as failure:
             error = failure
             log.warning("recording %s ends: %s", self._path.name, failure)
         self._stream.close()
-        self._on_end()
+        if error is None:
+            self._on_end()
         self.task.finish(error is None, error)
 
     def _record(self) -> None:
@@ -141,5 +142,6 @@ class _Recording:
                 return
             if count % self._period == 0:
                 self._file.write(frame.data)
+                self._file.flush()
                 self._left -= 1
             count += 1

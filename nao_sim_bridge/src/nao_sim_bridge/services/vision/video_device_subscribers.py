@@ -18,17 +18,18 @@ from nao_sim_bridge.services.vision.video_device_waiting import WaitingCall
 from nao_sim_bridge.sim.cameras.cameras import Cameras, CameraStream
 from nao_sim_bridge.sim.cameras.frame import Frame
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.tasks import Task
 
 log = logging.getLogger("nao_sim.cameras")
 
-IDLE = 60.0
+IDLE = load_sizes().clients.camera_idle_s
 """A handle that has not been used for longer, s of wall time, is that of a client which has gone."""
 SOON_IDLE = 5.0
 """The same where a new subscriber has no place otherwise."""
-REMEMBERED = 100
+REMEMBERED = load_sizes().clients.cameras_remembered
 """Handles of clients that seem to have gone, and that are found again when they are used."""
-MOST = 60
+MOST = load_sizes().clients.cameras
 """Subscribers at the same time."""
 
 

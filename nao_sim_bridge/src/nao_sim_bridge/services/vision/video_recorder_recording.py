@@ -15,6 +15,7 @@ from nao_sim_bridge.sim.cameras.stream import CameraClosed
 from nao_sim_bridge.sim.errors import SimulationError, SimulationStopped
 from nao_sim_bridge.sim.runner import SimulationRunner
 from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.sim.whole_file import FileTrouble
 
 log = logging.getLogger("nao_sim.films")
 
@@ -70,16 +71,14 @@ class VideoRecorder:
         """Begin at the present moment of simulated time; the task ends when it has begun.
 
         Raises:
-            NaoqiError: A recording is under way, or the file cannot be written.
+            NaoqiError: A recording is under way.
+            FileTrouble: The file cannot be written.
         """
         size = self._tables.resolution(settings.resolution)
         with self._lock:
             if self._recording is not None:
                 raise NaoqiError(f"a recording to {str(self._recording.path)!r} is under way; stop it first")
-            try:
-                film = Film(path, settings.kind, size.width, size.height, settings.rate)
-            except OSError as error:
-                raise NaoqiError(f"{str(path)!r} cannot be written: {error.strerror or error}") from error
+            film = Film(path, settings.kind, size.width, size.height, settings.rate)
             recording = self._recording = _Recording(path, film, settings.rate)
         log.info("recording to %s", path)
 
@@ -151,41 +150,40 @@ class _Recording:
 
     def _run(self) -> None:
         try:
-            while self._film.failure is None:
+            while True:
                 try:
                     self._add(self._stream.take(LOOK_AGAIN))
                 except TimeoutError:
                     continue
-            log.error("recording to %s ends early: %s", self.path, self._film.failure)
-            self._stream.close()
         except CameraClosed:
-            pass
+            self._complete()
         except Exception as error:
-            log.exception("recording to %s ends early", self.path)
+            log.error("recording to %s ends early: %s", self.path, error, exc_info=not isinstance(error, FileTrouble))
+            self._stream.close()
             self._complete(error)
-            return
-        self._complete()
 
     def _add(self, frame: Any) -> None:
         """Append a frame. Where frames before it were lost, because the machine was too slow, the last one is shown."""
         if self._first is None:
             self._first = frame.time
         place = round((frame.time - self._first) * self._rate)
-        while self._last is not None and self._film.frames < place and self._film.failure is None:
+        while self._last is not None and self._film.frames < place:
             self._film.write(self._last)
         self._last = frame.array()
         self._film.write(self._last)
 
     def _complete(self, error: Exception | None = None) -> None:
-        frames, path = self._film.frames, str(self.path)
-        self._film.close()
-        failure = error or self._film.failure
+        frames = self._film.frames
+        try:
+            self._film.close()
+        except Exception as failure:
+            error = error or failure
+        path = str(self._film.path)
         if not frames:
-            self.path.unlink(missing_ok=True)
-            reason = failure or "no picture was taken between start and stop"
+            reason = error or "no picture was taken between start and stop"
             self.ended.finish(error=NaoqiError(f"{path!r} has not become a file: {reason}"))
-        elif failure is not None:
-            text = f"{path!r} is not complete, it ends after {frames} frames: {failure}"
+        elif error is not None:
+            text = f"{path!r} is not complete, it ends after {frames} frames: {error}"
             self.ended.finish(error=NaoqiError(text))
         else:
             self.ended.finish([frames, path])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Callable
 
 from nao_sim_bridge.record_dir import ClientFiles
 from nao_sim_bridge.services.memory_store import MemoryStore
@@ -57,8 +57,6 @@ class VisionModules:
             movement_detection.NAME: movement_detection.parts(self._movement, self._memory, self._tables),
         }
 
-    def close(self) -> None:
-        """Look at nothing any more; blocking."""
-        self._faces.learner.close()
-        for watching in self.watchings:
-            watching.stop()
+    def closing(self) -> list[Callable[[], None]]:
+        """Steps after which nothing is looked at any more; blocking."""
+        return [self._faces.learner.close, *(watching.stop for watching in self.watchings)]

@@ -9,7 +9,8 @@ from typing import Iterable, Mapping
 from nao_sim_bridge.paths import config_file
 from nao_sim_bridge.sim.behaviors.reader import read_behaviors
 from nao_sim_bridge.sim.behaviors.steps import Behavior, Gesture
-from nao_sim_bridge.sim.errors import BadValue, ConfigError, UnknownName
+from nao_sim_bridge.sim.errors import BadValue, ConfigError, NotAllowed, UnknownName
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.speech.animations import POSTURE, POSTURE_PATTERN, AnimationLibrary
 
 FOLDER = "behaviors"
@@ -84,12 +85,16 @@ class InstalledBehaviors:
 
         Raises:
             BadValue: A name is that of a behaviour of the system, or, without `overwrite`, of any other.
+            NotAllowed: There would be too many.
         """
         new, system = {behavior.name: behavior for behavior in behaviors}, self.system
         with self._lock:
             for name in new:
                 if name in system or (name in self._user and not overwrite):
                     raise BadValue("behavior", name, "a name that is free")
+            most = load_sizes().behaviors.installed
+            if len({*self._user, *new}) > most:
+                raise NotAllowed(f"{most} behaviors are installed at most: removeBehavior first")
             replaced = [name for name in new if name in self._user]
             self._user.update(new)
         return [name for name in new if name not in replaced], replaced

@@ -6,15 +6,16 @@ A package has a manifest.xml with a `uuid` and a `behaviorContent` for each beha
 
 from __future__ import annotations
 
-import zipfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Callable
 from xml.etree.ElementTree import Element
 
+from nao_sim_bridge.sim.archives import Archive, BadArchive
 from nao_sim_bridge.sim.behaviors.reader import NATURES, checked_name, read_behaviors
 from nao_sim_bridge.sim.behaviors.steps import NO_NATURE, Behavior
 from nao_sim_bridge.sim.behaviors.xar import LARGEST_FILE, parse_xml, read_xar, xar_step
+from nao_sim_bridge.sim.bounded_files import TooLarge, read_bounded
 from nao_sim_bridge.sim.errors import ConfigError
 
 MANIFEST, BEHAVIOR_FILE = "manifest.xml", "behavior.xar"
@@ -57,13 +58,11 @@ def renamed(behaviors: list[Behavior], name: str) -> list[Behavior]:
 
 def _zipped(path: Path) -> list[Behavior]:
     try:
-        with zipfile.ZipFile(path) as archive:
-            if sum(entry.file_size for entry in archive.infolist()) > LARGEST_FILE:
-                raise ConfigError(path.name, f"holds more than {LARGEST_FILE} bytes")
-            manifest = next((n for n in archive.namelist() if n.rsplit("/", 1)[-1] == MANIFEST), MANIFEST)
+        with Archive(path) as archive:
+            manifest = next((n for n in archive.names if n.rsplit("/", 1)[-1] == MANIFEST), MANIFEST)
             folder = manifest[: -len(MANIFEST)]
             return _package(lambda name: archive.read(folder + name), path.name)
-    except (OSError, KeyError, zipfile.BadZipFile) as error:
+    except (OSError, BadArchive) as error:
         raise ConfigError(path.name, f"is no package: {error}") from error
 
 
@@ -72,9 +71,9 @@ def _inside(folder: Path, name: str) -> bytes:
     if folder.resolve() not in path.parents:
         raise ConfigError(folder.name, f"{name!r} is not in the package")
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise ConfigError(folder.name, f"{name!r} has more than {LARGEST_FILE} bytes")
-        return path.read_bytes()
+        return read_bounded(path, LARGEST_FILE)
+    except TooLarge as error:
+        raise ConfigError(folder.name, f"{name!r} {error}") from error
     except OSError as error:
         raise ConfigError(folder.name, f"{name} cannot be read: {error.strerror}") from error
 

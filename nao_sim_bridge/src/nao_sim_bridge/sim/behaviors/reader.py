@@ -39,6 +39,7 @@ from nao_sim_bridge.sim.behaviors.steps import (
     Wait,
     takes_time,
 )
+from nao_sim_bridge.sim.bounded_files import read_bounded
 from nao_sim_bridge.sim.config import array, check_keys
 from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.led_animations import COLOR_NAMES, color_of_int
@@ -46,6 +47,7 @@ from nao_sim_bridge.sim.leds_layout import load_leds
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.motion.bezier import KeyPoint
 from nao_sim_bridge.sim.postures import load_postures
+from nao_sim_bridge.sim.yaml_values import load_yaml
 
 NATURES = ("solitary", "interactive", NO_NATURE)
 # A file larger than this, in bytes, is no behaviour; nor is what nests deeper, has longer steps or more of them.
@@ -86,22 +88,10 @@ def checked_name(name: Any, where: str) -> str:
     return name
 
 
-class _PlainLoader(yaml.SafeLoader):
-    """Knows no aliases: a short file with many of them can stand for one that fills the memory."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        """One node of the file."""
-        if self.check_event(yaml.AliasEvent):
-            raise yaml.YAMLError("aliases are not allowed here")
-        return super().compose_node(parent, index)
-
-
 def _content(path: Path) -> Any:
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise ConfigError(path.name, f"has more than {LARGEST_FILE} bytes")
-        return yaml.load(path.read_text(encoding="utf-8"), _PlainLoader)  # noqa: S506  a SafeLoader
-    except (OSError, ValueError, yaml.YAMLError, RecursionError) as error:
+        return load_yaml(read_bounded(path, LARGEST_FILE).decode("utf-8"))
+    except (OSError, ValueError, yaml.YAMLError) as error:
         raise ConfigError(path.name, f"cannot be read: {error}") from error
 
 
@@ -142,8 +132,7 @@ class _Reader:
 
     def _step(self, entry: Any, where: str, depth: int) -> Step:
         self._count += 1
-        if depth > DEEPEST or self._count > MOST_STEPS:
-            raise ConfigError(where, f"nests deeper than {DEEPEST}, or is beyond step {MOST_STEPS}")
+        self._check_count(where, depth)
         if isinstance(entry, list):
             return self.steps(entry, where, depth + 1)
         kinds = [kind for kind in self._kinds if isinstance(entry, Mapping) and kind in entry]
@@ -151,6 +140,10 @@ class _Reader:
             raise ConfigError(where, f"is {str(entry)[:200]!r}, which has not one of {', '.join(self._kinds)}")
         read, options = self._kinds[kinds[0]]
         return read(check_keys(entry, where, kinds, options), where, depth + 1)
+
+    def _check_count(self, where: str, depth: int) -> None:
+        if depth > DEEPEST or self._count > MOST_STEPS:
+            raise ConfigError(where, f"nests deeper than {DEEPEST}, or is beyond step {MOST_STEPS}")
 
     def _frames(self, fields: Mapping, where: str, _: int) -> Step:
         if not isinstance(fields["frames"], list) or not fields["frames"]:
@@ -218,9 +211,13 @@ class _Reader:
         times = fields["repeat"]
         if isinstance(times, bool) or not isinstance(times, int) or not 0 <= times <= MOST_REPEATS:
             raise ConfigError(f"{where}.repeat", f"is {times!r}, allowed is 0 (until it is stopped) to {MOST_REPEATS}")
+        before = self._count
         step = self.steps(check_keys(fields, where, ["repeat", "do"])["do"], f"{where}.do", depth)
-        if not (times or takes_time(step)):
-            raise ConfigError(where, "repeats without end what takes no time")
+        if not takes_time(step):  # everybody waits for all of its rounds: each counts
+            if not times:
+                raise ConfigError(where, "repeats without end what takes no time")
+            self._count += (times - 1) * (self._count - before)
+            self._check_count(where, depth)
         return Repeat(step, times or None)
 
 

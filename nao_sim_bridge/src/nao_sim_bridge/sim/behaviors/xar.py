@@ -17,13 +17,21 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 from nao_sim_bridge.sim.behaviors.steps import GoToPosture, InTurn, Joints, JointWay, Say, Step, Together, Wait
+from nao_sim_bridge.sim.bounded_files import TooLarge, read_bounded
 from nao_sim_bridge.sim.errors import ConfigError
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.motion.bezier import Handle, Interpolation, KeyPoint
 from nao_sim_bridge.sim.postures import load_postures
+from nao_sim_bridge.sim.sizes import load_sizes
 
-LARGEST_FILE, DEEPEST, MOST_BOXES = 20_000_000, 20, 2000
-DEFAULT_FPS = 25.0
+LARGEST_FILE = 20_000_000
+# Boxes in each other and branches behind each other, together. Boxes, elements and keys count each time they are read:
+# a box to which several ways lead is read on each of them.
+DEEPEST, MOST_BOXES, MOST_ELEMENTS, MOST_KEYS = 50, 2000, 2_000_000, 50_000
+# Frames a second; and the longest way to a key, handle or wait, s.
+DEFAULT_FPS, LOWEST_FPS, HIGHEST_FPS, LONGEST = 25.0, 1.0, 100.0, 3600.0
+# Largest value of a key or handle, deg or shares: above all limits of joints.
+WIDEST = 10_000.0
 # Units of curves: deg of joints, shares of hands.
 DEGREES = "0"
 KINDS = {"linear": Interpolation.LINEAR, "constant": Interpolation.CONSTANT, "bezier": Interpolation.BEZIER}
@@ -46,8 +54,8 @@ def read_xar(path: Path) -> Step:
         ConfigError: It cannot be read, or has a box that cannot be played.
     """
     try:
-        content = path.read_bytes()
-    except OSError as error:
+        content = read_bounded(path, LARGEST_FILE)
+    except (OSError, TooLarge) as error:
         raise ConfigError(path.name, f"cannot be read: {error}") from error
     return xar_step(content, path.name)
 
@@ -87,7 +95,7 @@ class _Xar:
 
     def __init__(self, file: str) -> None:
         self._file = file
-        self._count = 0
+        self._boxes = self._elements = self._keys = 0
 
     def box(self, box: Element, text: str, depth: int) -> Step:
         """What a box does.
@@ -97,15 +105,12 @@ class _Xar:
             text: That it gets from the box before it.
             depth: In how many others it is.
         """
-        self._count += 1
-        name = box.get("name", "?")
-        if depth > DEEPEST or self._count > MOST_BOXES:
-            raise ConfigError(self._file, f"box {name!r} is nested too deep, or the file has too many boxes")
+        self._count(box, depth)
         timeline = box.find("Timeline")
         if timeline is None or not _holds_anything(timeline):
             return self._leaf(box, text)
         steps: list[Step] = []
-        fps = _number(timeline.get("fps"), DEFAULT_FPS)
+        fps = self._within(timeline.get("fps"), DEFAULT_FPS, LOWEST_FPS, HIGHEST_FPS, "frames a second")
         enabled = timeline.get("enable") == "1"
         if enabled:
             ways = self._curves(timeline, fps)
@@ -116,47 +121,71 @@ class _Xar:
             if diagram is None or diagram.find("Box") is None:
                 continue
             inside = self._diagram(diagram, depth)
-            start = max(0.0, (_number(key_frame.get("index"), 1.0) - 1.0) / fps) if enabled else 0.0
+            last = LONGEST * fps
+            index = self._within(key_frame.get("index"), 1.0, -last, last, "the frame of a diagram")
+            start = max(0.0, (index - 1.0) / fps) if enabled else 0.0
             steps.append(InTurn((Wait(start), inside)) if start else inside)
         return Together(tuple(steps)) if len(steps) != 1 else steps[0]
+
+    def _count(self, box: Element, depth: int) -> None:
+        self._boxes += 1
+        self._elements += sum(1 for _ in box.iter())
+        if depth > DEEPEST or self._boxes > MOST_BOXES or self._elements > MOST_ELEMENTS:
+            name = box.get("name", "?")
+            raise ConfigError(self._file, f"box {name!r} is nested too deep, or the file has too many boxes")
 
     # --- diagrams -------------------------------------------------------------------------------------------------
 
     def _diagram(self, diagram: Element, depth: int) -> Step:
         """Boxes in the order of their links, from the start of the diagram on."""
         boxes = {box.get("id"): box for box in diagram.findall("Box")}
-        links = [
-            (link.get("outputowner"), link.get("inputowner"))
-            for link in diagram.findall("Link")
-            if self._starts(boxes, link)
-        ]
-        begun = [target for source, target in links if source == "0" and target in boxes]
+        inputs, outputs = ({key: _names(box, kind) for key, box in boxes.items()} for kind in ("Input", "Output"))
+        after: dict[str | None, dict[str | None, None]] = {}  # of each box those that it begins, in their order
+        for link in diagram.findall("Link"):
+            source, target = link.get("outputowner"), link.get("inputowner")
+            entry = inputs.get(target, {}).get(link.get("indexofinput"), "")
+            end = outputs.get(source, {}).get(link.get("indexofoutput"), "")
+            # It begins a box when another one has done its work, and not when that has failed.
+            if target in boxes and entry not in ("onStop", "onLoad") and "error" not in end.lower():
+                after.setdefault(source, {})[target] = None
         # A project that was never wired begins with what nothing leads to.
-        begun = begun or [key for key in boxes if all(target != key for _, target in links)]
-        return _together([self._from(key, boxes, links, "", (), depth) for key in dict.fromkeys(begun)])
-
-    def _starts(self, boxes: dict[str | None, Element], link: Element) -> bool:
-        """Whether a link begins a box when another one has done its work, and not when that has failed."""
-        target, source = boxes.get(link.get("inputowner")), boxes.get(link.get("outputowner"))
-        entry = _named(target, "Input", link.get("indexofinput"))
-        return (
-            entry not in ("onStop", "onLoad")
-            and "error" not in _named(source, "Output", link.get("indexofoutput")).lower()
-        )
+        led_to = {target for targets in after.values() for target in targets}
+        begun = after.get("0") or [key for key in boxes if key not in led_to]
+        return _together([self._from(key, boxes, after, "", frozenset(), depth) for key in begun])
 
     def _from(
-        self, key: str | None, boxes: dict, links: list, text: str, before: tuple[str | None, ...], depth: int
+        self, key: str | None, boxes: dict, after: dict, text: str, before: frozenset[str | None], depth: int
     ) -> Step:
         """A box, and what comes after it."""
-        box = boxes[key]
-        if key in before:
-            raise ConfigError(self._file, f"box {box.get('name')!r} begins itself again: circles are not played")
-        own = _text_of(box)
-        step = self.box(box, text, depth + 1) if own is None else None
-        following = [target for source, target in links if source == key and target in boxes]
-        after = [self._from(k, boxes, links, own or "", (*before, key), depth) for k in dict.fromkeys(following)]
-        rest = [_together(after)] if after else []
-        return InTurn(tuple(([step] if step is not None else []) + rest)) if step is None or rest else step
+        steps: list[Step] = []
+        while True:
+            box = boxes[key]
+            if key in before:
+                raise ConfigError(self._file, f"box {box.get('name')!r} begins itself again: circles are not played")
+            own = self._text_of(box)
+            if own is None:
+                steps.append(self.box(box, text, depth + 1))
+            else:
+                self._count(box, depth + 1)
+            text, before = own or "", before | {key}
+            following = list(after.get(key, ()))
+            if len(following) != 1:
+                break
+            key = following[0]
+        if following:
+            steps.append(_together([self._from(one, boxes, after, text, before, depth + 1) for one in following]))
+        return steps[0] if len(steps) == 1 else InTurn(tuple(steps))
+
+    def _text_of(self, box: Element) -> str | None:
+        """The text that a box sends to the next one; None for boxes that send none."""
+        text = next((each.text for each in _plugin_texts(box) if each.text and each.text.strip()), None)
+        return None if text is None else " ".join(self._short(text).split())
+
+    def _short(self, text: str) -> str:
+        longest = load_sizes().speech.text_characters
+        if len(text) > longest:
+            raise ConfigError(self._file, f"has a text of {len(text)} characters, at most {longest} are allowed")
+        return text
 
     # --- single boxes ---------------------------------------------------------------------------------------------
 
@@ -166,13 +195,13 @@ class _Xar:
         parameters = {p.get("name"): p.get("value", "") for p in box.findall("Parameter")}
         takes_text = any(i.get("type") == TEXT_INPUT for i in box.findall("Input"))
         if (takes_text or TEXT_PARAMETER in parameters) and (SPEECH in script or ANIMATED_SPEECH in script):
-            spoken = " ".join((parameters.get(TEXT_PARAMETER) or text).split())
+            spoken = " ".join(self._short(parameters.get(TEXT_PARAMETER) or text).split())
             return Say(f"{_speed(parameters)}{spoken}", ANIMATED_SPEECH in script) if spoken else Wait(0.0)
         if POSTURE in script:
             return self._posture(name, parameters)
         for parameter in WAIT_PARAMETERS:
             if parameter in parameters and "wait" in name.lower():
-                return Wait(_number(parameters[parameter], 0.0))
+                return Wait(self._within(parameters[parameter], 0.0, 0.0, LONGEST, f"the time of box {name!r}"))
         if any(word in script for word in LEFT_OUT):
             log.warning("%s: box %r is left out, the robot speaks and holds itself as it is told to", self._file, name)
             return Wait(0.0)
@@ -210,17 +239,28 @@ class _Xar:
         return ways
 
     def _key(self, key: Element, fps: float, factor: float, joint: str) -> KeyPoint:
-        frame, value = _number(key.get("frame"), math.nan), _number(key.get("value"), math.nan)
-        if not (math.isfinite(frame) and math.isfinite(value)):
-            raise ConfigError(self._file, f"a key of {joint} has no frame or no value")
+        self._keys += 1
+        if self._keys > MOST_KEYS:
+            raise ConfigError(self._file, f"has more than {MOST_KEYS} keys")
+        last = LONGEST * fps
+        frame = self._within(key.get("frame"), math.nan, -last, last, f"the frame of a key of {joint}")
+        value = self._within(key.get("value"), math.nan, -WIDEST, WIDEST, f"a key of {joint}")
         handles = {"left": Handle(), "right": Handle()}
         for tangent in key.findall("Tangent"):
             kind = KINDS.get(tangent.get("interpType", "linear").split("_")[0], Interpolation.LINEAR)
-            time = _number(tangent.get("abscissaParam"), 0.0) / fps
-            angle = _number(tangent.get("ordinateParam"), 0.0) * factor
+            what = f"the tangent of a key of {joint}"
+            time = self._within(tangent.get("abscissaParam"), 0.0, -last, last, what) / fps
+            angle = self._within(tangent.get("ordinateParam"), 0.0, -WIDEST, WIDEST, what) * factor
             handles[tangent.get("side", "left")] = Handle(kind, time, angle)
         # Frame 1 is the begin; a joint needs some time to get to a key there.
         return KeyPoint(max(frame, 1.0) / fps, value * factor, handles["left"], handles["right"])
+
+    def _within(self, text: str | None, default: float, low: float, high: float, what: str) -> float:
+        """A number of the file, `default` for what is none; outside of its bounds it is refused."""
+        value = _number(text, default)
+        if not low <= value <= high:
+            raise ConfigError(self._file, f"{what} is {str(text)[:40]}, allowed is {low:g} to {high:g}")
+        return value
 
 
 def _speed(parameters: dict) -> str:
@@ -235,16 +275,9 @@ def _holds_anything(timeline: Element) -> bool:
     )
 
 
-def _named(box: Element | None, kind: str, number: str | None) -> str:
-    """Name of an input or output of a box by its number, empty when there is none."""
-    ends = [] if box is None else box.findall(kind)
-    return next((end.get("name", "") for end in ends if end.get("id") == number), "")
-
-
-def _text_of(box: Element) -> str | None:
-    """The text that a box sends to the next one; None for boxes that send none."""
-    texts = [element.text for element in _plugin_texts(box) if element.text and element.text.strip()]
-    return " ".join(texts[0].split()) if texts else None
+def _names(box: Element, kind: str) -> dict[str | None, str]:
+    """Names of the inputs or outputs of a box by their numbers."""
+    return {end.get("id"): end.get("name", "") for end in reversed(box.findall(kind))}  # of two the first counts
 
 
 def _plugin_texts(box: Element) -> Iterator[Element]:

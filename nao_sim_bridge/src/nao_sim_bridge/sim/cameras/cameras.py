@@ -34,6 +34,7 @@ from nao_sim_bridge.sim.cameras.sensor import Chosen
 from nao_sim_bridge.sim.cameras.settings import CAMERAS, load_cameras
 from nao_sim_bridge.sim.cameras.stream import CameraStream
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.guard import Guard
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.render.scene import RenderState
 from nao_sim_bridge.sim.snapshot import Snapshot
@@ -60,6 +61,7 @@ class Cameras:
         look: What there is to see at a snapshot.
         seed: Of the noise.
         released: Called when time that waited need not wait any more.
+        guard: Calls who gets frames; None for one of its own.
     """
 
     def __init__(
@@ -70,6 +72,7 @@ class Cameras:
         look: Callable[[Snapshot], RenderState],
         seed: int = 0,
         released: Callable[[], None] = lambda: None,
+        guard: Guard | None = None,
     ) -> None:
         self.tables = load_cameras(model.version)
         self.ticks_per_second = (1 / Fraction(tick_s)).limit_denominator(100000)
@@ -78,7 +81,7 @@ class Cameras:
         self.released = released
         self._look = look
         self._places = CameraPlaces(model)
-        self._darkroom = Darkroom(renderer, self._places, model.version, seed)
+        self._darkroom = Darkroom(renderer, self._places, model.version, seed, guard or Guard())
         self._streams: tuple[CameraStream, ...] = ()
         self._shutters = [Shutter(self.ticks_per_second) for _ in CAMERAS]
         self._stopped = [False for _ in CAMERAS]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 from collections import OrderedDict, deque
 from typing import Any, Callable, Protocol
@@ -16,8 +15,7 @@ from nao_sim_bridge.sim.cameras.places import CameraPlaces
 from nao_sim_bridge.sim.cameras.settings import ColorSpace, Resolution
 from nao_sim_bridge.sim.cameras.shot import Shot
 from nao_sim_bridge.sim.errors import SimulationError
-
-log = logging.getLogger("nao_sim.cameras")
+from nao_sim_bridge.sim.guard import Guard
 
 TIMEOUT = 30.0
 """Longest time for a picture, s of wall time; a busy machine may take a thousand times as long as an idle one."""
@@ -45,9 +43,11 @@ class Darkroom:
         places: Where the cameras are.
         version: Robot version.
         seed: Of the noise.
+        guard: Does what is put.
     """
 
-    def __init__(self, renderer: CapturesPictures, places: CameraPlaces, version: str, seed: int) -> None:
+    def __init__(self, renderer: CapturesPictures, places: CameraPlaces, version: str, seed: int, guard: Guard) -> None:
+        self._guard = guard
         self.renderer = renderer
         self._places = places
         self._version = version
@@ -98,10 +98,7 @@ class Darkroom:
                     self._kept.clear()
                     return
                 job = self._jobs.popleft()
-            try:
-                job()
-            except Exception:
-                log.exception("somebody who got a frame failed")
+            self._guard.call(job)
 
     def _draw(self, moment: Moment, size: Resolution, pixels: ColorSpace) -> tuple[Frame, Photograph]:
         optics = self._places.optics[moment.camera]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Callable, Mapping, Tuple
 
 from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.config import check_keys, read_json
+from nao_sim_bridge.sim.config import check_keys, read_json, section
 from nao_sim_bridge.sim.errors import BadValue, ConfigError
 
 FILE = "cameras.json"
@@ -200,9 +200,9 @@ def parse_cameras(content: Mapping[str, Any], version: str) -> CameraTables:
     if version not in content["versions"]:
         raise ConfigError(f"{FILE}: versions", f"no cameras of version {version!r}")
     where = f"{FILE}: versions.{version}"
-    section = check_keys(content["versions"][version], where, ("model_id", "resolutions", "sensor", "parameters"))
+    model = check_keys(content["versions"][version], where, ("model_id", "resolutions", "sensor", "parameters"))
     resolutions = {}
-    for name, most in section["resolutions"].items():
+    for name, most in model["resolutions"].items():
         if name.startswith("_"):
             continue
         number, width, height = _listed(content["resolutions"], name, 3, "resolutions")
@@ -213,7 +213,7 @@ def parse_cameras(content: Mapping[str, Any], version: str) -> CameraTables:
         number, layers = _listed(content["color_spaces"], name, 2, "color_spaces")
         spaces[number] = ColorSpace(number, name, layers)
     parameters = {}
-    for name, entry in section["parameters"].items():
+    for name, entry in model["parameters"].items():
         at = f"{where}.parameters.{name}"
         check_keys(entry, at, ("id", "range", "default"), ("read_only",))
         least, most = entry["range"]
@@ -224,18 +224,18 @@ def parse_cameras(content: Mapping[str, Any], version: str) -> CameraTables:
         )
     return CameraTables(
         version,
-        section["model_id"],
+        model["model_id"],
         content["most_fps"],
         content["same_name"],
         resolutions,
         spaces,
         parameters,
-        SensorModel(**check_keys(section["sensor"], f"{where}.sensor", [field.name for field in fields(SensorModel)])),
+        section(SensorModel, model["sensor"], f"{where}.sensor"),
     )
 
 
-def _listed(section: Mapping[str, Any], name: str, count: int, where: str) -> Any:
-    values = section.get(name)
+def _listed(table: Mapping[str, Any], name: str, count: int, where: str) -> Any:
+    values = table.get(name)
     if not isinstance(values, list) or len(values) != count or not all(isinstance(v, int) for v in values):
         raise ConfigError(f"{FILE}: {where}.{name}", f"is {values!r}, not {count} whole numbers")
     return values

@@ -15,6 +15,7 @@ from nao_sim_bridge.sim.cameras.moment import Moment
 from nao_sim_bridge.sim.cameras.rate import Share, exact_rate
 from nao_sim_bridge.sim.cameras.settings import ColorSpace, Resolution
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.sizes import load_sizes
 
 if TYPE_CHECKING:
     from nao_sim_bridge.sim.cameras.cameras import Cameras
@@ -23,7 +24,7 @@ log = logging.getLogger("nao_sim.cameras")
 
 PATIENCE = 10.0
 """Wall time, s: time that runs fast waits no longer than this for somebody who has got a frame to ask for the next."""
-MOST_ASKS = 32
+MOST_ASKS = load_sizes().clients.frames
 """How many frames may be asked for before the first of them is there."""
 
 

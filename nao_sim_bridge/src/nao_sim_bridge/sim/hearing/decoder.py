@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Iterable, Sequence, Tuple
 
 import numpy as np
@@ -19,8 +17,10 @@ from nao_sim_bridge.sim.hearing.network import OTHER, Arc, Network, build, spoke
 from nao_sim_bridge.sim.hearing.noise_reduction import FRAME, noise_spectrum, reduce_noise
 from nao_sim_bridge.sim.hearing.pronunciation import Pronouncer
 from nao_sim_bridge.sim.hearing.settings import RecognitionSettings
+from nao_sim_bridge.sim.hearing.speech_edges import speech_edges
 from nao_sim_bridge.sim.hearing.speech_likeness import likeness
 from nao_sim_bridge.sim.hearing.voice_activity import Utterance
+from nao_sim_bridge.sim.whole_file import memory_file
 
 PHONES = (
     "AA AE AH AO AW AY B CH D DH EH ER EY F G HH IH IY JH K L M N NG OW OY P R S SH T TH UH UW V W Y Z ZH"
@@ -30,6 +30,8 @@ FURTHER = re.compile(r"\((\d+)\)$")
 PHRASES, SOUNDS = "phrases", "sounds"
 # Further hypotheses are looked for in this many ways at most.
 MOST_SEARCHES = 12
+# Frames a second, in which places of words are counted.
+FRAME_RATE = 100.0
 
 
 @dataclass(frozen=True)
@@ -54,10 +56,16 @@ class Heard:
     Attributes:
         everyday: Everyday words.
         sounds: Single sounds.
+        origin: Time at which its sound begins, with the silence before it, s.
+        onset: Time of its first sound, s.
+        end: Time of its last sound, s.
     """
 
     everyday: Sequence[Piece]
     sounds: Sequence[Piece]
+    origin: float
+    onset: float
+    end: float
 
 
 class Decoder:
@@ -90,11 +98,9 @@ class Decoder:
 
     def _new_engine(self) -> pocketsphinx.Decoder:
         pocketsphinx.set_loglevel("FATAL")
-        with tempfile.TemporaryDirectory(prefix="nao_words_") as folder:
-            dictionary = Path(folder) / "words.dict"
-            dictionary.write_text(_dictionary(self._network), encoding="utf-8")
+        with memory_file(_dictionary(self._network).encode()) as dictionary:
             # A search of the lattice would find ways that end in the middle of a phrase.
-            config = pocketsphinx.Config(lm=None, dict=str(dictionary), cmn="batch", bestpath=False, loglevel="FATAL")
+            config = pocketsphinx.Config(lm=None, dict=dictionary, cmn="batch", bestpath=False, loglevel="FATAL")
             engine = pocketsphinx.Decoder(config)
         engine.add_allphone_file(SOUNDS, None)
         return engine
@@ -115,6 +121,8 @@ class Decoder:
         heard = Heard(
             self._everyday.heard(sound),
             pieces(self._engine, lambda sound: [sound]) if self._run(SOUNDS, sound) else [],
+            utterance.origin,
+            *speech_edges(utterance),
         )
         found = self._whole(sound, heard, most)
         if self._spots:
@@ -132,7 +140,7 @@ class Decoder:
             confidence = self._evidence(way, heard, inside=False).confidence(settings)
             # What is less likely as a whole is no surer, however it is written.
             surest = min(surest, confidence)
-            found += self._hypothesis(way, surest, settings.least)
+            found += self._hypothesis(way, surest, settings.least, heard.onset, heard.end)
         return found
 
     def _inside(self, sound: bytes, heard: Heard, most: int) -> list[Hypothesis]:
@@ -141,7 +149,8 @@ class Decoder:
         # Other speech that is like a phrase may hide one that was said.
         for way in self._ways(sound, self._network.arcs, max(most, self._settings.other_speech.tries)):
             confidence = self._evidence(way, heard, inside=True).confidence(settings)
-            found += self._hypothesis(way, confidence, settings.least)
+            onset, end = _span(way, heard)
+            found += self._hypothesis(way, confidence, settings.least, onset, end)
         return found
 
     def _cleaned(self, utterance: Utterance) -> np.ndarray:
@@ -236,13 +245,20 @@ class Decoder:
         spoken = [spoken_word(piece.word) for piece in way.pieces if piece.phones]
         return evidence(way.pieces, spoken, heard.everyday, heard.sounds, inside)
 
-    def _hypothesis(self, way: Way, confidence: float, least: float) -> list[Hypothesis]:
+    def _hypothesis(self, way: Way, confidence: float, least: float, onset: float, end: float) -> list[Hypothesis]:
         """The phrase of a way; none when it is not sure enough."""
         said = [self._network.tokens[token] for token in way.tokens]
         grammar = next((token.grammar for token in said if token.grammar), "")
         if not grammar or confidence < least:
             return []
-        return [Hypothesis(_phrase(token.heard for token in said), confidence, grammar)]
+        return [Hypothesis(_phrase(token.heard for token in said), confidence, grammar, onset, end)]
+
+
+def _span(way: Way, heard: Heard) -> Tuple[float, float]:
+    """Times at which the phrases of a way begin and end, s."""
+    begin = heard.origin + way.pieces[0].start / FRAME_RATE
+    end = heard.origin + (way.pieces[-1].end + 1) / FRAME_RATE
+    return max(begin, heard.onset), min(end, heard.end)
 
 
 def _phrase(parts: Iterable[str]) -> str:

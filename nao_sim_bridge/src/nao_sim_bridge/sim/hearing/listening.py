@@ -16,11 +16,15 @@ class Hypothesis:
         phrase: As the grammar writes it.
         confidence: 0..1.
         grammar: Name of the grammar that it belongs to.
+        onset: Time of its first sound, s.
+        end: Time of its last sound, s.
     """
 
     phrase: str
     confidence: float
     grammar: str
+    onset: float
+    end: float
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Callable, Sequence
 import numpy as np
 
 from nao_sim_bridge.sim.hearing.array import MicrophoneArray
-from nao_sim_bridge.sim.hearing.detection import SoundDetector
+from nao_sim_bridge.sim.hearing.detection import START, SoundDetector
 from nao_sim_bridge.sim.hearing.localisation import UPRIGHT, DirectionFinder
 from nao_sim_bridge.sim.hearing.spectra import CrossSpectra, cross_spectra
 
@@ -29,7 +29,7 @@ class HeardSound:
     """A sound that was located.
 
     Attributes:
-        time: Simulated time of the first sample of the block, s.
+        time: Simulated time at which it begins in the block, or of the block itself if it has begun before, s.
         azimuth: From ahead to the left, in the frame of the head, rad.
         elevation: Upwards, in the frame of the head, rad.
         confidence: 0..1.
@@ -79,7 +79,7 @@ class Localiser:
             up: Unit vector upwards in the world, in the frame of the head.
             own_power: Tells what the own loudspeakers add to the mean square of the samples; asked when it matters.
         """
-        self._detector.feed(samples, time)
+        edges = self._detector.feed(samples, time)
         if not self._detector.loud:
             return None
         power = float(np.mean(samples.astype(np.float32) ** 2))
@@ -92,4 +92,7 @@ class Localiser:
         confidence = (bearing.coherence - NO_COHERENCE) / (1.0 - NO_COHERENCE)
         if confidence < LEAST_CONFIDENCE:
             return None
-        return HeardSound(time, bearing.azimuth, bearing.elevation, min(confidence, 1.0), math.sqrt(power))
+        begun = [edge.time for edge in edges if edge.kind == START]
+        return HeardSound(
+            max([time, *begun[:1]]), bearing.azimuth, bearing.elevation, min(confidence, 1.0), math.sqrt(power)
+        )

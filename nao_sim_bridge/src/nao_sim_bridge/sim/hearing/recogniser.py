@@ -27,7 +27,12 @@ CLOSING = 1.0
 MOST_WAITING = 60.0
 """s of sound that may wait; what comes then is left out: time did not wait for the recogniser."""
 # What error texts call the requests.
-WHAT = {"listen": "what to listen for", "hear": "what is heard", "finish": "end of listening"}
+WHAT = {
+    "listen": "what to listen for",
+    "background": "what was heard before",
+    "hear": "what is heard",
+    "finish": "end of listening",
+}
 STARTS = 3
 """A process that dies this often in a row is not started again before something else is to be listened for."""
 
@@ -135,6 +140,14 @@ class Recogniser:
         done: Future = Future()
         self._put(_Job("listen", listening, done=done))
         done.result()
+
+    def get_used_to(self, samples: np.ndarray) -> None:
+        """Know the background from what was heard before it listens; returns at once.
+
+        Args:
+            samples: (n,) int16, 16 kHz, before the first that `hear` gets.
+        """
+        self._put(_Job("background", np.ascontiguousarray(samples)))
 
     def hear(self, time: float, samples: np.ndarray) -> None:
         """Take the next block; returns at once.

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Mapping, Tuple
+from typing import Tuple
 
 from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.config import check_keys, read_json, section
+from nao_sim_bridge.sim.config import read_settings
 
 FILE = "recognition.json"
 
@@ -95,17 +95,6 @@ class RecognitionSettings:
     speech_likeness: SpeechLikenessSettings
 
 
-SECTIONS = {
-    "voice_activity": VoiceActivitySettings,
-    "noise_reduction": NoiseReductionSettings,
-    "gain": GainSettings,
-    "confidence": ConfidenceSettings,
-    "spotting": ConfidenceSettings,
-    "other_speech": OtherSpeechSettings,
-    "speech_likeness": SpeechLikenessSettings,
-}
-
-
 @lru_cache(maxsize=None)
 def load_recognition() -> RecognitionSettings:
     """The settings of the package.
@@ -113,11 +102,4 @@ def load_recognition() -> RecognitionSettings:
     Raises:
         ConfigError: The file does not hold what it should.
     """
-    return parse_recognition(read_json(config_file(FILE)))
-
-
-def parse_recognition(content: Mapping[str, Any]) -> RecognitionSettings:
-    """Settings from the content of the file; see `load_recognition`."""
-    check_keys(content, FILE, ["languages", *SECTIONS], ["_note"])
-    sections = {name: section(kind, content[name], f"{FILE} {name}", ["_note"]) for name, kind in SECTIONS.items()}
-    return RecognitionSettings(languages=tuple(content["languages"]), **sections)
+    return read_settings(RecognitionSettings, config_file(FILE), ["_note", "_note"])

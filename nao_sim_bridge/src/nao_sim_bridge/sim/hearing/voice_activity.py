@@ -38,12 +38,14 @@ class Utterance:
     Attributes:
         start: Time at which the speech began, s.
         end: Time at which it ended, s.
+        origin: Time of the first of `samples`, s.
         samples: (n,) float32, -1..1, 16 kHz, with the silence.
         background: (m,) float32, what it sounded like before, without speech; may be empty.
     """
 
     start: float
     end: float
+    origin: float
     samples: np.ndarray
     background: np.ndarray
 
@@ -82,6 +84,22 @@ class VoiceActivity:
         self._start = 0.0
         self._present = False
 
+    def get_used_to(self, samples: np.ndarray) -> None:
+        """Start anew, with the background of what was heard before; speech in it is left out.
+
+        Args:
+            samples: (n,) as `hear` takes them.
+        """
+        self.reset()
+        frames = _scaled(samples)
+        frames = frames[: len(frames) // self._frame * self._frame].reshape(-1, self._frame)
+        self._levels.extend(self._level(frame) for frame in frames)
+        loud = [self._stands_out(self._level(frame)) for frame in frames]
+        near = np.convolve(loud, np.ones(2 * self._settings.window_frames + 1), "same") if loud else ()
+        for frame, speech in zip(frames, near):
+            if not speech:
+                self._keep(frame)
+
     def hear(self, time: float, samples: np.ndarray) -> Iterator[SpeechChange | Utterance]:
         """Take the next block.
 
@@ -92,7 +110,7 @@ class VoiceActivity:
         Yields:
             What began or ended in it, in order.
         """
-        heard = samples.astype(np.float32) / (32768.0 if samples.dtype == np.int16 else 1.0)
+        heard = _scaled(samples)
         if self._time is not None and abs(self._time + len(self._rest) / RATE - time) > self._settings.frame_s:
             yield from self.finish()
             self.reset()
@@ -128,6 +146,9 @@ class VoiceActivity:
     def _is_loud(self, frame: np.ndarray) -> bool:
         level = self._level(frame)
         self._levels.append(level)
+        return self._stands_out(level)
+
+    def _stands_out(self, level: float) -> bool:
         floor = float(np.percentile(self._levels, FLOOR_SHARE))
         return level > max(floor + self._settings.margin(self.sensitivity), self._settings.least_level_db)
 
@@ -156,10 +177,16 @@ class VoiceActivity:
         silence = self._silent_frames
         end = self._time - silence * s.frame_s
         unused = max(silence - round(s.after_s / s.frame_s), 0)
+        origin = self._time - len(self._speech) * s.frame_s
         frames = self._speech[: len(self._speech) - unused]
         self._present, self._speech = False, []
         self._loud.clear()
         yield SpeechChange(end, False)
         if self._loud_frames * s.frame_s >= s.least_speech_s:
             background = np.concatenate(self._background) if self._background else np.zeros(0, np.float32)
-            yield Utterance(self._start, end, np.concatenate(frames), background)
+            yield Utterance(self._start, end, origin, np.concatenate(frames), background)
+
+
+def _scaled(samples: np.ndarray) -> np.ndarray:
+    """int16 or float samples as float32, -1..1."""
+    return samples.astype(np.float32) / (32768.0 if samples.dtype == np.int16 else 1.0)

@@ -1,8 +1,9 @@
 """The recogniser's process: `python -m nao_sim_bridge.sim.hearing.worker FD`.
 
 It talks over the inherited pipe FD in tuples (kind, content). First it sends ("ready", None). Then it answers
-("listen", Listening) with ("listening", None) or ("error", text), ("hear", (time, samples)) with ("heard", list of
-SpeechChange and Recognised), and ("finish", None) likewise. It ends when the pipe is closed.
+("listen", Listening) with ("listening", None) or ("error", text), ("background", samples) likewise, ("hear", (time,
+samples)) with ("heard", list of SpeechChange and Recognised), and ("finish", None) likewise. It ends when the pipe is
+closed.
 """
 
 from __future__ import annotations
@@ -40,6 +41,10 @@ class Ear:
             self._decoder = self._decoder_for(listening)
         self._listening = listening
         self._activity.sensitivity = listening.sensitivity
+
+    def background(self, samples: Any) -> None:
+        """Get used to what was heard before it listens."""
+        self._activity.get_used_to(samples)
 
     def hear(self, content: Any) -> list[SpeechChange | Recognised]:
         """Take a block (time in s, samples)."""
@@ -79,7 +84,7 @@ def main(arguments: Iterable[str]) -> int:
 
 
 def _serve(pipe: Connection, ear: Ear) -> None:
-    requests = {"listen": ear.listen, "hear": ear.hear, "finish": ear.finish}
+    requests = {"listen": ear.listen, "background": ear.background, "hear": ear.hear, "finish": ear.finish}
     while True:
         kind, content = pipe.recv()
         try:

@@ -13,6 +13,8 @@ from enum import IntEnum
 from functools import cached_property
 from typing import Sequence
 
+import numpy as np
+
 from nao_sim_bridge.sim.motion.curves import ROUNDING
 
 # The parameter is found to this accuracy, which is far below a tick; a cubic needs about five Newton steps.
@@ -97,8 +99,8 @@ class BezierCurve:
     @property
     def extremes(self) -> tuple[float, float]:
         """Smallest and largest angle, in rad, sampled."""
-        angles = [angle for segment in self._segments for _, angle in segment.samples]
-        return min(angles), max(angles)
+        _, angles = self._samples
+        return float(angles.min()), float(angles.max())
 
     def value(self, elapsed: float) -> float:
         """Angle in rad after `elapsed` seconds; holds the end points outside."""
@@ -110,15 +112,20 @@ class BezierCurve:
 
     def peak_speed(self) -> float:
         """Largest speed along the curve in rad/s, sampled; a jump takes no time, but the joint a while."""
-        peak = 0.0
-        for segment in self._segments:
-            if segment.kind is Interpolation.CONSTANT:
-                continue
-            samples = segment.samples
-            for (t0, a0), (t1, a1) in zip(samples, samples[1:]):
-                if t1 - t0 > ACCURACY:
-                    peak = max(peak, abs(a1 - a0) / (t1 - t0))
-        return peak
+        times, angles = self._samples
+        moves = [segment.kind is not Interpolation.CONSTANT for segment in self._segments]
+        spans, ways = np.diff(times[moves]), np.abs(np.diff(angles[moves]))
+        speeds = ways[spans > ACCURACY] / spans[spans > ACCURACY]
+        return float(speeds.max(initial=0.0))
+
+    @cached_property
+    def _samples(self) -> tuple[np.ndarray, np.ndarray]:
+        """Times (s, since its begin) and angles (rad) along every segment, a row each."""
+        powers = np.vander(np.linspace(0.0, 1.0, SAMPLES + 1), 4, increasing=True).T
+        return tuple(
+            np.array(rows) @ powers
+            for rows in ([s.time_powers for s in self._segments], [s.angle_powers for s in self._segments])
+        )
 
 
 class _Segment:
@@ -135,8 +142,8 @@ class _Segment:
         self._start, self._span = start.time, span
         self._ends = (start.angle, end.angle)
         # Coefficients of rising powers of the parameter: of time since the start, and of the angle.
-        self._time = _powers(0.0, first[0], span - last[0], span)
-        self._angle = _powers(start.angle, start.angle + first[1], end.angle + last[1], end.angle)
+        self.time_powers = _powers(0.0, first[0], span - last[0], span)
+        self.angle_powers = _powers(start.angle, start.angle + first[1], end.angle + last[1], end.angle)
 
     def value(self, time: float) -> float:
         since = time - self._start
@@ -144,19 +151,11 @@ class _Segment:
             return self._ends[0]
         if self.kind is Interpolation.LINEAR:
             return self._ends[0] + since / self._span * (self._ends[1] - self._ends[0])
-        return _polynomial(self._angle, self._parameter(since))
-
-    @cached_property
-    def samples(self) -> list[tuple[float, float]]:
-        """(time in s, angle in rad) along the segment."""
-        if self.kind not in CURVED:
-            return [(self._start, self._ends[0]), (self._start + self._span, self._ends[1])]
-        shares = [k / SAMPLES for k in range(SAMPLES + 1)]
-        return [(self._start + _polynomial(self._time, s), _polynomial(self._angle, s)) for s in shares]
+        return _polynomial(self.angle_powers, self._parameter(since))
 
     def _parameter(self, since: float) -> float:
         """The parameter at a time: Newton steps, halving the bracket where they would leave it."""
-        _, c1, c2, c3 = self._time
+        _, c1, c2, c3 = self.time_powers
         low, high, s = 0.0, 1.0, since / self._span
         for _ in range(STEPS):
             error = s * (c1 + s * (c2 + s * c3)) - since

@@ -23,6 +23,8 @@ from nao_sim_bridge.sim.motion.inverse_kinematics import Goal, rotation_vector, 
 SAMPLE_TIME = 0.05
 # A solution is close to the one before, so that few iterations do; more would be felt in the tick.
 SAMPLE_ITERATIONS = 12
+# Samples that a path remembers: time does not go back in a motion, and the slopes need a few around it.
+KEPT = 8
 
 
 class PosePath:
@@ -51,14 +53,38 @@ class PosePath:
         return transform(self._start @ turn, values[:3])
 
 
-def sample_times(times: Iterable[float]) -> list[float]:
-    """Rising times in s from 0 to the last of `times`: every one of them, and steps between."""
-    found = [0.0]
-    for end in times:
-        start = found[-1]
-        count = max(1, math.ceil((end - start) / SAMPLE_TIME - ROUNDING))
-        found += [start + (end - start) * k / count for k in range(1, count)] + [end] * (end > start)
-    return found
+class SampleTimes(Sequence[float]):
+    """Rising times in s from 0 to the last of some: every one of them, and steps between. None of them is kept.
+
+    Args:
+        times: Rising, s.
+    """
+
+    def __init__(self, times: Iterable[float]) -> None:
+        # Of each stretch between two of the times: number of its first sample, its length in samples and in s.
+        self._firsts, self._starts, self._counts, self._lengths = [], [], [], []
+        first, start = 0, 0.0
+        for end in times:
+            if end > start:
+                count = max(1, math.ceil((end - start) / SAMPLE_TIME - ROUNDING))
+                self._firsts.append(first)
+                self._starts.append(start)
+                self._counts.append(count)
+                self._lengths.append(end - start)
+                first, start = first + count, end
+        self._last, self._end = first, start
+
+    def __len__(self) -> int:
+        return self._last + 1
+
+    def __getitem__(self, number: int) -> float:
+        number = number + len(self) if number < 0 else number
+        if not 0 <= number <= self._last:
+            raise IndexError(number)
+        if number == self._last:
+            return self._end
+        i = bisect_right(self._firsts, number) - 1
+        return self._starts[i] + self._lengths[i] * (number - self._firsts[i]) / self._counts[i]
 
 
 class SolvedPath:
@@ -74,7 +100,9 @@ class SolvedPath:
         self, times: Sequence[float], first: np.ndarray, solve_at: Callable[[float, np.ndarray], np.ndarray]
     ) -> None:
         self.times = times
-        self._solved = [first]
+        # By number; those that time has left behind are forgotten.
+        self._solved = {0: first}
+        self._newest = 0
         self._solve_at = solve_at
         self._latest: tuple[float, np.ndarray] | None = None
 
@@ -98,14 +126,17 @@ class SolvedPath:
         return t * t * ((1 + 2 * s) * start + s * slope_start) + s * s * ((1 + 2 * t) * end - t * slope_end)
 
     def _sample(self, i: int) -> np.ndarray:
-        while len(self._solved) <= i:
-            self._solved.append(self._solve_at(self.times[len(self._solved)], self._solved[-1]))
-        return self._solved[i]
+        while self._newest < i:
+            before = self._solved[self._newest]
+            self._newest += 1
+            self._solved[self._newest] = self._solve_at(self.times[self._newest], before)
+            self._solved.pop(self._newest - KEPT, None)
+        return self._solved[max(i, self._newest - KEPT + 1)]
 
     def _slope(self, i: int) -> np.ndarray:
         """(n,) slope at a sample by the monotone rule of `SmoothCurve`: no joint leaves the range of its samples."""
         if i in (0, len(self.times) - 1):
-            return np.zeros(len(self._solved[0]))
+            return np.zeros(len(self._solved[self._newest]))
         before, here, after = (self._sample(k) for k in (i - 1, i, i + 1))
         a = (here - before) / (self.times[i] - self.times[i - 1])
         b = (after - here) / (self.times[i + 1] - self.times[i])
@@ -158,5 +189,5 @@ def joint_curves(
     def solve_at(moment: float, before: np.ndarray) -> np.ndarray:
         return solve(body, indices, goals_at(moment), before, footing_at(moment), SAMPLE_ITERATIONS)
 
-    path = SolvedPath(sample_times(times), np.array(commands, dtype=float), solve_at)
+    path = SolvedPath(SampleTimes(times), np.array(commands, dtype=float), solve_at)
     return {index: SolvedCurve(path, index) for index in indices}

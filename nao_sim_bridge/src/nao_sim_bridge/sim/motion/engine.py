@@ -17,6 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import AbstractSet, Callable, Container, Iterable, Mapping, Protocol, Sequence, Union
 
+from nao_sim_bridge.sim.finite import check_finite
 from nao_sim_bridge.sim.motion.bezier import BezierCurve
 from nao_sim_bridge.sim.motion.curves import ROUNDING, Ramp, SmoothCurve
 from nao_sim_bridge.sim.motion.joints import JointCommands
@@ -102,7 +103,12 @@ class MotionEngine:
         return self._add(name, indices, build, stiffness=True)
 
     def set_targets(self, targets: Mapping[int, float], speeds: Mapping[int, float]) -> None:
-        """Move joints to `targets` (rad) at `speeds` (rad/s) from now on; replaces older targets."""
+        """Move joints to `targets` (rad) at `speeds` (rad/s) from now on; replaces older targets.
+
+        Raises:
+            NotFinite: One of the numbers is not.
+        """
+        check_finite("targets", (*targets.values(), *speeds.values()))
         self.notices.check_targets("setAngles", targets)
         for index, target in targets.items():
             self._targets[index] = (self._joints.clamp_alone(index, target), speeds[index])
@@ -150,6 +156,12 @@ class MotionEngine:
         if self.corrector is not None:
             self.corrector.stop(range(len(self._joints.commands)))
 
+    def fail(self, task: Task, error: Exception) -> None:
+        """End a task that has raised: whoever waits for it gets the error."""
+        self._ids.guard.caught(f"task {task.name}", error)
+        self._drop(task)
+        task.finish(error=error)
+
     # --- the tick -------------------------------------------------------------------------------------------------
 
     def tick(self, now: float, dt: float) -> None:
@@ -164,15 +176,20 @@ class MotionEngine:
             wanted.update(self.idle.wishes(self._moved(), dt))
         if self._targets:
             self._advance_targets(wanted, now, dt)
-        for job in self._jobs:
+        for job in self._jobs:  # replaced, never changed
             if job.started is None:
                 continue
             elapsed = now - job.started
-            if job.stiffness:
-                self._joints.set_stiffness({index: curve.value(elapsed) for index, curve in job.curves.items()})
+            try:
+                values = {index: curve.value(elapsed) for index, curve in job.curves.items()}
+                check_finite(job.task.name, values.values())
+            except Exception as error:
+                self.fail(job.task, error)
                 continue
-            for index, curve in job.curves.items():
-                wanted[index] = curve.value(elapsed)
+            if job.stiffness:
+                self._joints.set_stiffness(values)
+            else:
+                wanted.update(values)
         self._command(wanted, dt)
         self._finish_jobs(now)
 
@@ -196,14 +213,19 @@ class MotionEngine:
         self._jobs = [job for job in self._jobs if job.task is not task]
 
     def _start_jobs(self, now: float) -> None:
-        for position, job in enumerate(self._jobs):
-            if job.started is not None or any(job.conflicts(older) for older in self._jobs[:position]):
+        jobs = self._jobs
+        for position, job in enumerate(jobs):
+            if job.started is not None or any(job.conflicts(older) for older in jobs[:position]):
                 continue
             job.started = now
-            job.curves = job.build(self._joints.stiffnesses if job.stiffness else self._joints.commands)
-            if not job.stiffness:
-                if job.noticed:
+            try:
+                job.curves = job.build(self._joints.stiffnesses if job.stiffness else self._joints.commands)
+                if job.noticed and not job.stiffness:
                     self.notices.check_curves(job.task.name, job.curves)
+            except Exception as error:
+                self.fail(job.task, error)
+                continue
+            if not job.stiffness:
                 for index in job.indices:
                     self._targets.pop(index, None)
                     self._ramps.pop(index, None)
@@ -222,11 +244,19 @@ class MotionEngine:
 
     def _finish_jobs(self, now: float) -> None:
         for job in [j for j in self._jobs if j.started is not None]:
-            if any(now - job.started < curve.duration - ROUNDING for curve in job.curves.values()):
+            try:
+                over = self._is_over(job, now)
+            except Exception as error:
+                self.fail(job.task, error)
                 continue
-            if job.stiffness or self._commands_reached(job):
+            if over:
                 self._drop(job.task)
                 job.task.finish()
+
+    def _is_over(self, job: _Job, now: float) -> bool:
+        if any(now - job.started < curve.duration - ROUNDING for curve in job.curves.values()):
+            return False
+        return job.stiffness or self._commands_reached(job)
 
     def _commands_reached(self, job: _Job) -> bool:
         """False while a motor's speed limit still keeps a command from the end of its curve.

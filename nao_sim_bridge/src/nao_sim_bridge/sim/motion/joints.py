@@ -6,6 +6,7 @@ replaced as a whole and never changed.
 
 from __future__ import annotations
 
+import math
 from typing import Callable, Collection, Container, Mapping, Sequence
 
 from nao_sim_bridge.sim.model import RobotModel
@@ -181,6 +182,21 @@ class JointCommands:
         rests = tuple(min(max(rest, angle - STICTION), angle + STICTION) for rest, angle in zip(self.rests, measured))
         if rests != self.rests:
             self.rests, self.changed = rests, True
+
+    def put_right(self, measured: Sequence[float]) -> list[int]:
+        """Replace what is not finite: commands by `measured` angles (rad), stiffnesses by 0; the joints it was."""
+        bad = [
+            index
+            for index, numbers in enumerate(zip(self.commands, self.stiffnesses, self.rests))
+            if not math.isfinite(sum(numbers))
+        ]
+        self.stiffnesses = tuple(value if math.isfinite(value) else 0.0 for value in self.stiffnesses)
+        self._tell_efforts()
+        self.velocities = (0.0,) * len(self.commands)
+        self.corrections, self._correction_speeds = {}, {}
+        self.rests = tuple(angle if i in bad else rest for i, (rest, angle) in enumerate(zip(self.rests, measured)))
+        self.hold(measured, bad)
+        return bad
 
     def hold(self, angles: Sequence[float], indices: Sequence[int]) -> None:
         """Take measured `angles` as commands of `indices`, so that stiffening them makes no jump."""

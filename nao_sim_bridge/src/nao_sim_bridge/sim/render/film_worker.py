@@ -27,7 +27,7 @@ NICENESS = 5
 def main(arguments: list[str]) -> int:
     """Serve one pipe until the film is complete."""
     descriptor, engine, world_name, version, file, view, width, height = arguments
-    pipe = pipe_to_parent(descriptor)
+    pipe = pipe_to_parent(descriptor, completes=True)
     os.nice(NICENESS)
     try:
         film, name = _open(engine, world_name, version, Path(file), view, (int(width), int(height)))
@@ -95,7 +95,7 @@ def _serve(pipe: Connection, film: _Film) -> None:
     while True:
         try:
             kind, content = pipe.recv()
-        except EOFError:  # nobody wants to know how it ends
+        except (EOFError, OSError):  # it may be closed in the middle of a message; nobody wants to know how it ends
             film.file.close()
             return
         try:

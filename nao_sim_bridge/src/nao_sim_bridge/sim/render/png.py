@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from nao_sim_bridge.sim.whole_file import WholeFile
+
 
 def write_png(path: str | Path, picture: np.ndarray) -> Path:
     """Write an (h, w, 3) uint8 RGB picture; folders on the way are made.
@@ -15,6 +17,6 @@ def write_png(path: str | Path, picture: np.ndarray) -> Path:
         The path written.
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(picture, "RGB").save(path, "PNG")
+    with WholeFile(path) as file:
+        Image.fromarray(picture, "RGB").save(file, "PNG")
     return path

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Any, Type, TypeVar
+import math
+from dataclasses import asdict, dataclass
 
 from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.config import check_keys, read_json, vector
+from nao_sim_bridge.sim.config import read_settings
 from nao_sim_bridge.sim.errors import ConfigError
 
 FILE = "sensors.json"
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -64,20 +63,11 @@ def load_noise() -> NoiseSettings:
     Raises:
         ConfigError: The file cannot be read, or a key is unknown, missing, or no number of 0 or more.
     """
-    content = check_keys(read_json(config_file(FILE)), FILE, ["joints", "inertial", "feet"], ["_meta"])
-    return NoiseSettings(
-        joints=_section(JointNoise, content["joints"], f"{FILE}: joints"),
-        inertial=_section(InertialNoise, content["inertial"], f"{FILE}: inertial"),
-        feet=_section(FootNoise, content["feet"], f"{FILE}: feet"),
-    )
-
-
-def _section(cls: Type[T], entry: Any, where: str) -> T:
-    names = [f.name for f in fields(cls)]  # type: ignore[arg-type]
-    check_keys(entry, where, names)
-    values = {name: float(vector([entry[name]], f"{where}.{name}", 1)[0]) for name in names}
-    for name, value in values.items():
-        if value < 0.0 or (name.endswith("_s") and value == 0.0):
-            allowed = "above 0" if value == 0.0 else "0 or more"
-            raise ConfigError(f"{where}.{name}", f"is {value:g}, allowed is {allowed}")
-    return cls(**values)
+    settings = read_settings(NoiseSettings, config_file(FILE))
+    for name, amounts in asdict(settings).items():
+        for key, amount in amounts.items():
+            is_time = key.endswith("_s")
+            if not math.isfinite(amount) or amount < 0.0 or (is_time and amount == 0.0):
+                allowed = "above 0" if is_time else "0 or more"
+                raise ConfigError(f"{FILE}: {name}.{key}", f"is {amount:g}, allowed is {allowed} and finite")
+    return settings

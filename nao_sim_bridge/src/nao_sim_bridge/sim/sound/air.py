@@ -34,7 +34,7 @@ class Air:
         self.settings = settings or load_sound_settings()
         self.ids = ids
         self.tick_s = tick_s
-        self.timeline = Timeline(self.settings.keep_s)
+        self.timeline = Timeline(self.settings.keep_s, ids.guard)
         self.sources = Sources(self.timeline, ids, self.settings)
         self.numbers = itertools.count(1)
         self.voices: tuple[RobotVoice, ...] = ()

@@ -10,9 +10,10 @@ from typing import Callable
 import numpy as np
 
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.guard import Guard
 from nao_sim_bridge.sim.sound.decimation import REACH, THIRD_RATE, third
 from nao_sim_bridge.sim.sound.microphones import GUARD, Microphones
-from nao_sim_bridge.sim.sound.samples import RATE, pcm16
+from nao_sim_bridge.sim.sound.samples import RATE, frame_at, pcm16
 from nao_sim_bridge.sim.sound.settings import CHANNELS
 from nao_sim_bridge.sim.sound.timeline import NEVER, Timeline
 
@@ -71,7 +72,6 @@ class Listener:
         self.closed = False
         self._callback = callback
         self._ears = ears
-        self._failed = False
 
     def close(self) -> None:
         """Hear nothing any more; one that is `exact` gets the rest up to now first. Not in the simulation thread then.
@@ -85,10 +85,8 @@ class Listener:
         """Hand over a block; ears' thread."""
         try:
             self._callback(block)
-        except Exception:
-            if not self._failed:
-                log.exception("listener %s failed; it goes on, and further failures are not logged", self.name)
-            self._failed = True
+        except Exception as error:
+            self._ears.guard.caught(f"listener {self.name}", error)
 
 
 class Ears:
@@ -98,9 +96,13 @@ class Ears:
         timeline: The clock.
         microphones: What is heard.
         released: Called when time that waited need not wait any more.
+        guard: Told of listeners that fail.
     """
 
-    def __init__(self, timeline: Timeline, microphones: Microphones, released: Callable[[], None]) -> None:
+    def __init__(
+        self, timeline: Timeline, microphones: Microphones, released: Callable[[], None], guard: Guard
+    ) -> None:
+        self.guard = guard
         self._timeline = timeline
         self._microphones = microphones
         self._released = released
@@ -135,6 +137,7 @@ class Ears:
         wants: str = "48k4",
         channel: str = "front",
         exact: bool = False,
+        begin: float | None = None,
     ) -> Listener:
         """Hear from now on. Any thread.
 
@@ -145,6 +148,8 @@ class Ears:
             channel: Which one: left, right, front, rear, or all for their mean.
             exact: The first block begins exactly now, and the last ends exactly at `close`; else all blocks are
                 whole, and the first is the first whole one that begins from now on.
+            begin: Simulated time of the first sample, s, not before now: then only the first block is not whole. None:
+                as `exact` says.
         """
         if wants not in WANTS:
             raise BadValue("wants", wants, " or ".join(WANTS))
@@ -153,6 +158,8 @@ class Ears:
         with self._news:
             now = self._timeline.now
             start = _next_sample(now, wants) if exact else -(-now // BLOCK) * BLOCK
+            if begin is not None:
+                start = _next_sample(max(now, frame_at(begin)), wants)
             listener = Listener(self, name, callback, wants, channel, start, exact)
             if not self._listeners:
                 self._done = now // BLOCK * BLOCK
@@ -162,6 +169,20 @@ class Ears:
                 self._thread = threading.Thread(target=self._run, name="ears", daemon=True)
                 self._thread.start()
         return listener
+
+    def past(self, seconds: float, wants: str = "48k4", channel: str = "front") -> np.ndarray:
+        """(frames, channels) int16 of what the microphones heard last, as `listen` has it. Any thread.
+
+        Args:
+            seconds: How long; less where less is remembered.
+            wants: As `listen` takes it.
+            channel: As `listen` takes it.
+        """
+        last = (self._timeline.now - GUARD - REACH) // 3 * 3
+        first = max(last - frame_at(seconds) // 3 * 3, -(-(self._timeline.oldest + REACH) // 3) * 3)
+        if last <= first:  # it has just begun
+            return np.zeros((0, len(CHANNELS) if wants == "48k4" else 1), np.int16)
+        return _block(self._microphones.render(first - REACH, last + REACH), wants, channel)
 
     def remove(self, listener: Listener) -> None:
         """End of a listener; see `Listener.close`."""
@@ -251,7 +272,12 @@ class Ears:
                 self._deliver((listener,), first, last)
 
     def _deliver(self, listeners: tuple[Listener, ...], first: int, last: int) -> None:
-        """Work out the frames `first` to `last` and hand them over."""
+        """Work out the frames `first` to `last` and hand them over; what cannot be worked out is not heard."""
+        self.guard.call(self._hand_over, listeners, first, last)
+        for listener in listeners:
+            listener.next = max(listener.next, last)
+
+    def _hand_over(self, listeners: tuple[Listener, ...], first: int, last: int) -> None:
         wide: np.ndarray | None = None
         made: dict[tuple[str, str], np.ndarray] = {}
         for listener in listeners:

@@ -9,7 +9,7 @@ import numpy as np
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.sound.envelope import Envelope
 from nao_sim_bridge.sim.sound.samples import RATE, Sound, frame_at
-from nao_sim_bridge.sim.sound.timeline import Timeline, log
+from nao_sim_bridge.sim.sound.timeline import Timeline
 from nao_sim_bridge.sim.sound.track import RAMP, Track
 from nao_sim_bridge.sim.tasks import Task, TaskIds
 
@@ -58,6 +58,7 @@ class Playing:
         self._next_mark = 0
         self._origin = 0  # the frame at which the sound's first frame is, or would have been
         self._resting: int | None = None  # where in the sound it is paused
+        self._guard = ids.guard
         self.task: Task = ids.make(name, on_kill=lambda _: self._break_off())
         self._begin(max(timeline.now, begin or 0), self._checked(start))
 
@@ -131,7 +132,7 @@ class Playing:
                 return
             if self._next_mark < len(self._marks):
                 self._next_mark += 1
-                self._call(self._marks[self._next_mark - 1][1])
+                self._guard.call(self._marks[self._next_mark - 1][1])
             elif self._track.loop:
                 self._origin += self.sound.frames
                 self._next_mark = 0
@@ -184,9 +185,3 @@ class Playing:
         if self._resting is None:
             self._resting = self._place(self._timeline.now)
         self._track.stop(self._timeline.now)
-
-    def _call(self, callback: Callable[[], None]) -> None:
-        try:
-            callback()
-        except Exception:
-            log.exception("a mark of %s (%d) failed", self.task.name, self.task.task_id)

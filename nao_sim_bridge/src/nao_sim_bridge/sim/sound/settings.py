@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Mapping, Tuple
 
 from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.config import check_keys, read_json
+from nao_sim_bridge.sim.config import check_keys, read_settings
 from nao_sim_bridge.sim.errors import ConfigError
 
 FILE = "sound.json"
@@ -63,21 +63,15 @@ def load_sound_settings() -> SoundSettings:
     Raises:
         ConfigError: The file cannot be read, or a key is unknown or missing, or a number is none that makes sense.
     """
-    content = read_json(config_file(FILE))
-    names = [field.name for field in fields(SoundSettings)]
-    check_keys(content, FILE, names, ["_meta"])
-    values = {name: content[name] for name in names}
-    for name in ("channels", "energies"):
-        check_keys(content[name], f"{FILE}: {name}", CHANNELS)
-    for name in names[:7]:
-        if not isinstance(content[name], (int, float)) or isinstance(content[name], bool):
-            raise ConfigError(f"{FILE}: {name}", f"is {content[name]!r}, not a number")
-        if name in ("speed_of_sound", "near_field_m", "keep_s") and content[name] <= 0.0:
-            raise ConfigError(f"{FILE}: {name}", f"is {content[name]!r}, has to be above 0")
-    known = set(content["channels"].values())
-    for name, pair in content["energies"].items():
+    settings = read_settings(SoundSettings, config_file(FILE))
+    check_keys(settings.channels, f"{FILE}: channels", CHANNELS)
+    check_keys(settings.energies, f"{FILE}: energies", CHANNELS)
+    for name in ("speed_of_sound", "near_field_m", "keep_s"):
+        if getattr(settings, name) <= 0.0:
+            raise ConfigError(f"{FILE}: {name}", f"is {getattr(settings, name)!r}, has to be above 0")
+    known = set(settings.channels.values())
+    for name, pair in settings.energies.items():
         if not pair or not set(pair) <= known:
             raise ConfigError(f"{FILE}: energies: {name}", f"is {pair!r}, not among {sorted(known)}")
-    values["channels"] = MappingProxyType(dict(content["channels"]))
-    values["energies"] = MappingProxyType({name: tuple(pair) for name, pair in content["energies"].items()})
-    return SoundSettings(**values)
+    energies = {name: tuple(pair) for name, pair in settings.energies.items()}
+    return replace(settings, channels=MappingProxyType(settings.channels), energies=MappingProxyType(energies))

@@ -49,7 +49,7 @@ class SoundWorld:
             seed,
             lambda: [voice for voice in air.voices if voice is not self._voice],
         )
-        self.ears = Ears(self.timeline, self.microphones, released)
+        self.ears = Ears(self.timeline, self.microphones, released, air.ids.guard)
         self._poses = self.microphones.poses
         self._voice = RobotVoice(
             model, self.settings, self.timeline, self.loudspeakers, self._poses, air.frames_per_tick

@@ -9,6 +9,7 @@ from typing import Tuple
 import numpy as np
 
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.sound.envelope import Envelope
 from nao_sim_bridge.sim.sound.playing import Playing
 from nao_sim_bridge.sim.sound.samples import RATE, Sound
@@ -185,12 +186,16 @@ class Sources:
         """Let a source sound from now on; when its sound is over it is gone.
 
         Raises:
-            BadValue: Its name is taken, or its place or level is none.
+            BadValue: Its name is taken, its place or level is none, or there is no room for its sound.
         """
         if not source.name or source.name in self.names():
             raise BadValue("name", source.name, f"a name that is not among {', '.join(self.names()) or 'none'}")
         if not -60.0 <= source.level_db <= 140.0:
             raise BadValue("level_db", source.level_db, "-60 to 140 dB SPL at 1 m")
+        kept, largest = sum(playing.sound.samples.nbytes for playing in self._all), load_sizes().world_sounds.bytes
+        if kept + source.sound.samples.nbytes > largest:
+            there = f"{len(self._all)} sources have {kept} already: removeSound makes room"
+            raise BadValue("sound", f"{source.sound.samples.nbytes} bytes", f"{largest} bytes for all sources; {there}")
         playing = SourcePlaying(source, self._settings.peak_of(source.level_db), self._timeline, self._ids)
         self._by_name[source.name] = playing
         self._all = (*self._all, playing)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import logging
 from typing import Callable, Protocol
 
+from nao_sim_bridge.sim.guard import Guard
 from nao_sim_bridge.sim.sound.samples import RATE
-
-log = logging.getLogger("nao_sim.sound")
 
 NEVER = 2**62
 HOUSEKEEPING = RATE
@@ -24,6 +22,24 @@ class Due(Protocol):
         """Do what is due up to `frame`."""
 
 
+class Alarm:
+    """Has something called at a time. Simulation thread."""
+
+    def __init__(self, frame: int, call: Callable[[], None]) -> None:
+        self._frame = frame
+        self._call: Callable[[], None] | None = call
+
+    def next_due(self) -> int | None:
+        """The time, until it has come."""
+        return self._frame if self._call is not None else None
+
+    def work(self, frame: int) -> None:
+        """Call, if it is time."""
+        if self._call is not None and frame >= self._frame:
+            call, self._call = self._call, None
+            call()
+
+
 class Timeline:
     """Simulated time in frames. A tick without work costs one comparison.
 
@@ -33,9 +49,11 @@ class Timeline:
 
     Args:
         keep: How long the past is kept, s.
+        guard: Does what is due.
     """
 
-    def __init__(self, keep: float) -> None:
+    def __init__(self, keep: float, guard: Guard) -> None:
+        self._guard = guard
         self.now = 0
         self.forget: list[Callable[[int], None]] = []
         self._keep = round(keep * RATE)
@@ -62,11 +80,11 @@ class Timeline:
 
     def _work(self, frame: int) -> None:
         for item in list(self._active):
-            item.work(frame)
+            self._guard.call(item.work, frame)
         due = {item: item.next_due() for item in self._active}
         self._active = [item for item, at in due.items() if at is not None]
         if frame >= self._housekeeping:
             self._housekeeping = frame + HOUSEKEEPING
             for forget in self.forget:
-                forget(self.oldest)
+                self._guard.call(forget, self.oldest)
         self._next = min([self._housekeeping, *(at for at in due.values() if at is not None)])

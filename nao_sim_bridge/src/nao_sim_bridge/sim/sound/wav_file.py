@@ -9,6 +9,7 @@ import numpy as np
 import soundfile
 
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.whole_file import FileTrouble, WholeFile
 
 HEADER = struct.Struct("<4sI4s4sIHHIIHH4sI")
 PCM, BITS = 1, 16
@@ -20,7 +21,7 @@ class WavFile:
     """A WAV of 16 bits, its header brought up to date with each block.
 
     Args:
-        path: Where; a file that is there is replaced.
+        path: Where; a file that is there is replaced when this one is closed.
         rate: Samples a second.
         channels: Their number.
     """
@@ -28,26 +29,38 @@ class WavFile:
     def __init__(self, path: Path, rate: int, channels: int) -> None:
         self._rate, self._channels = rate, channels
         self._bytes = 0
-        self._file = path.open("wb", buffering=0)
+        self._file = WholeFile(path)
         self._file.write(self._header())
+        self._file.flush()
 
-    def write(self, samples: np.ndarray) -> None:
-        """Append (frames, channels) int16.
+    def write(self, samples: np.ndarray, silence: int = 0) -> None:
+        """Append (frames, channels) int16, behind some frames of silence.
 
         Raises:
             BadValue: The file has no room for them.
+            FileTrouble: They cannot be written; after `recover`, others may.
         """
         block = np.ascontiguousarray(samples, dtype="<i2").tobytes()
-        if self._bytes + len(block) > LARGEST:
+        before, begin = self._bytes, self._bytes + silence * self._channels * BITS // 8
+        if begin + len(block) > LARGEST:
             raise BadValue("length of the recording", "more", "4 GiB, all that a WAV can hold")
-        self._file.seek(0, 2)
+        self._file.seek(HEADER.size + begin)
         self._file.write(block)
-        self._bytes += len(block)
+        self._bytes = begin + len(block)
         self._file.seek(0)
         self._file.write(self._header())
+        try:
+            self._file.flush()
+        except FileTrouble:
+            self._bytes = before
+            raise
+
+    def recover(self) -> None:
+        """Go on after a FileTrouble."""
+        self._file.recover()
 
     def close(self) -> None:
-        """End the file."""
+        """End the file; see `WholeFile.close`."""
         self._file.close()
 
     def _header(self) -> bytes:
@@ -73,18 +86,25 @@ class OggFile:
     """An Ogg Vorbis file.
 
     Args:
-        path: Where; a file that is there is replaced.
+        path: Where; a file that is there is replaced when this one is closed.
         rate: Samples a second.
         channels: Their number.
     """
 
     def __init__(self, path: Path, rate: int, channels: int) -> None:
-        self._file = soundfile.SoundFile(str(path), "w", rate, channels, format="OGG", subtype="VORBIS")
+        self._target = WholeFile(path)
+        self._file = soundfile.SoundFile(self._target, "w", rate, channels, format="OGG", subtype="VORBIS")
 
     def write(self, samples: np.ndarray) -> None:
-        """Append (frames, channels) int16."""
+        """Append (frames, channels) int16.
+
+        Raises:
+            FileTrouble: They cannot be written.
+        """
         self._file.write(samples)
+        self._target.flush()
 
     def close(self) -> None:
-        """End the file."""
+        """End the file; see `WholeFile.close`."""
         self._file.close()
+        self._target.close()

@@ -22,6 +22,8 @@ from nao_sim_bridge.sim.speech.voices import Voice
 CACHE_SECONDS = 300.0
 # Of the engine's pause before speech, which would be a late answer, and at joints this much is left, s.
 JOINT = 0.03
+# What is louder is no pause: share of the loudest, and of full scale.
+SOUND, LEAST_SOUND = 0.02, 1e-4
 # Shortest sound of a sentence: marks need a moment to stand at, s.
 SHORTEST = 0.01
 
@@ -74,6 +76,12 @@ class Clip:
     text: str
     sound: Sound
     marks: Tuple[Tuple[float, Mark], ...]
+
+    def span(self) -> Tuple[float, float] | None:
+        """Where its first and last sound are, s from its beginning: pauses around it are left out. None: silence."""
+        samples = np.abs(self.sound.samples).max(axis=1)
+        loud = np.flatnonzero(samples > max(SOUND * samples.max(initial=0.0), LEAST_SOUND))
+        return (float(loud[0]) / RATE, float(loud[-1] + 1) / RATE) if len(loud) else None
 
 
 class ClipMaker:

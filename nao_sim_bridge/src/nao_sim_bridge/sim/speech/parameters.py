@@ -80,7 +80,7 @@ def known(name: str) -> str:
         BadValue: There is not.
     """
     if name not in RANGES:
-        raise BadValue("parameter", name, f"one of {', '.join(RANGES)}")
+        raise BadValue("parameter", name, f"one of {', '.join(RANGES)}", RANGES)
     return name
 
 

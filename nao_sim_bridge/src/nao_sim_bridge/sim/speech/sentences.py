@@ -11,7 +11,8 @@ from nao_sim_bridge.sim.speech.tags import BREAK, NO_BREAK, Bookmark, Cue, Gate,
 # A longer one is cut at a comma or a blank, so that no sentence keeps everybody waiting.
 LONGEST = 300
 # The end of a sentence: signs, perhaps a quotation mark, then a blank; scripts without blanks need none. A line's end.
-END = re.compile(rf"[.!?…]+[\"'»”’)\]]*(?=\s|$)|[。！？]+[」』”]?|\n+|{BREAK}")
+# It begins with the first of its signs: a row of them is looked at once, and not again from each.
+END = re.compile(rf"(?<![.!?…])[.!?…]+[\"'»”’)\]]*(?=\s|$)|[。！？]+[」』”]?|\n+|{BREAK}")
 # Behind these, and behind single capitals, a full stop ends nothing.
 ABBREVIATIONS = frozenset(
     "dr mr mrs ms prof st vs etc e.g i.e approx no vol fig bzw z.b usw ca nr hr fr m mme mlle sr sra ing".split()
@@ -73,7 +74,8 @@ def _has_marks(parts: Iterable[Piece]) -> bool:
 
 def _cut(text: str) -> Iterator[tuple[str, bool]]:
     """The text in portions, each with whether a sentence ends there."""
-    text = re.sub(rf"[.!?…]*\s*{NO_BREAK}", ", ", text)
+    *ended, last = text.split(NO_BREAK)
+    text = ", ".join([*(part.rstrip().rstrip(".!?…") for part in ended), last])
     begin = 0
     for end in END.finditer(text):
         if end.group() == "." and _abbreviates(text[begin : end.start()]):
@@ -86,7 +88,7 @@ def _cut(text: str) -> Iterator[tuple[str, bool]]:
 
 def _abbreviates(before: str) -> bool:
     """Whether a full stop after this text belongs to its last word."""
-    words = before.split()
+    words = before.rsplit(None, 1)
     last = words[-1].lstrip("(\"'«“") if words else ""
     return last.lower() in ABBREVIATIONS or (len(last) == 1 and last.isupper() and last != "I")
 

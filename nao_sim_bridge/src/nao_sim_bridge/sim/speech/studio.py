@@ -9,13 +9,14 @@ from typing import Any, Callable, Iterable
 
 import numpy as np
 
-from nao_sim_bridge.sim.errors import SimulationError
+from nao_sim_bridge.sim.errors import BadValue, SimulationError
+from nao_sim_bridge.sim.sizes import load_sizes
 from nao_sim_bridge.sim.sound.samples import RATE, Sound
 from nao_sim_bridge.sim.speech.clips import Clip, ClipMaker, Style
 from nao_sim_bridge.sim.speech.engines import Engines
 from nao_sim_bridge.sim.speech.sentences import Item, Sentence, sentences
 from nao_sim_bridge.sim.speech.speech import SpeechError, silence
-from nao_sim_bridge.sim.speech.tags import TagReader
+from nao_sim_bridge.sim.speech.tags import Pause, Piece, TagReader
 from nao_sim_bridge.sim.tasks import Task
 
 log = logging.getLogger("nao_sim.speech")
@@ -64,8 +65,35 @@ class Studio:
         self.in_background(self.engines.warm_up, "warm up")
 
     def read(self, text: str, style: Style) -> list[Item]:
-        """The sentences of a text with tags."""
-        return sentences(self.tags.read(text, style.prosody))
+        """The sentences of a text with tags.
+
+        Raises:
+            BadValue: It is too long, or its pauses are together.
+        """
+        self.check_length(text)
+        return self.sentences_of(text, self.tags.read(text, style.prosody))
+
+    def check_length(self, text: str) -> None:
+        """Before a text is read.
+
+        Raises:
+            BadValue: It is too long.
+        """
+        longest = load_sizes().speech.text_characters
+        if len(text) > longest:
+            raise BadValue("text", f"{text[:40]}... of {len(text)} characters", f"{longest} characters at most")
+
+    def sentences_of(self, text: str, pieces: list[Piece]) -> list[Item]:
+        """The sentences of what has been read of a text.
+
+        Raises:
+            BadValue: Its pauses are too long together.
+        """
+        longest = load_sizes().speech.pauses_s
+        pauses = sum(piece.seconds for piece in pieces if isinstance(piece, Pause))
+        if pauses > longest:
+            raise BadValue("text", f"{text[:40]}... with {pauses:.0f} s of pauses", f"{longest:g} s at most")
+        return sentences(pieces)
 
     def order(self, sentence: Sentence, style: Style) -> Pending:
         """Have a sentence made; at once back."""
@@ -86,8 +114,16 @@ class Studio:
         return self._joined(self.read(text, style), style)
 
     def _joined(self, items: Iterable[Item], style: Style) -> Sound:
-        clips = [self._maker.make(item, style) for item in items if isinstance(item, Sentence)]
-        samples = [clip.sound.samples[:, 0] for clip in clips] or [silence(0.0, RATE)]
+        longest, seconds = load_sizes().speech.file_s, 0.0
+        samples = []
+        for item in items:
+            if isinstance(item, Sentence):
+                sound = self._maker.make(item, style).sound
+                seconds += sound.duration
+                if seconds > longest:
+                    raise SpeechError(f"the text takes more than {longest:g} s to say, which are allowed at once")
+                samples.append(sound.samples[:, 0])
+        samples = samples or [silence(0.0, RATE)]
         return Sound(np.clip(np.concatenate(samples)[:, None] * np.float32(style.volume), -1.0, 1.0), RATE)
 
     def in_background(self, work: Callable[[], Any], name: str) -> Task:

@@ -16,9 +16,10 @@ from nao_sim_bridge.sim.tasks import Task
 
 log = logging.getLogger("nao_sim.speech")
 
-# A tag is closed by a backslash; one with a value whose closing is forgotten ends with the value.
+# A tag is closed by a backslash; one with a value whose closing is forgotten ends with the value. Of blanks
+# there are few: a search through many would take the square of their number.
 TAG = re.compile(
-    r"""\\(?P<name>[A-Za-z]+)(?:=\s*(?P<value>"[^"\\]*"|[^\\\s]*)(?:\s+(?!\\[A-Za-z]+[=\\]))?)?\\"""
+    r"""\\(?P<name>[A-Za-z]+)(?:=\s{0,20}(?P<value>"[^"\\]*"|[^\\\s]*)(?:\s{1,20}(?!\\[A-Za-z]+[=\\]))?)?\\"""
     r"""|\\(?P<open>[A-Za-z]+)=(?P<rest>[^\\\s]+)(?=\s|$)"""
 )
 PLAIN = Prosody()

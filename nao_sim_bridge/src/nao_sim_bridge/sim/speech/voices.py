@@ -71,7 +71,7 @@ class Voices:
             SpeechError: Its engine is missing.
         """
         if name not in self.voices:
-            raise BadValue("voice", name, f"one of {listed(self.available_voices(engine))}")
+            raise BadValue("voice", name, f"one of {listed(self.available_voices(engine))}", self.voices)
         voice = self.voices[name]
         problem = engine.missing(voice.engine, voice.engine_voice)
         if problem is not None:
@@ -86,7 +86,7 @@ class Voices:
             SpeechError: The engines of all its voices are missing.
         """
         if name not in self.languages:
-            raise BadValue("language", name, f"one of {listed(self.available_languages(engine))}")
+            raise BadValue("language", name, f"one of {listed(self.available_languages(engine))}", self.languages)
         language = self.languages[name]
         problems = [self._problem(voice, engine) for voice in language.voices]
         if all(problems):

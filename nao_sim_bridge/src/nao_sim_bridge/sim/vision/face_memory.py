@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import io
-import os
 from pathlib import Path
 from typing import Sequence
 
 import numpy as np
 
+from nao_sim_bridge.sim.archives import Archive
 from nao_sim_bridge.sim.errors import SimulationError
 from nao_sim_bridge.sim.vision.faces_descriptor import likeness
+from nao_sim_bridge.sim.whole_file import write_whole
 
 MOST_PICTURES = 10
 """Pictures of one person at most."""
@@ -21,7 +22,7 @@ POLICIES = ("overwrite", "merge", "keep")
 
 
 class FaceFileError(SimulationError):
-    """A file of known faces that cannot be read or written."""
+    """A file of known faces that cannot be read."""
 
 
 class FaceMemory:
@@ -88,18 +89,12 @@ class FaceMemory:
         """Write all to a file, as a whole or not at all.
 
         Raises:
-            FaceFileError: It cannot be written; what was there before still is.
+            FileTrouble: It cannot be written; what was there before still is.
         """
         content = io.BytesIO()
         arrays = {KEY.format(number): pictures for number, pictures in enumerate(self._pictures.values())}
         np.savez(content, names=np.array(self.names, dtype=np.str_), **arrays)
-        part = path.with_name(path.name + ".part")
-        try:
-            part.write_bytes(content.getvalue())
-            os.replace(part, path)
-        except OSError as error:
-            part.unlink(missing_ok=True)
-            raise FaceFileError(f"faces cannot be written to {str(path)!r}: {error.strerror or error}") from error
+        write_whole(path, content.getvalue())
 
     @classmethod
     def load(cls, path: Path) -> FaceMemory:
@@ -110,18 +105,31 @@ class FaceMemory:
         """
         memory = cls()
         try:
-            with np.load(path, allow_pickle=False) as content:
-                names = [str(name) for name in content["names"]]
-                memory._pictures = dict(zip(names, _checked([content[KEY.format(i)] for i in range(len(names))])))
-        except (OSError, ValueError, KeyError, EOFError) as error:
+            with Archive(path) as content:
+                names = [str(name) for name in _array(content.read("names.npy"))]
+                arrays = [_array(content.read(f"{KEY.format(i)}.npy")) for i in range(len(names))]
+            memory._pictures = dict(zip(names, _checked(arrays)))
+        except (OSError, ValueError) as error:
             raise FaceFileError(f"{str(path)!r} is no file of known faces: {error}") from error
-        except Exception as error:  # a broken archive raises zipfile's and zlib's own
-            raise FaceFileError(f"{str(path)!r} is broken: {error}") from error
         return memory
 
 
 def _score(likeness_: float) -> float:
     return float(min(1.0, max(0.0, (likeness_ - STRANGERS) / (SAME - STRANGERS))))
+
+
+def _array(content: bytes) -> np.ndarray:
+    """The array of a .npy file; its header may not claim more than there is."""
+    file = io.BytesIO(content)
+    try:
+        if np.lib.format.read_magic(file) != (1, 0):
+            raise ValueError("its version is not 1.0")
+        shape, columns_first, kind = np.lib.format.read_array_header_1_0(file)
+    except (EOFError, SyntaxError, TypeError, RecursionError, MemoryError) as error:
+        raise ValueError(f"its header is broken: {error}") from error
+    if kind.hasobject or columns_first or kind.itemsize == 0:
+        raise ValueError(f"{kind} in this order is not read")
+    return np.frombuffer(content, kind, offset=file.tell()).reshape(shape)
 
 
 def _checked(arrays: Sequence[np.ndarray]) -> list[np.ndarray]:

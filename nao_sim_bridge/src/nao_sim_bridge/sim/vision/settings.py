@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Mapping, Tuple
+from typing import Tuple
 
 from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.config import check_keys, read_json, section
+from nao_sim_bridge.sim.config import read_settings
 
 FILE = "vision.json"
 
@@ -52,9 +52,6 @@ class VisionSettings:
     landmarks: LandmarkSettings
 
 
-SECTIONS = {"ball": BallSettings, "landmarks": LandmarkSettings}
-
-
 @lru_cache(maxsize=None)
 def load_vision() -> VisionSettings:
     """The settings of the package.
@@ -62,12 +59,4 @@ def load_vision() -> VisionSettings:
     Raises:
         ConfigError: The file does not hold what it should.
     """
-    return parse_vision(read_json(config_file(FILE)))
-
-
-def parse_vision(content: Mapping[str, Any]) -> VisionSettings:
-    """Settings from the content of the file; see `load_vision`."""
-    check_keys(content, FILE, list(SECTIONS), ["_note"])
-    return VisionSettings(
-        **{name: section(kind, content[name], f"{FILE} {name}", ["_note"]) for name, kind in SECTIONS.items()}
-    )
+    return read_settings(VisionSettings, config_file(FILE), ["_note", "_note"])

@@ -251,9 +251,15 @@ class Locomotion:
 
     def tick(self, dt: float) -> None:
         """Advance the walk, if any, before the joints get their commands."""
-        walker, now = self._walker, self._snapshot()
-        if walker is None or now is None:
+        walker, now, job = self._walker, self._snapshot(), self._job
+        if walker is None or now is None or job is None:
             return
+        try:
+            self._advance(walker, now, dt)
+        except Exception as error:
+            self._motion.fail(job, error)
+
+    def _advance(self, walker: Walker, now: Snapshot, dt: float) -> None:
         cause = self._guard.danger(now, dt)
         if cause:
             self._fail(cause, started=True)
@@ -371,10 +377,11 @@ class Locomotion:
     def _ended(self, job: Task) -> None:
         if job.killed and self._stability.falls.falling:
             self._fail("the robot falls", started=True)
-        reached = not job.killed and self._course is not None and self._course.reached
+        by_itself = not job.killed and job.error is None
+        reached = by_itself and self._course is not None and self._course.reached
         self._job = self._walker = self._course = None
         self._stability.walk = None
-        self._waits.end_all(reached)
+        self._waits.end_all(reached, job.error)
 
     def _look_ahead(self, now: Snapshot) -> None:
         """End a walk that leads into an obstacle which the sonars see."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Mapping, NamedTuple, Sequence
 
+from nao_sim_bridge.sim.sizes import require_few
 from nao_sim_bridge.sim.walk.clipping import clip_step, step_limits
 from nao_sim_bridge.sim.walk.courses import STANDSTILL, Course, Rate, Step
 from nao_sim_bridge.sim.walk.footsteps import FootPose, middle, side_by_side
@@ -36,7 +37,7 @@ class StepsCourse(Course):
 
     def __init__(self, settings: WalkSettings, gait: FeetGait, placements: Sequence[Placement]) -> None:
         self._gait = gait
-        self._queue = list(placements)
+        self._queue = list(placements)  # steps that are not begun; states count from its begin
         self._robot: FootPose | None = None
         super().__init__(settings)
 
@@ -47,12 +48,17 @@ class StepsCourse(Course):
     @property
     def left(self) -> Sequence[Placement]:
         """Steps that are not begun."""
-        return tuple(self._queue[self._state :])
+        return tuple(self._queue)
 
     def add(self, placements: Sequence[Placement], clear: bool) -> None:
-        """More steps, after those that are not begun or instead of them."""
-        del self._queue[self._state if clear else len(self._queue) :]
-        self._queue.extend(placements)
+        """More steps, after those that are not begun or instead of them.
+
+        Raises:
+            BadValue: Together they are too many.
+        """
+        kept = [] if clear else self._queue
+        require_few("footSteps", len(kept) + len(placements), "steps")
+        self._queue = [*kept, *placements]
 
     def first_side(self, feet: Mapping[int, FootPose]) -> int:
         """The foot of the first step; the other one before it, if that stands in no way from which steps count."""
@@ -65,7 +71,9 @@ class StepsCourse(Course):
     def take(self, support: FootPose, side: int) -> None:  # noqa: D102
         super().take(support, side)
         self._robot = None
-        self.reached = self._state >= len(self._queue)
+        del self._queue[: self._state]
+        self._state = 0
+        self.reached = not self._queue
 
     def _first_state(self, rate: Rate) -> int:
         return 0

@@ -28,11 +28,11 @@ class WalkWaits:
         """A task that can become the goal of a walk; cancelled as the goal, it is told."""
         return self._ids.make(name, on_kill=self._drop)
 
-    def end_goal(self, reached: bool) -> None:
+    def end_goal(self, reached: bool, error: Exception | None = None) -> None:
         """Tell who waits for the goal, if there is one, whether it is reached; there is none any more."""
         goal, self.goal = self.goal, None
         if goal is not None:
-            goal.finish(reached)
+            goal.finish(reached, error)
 
     def for_the_end(self, name: str, walks: bool) -> Task:
         """A task that ends with the walk, or at once when none goes on."""
@@ -43,9 +43,9 @@ class WalkWaits:
             task.finish()
         return task
 
-    def end_all(self, reached: bool) -> None:
-        """The walk has ended: tell everybody who waits, and whether the goal is reached."""
-        self.end_goal(reached)
+    def end_all(self, reached: bool, error: Exception | None = None) -> None:
+        """The walk has ended, maybe by an error: tell everybody who waits, and whether the goal is reached."""
+        self.end_goal(reached, error)
         ended, self._for_the_end = self._for_the_end, []
         for task in ended:
             task.finish()
