@@ -57,3 +57,28 @@ take_lock() {
         flock 9
     }
 }
+
+# other_workspaces LIST: the catkin workspaces in a list like CMAKE_PREFIX_PATH that are not this one, a line each.
+other_workspaces() {
+    local place
+    while IFS= read -r -d: place; do
+        case "$place" in "" | /usr | /opt/ros/* | "$ws"/devel | "$ws"/devel/*) continue ;; esac
+        [ ! -e "$place/.catkin" ] || printf '%s\n' "$place"
+    done <<<"$1:"
+}
+
+# append VARIABLE PLACE: at the end of a list with colons between, unless it is there already.
+append() {
+    case ":${!1:-}:" in
+        *":$2:"*) ;;
+        *) export "$1=${!1:+${!1}:}$2" ;;
+    esac
+}
+
+# append_python WORKSPACE: its Python packages, messages among them, at the end of PYTHONPATH.
+append_python() {
+    local python
+    for python in "$1"/lib/python3*/dist-packages; do
+        [ ! -d "$python" ] || append PYTHONPATH "$python"
+    done
+}

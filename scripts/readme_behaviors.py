@@ -11,8 +11,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from nao_library_modules.contact_sheet import contact_sheet, save_small
-from nao_library_modules.demo_behaviors import FILM, BehaviorShow
+from nao_library_modules.pictures.contact_sheet import contact_sheet, save_small
+from nao_library_modules.pictures.demo_behaviors import FILM, BehaviorShow
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
 NAME = "behaviors.png"

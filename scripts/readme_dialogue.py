@@ -12,7 +12,7 @@ from typing import Any, Callable
 
 import qi
 
-from nao_library_modules.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, Turn
+from nao_library_modules.pictures.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, Turn
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene
 

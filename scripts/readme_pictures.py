@@ -18,7 +18,7 @@ import qi
 from readme_dialogue import Dialogue
 from readme_sight import draw_sight
 
-from nao_library_modules import dialogue_record
+from nao_library_modules.pictures import dialogue_record
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene
 
@@ -98,7 +98,7 @@ def draw_walk(folder: Path) -> None:
     server = SimulatorServer(ServerOptions(Scene(), port=0, speed=1.0))
     server.start()
     try:
-        command = [sys.executable, str(PLOT_WALK), "--port", str(server.broker.port)]
+        command = [sys.executable, str(PLOT_WALK), "--overwrite", "--port", str(server.broker.port)]
         subprocess.run([*command, "--output", str(folder / "walk.png")], check=True, timeout=LIMIT)
     finally:
         server.stop()
@@ -111,7 +111,7 @@ def draw_dialogue(folder: Path) -> None:
         dialogue = Dialogue(Path(kept))
         dialogue.record(sound.name)
         dialogue_record.save(dialogue.turns, words)
-        command = [sys.executable, str(PLOT_SOUND), str(sound), "--words", str(words)]
+        command = [sys.executable, str(PLOT_SOUND), "--overwrite", str(sound), "--words", str(words)]
         subprocess.run([*command, "--output", str(folder / "dialogue.png")], check=True, timeout=LIMIT)
 
 

@@ -21,19 +21,32 @@ from typing import Any
 
 import yaml
 
-from nao_library_modules.describe import Description
-from nao_library_modules.describe_offline import offline_servers
-from nao_library_modules.memory_functions import MemoryFunctions
+from nao_library_modules.base.limits import table as limits_of_modules
+from nao_library_modules.functions.chain import CHECK_ATTRIBUTE, CONTEXT
+from nao_library_modules.functions.describe import Description
+from nao_library_modules.functions.describe_fields import read_fields
+from nao_library_modules.functions.describe_offline import offline_servers
+from nao_library_modules.functions.memory_functions import MemoryFunctions
+from nao_library_modules.vision.capture.pictures import size_rows as sizes_of_pictures
 from nao_sim_bridge.cli import parser as simulator_parser
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.services.binding import offered
 from nao_sim_bridge.services.nao_simulation import NaoSimulation
+from nao_sim_bridge.sim.sizes import size_rows as sizes_of_simulator
+
+try:
+    from nao_sim_bridge.services.limits import table as limits_of_simulator
+except ImportError:
+    limits_of_simulator = list
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
 CLIENT = ROOT / "nao_library_modules" / "examples" / "green_eyes.py"
 NAOQI = ROOT / "nao_sim_bridge" / "config" / "naoqi_api.json"
 NOT_WRAPPED = ROOT / "scripts" / "not_wrapped.yaml"
+OUR_MESSAGES = "nao_library_msgs"
+NO_FIELDS = ("self", "_self", CONTEXT)
+"""Parameters of checks that are no fields of a message."""
 LAUNCH_FILES = ROOT / "launch" / "launch"
 MARKED = re.compile(r"<!-- begin: (?P<name>[^>]+) -->\n(?P<body>.*?)<!-- end: (?P<end>[^>]+) -->", re.DOTALL)
 
@@ -52,6 +65,7 @@ class Server:
         message: Type of the function messages, without its package.
         module: Class behind it.
         functions: Name -> callable, without the functions that all servers share.
+        answers: `result` and `feedback` -> the message of each.
     """
 
     name: str
@@ -59,6 +73,7 @@ class Server:
     message: str
     module: type
     functions: Mapping[str, Callable[..., Any]]
+    answers: Mapping[str, type]
 
 
 # Text
@@ -148,7 +163,9 @@ def find_servers() -> list[Server]:
         shared = MemoryFunctions.memory_functions(found.module)
         functions = {name: f for name, f in found.module.function_table.items() if name not in shared}
         message = Description(found.module, found.action).message.rpartition("/")[2]
-        servers.append(Server(found.name, found.action.__name__, message, type(found.module), functions))
+        action = found.action()
+        answers = {"result": type(action.action_result.result), "feedback": type(action.action_feedback.feedback)}
+        servers.append(Server(found.name, found.action.__name__, message, type(found.module), functions, answers))
     return servers
 
 
@@ -163,9 +180,28 @@ def functions_table(functions: Mapping[str, Callable[..., Any]]) -> str:
     """Functions of a server, the fields that each takes from its message, and what it does."""
     rows = []
     for name, function in functions.items():
-        fields = inspect.signature(function).parameters
+        check = getattr(function, CHECK_ATTRIBUTE, None)
+        checked = [name for name in inspect.signature(check).parameters if name not in NO_FIELDS] if check else ()
+        fields = dict.fromkeys((*inspect.signature(function).parameters, *checked))
         rows.append((code(name), ", ".join(map(code, fields)) or code(""), first_line(function)))
     return table(("function", "fields", "what it does"), rows)
+
+
+def answers_table(answers: Mapping[str, Any]) -> str:
+    """Fields of a server's result and feedback, as the comments in the action's definition tell of them."""
+    rows = [
+        (where, code(field.name), field_type(field.type), field.text)
+        for where, message in answers.items()
+        for field in read_fields(message._full_text).values()
+    ]
+    return table(("in the", "field", "type", "meaning"), rows)
+
+
+def field_type(kind: str) -> str:
+    """A type of a message's field; one of our own leads to its definition."""
+    package, _, name = kind.rpartition("/")
+    text = code(name if package == OUR_MESSAGES else kind)
+    return f"[{text}](../{package}/msg/{name.partition('[')[0]}.msg)" if package == OUR_MESSAGES else text
 
 
 def memory_functions() -> Mapping[str, Callable[..., Any]]:
@@ -250,6 +286,34 @@ def naoqi_methods() -> str:
     return table(("module", "methods answered", "methods of the robot"), rows)
 
 
+def limits() -> str:
+    """Bounds of the numbers that come in from outside, by kind."""
+    sides = (("servers, driver, behaviours", limits_of_modules()), ("simulator", limits_of_simulator()))
+    rows = [
+        (side, row.kind, bound(row.lowest), bound(row.highest), row.unit, places(row.where))
+        for side, declared in sides
+        for row in declared
+    ]
+    return table(("of", "kind", "lowest", "highest", "unit", "where"), rows)
+
+
+def sizes() -> str:
+    """How large what comes in from outside may be, and how much of it waits."""
+    sides = (("servers", sizes_of_pictures()), ("simulator", sizes_of_simulator()))
+    rows = [(side, what, bound(most), unit, where) for side, declared in sides for what, most, unit, where in declared]
+    return table(("of", "what", "bound", "unit", "where"), rows)
+
+
+def bound(number: float | None) -> str:
+    """A bound as people read it; a dash for none."""
+    return "–" if number is None or abs(number) == float("inf") else f"{number:.10g}"
+
+
+def places(where: str | Sequence[str]) -> str:
+    """Where a bound holds: words, or names of parameters."""
+    return where if isinstance(where, str) else ", ".join(map(code, where)) or "all others"
+
+
 def all_tables() -> dict[str, str]:
     """Every table by the name in its marks."""
     servers = find_servers()
@@ -259,8 +323,11 @@ def all_tables() -> dict[str, str]:
         "launch nao": launch_arguments(LAUNCH_FILES / "nao.launch"),
         "servers": servers_table(servers),
         **{f"functions {server.name}": functions_table(server.functions) for server in servers},
+        **{f"answers {server.name}": answers_table(server.answers) for server in servers},
         "memory functions": functions_table(memory_functions()),
         "wrapped": wrapped(servers),
+        "limits": limits(),
+        "sizes": sizes(),
         "simulator options": simulator_options(),
         "simulator only": simulator_only(),
         "naoqi": naoqi_methods(),

@@ -32,10 +32,16 @@ def main() -> int:
     parser.add_argument("y", type=float, nargs="?", default=3.0, help="m to the left that the head looks at (3)")
     parser.add_argument("--trace", default="", help="file for the trace of the plan, as JSON")
     parser.add_argument("--picture", default="", help="file for its picture, as PNG")
+    parser.add_argument("--overwrite", action="store_true", help="replace files of these names")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("abstract_plan", anonymous=True)
     wake_up()
-    return run_and_tell(do(abstract_plan, options.x, options.y), trace=options.trace, picture=options.picture)
+    return run_and_tell(
+        do(abstract_plan, options.x, options.y),
+        trace=options.trace,
+        picture=options.picture,
+        overwrite=options.overwrite,
+    )
 
 
 if __name__ == "__main__":

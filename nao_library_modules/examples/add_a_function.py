@@ -13,14 +13,14 @@ from typing import Any
 
 from nao_library_modules.errors import BadGoal
 from nao_library_modules.function_chain import checked_by
+from nao_library_modules.light_checks import check_lights
 from nao_library_modules.lights import NaoLights
 from nao_library_modules.node import run_module
 
 
-def check_blink(_self: BlinkingLights, lights: Sequence[str], times: Sequence[float]) -> None:
+def check_blink(self: BlinkingLights, lights: Sequence[str], times: Sequence[float], context: dict[str, Any]) -> None:
     """Looks at the fields before anything of the chain runs; it takes those that it needs, by name."""
-    if not lights:
-        raise BadGoal("lights", lights, "at least one light or group", problem="it is empty")
+    check_lights(self, lights, context)
     if not times or min(times) <= 0.0:
         raise BadGoal("times", list(times), "lengths of the flashes in s, above 0")
 

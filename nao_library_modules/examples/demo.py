@@ -4,7 +4,7 @@
 Starts simulator and action servers on a ROS master of its own, wakes the robot up, sends the lights through their paces
 as goals, has it find a ball, walk to a table meanwhile, greet and hear itself. Then a second robot, on a stack of its
 own, plays the ten behaviours that come with the library. Leaves pictures, sound, a film, a table and the logs of the
-stacks in the output folder.
+stacks in the output folder, which has to be empty unless --overwrite says that all this may be replaced.
 The exit status tells whether all of it went as asked.
 """
 
@@ -18,9 +18,9 @@ import threading
 from pathlib import Path
 from typing import Mapping
 
-from nao_library_modules.demo_behaviors import FILM, SHEET, BehaviorShow
-from nao_library_modules.demo_lights import Step, steps
-from nao_library_modules.demo_support import (
+from nao_library_modules.pictures.demo_behaviors import FILM, SHEET, BehaviorShow
+from nao_library_modules.pictures.demo_lights import Step, steps
+from nao_library_modules.pictures.demo_support import (
     SOUND,
     Stack,
     count_green_pixels,
@@ -28,6 +28,7 @@ from nao_library_modules.demo_support import (
     wait_until,
     write_table,
 )
+from nao_library_modules.whole_file import write_whole
 
 DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
 START_LIMIT = 60.0
@@ -61,9 +62,9 @@ class Demonstration:
 
     def __init__(self, stack: Stack, output: Path) -> None:
         import rospy
+        from actionlib import SimpleActionClient
 
         from nao_library_actions.msg import NaoLedAction, NaoMotionAction
-        from nao_library_modules.simple_action_client import SimpleActionClient
         from nao_library_msgs.srv import TakePicture
         from naoqi import ALProxy
 
@@ -92,9 +93,9 @@ class Demonstration:
     def greet(self) -> None:
         """Say something, and hear it with its own microphones; what was said is in a file."""
         import rospy
+        from actionlib import SimpleActionClient
 
         import nao_library_actions.msg as actions
-        from nao_library_modules.simple_action_client import SimpleActionClient
         from nao_library_msgs.msg import AudioInFunction, AudioOutFunction
 
         speaker = SimpleActionClient("nao_audio_out", actions.NaoAudioOutAction)
@@ -106,9 +107,10 @@ class Demonstration:
         listens = threading.Event()
         listener.send_goal(actions.NaoAudioInGoal([hear]), feedback_cb=lambda told: told.status and listens.set())
         listens.wait(STEP_LIMIT)
-        speaker.send_goal_and_wait(
-            actions.NaoAudioOutGoal([AudioOutFunction(function="say", str_param=GREETING)]), rospy.Duration(STEP_LIMIT)
-        )
+        speaker.send_goal(actions.NaoAudioOutGoal([AudioOutFunction(function="say", str_param=GREETING)]))
+        if not speaker.wait_for_result(rospy.Duration(STEP_LIMIT)):
+            self._report("greet, and hear itself", f"no result of nao_audio_out within {STEP_LIMIT:g} s", False)
+            return
         listener.wait_for_result(rospy.Duration(STEP_LIMIT))
         result = listener.get_result()
         words = [word.strip("<.> ") for word in result.words] if result else []
@@ -119,9 +121,9 @@ class Demonstration:
     def find_ball(self) -> None:
         """Look for the ball that lies in the room, and take a picture with its own eyes when it sees it."""
         import rospy
+        from actionlib import SimpleActionClient
 
         import nao_library_actions.msg as actions
-        from nao_library_modules.simple_action_client import SimpleActionClient
         from nao_library_msgs.msg import VisionFunction
 
         client = SimpleActionClient("NaoVision", actions.NaoVisionAction)
@@ -129,7 +131,10 @@ class Demonstration:
             raise RuntimeError("the server NaoVision did not come up")
         look = VisionFunction(function="lookFor", str_param="ball", size=BALL_RADIUS, timeout=STEP_LIMIT)
         photo = VisionFunction(function="takePicture", str_param=EYES_PICTURE, overwrite=True)
-        client.send_goal_and_wait(actions.NaoVisionGoal([look, photo]), rospy.Duration(2 * STEP_LIMIT))
+        client.send_goal(actions.NaoVisionGoal([look, photo]))
+        if not client.wait_for_result(rospy.Duration(2 * STEP_LIMIT)):
+            self._report("look for the ball", f"no result within {2 * STEP_LIMIT:g} s", False)
+            return
         self._motion.angleInterpolation("Head", [0.0, 0.0], 0.8, True)
         result = client.get_result()
         if result is None or not result.objects or not (self._output / EYES_PICTURE).exists():
@@ -244,14 +249,14 @@ def play_behaviors(output: Path) -> int:
             show.play(report)
     except Exception as error:
         report("the ten behaviours", str(error), False)
-    (output / BEHAVIOR_ROWS).write_text(json.dumps(rows), encoding="utf-8")
+    write_whole(output / BEHAVIOR_ROWS, json.dumps(rows))
     return 0 if all(good for _, _, good in rows) else 1
 
 
 def behavior_rows(output: Path) -> list[tuple[str, str, bool]]:
     """Rows of the table about the ten behaviours, played by a process of its own."""
     (output / BEHAVIOR_ROWS).unlink(missing_ok=True)
-    subprocess.run([sys.executable, __file__, "--output", str(output), "--behaviors"], check=False)
+    subprocess.run([sys.executable, __file__, "--output", str(output), "--overwrite", "--behaviors"], check=False)
     try:
         return [tuple(row) for row in json.loads((output / BEHAVIOR_ROWS).read_text(encoding="utf-8"))]
     except (OSError, ValueError) as error:
@@ -286,9 +291,13 @@ def main() -> int:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--output", type=Path, default=Path("demo_output"), help="folder for pictures and the table")
     options.add_argument("--behaviors", action="store_true", help="only the ten behaviours")
+    options.add_argument("--overwrite", action="store_true", help="replace what an earlier demonstration left there")
     chosen = options.parse_args()
     output = chosen.output.resolve()
     output.mkdir(parents=True, exist_ok=True)
+    if any(output.iterdir()) and not chosen.overwrite:
+        print(f"{output} is not empty: another folder, or --overwrite")
+        return 1
     if chosen.behaviors:
         return play_behaviors(output)
     print(f"starting the simulated NAO and its action servers (log: {output / 'stack.log'})", flush=True)

@@ -82,11 +82,12 @@ def main() -> int:
     parser.add_argument("y", type=float, nargs="?", default=-0.1, help="m to the left (-0.1)")
     parser.add_argument("--trace", default="", help="file for the trace of the plan, as JSON")
     parser.add_argument("--picture", default="", help="file for its picture, as PNG")
+    parser.add_argument("--overwrite", action="store_true", help="replace files of these names")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("detour_plan", anonymous=True)
     wake_up()
     plan = do(get_there, Place(options.x, options.y, 0.0))
-    return run_and_tell(plan, trace=options.trace, picture=options.picture)
+    return run_and_tell(plan, trace=options.trace, picture=options.picture, overwrite=options.overwrite)
 
 
 if __name__ == "__main__":

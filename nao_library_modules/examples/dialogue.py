@@ -18,12 +18,13 @@ from pathlib import Path
 from typing import Any, Callable
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point
 
 import nao_library_actions.msg as actions
-from nao_library_modules.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, save
-from nao_library_modules.simple_action_client import SimpleActionClient
+from nao_library_modules.pictures.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, save
+from nao_library_modules.whole_file import require_new
 from nao_library_msgs.msg import AudioInFunction, AudioOutFunction, MotionFunction
 from nao_library_msgs.srv import AdvanceTime, PersonSays
 
@@ -71,7 +72,10 @@ class Servers:
         """
         client = self._clients[name]
         if meanwhile is None:
-            client.send_goal_and_wait(goal, LIMIT)
+            client.send_goal(goal)
+            if not client.wait_for_result(LIMIT):
+                client.cancel_goal()
+                raise RuntimeError(f"no result of {name} within {LIMIT.to_sec():g} s")
             at_end()
         else:
             self._play_with(client, goal, meanwhile, at_end)
@@ -224,10 +228,13 @@ def main() -> int:
     )
     parser.add_argument("--record", metavar="NAME", help="record the front microphones to this file of the robot")
     parser.add_argument("--log", type=Path, metavar="FILE", help="write who said and heard what, and when (JSON)")
+    parser.add_argument("--overwrite", action="store_true", help="replace files of these names")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("dialogue", anonymous=True, disable_signals=True)  # Ctrl-C leaves time to end the recording
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
     try:
+        if options.log:
+            options.log = require_new(options.log, options.overwrite)
         return talk(Servers(), options)
     except (RuntimeError, OSError, rospy.ServiceException, rospy.ROSException) as error:
         print(error)
@@ -240,7 +247,7 @@ def talk(servers: Servers, options: argparse.Namespace) -> int:
     """Have the dialogue, and keep of it what is wanted; the exit status."""
     person = Person(options.place) if options.person else None
     if options.record:
-        start = AudioInFunction(function="startRecording", str_param=options.record)
+        start = AudioInFunction(function="startRecording", str_param=options.record, overwrite=options.overwrite)
         servers.play("nao_audio_in", actions.NaoAudioInGoal([start]))
     notes = Notes(person.time if person else rospy.get_time)
     try:
@@ -259,10 +266,15 @@ def talk(servers: Servers, options: argparse.Namespace) -> int:
         dialogue.gesture(joint, angle)
         return 0
     finally:
-        if options.log:
-            save(notes.turns, options.log)
-        if options.record:
-            servers.play("nao_audio_in", actions.NaoAudioInGoal([AudioInFunction(function="stopRecording")]))
+        try:
+            if options.log:
+                save(notes.turns, options.log)
+                print(f"written: {options.log}")
+        finally:
+            if options.record:
+                stop = AudioInFunction(function="stopRecording")
+                for file in servers.play("nao_audio_in", actions.NaoAudioInGoal([stop])).files:
+                    print(f"written: {file.file or f'{file.path}, on the robot'}")
 
 
 if __name__ == "__main__":

@@ -99,11 +99,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--trace", default="", help="file for the trace of the plan, as JSON")
     parser.add_argument("--picture", default="", help="file for its picture, as PNG")
+    parser.add_argument("--overwrite", action="store_true", help="replace files of these names")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("fetch_plan", anonymous=True)
     know_the_lab()
     wake_up()
-    return run_and_tell(fetch, trace=options.trace, picture=options.picture)
+    return run_and_tell(fetch, trace=options.trace, picture=options.picture, overwrite=options.overwrite)
 
 
 if __name__ == "__main__":

@@ -10,13 +10,14 @@ from __future__ import annotations
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import ExecFootstepsAction, ExecFootstepsFeedback, ExecFootstepsGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import StepTarget
 
 LIMIT = rospy.Duration(20)
+WALK_LIMIT = rospy.Duration(60)
 SIDES = {StepTarget.left: 1.0, StepTarget.right: -1.0}
 APART = 0.1
 
@@ -57,7 +58,10 @@ def main() -> int:
 
     rospy.on_shutdown(lambda: client.get_state() == GoalStatus.ACTIVE and client.cancel_goal())
     client.send_goal(ExecFootstepsGoal(asked, 5.0), feedback_cb=show)
-    client.wait_for_result()
+    if not client.wait_for_result(WALK_LIMIT):
+        client.cancel_goal()
+        print(f"\nno result within {WALK_LIMIT.to_sec():g} s")
+        return 1
     state = client.get_state()
     print(f"\n{GoalStatus.to_string(state).lower()} {client.get_goal_status_text()}".rstrip())
     return 0 if state == GoalStatus.SUCCEEDED else 1

@@ -9,11 +9,11 @@ from __future__ import annotations
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Vector3
 
 from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import MotionFunction
 from nao_library_msgs.srv import PushRobot
 
@@ -30,7 +30,11 @@ def play(motion: SimpleActionClient, *functions: MotionFunction) -> list[str]:
     Raises:
         RuntimeError: If it did not succeed.
     """
-    state = motion.send_goal_and_wait(NaoMotionGoal(list(functions)), GOAL_LIMIT)
+    motion.send_goal(NaoMotionGoal(list(functions)))
+    if not motion.wait_for_result(GOAL_LIMIT):
+        motion.cancel_goal()
+        raise RuntimeError(f"no result within {GOAL_LIMIT.to_sec():g} s")
+    state = motion.get_state()
     if state != GoalStatus.SUCCEEDED:
         raise RuntimeError(f"{GoalStatus.to_string(state).lower()}: {motion.get_goal_status_text()}")
     return motion.get_result().memList

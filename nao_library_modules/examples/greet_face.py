@@ -14,10 +14,10 @@ import sys
 from typing import Any
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoAudioOutAction, NaoAudioOutGoal, NaoVisionAction, NaoVisionGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import AudioOutFunction, SeenObject, VisionFunction
 
 LIMIT = rospy.Duration(60)
@@ -59,9 +59,12 @@ class Host:
 
     @staticmethod
     def _play(client: Any, goal: Any) -> Any:
-        client.send_goal_and_wait(goal, LIMIT)
+        client.send_goal(goal)
+        if not client.wait_for_result(LIMIT):
+            client.cancel_goal()
+            raise RuntimeError(f"not done within {LIMIT.to_sec():g} s")
         if client.get_state() != GoalStatus.SUCCEEDED:
-            raise RuntimeError(client.get_goal_status_text() or f"not done within {LIMIT.to_sec():g} s")
+            raise RuntimeError(client.get_goal_status_text())
         return client.get_result()
 
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from std_srvs.srv import Empty
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 
 LIMIT = rospy.Duration(20)
 ARMS = ["LShoulderPitch", "LShoulderRoll", "RShoulderPitch", "RShoulderRoll"]
@@ -53,7 +53,13 @@ def main() -> int:
     rospy.ServiceProxy("body_stiffness/enable", Empty)()
     failures = 0
     for title, each in goals():
-        state = client.send_goal_and_wait(each, LIMIT)
+        client.send_goal(each)
+        if not client.wait_for_result(LIMIT):
+            client.cancel_goal()
+            print(f"{title}: no result within {LIMIT.to_sec():g} s")
+            failures += 1
+            continue
+        state = client.get_state()
         print(f"{title}: {GoalStatus.to_string(state).lower()} {client.get_goal_status_text()}".rstrip())
         if state == GoalStatus.SUCCEEDED:
             print("    " + " ".join(f"{angle:.2f}" for angle in client.get_result().goal_position.position))

@@ -9,10 +9,10 @@ from __future__ import annotations
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import LedFunction
 
 EYES = ["LeftFaceLeds", "RightFaceLeds"]

@@ -13,10 +13,12 @@ import struct
 import sys
 import threading
 import wave
+from pathlib import Path
 
 import rospy
 from dynamic_reconfigure.client import Client
 
+from nao_library_modules.whole_file import NoPlaceForFile, WholeFile, require_new
 from nao_library_msgs.msg import AudioBuffer
 
 MICROPHONE = "nao_robot/microphone/naoqi_microphone"
@@ -59,13 +61,15 @@ class Recording:
             del self._samples[self._wanted * frame :]
             self.complete.set()
 
-    def write(self, path: str) -> None:
-        """Write a WAV file."""
-        with wave.open(path, "wb") as file:
+    def write(self, path: Path) -> float:
+        """Write a WAV file; its length, s."""
+        samples = bytes(self._samples)
+        with WholeFile(path) as target, wave.open(target, "wb") as file:
             file.setnchannels(self.channels)
             file.setsampwidth(2)
             file.setframerate(self._frequency)
-            file.writeframes(bytes(self._samples))
+            file.writeframes(samples)
+        return len(samples) / (2 * self.channels * self._frequency)
 
 
 def main() -> int:
@@ -74,22 +78,28 @@ def main() -> int:
     parser.add_argument("file", help="name of the WAV file")
     parser.add_argument("--seconds", type=float, default=5.0, help="how long (default: 5)")
     parser.add_argument("--frequency", type=int, choices=(16000, 48000), default=16000, help="Hz (default: 16000)")
+    parser.add_argument("--overwrite", action="store_true", help="replace a file of that name")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("microphone_to_file", anonymous=True)
     try:
+        path = require_new(options.file, options.overwrite)
         Client(MICROPHONE, timeout=LIMIT).update_configuration({"frequency": options.frequency})
+    except NoPlaceForFile as error:
+        print(error)
+        return 1
     except rospy.ROSException:
         print(f"there is no {MICROPHONE}: start it with roslaunch nao_library nao_sim.launch")
         return 1
     recording = Recording(options.seconds, options.frequency)
     rospy.Subscriber(f"{MICROPHONE}/audio_raw", AudioBuffer, recording.take, queue_size=100)
     rospy.on_shutdown(recording.complete.set)
-    if not recording.complete.wait(options.seconds + LIMIT) or rospy.is_shutdown():
-        print("the microphones cannot be heard: see /diagnostics")
-        return 1
-    recording.write(options.file)
-    print(f"{options.file}: {options.seconds:g} s, {recording.channels} channel(s), {options.frequency} Hz")
-    return 0
+    whole = recording.complete.wait(options.seconds + LIMIT) and not rospy.is_shutdown()
+    if not whole:
+        print("not all of it was heard; if the microphones cannot be heard, /diagnostics tells why")
+    if recording.channels:
+        seconds = recording.write(path)
+        print(f"{path}: {seconds:g} s, {recording.channels} channel(s), {options.frequency} Hz")
+    return 0 if whole else 1
 
 
 if __name__ == "__main__":

@@ -10,12 +10,12 @@ import sys
 from collections.abc import Sequence
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from rospy import Duration
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import MotionFunction
 
 LIMIT = Duration(30)
@@ -42,7 +42,12 @@ def main() -> int:
         return 1
     wake_up = MotionFunction(function="wakeUp")
     get_angles = MotionFunction(function="getAngles", names=["RArm"])
-    if motion_client.send_goal_and_wait(NaoMotionGoal([wake_up, get_angles]), LIMIT) != GoalStatus.SUCCEEDED:
+    motion_client.send_goal(NaoMotionGoal([wake_up, get_angles]))
+    if not motion_client.wait_for_result(LIMIT):
+        motion_client.cancel_goal()
+        print(f"getAngles: no result within {LIMIT.to_sec():g} s")
+        return 1
+    if motion_client.get_state() != GoalStatus.SUCCEEDED:
         print(motion_client.get_goal_status_text())
         return 1
     # The result has every joint of the chain; waking up moved them all.
@@ -54,7 +59,12 @@ def main() -> int:
     set_pose = MotionFunction(
         function="setPose", trajectory=JointTrajectory(joint_names=names, points=[point_1]), time=Duration(0.5)
     )
-    state = motion_client.send_goal_and_wait(NaoMotionGoal([set_pose]), LIMIT)
+    motion_client.send_goal(NaoMotionGoal([set_pose]))
+    if not motion_client.wait_for_result(LIMIT):
+        motion_client.cancel_goal()
+        print(f"setPose: no result within {LIMIT.to_sec():g} s")
+        return 1
+    state = motion_client.get_state()
     print(f"setPose: {GoalStatus.to_string(state).lower()} {motion_client.get_goal_status_text()}".rstrip())
     result = motion_client.get_result()
     for name, wanted, angle in zip(names, new_pose, result.position if result else []):

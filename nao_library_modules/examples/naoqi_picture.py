@@ -13,6 +13,7 @@ from pathlib import Path
 from PIL import Image
 
 import vision_definitions
+from nao_library_modules.whole_file import WholeFile, require_new
 from naoqi import ALProxy
 from naoqi.errors import NaoError
 
@@ -51,16 +52,19 @@ def main() -> int:
     parser.add_argument("--camera", choices=CAMERAS, default="top", help="which one (top)")
     parser.add_argument("--size", choices=SIZES, default="640x480", help="in pixels (640x480)")
     parser.add_argument("file", type=Path, nargs="?", default=Path("picture.png"), help="(picture.png)")
+    parser.add_argument("--overwrite", action="store_true", help="replace a file of that name")
     options = parser.parse_args()
     try:
+        path = require_new(options.file, options.overwrite)
         taken = picture(
             ALProxy("ALVideoDevice", options.ip, options.port), CAMERAS[options.camera], SIZES[options.size]
         )
-        taken.save(options.file)
+        with WholeFile(path) as file:
+            taken.save(file, "PNG")
     except (NaoError, OSError, ValueError) as error:
         print(error)
         return 1
-    print(f"saved {options.file}")
+    print(f"saved {path}")
     return 0
 
 

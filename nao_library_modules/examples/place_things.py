@@ -12,6 +12,7 @@ import math
 import sys
 from pathlib import Path
 
+from nao_library_modules.whole_file import require_new, write_whole
 from naoqi import ALProxy
 from naoqi.errors import NaoError
 
@@ -31,24 +32,26 @@ def main() -> int:
     parser.add_argument("--port", type=int, default=9559, help="port of its NAOqi (9559)")
     parser.add_argument("--output", type=Path, default=Path("things.png"), help="picture to write (things.png)")
     parser.add_argument("--keep", action="store_true", help="leave the things where they are")
+    parser.add_argument("--overwrite", action="store_true", help="replace a file of that name")
     options = parser.parse_args()
     try:
+        output = require_new(options.output, options.overwrite)
         simulation = ALProxy("NaoSimulation", options.ip, options.port)
         for thing in THINGS:
             simulation.placeObject(json.dumps(thing))
         # Ends when she is there; simulation.post.moveObject(...) would not wait.
         simulation.moveObject("clara", WALK_TO, [], WALK_TIME)
-        options.output.write_bytes(bytes(simulation.picture("far", 960, 600)))
+        write_whole(output, bytes(simulation.picture("far", 960, 600)))
         there = simulation.objects()
         for thing in THINGS:
             x, y, z = there[thing["name"]][:3]
             print(f"{thing['name']}: x {x:.2f} m, y {y:.2f} m, z {z:.2f} m")
             if not options.keep:
                 simulation.removeObject(thing["name"])
-    except NaoError as error:
+    except (NaoError, OSError) as error:
         print(error)
         return 1
-    print(f"see {options.output}")
+    print(f"written: {output}")
     return 0
 
 

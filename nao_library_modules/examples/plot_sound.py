@@ -12,8 +12,10 @@ from pathlib import Path
 
 import soundfile
 
-from nao_library_modules.dialogue_record import load
-from nao_library_modules.sound_picture import draw
+from nao_library_modules.pictures.dialogue_record import load
+from nao_library_modules.pictures.sound_picture import draw
+from nao_library_modules.whole_file import WholeFile, require_new
+from naoqi.errors import NaoError
 
 # Enough for a drawing, and a small file.
 COLORS = 64
@@ -25,15 +27,18 @@ def main() -> int:
     parser.add_argument("sound", type=Path, help="the recording, 1 to 4 channels")
     parser.add_argument("--words", type=Path, metavar="FILE", help="what dialogue.py --log wrote, for below the axis")
     parser.add_argument("--output", type=Path, default=Path("sound.png"), help="picture to write (sound.png)")
+    parser.add_argument("--overwrite", action="store_true", help="replace a file of that name")
     options = parser.parse_args()
     try:
+        output = require_new(options.output, options.overwrite)
         samples, rate = soundfile.read(str(options.sound), dtype="float32", always_2d=True)
         turns = load(options.words) if options.words else []
-        draw(samples, rate, turns).quantize(COLORS).save(options.output, optimize=True)
-    except (OSError, ValueError, soundfile.LibsndfileError) as error:
+        with WholeFile(output) as file:
+            draw(samples, rate, turns).quantize(COLORS).save(file, "PNG", optimize=True)
+    except (NaoError, OSError, ValueError, soundfile.LibsndfileError) as error:
         print(error)
         return 1
-    print(f"see {options.output}")
+    print(f"written: {output}")
     return 0
 
 

@@ -12,8 +12,9 @@ import sys
 import time
 from pathlib import Path
 
-from nao_library_modules.walk_picture import draw
-from nao_library_modules.walk_record import LEFT, OTHER, RIGHT, Place, Sample, load, moved, save
+from nao_library_modules.pictures.walk_picture import draw
+from nao_library_modules.pictures.walk_record import LEFT, OTHER, RIGHT, Place, Sample, load, moved, save
+from nao_library_modules.whole_file import WholeFile, require_new
 from naoqi import ALProxy
 from naoqi.errors import NaoError
 
@@ -77,8 +78,11 @@ def main() -> int:
     parser.add_argument("--from", type=Path, dest="old", metavar="FILE", help="draw this record, without a robot")
     parser.add_argument("--record", type=Path, metavar="FILE", help="keep the record there (JSON)")
     parser.add_argument("--output", type=Path, default=Path("walk.png"), help="picture to write (walk.png)")
+    parser.add_argument("--overwrite", action="store_true", help="replace files of these names")
     options = parser.parse_args()
     try:
+        output = require_new(options.output, options.overwrite)
+        record = require_new(options.record, options.overwrite) if options.record else None
         if options.old:
             samples = load(options.old)
         else:
@@ -87,15 +91,17 @@ def main() -> int:
                 samples = walk(body, memory, options.goal)
             else:
                 samples = watch(body, memory, options.watch)
-        if options.record:
-            save(samples, options.record)
-        draw(samples).quantize(COLORS).save(options.output, optimize=True)
+        if record:
+            save(samples, record)
+            print(f"written: {record}")
+        with WholeFile(output) as file:
+            draw(samples).quantize(COLORS).save(file, "PNG", optimize=True)
     except (NaoError, OSError) as error:
         print(error)
         return 1
     except KeyboardInterrupt:
         return 130
-    print(f"see {options.output}")
+    print(f"written: {output}")
     return 0
 
 

@@ -16,6 +16,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from nao_library_modules.base.suggestion import of_those
 from nao_library_modules.process_modules.projection import ProjectionFailed, compare, project, run_program
 from nao_library_modules.process_modules.trace import Trace
 
@@ -36,6 +37,10 @@ def main() -> int:
     options, arguments = parser.parse_known_args()
     program = Path(options.program)
     program = program if program.exists() else EXAMPLES / program.name
+    if not program.exists():
+        plans = [path.name for path in EXAMPLES.glob("*_plan.py")]
+        print(f"there is no program {options.program!r}{of_those(program.name, plans)}", file=sys.stderr)
+        return 1
     try:
         print(f"{program.name} in the simulator ...", flush=True)
         projected = project(program, arguments, options.world)

@@ -14,10 +14,10 @@ import argparse
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoTactileAction, NaoTactileGoal, NaoTactileResult
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import TactileFunction
 
 LIMIT = rospy.Duration(30)
@@ -36,8 +36,12 @@ def feel(client: SimpleActionClient, **fields: object) -> NaoTactileResult:
     Raises:
         Refused: It did not.
     """
-    if client.send_goal_and_wait(NaoTactileGoal([TactileFunction(**fields)]), LIMIT) != GoalStatus.SUCCEEDED:
-        raise Refused(client.get_goal_status_text() or f"no answer within {LIMIT.to_sec():g} s")
+    client.send_goal(NaoTactileGoal([TactileFunction(**fields)]))
+    if not client.wait_for_result(LIMIT):
+        client.cancel_goal()
+        raise Refused(f"no answer within {LIMIT.to_sec():g} s")
+    if client.get_state() != GoalStatus.SUCCEEDED:
+        raise Refused(client.get_goal_status_text())
     return client.get_result()
 
 

@@ -14,10 +14,10 @@ import sys
 from typing import Any
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoMotionAction, NaoMotionGoal, NaoVisionAction, NaoVisionGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import MotionFunction, VisionFunction
 
 LIMIT = rospy.Duration(30)
@@ -30,7 +30,7 @@ def recording(camera: str) -> str:
     return f"walk_{camera}_{rospy.get_name().strip('/')}"
 
 
-def start(name: str) -> NaoVisionGoal:
+def start(name: str, overwrite: bool) -> NaoVisionGoal:
     """Begin to record both cameras; without a name the files are called after the time."""
     return NaoVisionGoal(
         [
@@ -39,6 +39,7 @@ def start(name: str) -> NaoVisionGoal:
                 id=recording(camera),
                 camera=camera,
                 str_param=f"{name}_{camera}.mp4" if name else "",
+                overwrite=overwrite,
             )
             for camera in CAMERAS
         ]
@@ -78,6 +79,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--distance", type=float, default=0.4, help="how far to walk, m (default: 0.4)")
     parser.add_argument("--name", default="", help="what the names of the files begin with (default: the time)")
+    parser.add_argument("--overwrite", action="store_true", help="replace files of these names")
     options = parser.parse_args(rospy.myargv()[1:])
     # Ctrl-C leaves time to complete the videos.
     rospy.init_node("record_while_walking", anonymous=True, disable_signals=True)
@@ -88,7 +90,7 @@ def main() -> int:
         if not client.wait_for_server(LIMIT):
             print(f"there is no server {name}: start one with roslaunch nao_library nao_sim.launch")
             return 1
-    done = play(vision, start(options.name), LIMIT)
+    done = play(vision, start(options.name, options.overwrite), LIMIT)
     if done:
         done = play(motion, walk(options.distance), WALK_LIMIT)
         done = play(vision, stop(), LIMIT) and done

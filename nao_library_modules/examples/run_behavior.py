@@ -12,13 +12,14 @@ import argparse
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoBehaviorAction, NaoBehaviorFeedback, NaoBehaviorGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import BehaviorFunction
 
 SERVER_LIMIT = rospy.Duration(20)
+DEFAULT_LIMIT = 600.0
 END_LIMIT = rospy.Duration(10)
 
 
@@ -33,6 +34,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("name", nargs="?", help="of the behaviour")
     parser.add_argument("parameters", nargs="*", metavar="NAME=VALUE", help="values of its parameters")
+    parser.add_argument("--limit", type=float, default=DEFAULT_LIMIT, help="s that it may take (default: %(default)g)")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("run_behavior", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
@@ -46,7 +48,9 @@ def main() -> int:
     # What ends this program ends the behaviour as well.
     rospy.on_shutdown(lambda: (behaviors.cancel_goal(), behaviors.wait_for_result(END_LIMIT)))
     behaviors.send_goal(NaoBehaviorGoal([function]), feedback_cb=print_step)
-    behaviors.wait_for_result()
+    if not behaviors.wait_for_result(rospy.Duration.from_sec(options.limit)):
+        print(f"no result within {options.limit:g} s: it is ended")
+        return 1
     for info in behaviors.get_result().behaviors:
         print(f"{info.name:20} {info.problem or info.help}")
     state = behaviors.get_state()

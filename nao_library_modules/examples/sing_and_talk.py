@@ -11,14 +11,15 @@ import argparse
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoAudioOutAction, NaoAudioOutFeedback, NaoAudioOutGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import AudioOutFunction
 
 LIMIT = rospy.Duration(20)
-FILE = "refrain.wav"
+GOAL_LIMIT = rospy.Duration(120)
+FILE = "sing_and_talk_refrain.wav"
 # Pitch in % of the voice's own, and the syllable: NAOqi's tag for pitch makes a tune of them.
 TUNE = ((100, "la"), (112, "la"), (126, "la"), (100, "la"), (126, "lee"), (134, "lee"), (150, "loo"))
 TEXT = "I sing while I work. Nobody else does. Now it is quiet."
@@ -28,7 +29,8 @@ def chain(text: str) -> list[AudioOutFunction]:
     """The functions: a refrain is written to a file and sounds quietly, again and again, while the robot talks."""
     song = " ".join(rf"\vct={pitch}\ {syllable}" for pitch, syllable in TUNE)
     return [
-        AudioOutFunction(function="sayToFile", str_param=song, file_name=FILE, speed=80),
+        # The file is the example's own: what it replaces is that of the run before.
+        AudioOutFunction(function="sayToFile", str_param=song, file_name=FILE, overwrite=True, speed=80),
         AudioOutFunction(function="playFileInLoop", str_param=FILE, volume=0.25),
         AudioOutFunction(function="say", str_param=text, time=rospy.Duration(1)),
         AudioOutFunction(function="stopAll"),
@@ -54,7 +56,10 @@ def main() -> int:
         return 1
     rospy.on_shutdown(lambda: audio.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE) and audio.cancel_goal())
     audio.send_goal(NaoAudioOutGoal(chain(text)), feedback_cb=show)
-    audio.wait_for_result()
+    if not audio.wait_for_result(GOAL_LIMIT):
+        audio.cancel_goal()
+        print(f"\nno result within {GOAL_LIMIT.to_sec():g} s")
+        return 1
     state, result = audio.get_state(), audio.get_result()
     print(f"\n{audio.get_goal_status_text()}".rstrip())
     for file, duration in zip(result.files, result.durations) if result else ():  # none when it was interrupted

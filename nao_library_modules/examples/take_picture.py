@@ -12,10 +12,10 @@ import argparse
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import VisionFunction
 
 LIMIT = rospy.Duration(30)
@@ -37,8 +37,13 @@ def main() -> int:
     take = VisionFunction(
         function="takePicture", str_param=options.name, camera=options.camera, overwrite=options.overwrite
     )
-    if vision.send_goal_and_wait(NaoVisionGoal([take]), LIMIT) != GoalStatus.SUCCEEDED:
-        print(vision.get_goal_status_text() or f"no picture within {LIMIT.to_sec():g} s")
+    vision.send_goal(NaoVisionGoal([take]))
+    if not vision.wait_for_result(LIMIT):
+        vision.cancel_goal()
+        print(f"no picture within {LIMIT.to_sec():g} s")
+        return 1
+    if vision.get_state() != GoalStatus.SUCCEEDED:
+        print(vision.get_goal_status_text())
         return 1
     for picture in vision.get_result().pictures:
         print(f"{picture.path}: {picture.width} x {picture.height} pixels of {picture.topic}")

@@ -10,6 +10,7 @@ import argparse
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import (
@@ -18,7 +19,6 @@ from nao_library_actions.msg import (
     BodyPoseWithSpeedAction,
     BodyPoseWithSpeedGoal,
 )
-from nao_library_modules.simple_action_client import SimpleActionClient
 
 LIMIT = rospy.Duration(20)
 
@@ -40,7 +40,12 @@ def main() -> int:
     if not client.wait_for_server(LIMIT):
         print("there is no pose_manager: start it with roslaunch nao_library nao_sim.launch")
         return 1
-    state = client.send_goal_and_wait(goal, LIMIT)
+    client.send_goal(goal)
+    if not client.wait_for_result(LIMIT):
+        client.cancel_goal()
+        print(f"{options.name}: no result within {LIMIT.to_sec():g} s")
+        return 1
+    state = client.get_state()
     print(f"{options.name}: {GoalStatus.to_string(state).lower()} {client.get_goal_status_text()}".rstrip())
     return 0 if state == GoalStatus.SUCCEEDED else 1
 

@@ -11,10 +11,10 @@ import math
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoAudioInAction, NaoAudioInGoal, NaoMotionAction, NaoMotionGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import AudioInFunction, HeardSound, MotionFunction
 
 LIMIT = rospy.Duration(20)
@@ -51,14 +51,23 @@ def main() -> int:
             return 1
     localize = AudioInFunction(function="localizeSound", timeout=options.timeout, confidence=options.confidence)
     for _ in range(options.times):
-        ears.send_goal_and_wait(NaoAudioInGoal([localize]), rospy.Duration.from_sec(options.timeout) + LIMIT)
+        ears.send_goal(NaoAudioInGoal([localize]))
+        if not ears.wait_for_result(rospy.Duration.from_sec(options.timeout) + LIMIT):
+            ears.cancel_goal()
+            print(f"no result of nao_audio_in within {options.timeout + LIMIT.to_sec():g} s")
+            return 1
         result = ears.get_result()
         if ears.get_state() != GoalStatus.SUCCEEDED or not result.sounds:
             print(ears.get_goal_status_text() or f"no sound within {options.timeout:g} s")
             return 1
         sound = result.sounds[0]
         print(f"a sound at {math.degrees(sound.base_azimuth):.0f} degrees, confidence {sound.confidence:.2f}")
-        if motion.send_goal_and_wait(NaoMotionGoal([look_there(sound)]), LIMIT) != GoalStatus.SUCCEEDED:
+        motion.send_goal(NaoMotionGoal([look_there(sound)]))
+        if not motion.wait_for_result(LIMIT):
+            motion.cancel_goal()
+            print(f"no result of NaoMotion within {LIMIT.to_sec():g} s")
+            return 1
+        if motion.get_state() != GoalStatus.SUCCEEDED:
             print(motion.get_goal_status_text())
             return 1
         *_, missing = map(float, motion.get_result().memList)

@@ -13,13 +13,14 @@ import sys
 from collections.abc import Sequence
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped
 
 from nao_library_actions.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
 
 LIMIT = rospy.Duration(20)
+WALK_LIMIT = rospy.Duration(300)
 PIECES = 40
 
 
@@ -65,7 +66,10 @@ def main() -> int:
 
     rospy.on_shutdown(lambda: client.get_state() == GoalStatus.ACTIVE and client.cancel_goal())
     client.send_goal(goal(points), feedback_cb=show)
-    client.wait_for_result()
+    if not client.wait_for_result(WALK_LIMIT):
+        client.cancel_goal()
+        print(f"\nno result within {WALK_LIMIT.to_sec():g} s")
+        return 1
     state = client.get_state()
     print(f"\n{GoalStatus.to_string(state).lower()} {client.get_goal_status_text()}".rstrip())
     return 0 if state == GoalStatus.SUCCEEDED else 1

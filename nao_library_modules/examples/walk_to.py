@@ -12,12 +12,12 @@ import math
 import sys
 
 import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseFeedback, MoveBaseGoal
 
-from nao_library_modules.simple_action_client import SimpleActionClient
-
 LIMIT = rospy.Duration(20)
+WALK_LIMIT = rospy.Duration(300)
 
 
 def goal(x: float, y: float, turn: float, frame: str) -> MoveBaseGoal:
@@ -60,7 +60,10 @@ def main() -> int:
         return 1
     rospy.on_shutdown(lambda: client.get_state() == GoalStatus.ACTIVE and client.cancel_goal())
     client.send_goal(goal(options.x, options.y, options.turn, options.frame), feedback_cb=show)
-    client.wait_for_result()
+    if not client.wait_for_result(WALK_LIMIT):
+        client.cancel_goal()
+        print(f"\nno result within {WALK_LIMIT.to_sec():g} s")
+        return 1
     state = client.get_state()
     print(f"\n{GoalStatus.to_string(state).lower()} {client.get_goal_status_text()}".rstrip())
     return 0 if state == GoalStatus.SUCCEEDED else 1

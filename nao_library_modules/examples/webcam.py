@@ -22,13 +22,14 @@ def main():
     parser.add_argument("--seconds", type=float, default=10.0, help="how long (default: 10)")
     parser.add_argument("--folder", default="~/.ros/nao_recordings", help="where the file goes")
     parser.add_argument("--width", type=int, default=160, help="of the small pictures (default: 160)")
+    parser.add_argument("--overwrite", action="store_true", help="replace a file of that name")
     options = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("webcam", anonymous=True)
     space, _, last = rospy.resolve_name(options.topic).rpartition("/")
     try:
         with ImageThreads(options.folder) as threads:
             small = threads.stream("small", options.topic, f"{space}_small/{last}", width=options.width)
-            film = threads.record("film", options.topic, options.file, overwrite=True)
+            film = threads.record("film", options.topic, options.file, overwrite=options.overwrite)
             rospy.sleep(options.seconds)
             passed, video = small.stop(), film.stop()
     except NaoError as error:

@@ -2,6 +2,7 @@
 """Section III.A: a light at half intensity, and green eyes, over NAOqi's proxy and as goals of NaoLights."""
 
 import os
+import sys
 
 import actionlib
 import rospy
@@ -12,6 +13,7 @@ from nao_library_msgs.msg import LedFunction
 from naoqi import ALProxy
 
 rospy.init_node("green_eyes_of_the_paper")
+rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
 address = os.environ.get("NAO_IP", "127.0.0.1"), int(os.environ.get("NAO_PORT", "9559"))
 ledsProxy = ALProxy("ALLeds", *address)
 led_client = actionlib.SimpleActionClient("NaoLights", nao_library_actions.msg.NaoLedAction)
@@ -21,7 +23,8 @@ led_client.wait_for_server()
 ledsProxy.setIntensity("Brain0", 0.5)
 
 brain_half = LedFunction(function="setIntensity", lights=["Brain0"], i_values=[0.5])
-led_client.send_goal_and_wait(nao_library_actions.msg.LedGoal([brain_half]))
+led_client.send_goal(nao_library_actions.msg.LedGoal([brain_half]))
+led_client.wait_for_result(Duration(30)) or sys.exit("half: no result within 30 s")
 print("half:", ledsProxy.getIntensity("Brain0"))
 
 # Turn both eyes green: NAOqi
@@ -36,7 +39,7 @@ ledsProxy.setIntensity("RightFaceLedsBlue", 0)
 green_eyes = LedFunction(function="setColor", lights=["LeftFaceLeds", "RightFaceLeds"], i_values=[0, 1, 0])
 led_goal = nao_library_actions.msg.LedGoal([green_eyes])
 led_client.send_goal(led_goal)
-led_client.wait_for_result(Duration(30))
+led_client.wait_for_result(Duration(30)) or sys.exit("green: no result within 30 s")
 print("green:", *led_client.get_result().lights)
 
 # nao_library: Turn both eyes green, then back after two seconds
@@ -49,5 +52,5 @@ green_eyes = LedFunction(
 )
 led_goal = nao_library_actions.msg.LedGoal([green_eyes])
 led_client.send_goal(led_goal)
-led_client.wait_for_result(Duration(30))
+led_client.wait_for_result(Duration(30)) or sys.exit("back: no result within 30 s")
 print("back:", led_client.get_goal_status_text() or "as before")

@@ -40,8 +40,8 @@ class ALBroker:
 
         Args:
             name: Name of the broker.
-            listen_ip: Own address on which the robot can call back. `""` and `0.0.0.0` mean any; a robot that
-                runs on this computer is served on the loopback address only.
+            listen_ip: Own address on which the robot can call back; `""` is the one towards the robot, `0.0.0.0`
+                means all. A robot that runs on this computer is served on the loopback address only.
             listen_port: Own TCP port; 0 takes a free one.
             robot_ip: Name or address of the robot.
             robot_port: TCP port of NAOqi.

@@ -19,6 +19,7 @@ The typed children keep the facts of their text as attributes.
 
 from __future__ import annotations
 
+import re
 from typing import Any, Sequence
 
 LISTED_NAMES = 40
@@ -170,8 +171,9 @@ class RobotError(NaoError):
     """
 
     def __init__(self, module: str, method: str, text: str, kind: str = "", trace: str = "") -> None:
-        """Compose the text from its facts."""
-        super().__init__(f"{module}.{method} failed: {text or kind or 'the robot gave no reason'}")
+        """Compose the text from its facts; the name of the method, which the robot's own begins with, is there once."""
+        reason = re.sub(rf"\A\s*{re.escape(module)}(::|\.){re.escape(method)}\b[\s:]*", "", text)
+        super().__init__(f"{module}.{method} failed: {reason or kind or 'the robot gave no reason'}")
         self.module = module
         self.method = method
         self.text = text

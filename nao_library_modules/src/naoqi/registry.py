@@ -7,6 +7,7 @@ import threading
 from typing import Dict, Optional, Tuple
 
 from .errors import BadArguments, RobotUnreachable
+from .native_threads import wait_until_idle
 from .robot_connection import Connection
 from .state import State, Timing
 
@@ -14,6 +15,8 @@ DEFAULT_PORT = 9559
 CONNECT_TIMEOUT = 5.0
 """Limit of the wait for a robot, in s."""
 DEFAULT_TIMING = Timing()
+IDLE_LIMIT = 0.5
+"""So long the end of the program waits for libqi to have put everything away, in s."""
 
 
 class Registry:
@@ -31,8 +34,7 @@ class Registry:
         with self._lock:
             if not self._closed_at_exit:
                 self._closed_at_exit = True
-                # libqi's threads must not meet an interpreter that is being taken down.
-                atexit.register(self.close_all)
+                atexit.register(self._end)
             found: Optional[Connection] = self._connections.get((host, port))
             if found is None or found.state is State.CLOSED:
                 self._wanted.pop(found, None)
@@ -54,6 +56,11 @@ class Registry:
             self._wanted.clear()
         for each in connections:
             each.close()
+
+    def _end(self) -> None:
+        """Close every connection at the end of the program: libqi's threads must not meet one that is taken down."""
+        self.close_all()
+        wait_until_idle(IDLE_LIMIT)
 
     def _give_up(self, connection: Connection) -> None:
         """Close a connection that was never made and that nobody else waits for."""

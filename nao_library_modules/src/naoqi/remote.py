@@ -169,7 +169,12 @@ class RemoteMethod:
             sent = wire.to_wire(arguments, self._takes_raw)
         except wire.UnsendableError as error:
             raise BadArguments(self.module.name, self.name, arguments, self._readable(), str(error)) from None
-        return Call(self._bound(*sent, _async=True), self, arguments)
+        witness = self.module.connection.witness
+        seen = witness(self.module.name, self.name, arguments) if witness is not None else None
+        call = Call(self._bound(*sent, _async=True), self, arguments)
+        if seen is not None:
+            call.add_done_callback(seen)
+        return call
 
     def _wait_for(self, call: Call) -> Any:
         try:

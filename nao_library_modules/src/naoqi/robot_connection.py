@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from typing import Any, Callable, List, Optional
+from typing import Any, Callable, List, Optional, Tuple
 
 from . import directory
 from .errors import RobotUnreachable
@@ -22,6 +22,8 @@ from .tasks import TaskTable
 from .translate import connect_reason
 
 logger = logging.getLogger("naoqi")
+
+Witness = Callable[[str, str, Tuple[Any, ...]], Optional[Callable[[Any], None]]]
 
 FLUSH_LIMIT = 0.5
 """So long `close` waits for the robot to have received everything, in s."""
@@ -45,6 +47,8 @@ class Connection:
         tasks: The posted calls of all proxies on this connection.
         presence: Who is inside libqi on behalf of this connection.
         subscriptions: Event subscriptions to make again after a loss.
+        witness: Called with module, method and arguments of each call before it is sent, where there is one; what it
+            returns, if it is not None, is called at the end of the call, in a thread of libqi.
     """
 
     def __init__(self, host: str, port: int, timing: Timing) -> None:
@@ -68,6 +72,7 @@ class Connection:
         self._closing = threading.Event()
         self._listeners = Listeners(f"naoqi listeners {self.address}")
         self.subscriptions = EventSubscriptions(self)
+        self.witness: Optional[Witness] = None
         self._watcher = threading.Thread(target=self._run, name=f"naoqi {self.address}", daemon=True)
         self._watcher.start()
 
@@ -254,7 +259,7 @@ class Connection:
         if was_lost:
             logger.warning("connection to NAOqi at %s is back after %.1f s", self.address, seconds)
         else:
-            logger.info("connected to NAOqi at %s", self.address)
+            logger.debug("connected to NAOqi at %s", self.address)
         self._change(State.CONNECTED, live)
 
     def _watch(self, live: Live) -> str:

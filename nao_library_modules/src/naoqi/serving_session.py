@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import socket
 import threading
 import time
 from typing import TYPE_CHECKING, Any, Callable, Dict, Optional
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger("naoqi")
 
-ANY_ADDRESS = ("", "0.0.0.0")
+ANY_ADDRESS = "0.0.0.0"
 STEP_LIMIT = 5.0
 """Time limit of each step of registering a module, in s."""
 NAME_IN_USE = "already registered"
@@ -26,7 +27,7 @@ class ServingSession:
     """A listening session and the modules registered on it; can be opened again. Its owner guards it by a lock.
 
     Attributes:
-        host: Address on which it listens.
+        host: Address on which it listens, or has listened last.
     """
 
     def __init__(
@@ -42,7 +43,7 @@ class ServingSession:
         Args:
             broker: Name of the broker, for texts.
             connection: The connection to the robot.
-            listen_ip: Address on which to listen, or any.
+            listen_ip: Address on which to listen, see `listening_address`.
             down: Set when the broker is shut down; ends all waiting.
             on_break: Called in a thread of libqi when the session breaks.
         """
@@ -53,9 +54,7 @@ class ServingSession:
         self._live: Optional[Live] = None
         self._generation = 0
         self._service_ids: Dict[str, int] = {}
-        on_this_computer = connection.host == "localhost" or connection.host.startswith("127.")
-        any_address = "127.0.0.1" if on_this_computer else "0.0.0.0"
-        self.host = any_address if listen_ip in ANY_ADDRESS else listen_ip
+        self._listen_ip = self.host = listen_ip
 
     @property
     def is_open(self) -> bool:
@@ -82,6 +81,7 @@ class ServingSession:
             BrokerError: If the port is not free.
             RobotUnreachable: If the robot is not there.
         """
+        self.host = listening_address(self._listen_ip, self._connection.host, self._connection.port)
         live = Live(self._on_break)
         robot, generation = self._connection, self._connection.generation
         try:
@@ -149,3 +149,26 @@ class ServingSession:
                 if time.monotonic() >= end or self._down.wait(delay):
                     raise BrokerError(self._broker, f"module {name!r} does not answer: {error}") from error
                 delay = min(2.0 * delay, 0.5)
+
+
+def listening_address(wanted: str, host: str, port: int) -> str:
+    """Address on which to listen for a robot.
+
+    Args:
+        wanted: An own address. Empty: the one that the robot sees, which may be another after a change of networks.
+            `0.0.0.0`: all; but for a robot on this computer the loopback address alone.
+        host: Name or address of the robot.
+        port: TCP port of NAOqi.
+
+    Raises:
+        RobotUnreachable: No network leads to it.
+    """
+    if wanted not in ("", ANY_ADDRESS):
+        return wanted
+    try:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as towards:
+            towards.connect((host, port))  # which sends nothing
+            seen = towards.getsockname()[0]
+    except OSError as error:
+        raise RobotUnreachable(host, port, f"no way leads there: {error}") from error
+    return wanted if wanted and not seen.startswith("127.") else seen

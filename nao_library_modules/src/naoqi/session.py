@@ -64,6 +64,8 @@ class Live:
         with contextlib.suppress(RuntimeError):
             self.session.disconnected.disconnect(self._link)
         self.session.close()
+        if self.start_watch is not None:
+            self.start_watch.end()
 
     def _break(self, _reason: str) -> None:
         self.broken.set()
@@ -83,7 +85,7 @@ class StartWatch:
     def __init__(self, live: Live) -> None:
         """Hear nothing yet."""
         self.has_restarted = False
-        self._live = live
+        self._broken = live.broken
         self._ready = False
         self._subscriber: Any = None
 
@@ -96,8 +98,12 @@ class StartWatch:
     def _on_ready(self, *_: Any) -> None:
         if self._ready:
             self.has_restarted = True
-            self._live.broken.set()
+            self._broken.set()
         self._ready = True
+
+    def end(self) -> None:
+        """Let go of what libqi would keep for ever: it holds this object, and this object holds what libqi has."""
+        self._subscriber = None
 
 
 def watch_starts(live: Live, limit: float) -> None:

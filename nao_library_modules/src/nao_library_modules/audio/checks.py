@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import PurePosixPath
 
-from .errors import BadGoal
-from .field_checks import CONTROL, LONGEST_NAME, require_known, require_text, require_whole
+from ..base.errors import BadGoal
+from ..base.field_checks import CONTROL, LONGEST_NAME, require_known, require_text, require_whole
 
 OUTPUT_RATES = (16000, 22050, 44100, 48000)
 DEVICE_PARAMETERS = ("outputSampleRate", "inputBufferSize")

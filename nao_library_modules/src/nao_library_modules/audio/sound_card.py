@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .audio_checks import check_device_parameter, check_device_setting, check_output_volume
-from .function_chain import checked_by
+from ..functions.chain import checked_by
+from .checks import check_device_parameter, check_device_setting, check_output_volume
 
 DEVICE = "ALAudioDevice"
 DECIMALS = 6

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
-from . import extractor_use
-from .audio_in_heard import Heard
-from .extractor_use import Events as Events
-from .extractor_use import ExtractorUse
+from ..server import extractor_use
+from ..server.extractor_use import Events as Events
+from ..server.extractor_use import ExtractorUse
+from .heard import Heard
 
 DEFAULT_TIMEOUT = 10.0
 """s that functions wait for something to be heard, where a message leaves it to us."""
@@ -21,6 +21,8 @@ class AudioInBase(ExtractorUse):
     """
 
     heard: Heard
+    happened: tuple[float, float]  # of NaoBasic
+    remark: Callable[[str], None]  # of NaoBasic
     tell: Callable[..., None]  # of NaoAudioInput: feedback
 
 
@@ -32,8 +34,3 @@ def subscriber_name(namespace: str) -> str:
 def timeout_of(timeout: float) -> float:
     """How long a function waits, s."""
     return timeout or DEFAULT_TIMEOUT
-
-
-def words_of(pairs: Sequence[tuple[str, float]]) -> tuple[list[str], list[float]]:
-    """Words and their confidences, apart."""
-    return [word for word, _ in pairs], [confidence for _, confidence in pairs]

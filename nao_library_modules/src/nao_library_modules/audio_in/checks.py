@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import math
 import re
 import unicodedata
 from collections.abc import Sequence
 from pathlib import PurePosixPath
 from typing import Any, Protocol
 
-from .audio_checks import DEVICE_PARAMETERS, check_device_setting, require_file
-from .errors import BadGoal
-from .field_checks import require_known, require_number, require_text
+from ..audio.checks import DEVICE_PARAMETERS, check_device_setting, require_file
+from ..base.errors import BadGoal
+from ..base.field_checks import require_known, require_text, require_within
+from ..base.limits import limit
 
 MICROPHONES = ("left", "right", "front", "rear")
 """In the order in which NAOqi has them in recordings."""
@@ -19,9 +19,9 @@ ONE_CHANNEL, ALL_CHANNELS = 16000, 48000
 """Rates in Hz of recordings of one microphone, and of all."""
 DEFAULT_MICROPHONE = "front"
 FILE_TYPES = ("wav", "ogg")
-LONGEST = 3600.0
-"""s, of waits and recordings."""
-MOST_PHRASES = 1000
+TIMEOUT, LENGTH, SHARE, SETTING = limit("timeout"), limit("recording"), limit("share"), limit("setting")
+LONGEST = TIMEOUT.highest
+"""s, of waits."""
 LONGEST_PHRASE = 200
 # What grammars of speech recognisers are written with, and what nobody can say.
 STRANGE = re.compile(r"[<>|{}\[\]()*+=;:#$%^~_@\"/\\\x00-\x1f\x7f]")
@@ -40,24 +40,25 @@ class KnowsLanguages(Protocol):
         """Languages that the robot recognises."""
         ...
 
+    def require_new_file(self, path: str, overwrite: bool) -> None:
+        """Check that no file is replaced unasked."""
+        ...
+
 
 def require_timeout(timeout: float) -> None:
     """Check how long to wait, s; 0 for the default."""
-    require_number("timeout", timeout, 0.0, LONGEST, f"up to {LONGEST:g} s, or 0 for the default")
+    require_within("timeout", timeout, TIMEOUT, f"up to {LONGEST:g} s, or 0 for the default")
 
 
 def require_confidence(confidence: float) -> None:
     """Check the least confidence that counts."""
-    require_number("confidence", confidence, 0.0, 1.0)
+    require_within("confidence", confidence, SHARE)
 
 
 def require_phrases(vocabulary: Sequence[str]) -> list[str]:
     """Words and phrases that can be said, at least one, without blanks around them."""
     if not vocabulary:
         raise BadGoal("vocabulary", [], "at least one word or phrase", problem="it is empty")
-    if len(vocabulary) > MOST_PHRASES:
-        problem = f"{len(vocabulary)} words and phrases are too many"
-        raise BadGoal("vocabulary", len(vocabulary), f"up to {MOST_PHRASES}", problem=problem)
     return [_phrase(phrase) for phrase in vocabulary]
 
 
@@ -119,10 +120,12 @@ def check_recording_begin(
     rate: int,
     channels: Sequence[str],
     file_type: str,
+    overwrite: bool,
     context: dict[str, Any],
 ) -> None:
-    """A file and a format, and no recording that runs."""
-    recording_file(str_param, file_type)
+    """A file that is new or may be replaced, a format, and no recording that runs."""
+    path, _ = recording_file(str_param, file_type)
+    self.require_new_file(path, overwrite)
     recording_format(rate, channels)
     if context.get("recording", self.recording_runs):
         problem = "a recording of this server runs already"
@@ -142,12 +145,12 @@ def check_record(
     channels: Sequence[str],
     file_type: str,
     duration: float,
+    overwrite: bool,
     context: dict[str, Any],
 ) -> None:
     """As startRecording, and a length."""
-    if not (math.isfinite(duration) and 0.0 < duration <= LONGEST):
-        raise BadGoal("duration", duration, f"above 0 to {LONGEST:g} s")
-    check_recording_begin(self, str_param, rate, channels, file_type, context)
+    require_within("duration", duration, LENGTH)
+    check_recording_begin(self, str_param, rate, channels, file_type, overwrite, context)
     context["recording"] = False
 
 
@@ -227,7 +230,7 @@ def check_sensitivity(_self: object, sensitivity: float, str_param: str) -> None
 
 def check_mean(_self: object, duration: float) -> None:
     """How long to look."""
-    require_number("duration", duration, 0.0, LONGEST, f"0..{LONGEST:g} s")
+    require_within("duration", duration, TIMEOUT)
 
 
 def check_setting(_self: object, str_param: str, values: Sequence[float]) -> None:
@@ -235,8 +238,9 @@ def check_setting(_self: object, str_param: str, values: Sequence[float]) -> Non
     name = require_text("str_param", str_param, "the name of a parameter")
     if name in DEVICE_PARAMETERS:
         check_device_setting(_self, name, values)
-    if len(values) != 1 or not math.isfinite(values[0]):
+    if len(values) != 1:
         raise BadGoal("values", list(values), "one number")
+    require_within("values", values[0], SETTING)
 
 
 def check_parameter(_self: object, str_param: str) -> None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .audio_in_recogniser import RecogniserAccess
-from .errors import BadGoal
-from .function_chain import checked_by
+from ..base.errors import BadGoal
+from ..base.field_checks import require_within
+from ..functions.chain import checked_by
+from .checks import SETTING
+from .recogniser import RecogniserAccess
 
 
 def check_name(_self: object, str_param: str) -> None:
@@ -42,13 +44,52 @@ def check_parameter(self: object, str_param: str, vocabulary: Sequence[str], val
     _check_parameter(self, str_param, vocabulary)
     if len(values) != 1:
         raise BadGoal("values", list(values), "the value of the parameter")
+    require_within("values", values[0], SETTING)
+
+
+_check_grammar = _check("file of the grammar, file to write")
+
+
+def check_compile(
+    self: ContextFunctions, str_param: str, vocabulary: Sequence[str], overwrite: bool, context: dict[str, Any]
+) -> None:
+    """A language, a grammar, and a file that is new or may be replaced."""
+    _check_grammar(self, str_param, vocabulary)
+    file, written = vocabulary[1], context.setdefault("grammars", set())
+    self.require_new_file(file, overwrite, "vocabulary")
+    if file in written and not overwrite:
+        problem = f"an earlier function writes {file}"
+        raise BadGoal("vocabulary", file, "another name, or overwrite", problem=problem)
+    written.add(file)
+
+
+def check_new_set(self: ContextFunctions, str_param: str, overwrite: bool, context: dict[str, Any]) -> None:
+    """A name that this server has saved no contexts under, or that may be replaced."""
+    check_name(self, str_param)
+    name, sets = str_param.strip(), context.setdefault("sets", {})
+    if not overwrite and (sets[name] if name in sets else name in self.saved_sets):
+        problem = f"{name!r} is saved already"
+        raise BadGoal("str_param", str_param, "another name, or overwrite", problem=problem)
+    sets[name] = True
+
+
+def check_erased_set(self: object, str_param: str, context: dict[str, Any]) -> None:
+    """A name; it is free then."""
+    check_name(self, str_param)
+    context.setdefault("sets", {})[str_param.strip()] = False
 
 
 class ContextFunctions(RecogniserAccess):
     """Grammars. `str_param` names the context; further names are in `vocabulary`, in NAOqi's order.
 
     What a running recognition would refuse is done in a pause of it. Contexts stay until they are removed.
+
+    Attributes:
+        saved_sets: Names under which this server has saved contexts; NAOqi does not tell which there are.
     """
+
+    saved_sets: set[str]
+    require_new_file: Callable[..., None]  # of RecordingFunctions
 
     def context_functions(self) -> dict[str, Callable[..., Any]]:
         """Name -> function, to be put into the function table of a module."""
@@ -71,9 +112,10 @@ class ContextFunctions(RecogniserAccess):
             "getContextParam": self.get_context_param,
         }
 
-    @checked_by(_check("file of the grammar, file to write"))
-    def compile(self, str_param: str, vocabulary: Sequence[str]) -> None:
+    @checked_by(check_compile)
+    def compile(self, str_param: str, vocabulary: Sequence[str], overwrite: bool) -> None:
         """Check a grammar file (BNF) of a language and write it in the form that `addContext` takes."""
+        self.require_new_file(vocabulary[1], overwrite, "vocabulary")
         self.recogniser("compile", *vocabulary, str_param.strip())
 
     @checked_by(_check("file of the compiled grammar"))
@@ -90,20 +132,22 @@ class ContextFunctions(RecogniserAccess):
         """Forget all contexts."""
         self.idly("removeAllContext")
 
-    @checked_by(check_name)
-    def save_context_set(self, str_param: str) -> None:
-        """Keep the contexts as they are under a name."""
+    @checked_by(check_new_set)
+    def save_context_set(self, str_param: str, overwrite: bool) -> None:
+        """Keep the contexts as they are under a name; `overwrite` replaces those that this server saved."""
         self.recogniser("saveContextSet", str_param.strip())
+        self.saved_sets.add(str_param.strip())
 
     @checked_by(check_name)
     def load_context_set(self, str_param: str) -> None:
         """Put saved contexts in the place of those there are."""
         self.idly("loadContextSet", str_param.strip())
 
-    @checked_by(check_name)
+    @checked_by(check_erased_set)
     def erase_context_set(self, str_param: str) -> None:
         """Forget saved contexts."""
         self.recogniser("eraseContextSet", str_param.strip())
+        self.saved_sets.discard(str_param.strip())
 
     @checked_by(_check("start, active, activatable or slot"))
     def get_rules(self, str_param: str, vocabulary: Sequence[str]) -> list[str]:

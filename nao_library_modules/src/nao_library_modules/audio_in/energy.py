@@ -9,9 +9,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .audio_in_base import AudioInBase
-from .audio_in_checks import MICROPHONES, check_mean
-from .function_chain import checked_by
+from ..functions.chain import checked_by
+from .base import AudioInBase
+from .checks import MICROPHONES, check_mean
 
 log = logging.getLogger(__name__)
 
@@ -29,6 +29,7 @@ class EnergyFunctions(AudioInBase):
     """
 
     device: Callable[..., Any]  # of NaoAudio: a call of ALAudioDevice
+    keep_left: Callable[[], None]  # of NaoAudioInput
     _computing = False  # since enableEnergyComputation of this server
 
     def energy_functions(self) -> dict[str, Callable[..., Any]]:
@@ -72,11 +73,22 @@ class EnergyFunctions(AudioInBase):
         """Have energies computed all the time, also beyond the end of the goal: they are there without a wait."""
         self.begin(DEVICE, "enableEnergyComputation", [], "disableEnergyComputation")
         self._computing = True
+        self.keep_left()
 
     def disable_energy_computation(self) -> None:
         """Have energies computed no longer."""
         self._computing = False
+        self.keep_left()
         self.device("disableEnergyComputation")
+
+    def renew_energy_computation(self) -> None:
+        """Have energies computed again.
+
+        Raises:
+            NaoError: The robot does not answer.
+        """
+        self.call_now(self.robot.proxy(DEVICE), "enableEnergyComputation")
+        self._computing = True
 
     def drop_energy_computation(self) -> None:
         """Switch off what a goal has left on; raises nothing."""

@@ -36,6 +36,19 @@ class Bearing:
 
 
 @dataclass(frozen=True)
+class BegunSound:
+    """A sound that began.
+
+    Attributes:
+        confidence: 0..1.
+        time: When it began, s of the robot; 0 if the robot does not tell.
+    """
+
+    confidence: float
+    time: float
+
+
+@dataclass(frozen=True)
 class LocatedSound:
     """A sound and where it came from.
 
@@ -45,6 +58,7 @@ class LocatedSound:
         head: Where the head was in FRAME_ROBOT, m.
         confidence: 0..1.
         energy: Loudness as the robot reports it; 0 if it does not.
+        time: When it was located, s of the robot.
     """
 
     in_head: Bearing
@@ -52,6 +66,7 @@ class LocatedSound:
     head: Vector
     confidence: float
     energy: float
+    time: float
 
 
 def turned(vector: Vector, angles: Sequence[float]) -> Vector:
@@ -79,28 +94,30 @@ def located_sound(value: Any) -> LocatedSound:
         ValueError: If the value is something else.
     """
     try:
-        _, (azimuth, elevation, confidence, *energy), _, head = value
+        (seconds, microseconds), (azimuth, elevation, confidence, *energy), _, head = value
         in_head = Bearing(float(azimuth), float(elevation))
         x, y, z, *angles = map(float, head)
         in_base = Bearing.of(turned(in_head.vector, angles))
-        return LocatedSound(in_head, in_base, (x, y, z), float(confidence), float(energy[0]) if energy else 0.0)
+        loudness, time = float(energy[0]) if energy else 0.0, float(seconds) + 1e-6 * float(microseconds)
+        return LocatedSound(in_head, in_base, (x, y, z), float(confidence), loudness, time)
     except (TypeError, ValueError) as error:
         raise ValueError(f"no sound that was located: {value!r}") from error
 
 
-def begun_sounds(value: Any) -> list[float]:
-    """Confidences of the sounds that begin in a value of SoundDetected.
+def begun_sounds(value: Any) -> list[BegunSound]:
+    """The sounds that begin in a value of SoundDetected.
 
     Args:
-        value: [[index, type, confidence, time], ...], type 1 for the begin of a sound, 0 for its end; a single one
-            may stand alone.
+        value: [[index, type, confidence, time in us], ...], type 1 for the begin of a sound, 0 for its end; a single
+            one may stand alone.
 
     Raises:
         ValueError: If the value is something else.
     """
     try:
         rows = [value] if value and not isinstance(value[0], (list, tuple)) else value
-        return [float(confidence) for _, kind, confidence, *_ in rows if int(kind) == 1]
+        begun = [(float(confidence), time) for _, kind, confidence, *time in rows if int(kind) == 1]
+        return [BegunSound(confidence, 1e-6 * float(time[0]) if time else 0.0) for confidence, time in begun]
     except (TypeError, ValueError) as error:
         raise ValueError(f"no sounds that were detected: {value!r}") from error
 

@@ -10,8 +10,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .audio_in_base import Events, timeout_of, words_of
-from .audio_in_checks import (
+from ..functions.chain import checked_by
+from .base import Events, timeout_of
+from .checks import (
     check_language,
     check_listen,
     check_pause,
@@ -20,14 +21,16 @@ from .audio_in_checks import (
     check_vocabulary,
     require_phrases,
 )
-from .audio_in_events import recognised
-from .audio_in_recogniser import RECOGNITION, RecogniserAccess
-from .function_chain import checked_by
+from .events import recognised
+from .heard import HeardWord
+from .recogniser import DEAF, HEARS, RECOGNITION, STATUS, RecogniserAccess
+from .times import SPEECH, WordTimes
 
 log = logging.getLogger(__name__)
 
 WORDS = "WordRecognized"
-STATUS = "ALSpeechRecognition/Status"
+LISTENING = "listening"
+"""Status in the feedback: what is said from now on is heard."""
 
 
 @dataclass
@@ -63,6 +66,7 @@ class RecognitionFunctions(RecogniserAccess):
     after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
     vocabulary_is_set = False
     paused = False
+    keep_left: Callable[[], None]  # of NaoAudioInput
     _recognition: Recognition | None = None
 
     def recognition_functions(self) -> dict[str, Callable[..., Any]]:
@@ -90,10 +94,15 @@ class RecognitionFunctions(RecogniserAccess):
     ) -> list[Any]:
         """Wait until something is recognised; answers words and confidences, the best first, nothing if none came."""
         with self._settings_for(vocabulary, word_spotting, str_param.strip()):
-            with self.events_of(WORDS, STATUS) as events, self.subscribed(RECOGNITION, "listen"):
-                words = self._first_words(events, self.clock.now() + timeout_of(timeout), confidence)
+            times = self.word_times()
+            with self.events_of(WORDS, STATUS, *times.events) as events, self.subscribed(RECOGNITION, "listen"):
+                words = self._first_words(events, self.clock.now() + timeout_of(timeout), confidence, times)
+        if words:
+            self.happened = words[0].span
+        else:
+            self.remark(f"nothing recognised within {timeout_of(timeout):g} s")
         self.heard.add_words(words)
-        return [part for pair in words for part in pair]
+        return [part for heard in words for part in (heard.word, heard.confidence)]
 
     @checked_by(check_recognition)
     def start_recognition(self, vocabulary: Sequence[str], word_spotting: bool) -> None:
@@ -113,12 +122,14 @@ class RecognitionFunctions(RecogniserAccess):
                 self._put_back(recognition)
             raise
         self._recognition = recognition
+        self.keep_left()
 
     def stop_recognition(self) -> None:
         """End what startRecognition began, and put back what was set before; no effect if nothing runs."""
         recognition, self._recognition = self._recognition, None
         if recognition is None:
             return
+        self.keep_left()
         with self.ended_by(lambda: self._put_back(recognition), "another vocabulary may be lost"):
             self.stop_extractor(RECOGNITION, "recognition")
 
@@ -127,18 +138,21 @@ class RecognitionFunctions(RecogniserAccess):
         """Set the words and phrases to recognise, for good."""
         self.idly("setVocabulary", require_phrases(vocabulary), word_spotting)
         self.vocabulary_is_set = True
+        self.keep_left()
 
     @checked_by(check_pause)
     def pause(self) -> None:
         """Recognise nothing for the time being, whoever wants it; until `resume` or the end of the server."""
         self.begin(RECOGNITION, "pause", [True], "pause", False)
         self.paused = True
+        self.keep_left()
 
     @checked_by(check_resume)
     def resume(self) -> None:
         """Recognise again."""
         self.recogniser("pause", False)
         self.paused = False
+        self.keep_left()
 
     @checked_by(check_language)
     def set_language(self, str_param: str, revert: bool) -> None:
@@ -182,6 +196,28 @@ class RecognitionFunctions(RecogniserAccess):
         except NaoError as error:
             log.warning("the speech recognition is not as it was: %s", error)
 
+    def take_up_recognition(self, recognition: Recognition) -> None:
+        """Go on with a recognition that this node had left running before it died.
+
+        Raises:
+            NaoError: The robot does not answer.
+        """
+        if recognition.told:
+            self.events.subscribe(WORDS)
+        if recognition.vocabulary:
+            self.idly_now("setVocabulary", recognition.vocabulary, recognition.word_spotting)
+        self.call_now(self.robot.proxy(RECOGNITION), "subscribe", self.subscriber_for("recognition"))
+        self._recognition = recognition
+
+    def pause_again(self) -> None:
+        """Be paused as this node was before it died.
+
+        Raises:
+            NaoError: The robot does not answer.
+        """
+        self.call_now(self.robot.proxy(RECOGNITION), "pause", True)
+        self.paused = True
+
     def renew_recognition(self) -> None:
         """Begin again what a goal left running: the robot behind a new connection may know nothing of it."""
         recognition = self._recognition
@@ -202,22 +238,36 @@ class RecognitionFunctions(RecogniserAccess):
 
     # Inside
 
-    def _first_words(self, events: Events, end: float, confidence: float) -> list[tuple[str, float]]:
-        for name, value in events.until(end):
-            if name == STATUS:
-                self.tell(str(value))
-                continue
-            try:
-                words = recognised(value)
-            except ValueError as error:
-                log.warning("%s", error)
-                continue
-            if words:
-                self.tell(WORDS, *words_of(words))
-            words = [(word, sure) for word, sure in words if sure >= confidence]
-            if words:
-                return words
+    def _first_words(self, events: Events, end: float, confidence: float, times: WordTimes) -> list[HeardWord]:
+        hears = self.hears()
+        if hears:
+            self.tell(LISTENING)
+        for event in events.until(end):
+            if event.name == STATUS:
+                when = self.event_time(event)
+                self.tell(str(event.value), stamp=when)
+                if event.value in HEARS and not hears:
+                    self.tell(LISTENING, stamp=when)
+                hears = (hears or event.value in HEARS) and event.value not in DEAF
+            elif event.name == SPEECH:
+                times.note(event)
+            else:
+                words = self._heard_words(event.value, times)
+                if words:
+                    self.tell(WORDS, words, words[0].span.onset or self.event_time(event))
+                words = [heard for heard in words if heard.confidence >= confidence]
+                if words:
+                    return words
         return []
+
+    def _heard_words(self, value: Any, times: WordTimes) -> list[HeardWord]:
+        try:
+            words = recognised(value)
+        except ValueError as error:
+            log.warning("%s", error)
+            return []
+        spans = times.of(value, len(words)) if words else []
+        return [HeardWord(word, confidence, span) for (word, confidence), span in zip(words, spans)]
 
     @contextmanager
     def _settings_for(self, vocabulary: Sequence[str], word_spotting: bool, language: str) -> Iterator[None]:

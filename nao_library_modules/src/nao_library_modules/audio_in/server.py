@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from nao_library_actions.msg import NaoAudioInAction
 from naoqi.errors import NaoError
 
-from .answers import Outcome
-from .audio import NaoAudio
-from .audio_checks import DEVICE_PARAMETERS
-from .audio_in_base import subscriber_name
-from .audio_in_checks import SENSES, check_parameter, check_setting
-from .audio_in_contexts import ContextFunctions
-from .audio_in_energy import EnergyFunctions
-from .audio_in_heard import Heard
-from .audio_in_recognition import RECOGNITION, RecognitionFunctions
-from .audio_in_recording import RecordingFunctions
-from .audio_in_sounds import SoundFunctions
-from .function_chain import checked_by
-from .launcher import LaunchPath
-from .nao_basic import NaoBasic
+from ..audio.checks import DEVICE_PARAMETERS
+from ..audio.sound_card import NaoAudio
+from ..base.answers import Outcome
+from ..functions.chain import checked_by
+from ..processes.launcher import LaunchPath
+from ..server.nao_basic import NaoBasic
+from .base import subscriber_name
+from .checks import SENSES, check_parameter, check_setting
+from .contexts import ContextFunctions
+from .energy import EnergyFunctions
+from .heard import Heard, HeardWord, times_of
+from .recognition import RECOGNITION, Recognition, RecognitionFunctions
+from .recording import Recording, RecordingFunctions
+from .sounds import SoundFunctions
 
 log = logging.getLogger(__name__)
 
@@ -47,7 +50,9 @@ class NaoAudioInput(
         frame_prefix: Prefix of the robot's frames, with its slash; may be empty.
 
     ROS API:
-        Action `nao_audio_in` (nao_library_actions/NaoAudioInAction) and what NaoBasic offers.
+        Action `nao_audio_in` (nao_library_actions/NaoAudioInAction) and what NaoBasic offers. Parameters `~robot_home`:
+        as the constructor takes it; `~speech_onset_delay` and `~speech_end_delay` (0 s, up to 1): how much later than
+        the speech the robot's event SpeechDetected says that it began and ended; a simulated robot needs neither.
     """
 
     typed_answers = frozenset(
@@ -66,8 +71,16 @@ class NaoAudioInput(
         }
     )
 
+    left_by_goals = frozenset({"vocabulary_is_set", "paused", "recording_runs", "saved_sets"})
+
     def __init__(
-        self, ip: str, port: int, autostart: bool = False, launchpath: LaunchPath | None = None, **options: Any
+        self,
+        ip: str,
+        port: int,
+        autostart: bool = False,
+        launchpath: LaunchPath | None = None,
+        robot_home: str = "",
+        **options: Any,
     ) -> None:
         """Start the server.
 
@@ -76,13 +89,21 @@ class NaoAudioInput(
             port: Port of its NAOqi.
             autostart: As NaoBasic takes it.
             launchpath: As NaoBasic takes it.
+            robot_home: Folder of this computer that is the home of the robot's user, as the `record_dir` of a simulated
+                robot is; "~" stands for the home of this computer's user. Empty: it is on the robot alone.
             options: As NaoBasic takes them.
         """
+        self._taking_up = threading.Lock()
         super().__init__(ip, port, autostart, launchpath, **options)
         self.heard = Heard()
+        self.robot_home = Path(robot_home).expanduser().absolute() if robot_home else None
+        self.speech_onset_delay = self._edge.seconds("speech_onset_delay", 0.0)
+        self.speech_end_delay = self._edge.seconds("speech_end_delay", 0.0)
         self.subscriber = subscriber_name(str(self._edge.namespace))
         self.frame_prefix = self._edge.frame_prefix()
+        self.saved_sets = set()
         self._took_over = False
+        self._left = self.kept.load()
         for functions in (
             self.audio_functions(),
             self.recording_functions(),
@@ -94,6 +115,8 @@ class NaoAudioInput(
         ):
             self.function_table.update(functions)
         self.serve("nao_audio_in", NaoAudioInAction)
+        if self._left:
+            self.robot.connection.in_background(self._take_up)
 
     # Functions that two of NAOqi's modules have
 
@@ -122,31 +145,37 @@ class NaoAudioInput(
     def begin_chain(self) -> None:
         """Forget what the last chain heard."""
         self.heard = Heard()
+        self._take_up()
         if not self._took_over:
             self._took_over = self._end_leftovers()
 
-    def tell(self, status: str, words: Sequence[str] = (), confidences: Sequence[float] = ()) -> None:
+    def tell(self, status: str, words: Sequence[HeardWord] = (), stamp: float | None = None) -> None:
         """Publish what is heard meanwhile. Called from the thread that executes goals.
 
         Args:
             status: What the robot is doing.
             words: What was heard last.
-            confidences: 0..1, one a word.
+            stamp: ROS time at which it was so, s; None: now.
         """
-        self.publish_feedback(status=status, words=list(words), confidences=list(confidences))
+        onsets, ends = times_of([heard.span for heard in words])
+        self.publish_feedback(
+            stamp=stamp,
+            status=status,
+            words=[heard.word for heard in words],
+            confidences=[heard.confidence for heard in words],
+            onsets=onsets,
+            ends=ends,
+        )
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add what was heard."""
         super().fill_result(result, outcomes)
         self.heard.fill(result)
 
-    def shut_down(self) -> None:
-        """As NaoBasic does; what goals have left going ends."""
-        super().shut_down()
-        if self.robot.connection.state == "connected":
-            self.drop_recording()
-            self.drop_recognition()
-            self.drop_energy_computation()
+    def shutdown_steps(self) -> list[Callable[[], Any]]:
+        """As NaoBasic has them; what goals have left going ends."""
+        left = (self.drop_recording, self.drop_recognition, self.drop_energy_computation)
+        return [*super().shutdown_steps(), *map(self.with_robot, left)]
 
     def _end_leftovers(self) -> bool:
         """End what a server of this name could not end, for it was killed; tells whether the robot was asked."""
@@ -160,7 +189,45 @@ class NaoAudioInput(
                 log.debug("%s may work for nobody: %s", module, error)
         return self.robot.connection.state == "connected"
 
+    # After the death of the node
+
+    _left: dict[str, Any] | None = None  # what goals had left going, which is not taken up yet
+
+    def keep_left(self) -> None:
+        """Keep what goals have left going."""
+        self.kept.save(
+            {
+                "recording": self._recording and asdict(self._recording),
+                "recognition": self._recognition and asdict(self._recognition),
+                "paused": self.paused,
+                "vocabulary_is_set": self.vocabulary_is_set,
+                "computing": self._computing,
+            }
+        )
+
+    def _take_up(self) -> None:
+        """Go on with what the goals of this node had left going before it died, as soon as the robot is there."""
+        with self._taking_up:
+            if not self._left or self.robot.connection.state != "connected":
+                return
+            left, self._left = self._left, None
+            self._took_over = self._end_leftovers()
+            self.vocabulary_is_set = bool(left.get("vocabulary_is_set"))
+            for name, take_up in (
+                ("recording", lambda told: self.renew_recording(Recording(**told))),
+                ("recognition", lambda told: self.take_up_recognition(Recognition(**told))),
+                ("paused", lambda _: self.pause_again()),
+                ("computing", lambda _: self.renew_energy_computation()),
+            ):
+                try:
+                    if left.get(name):
+                        take_up(left[name])
+                except (NaoError, TypeError) as error:
+                    log.warning("%s of the server that died does not go on: %s", name, error)
+            self.keep_left()
+
     def _connection_changed(self, *args: Any) -> None:
         super()._connection_changed(*args)
+        self._take_up()
         if self.robot.connection.state == "connected" and self.robot.connection.generation > 1:
             self.renew_recognition()

@@ -8,11 +8,13 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .audio_in_base import AudioInBase, timeout_of
-from .audio_in_checks import SENSES, check_detection, check_localization, check_sensitivity
-from .audio_in_events import LocatedSound, begun_sounds, located_sound
-from .audio_in_heard import sound_message
-from .function_chain import checked_by
+from ..functions.chain import checked_by
+from ..robot.robot_clock import same_clock
+from ..server.extractor_use import Event
+from .base import AudioInBase, timeout_of
+from .checks import SENSES, check_detection, check_localization, check_sensitivity
+from .events import LocatedSound, begun_sounds, located_sound
+from .heard import sound_message
 
 log = logging.getLogger(__name__)
 
@@ -37,12 +39,13 @@ class SoundFunctions(AudioInBase):
         """Wait for a sound to begin; answers its confidence and after how long it came (s), nothing if none did."""
         with self.events_of(DETECTED) as events, self.subscribed(SENSES["detection"], "detect"):
             began = self.clock.now()
-            for _, value in events.until(began + timeout_of(timeout)):
-                sounds = [found for found in _parsed(begun_sounds, value, []) if found >= confidence]
+            for event in events.until(began + timeout_of(timeout)):
+                sounds = [sound for sound in _parsed(begun_sounds, event.value, []) if sound.confidence >= confidence]
                 if sounds:
-                    now = self.clock.now()
-                    self.heard.sounds.append(sound_message(now, self.frame_prefix, sounds[0]))
-                    return [sounds[0], max(0.0, now - began)]
+                    sure, when = sounds[0].confidence, self._told_time(sounds[0].time, event)
+                    self._note(when, sure)
+                    return [sure, max(0.0, when - began)]
+        self._remark_silence(timeout)
         return []
 
     @checked_by(check_localization)
@@ -56,19 +59,20 @@ class SoundFunctions(AudioInBase):
         best: LocatedSound | None = None
         when = 0.0
         with self.events_of(LOCATED) as events, self.subscribed(module, "localize"):
-            for _, value in events.until(self.clock.now() + timeout_of(timeout)):
-                sound = _parsed(located_sound, value, None)
+            for event in events.until(self.clock.now() + timeout_of(timeout)):
+                sound = _parsed(located_sound, event.value, None)
                 if sound is not None and sound.confidence >= confidence:
-                    best, when = sound, self.clock.now()
+                    best, when = sound, self._told_time(sound.time, event)
                     break
             if best is not None and duration > 0.0:
-                for _, value in events.until(when + duration):
-                    sound = _parsed(located_sound, value, None)
+                for later in events.until(event.arrived + duration):
+                    sound = _parsed(located_sound, later.value, None)
                     if sound is not None and sound.confidence > best.confidence:
-                        best, when = sound, self.clock.now()
+                        best, when = sound, self._told_time(sound.time, later)
         if best is None:
+            self._remark_silence(timeout)
             return []
-        self.heard.sounds.append(sound_message(when, self.frame_prefix, best.confidence, best))
+        self._note(when, best.confidence, best)
         head, base = best.in_head, best.in_base
         return [head.azimuth, head.elevation, best.confidence, base.azimuth, base.elevation]
 
@@ -77,6 +81,18 @@ class SoundFunctions(AudioInBase):
         """Make speech recognition, sound detection or localization more or less sensitive; all if none is named."""
         for sense in [str_param.strip()] if str_param.strip() else SENSES:
             self.call(self.robot.proxy(SENSES[sense]), "setParameter", "Sensitivity", float(sensitivity))
+
+    def _told_time(self, robot_time: float, event: Event) -> float:
+        """ROS time of a time in an event, s; that of the event itself where the time is of another clock."""
+        raised, told = self.event_time(event), self.robot_clock.ros_time(self.call, robot_time)
+        return told if same_clock(told, raised) else raised
+
+    def _note(self, when: float, confidence: float, sound: LocatedSound | None = None) -> None:
+        self.happened = (when, 0.0)
+        self.heard.sounds.append(sound_message(when, self.frame_prefix, confidence, sound))
+
+    def _remark_silence(self, timeout: float) -> None:
+        self.remark(f"no sound within {timeout_of(timeout):g} s")
 
 
 def _parsed(parse: Callable[[Any], Any], value: Any, nothing: Any) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .errors import BadGoal
+from ..base.errors import BadGoal
 
 
 class FileNotes:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .audio import decimal
-from .audio_out_files import FileNotes, LoadedSounds
-from .audio_out_player_checks import (
+from ..audio.sound_card import decimal
+from ..base.errors import Preempted
+from ..functions.chain import checked_by
+from .files import FileNotes, LoadedSounds
+from .player_checks import (
     check_go_to,
     check_load,
     check_loaded,
@@ -28,10 +30,8 @@ from .audio_out_player_checks import (
     check_volume,
     check_volume_of,
 )
-from .audio_out_sounds import PLAYER, Sounds
-from .audio_out_voices import SPEECH
-from .errors import Preempted
-from .function_chain import checked_by
+from .sounds import PLAYER, Sounds
+from .voices import SPEECH
 
 
 class PlayerFunctions(Sounds):
@@ -297,11 +297,11 @@ class PlayerFunctions(Sounds):
         """Play something, and note how long it was to be heard, unless it could not be played."""
         began = self.clock.now()
         try:
-            self.sound(PLAYER, method, *args, duration=duration, background=background)
+            sounded = self.sound(PLAYER, method, *args, duration=duration, background=background)
         except Preempted:
             self.files.note(name, self.clock.now() - began)
             raise
-        self.files.note(name, 0.0 if background else self.clock.now() - began)
+        self.files.note(name, sounded)
 
     def _number(self, sound_id: int, name: str) -> int:
         """Id of a sound: given, of a file that is loaded, or of the one loaded last."""

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any, Protocol
 from urllib.parse import urlsplit
 
-from .audio_checks import require_file
-from .audio_out_files import LoadedSounds
-from .errors import BadGoal
-from .field_checks import CONTROL, require_number, require_text, require_whole
-from .suggestion import did_you_mean
+from ..audio.checks import require_file
+from ..base.errors import BadGoal
+from ..base.field_checks import CONTROL, require_number, require_text, require_whole, require_within, require_zero_or
+from ..base.limits import limit
+from ..base.suggestion import did_you_mean
+from .files import LoadedSounds
 
 SOUND_FILES = (".wav", ".ogg", ".flac", ".mp3")
 STREAMS = ("http", "https")
-LONGEST = 3600.0
-"""s."""
-TONES = (20, 20000)
-"""Hz."""
+LENGTH, SHARE, SETTING, TONE = limit("recording"), limit("share"), limit("setting"), limit("tone")
 
 
 class Plays(Protocol):
@@ -30,12 +27,12 @@ class Plays(Protocol):
 
 def require_seconds(field: str, value: float) -> float:
     """A time that is not absurd, s."""
-    return require_number(field, value, 0.0, LONGEST, f"0..{LONGEST:g} s")
+    return require_zero_or(field, value, LENGTH)
 
 
 def _check_sound(volume: float, pan: float, duration: float, background: bool) -> None:
     """How loud a sound is, and how long."""
-    require_number("volume", volume, 0.0, 1.0)
+    require_within("volume", volume, SHARE)
     require_number("pan", pan, -1.0, 1.0, "-1 (left) .. 1 (right)")
     require_seconds("duration", duration)
     if background and duration > 0.0:
@@ -61,12 +58,11 @@ def check_play_from(
 
 def check_sine(_self: object, frequency: float, volume: float, pan: float, duration: float) -> None:
     """A tone that can be heard."""
-    require_whole("frequency", frequency, *TONES, " (Hz)")
-    require_number("volume", volume, 0.0, 1.0)
+    require_whole("frequency", frequency, TONE.lowest, TONE.highest, " (Hz)")
+    require_within("volume", volume, SHARE)
     if pan not in (-1.0, 0.0, 1.0):
         raise BadGoal("pan", pan, "-1 (left), 0 or 1 (right)")
-    if not 0.0 < duration <= LONGEST:
-        raise BadGoal("duration", duration, f"more than 0 to {LONGEST:g} s")
+    require_within("duration", duration, LENGTH)
 
 
 def check_stream(_self: object, str_param: str, volume: float, pan: float, duration: float, background: bool) -> None:
@@ -139,15 +135,14 @@ def check_go_to(self: Plays, sound_id: int, str_param: str, position: float, con
 def check_pitch(self: Plays, sound_id: int, str_param: str, pitch: float, context: dict[str, Any]) -> None:
     """A sound that is loaded, and its level of pitch."""
     check_loaded(self, sound_id, str_param, context)
-    if not math.isfinite(pitch):
-        raise BadGoal("pitch", pitch, "a level as setPitch of ALAudioPlayer takes it")
+    require_within("pitch", pitch, SETTING)
 
 
 def check_volume(self: Plays, sound_id: int, str_param: str, volume: float, context: dict[str, Any]) -> None:
     """A volume; of a sound that is loaded, if one is named."""
     if sound_id or str_param.strip():
         check_loaded(self, sound_id, str_param, context)
-    require_number("volume", volume, 0.0, 1.0)
+    require_within("volume", volume, SHARE)
 
 
 def check_volume_of(self: Plays, sound_id: int, str_param: str, context: dict[str, Any]) -> None:
@@ -158,7 +153,7 @@ def check_volume_of(self: Plays, sound_id: int, str_param: str, context: dict[st
 
 def check_share(_self: object, volume: float) -> None:
     """A volume 0..1."""
-    require_number("volume", volume, 0.0, 1.0)
+    require_within("volume", volume, SHARE)
 
 
 def check_panorama(_self: object, pan: float) -> None:

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from nao_library_actions.msg import NaoAudioOutAction
 from naoqi.errors import NaoError
 
-from .answers import Outcome
-from .audio import DEVICE
-from .audio_out_files import FileNotes, LoadedSounds
-from .audio_out_player import PlayerFunctions
-from .audio_out_speech import SpeechFunctions
-from .audio_out_voices import Voices
-from .audio_out_words import SpokenWords
-from .launcher import LaunchPath
-from .memory_functions import MEMORY
-from .nao_basic import NaoBasic
+from ..audio.sound_card import DEVICE
+from ..base.answers import Outcome
+from ..processes.launcher import LaunchPath
+from ..server.nao_basic import NaoBasic
+from .files import FileNotes, LoadedSounds
+from .player import PlayerFunctions
+from .speech import SpeechFunctions
+from .voices import Voices
+from .words import SpokenWords
 
 log = logging.getLogger(__name__)
 
@@ -41,6 +40,8 @@ class NaoAudioOutput(NaoBasic, SpeechFunctions, PlayerFunctions):
         Action `nao_audio_out` (nao_library_actions/NaoAudioOutAction) and what NaoBasic offers.
     """
 
+    left_by_goals = frozenset({"loaded"})
+
     def __init__(
         self, ip: str, port: int, autostart: bool = False, launchpath: LaunchPath | None = None, **options: Any
     ) -> None:
@@ -56,7 +57,7 @@ class NaoAudioOutput(NaoBasic, SpeechFunctions, PlayerFunctions):
         super().__init__(ip, port, autostart, launchpath, **options)
         self.start_sounds()
         self.voices = Voices(self.robot, self.call)
-        self.words = SpokenWords(lambda: self.robot.proxy(MEMORY), self._tell_word)
+        self.words = SpokenWords(self.robot, self.clock, self.robot_clock, self.call, self._tell_word)
         self.loaded = LoadedSounds(self.robot.connection)
         self.files = FileNotes()
         self._memory_functions = frozenset(self.function_table)
@@ -82,6 +83,12 @@ class NaoAudioOutput(NaoBasic, SpeechFunctions, PlayerFunctions):
 
     # The life of a goal
 
+    def view_for_checks(self) -> Any:
+        """As NaoBasic gives it; with voices of its own, which may be asked for while a goal runs."""
+        view = super().view_for_checks()
+        view.voices = Voices(self.robot, self.call)
+        return view
+
     def begin_chain(self) -> None:
         """Forget what the last chain did; what it left in the background sounds on."""
         self.files = FileNotes()
@@ -104,18 +111,15 @@ class NaoAudioOutput(NaoBasic, SpeechFunctions, PlayerFunctions):
             except NaoError as error:
                 log.debug("the output volume is not known: %s", error)  # the chain is done all the same
 
-    def shut_down(self) -> None:
-        """As NaoBasic does; and nothing sounds any more that goals have left in the background."""
-        super().shut_down()
-        self.words.close()
-        if self.robot.connection.state == "connected":
-            self.silence()
+    def shutdown_steps(self) -> list[Callable[[], Any]]:
+        """As NaoBasic has them; and nothing sounds any more that goals have left in the background."""
+        return [*super().shutdown_steps(), self.words.close, self.with_robot(self.silence)]
 
     # Inside
 
-    def _tell_word(self, word: str, sentence: str) -> None:
+    def _tell_word(self, word: str, sentence: str, when: float) -> None:
         """Called from a thread of libqi."""
-        self.publish_feedback(word=word, sentence=sentence)
+        self.publish_feedback(stamp=when, word=word, sentence=sentence)
 
     def _connection_changed(self, *args: Any) -> None:
         super()._connection_changed(*args)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .audio import NaoAudio, decimal
-from .audio_checks import DEVICE_PARAMETERS
-from .audio_out_speech_checks import (
+from ..audio.checks import DEVICE_PARAMETERS
+from ..audio.sound_card import NaoAudio, decimal
+from ..functions.chain import checked_by
+from .speech_checks import (
     check_default_voice,
     check_deletion,
     check_language,
@@ -17,8 +18,7 @@ from .audio_out_speech_checks import (
     check_voice,
     check_word,
 )
-from .audio_out_voices import SPEECH, Voices
-from .function_chain import checked_by
+from .voices import SPEECH, Voices
 
 
 class VoiceFunctions(NaoAudio):

@@ -10,15 +10,19 @@ from typing import Any
 
 from naoqi.errors import CallCanceled, NaoError
 
-from .audio import NaoAudio
-from .audio_out_voices import SPEECH
-from .interrupt import Interrupt
-from .robot import QUICK_ANSWER
-from .robot_task import end_call, wait_for_call
+from ..audio.sound_card import NaoAudio
+from ..base.interrupt import Interrupt
+from ..robot.robot import QUICK_ANSWER
+from ..robot.robot_clock import RobotClock
+from ..robot.robot_task import end_call, wait_for_call
+from ..server.simulated_keys import SimulatedKey
+from .voices import SPEECH
 
 log = logging.getLogger(__name__)
 
 PLAYER, ANIMATED = "ALAudioPlayer", "ALAnimatedSpeech"
+TIMES = "NaoSimulation/SoundTimes"
+"""A key of simulated robots: [onset, end] of the sound that ALAudioPlayer played last, s of the robot."""
 # Modules that have no `stopAll`, and the one whose it is.
 SILENCED_BY = {ANIMATED: SPEECH}
 FALSE_START = 0.05
@@ -46,9 +50,12 @@ class Sounds(NaoAudio):
 
     interrupt: Interrupt  # of NaoBasic
     clock: Any  # of NaoBasic
+    happened: tuple[float, float]  # of NaoBasic
+    robot_clock: RobotClock  # of NaoBasic
 
     def start_sounds(self) -> None:
         """Nothing sounds yet: for the constructor of the module."""
+        self._player_times = SimulatedKey(self.robot, TIMES)
         self._lock = threading.Lock()  # guards the two lists
         self._begun: list[Sounding] = []  # in the background, by this chain
         self._left: list[Sounding] = []  # by chains that succeeded
@@ -94,7 +101,10 @@ class Sounds(NaoAudio):
             self.interrupt.check()
         else:
             call.result(timeout=0)
-        return max(0.0, self.clock.now() - began)
+        ended = max(began, self.clock.now())
+        if module == PLAYER:
+            began, ended = self.happened = self._played(began, ended)
+        return ended - began
 
     def wait_for_sounds(self) -> None:
         """Wait until nothing sounds that goals of this server have left in the background.
@@ -132,6 +142,13 @@ class Sounds(NaoAudio):
         self._silence(sounding)
 
     # Inside
+
+    def _played(self, began: float, ended: float) -> tuple[float, float]:
+        """When a sound was played, ROS times, s: no robot tells that, so its call counts, with what loading takes."""
+        onset = offset = 0.0
+        if self._player_times.known(self.call):
+            onset, offset = self._player_times.span(self.call, self.robot_clock, began)
+        return onset or began, offset or ended
 
     def _background(self) -> list[Sounding]:
         with self._lock:

@@ -9,11 +9,13 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .audio import decimal
-from .audio_out_files import FileNotes
-from .audio_out_settings import VoiceFunctions
-from .audio_out_sounds import ANIMATED, PLAYER, Sounds
-from .audio_out_speech_checks import (
+from ..audio.sound_card import decimal
+from ..base.errors import BadGoal
+from ..functions.chain import checked_by
+from .files import FileNotes
+from .settings import VoiceFunctions
+from .sounds import ANIMATED, PLAYER, Sounds
+from .speech_checks import (
     check_animated_say,
     check_body_language,
     check_package,
@@ -22,9 +24,8 @@ from .audio_out_speech_checks import (
     check_say_to_file,
     check_tag,
 )
-from .audio_out_voices import SPEECH
-from .audio_out_words import SpokenWords
-from .function_chain import checked_by
+from .voices import SPEECH
+from .words import SpokenWords
 
 log = logging.getLogger(__name__)
 
@@ -104,9 +105,11 @@ class SpeechFunctions(VoiceFunctions, Sounds):
         volume: float,
         speed: float,
         pitch: float,
+        overwrite: bool,
     ) -> float:
         """Write a text as speech to a file, unheard; answers how long it is, s, 0 if the robot does not tell."""
         file = file_name.strip()
+        self.require_new_file(file, overwrite)  # which an earlier function may have written
         with self._spoken_with(language, voice, volume):
             self.sound(SPEECH, "sayToFile", _tagged(str_param, speed, pitch), file)
         duration = self._length(file)
@@ -156,8 +159,10 @@ class SpeechFunctions(VoiceFunctions, Sounds):
             said = self.words.begin()
             self.sound(module, method, *args, background=True, ended=lambda: self.words.end(said))
         else:
+            began = self.clock.now()
             with self.words.told():
                 self.sound(module, method, *args)
+            self.happened = self.words.span(began)
 
     @contextmanager
     def _spoken_with(self, language: str, voice: str, volume: float) -> Iterator[None]:
@@ -189,6 +194,23 @@ class SpeechFunctions(VoiceFunctions, Sounds):
                 if not quietly:
                     raise
                 log.warning("clean-up failed: %s", error)
+
+    def require_new_file(self, file: str, overwrite: bool) -> None:
+        """Check that a text replaces no sound file of the robot unasked.
+
+        Raises:
+            BadGoal: There is such a file.
+        """
+        if overwrite:
+            return
+        player = self.robot.proxy(PLAYER)
+        try:
+            sound = self.call(player, "loadFile", file)
+        except NaoError:  # there is none that could be played
+            return
+        self.call_now(player, "unloadFile", sound)
+        problem = f"{file} is there already, in the robot's folder"
+        raise BadGoal("file_name", file, "another name, or overwrite", problem=problem)
 
     def _length(self, file: str) -> float:
         """Length of a file on the robot, s; 0 if the robot does not tell."""

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from .audio_checks import DEVICE_PARAMETERS, check_device_setting, require_file
-from .audio_out_voices import Voices
-from .errors import BadGoal
-from .field_checks import require_known, require_number, require_text
+from ..audio.checks import DEVICE_PARAMETERS, check_device_setting, require_file
+from ..base.errors import BadGoal
+from ..base.field_checks import require_known, require_number, require_text, require_within
+from ..base.limits import limit
+from .voices import Voices
 
-SPEED, PITCH = (50.0, 400.0), (50.0, 200.0)
+SPEED, PITCH = limit("speech rate")[:2], limit("speech pitch")[:2]
 """%, 100 is normal."""
 BODY_LANGUAGE = ("disabled", "random", "contextual")
 # Ranges of the robot; the effects are off with 0.
@@ -33,11 +34,12 @@ class Speaks(Protocol):
     """The module, as far as the checks need it."""
 
     voices: Voices
+    require_new_file: Callable[[str, bool], None]
 
 
 def require_volume(volume: float) -> float:
     """A volume 0..1."""
-    return require_number("volume", volume, 0.0, 1.0)
+    return require_within("volume", volume, limit("share"))
 
 
 def _check_speech(
@@ -111,9 +113,11 @@ def check_say_to_file(
     volume: float,
     speed: float,
     pitch: float,
+    overwrite: bool,
 ) -> None:
     """A text, how it is spoken, and the file to write."""
     require_file("file_name", file_name, (".wav",))
+    self.require_new_file(file_name.strip(), overwrite)
     _check_speech(self, str_param, language, voice, volume, speed, pitch)
 
 

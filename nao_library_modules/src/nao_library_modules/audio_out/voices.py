@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .field_checks import require_known
+from ..base.field_checks import require_known
 
 SPEECH = "ALTextToSpeech"
 

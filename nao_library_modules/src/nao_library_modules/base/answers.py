@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 _SCALARS = (bool, int, float)
+LONGEST_NUMBER = 40
+"""Digits of a whole number; the robot knows those of 10."""
 
 
 @dataclass(frozen=True)
@@ -19,6 +21,8 @@ class Outcome:
         values: Its answers as strings.
         elapsed: s it took, without the wait after it.
         error: Why it failed; empty if it did not.
+        began: ROS time of its begin, s.
+        happened: ROS times, s, at which what it waited for or did in the world began and ended; 0: not known.
     """
 
     position: int
@@ -26,6 +30,8 @@ class Outcome:
     values: list[str]
     elapsed: float
     error: str = ""
+    began: float = 0.0
+    happened: tuple[float, float] = (0.0, 0.0)
 
 
 def text_of(value: Any) -> str:
@@ -46,6 +52,24 @@ def json_of(value: Any) -> str:
         return json.dumps(value, default=_plain, allow_nan=False)
     except ValueError:  # Python would write NaN and Infinity, which other languages do not read
         return json.dumps(json.loads(json.dumps(value, default=_plain), parse_constant=lambda _: None))
+
+
+def value_of_json(text: str) -> Any:
+    """The value of a text.
+
+    Raises:
+        ValueError: It is no JSON, is nested too deep, or has a whole number that no robot knows.
+    """
+    try:
+        return json.loads(text, parse_int=_whole)
+    except RecursionError:
+        raise ValueError("it is nested too deep") from None
+
+
+def _whole(digits: str) -> int:
+    if len(digits) > LONGEST_NUMBER:
+        raise ValueError(f"a whole number has {len(digits)} digits")
+    return int(digits)
 
 
 def _plain(value: Any) -> Any:

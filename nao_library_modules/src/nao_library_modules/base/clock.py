@@ -8,7 +8,13 @@ from .interrupt import Interrupt
 
 
 class WallClock:
-    """Time of the computer."""
+    """Time of the computer.
+
+    Attributes:
+        simulated: Whether it is the time of a simulation.
+    """
+
+    simulated = False
 
     def now(self) -> float:
         """Seconds since some fixed moment; never goes backwards."""

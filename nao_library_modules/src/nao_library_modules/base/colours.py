@@ -59,6 +59,15 @@ def parse_colour(text: str, field: str = "str_param") -> Colour:
     return from_integer(int(match.group(1), 16))
 
 
+def is_colour(text: str) -> bool:
+    """Whether a text is a colour."""
+    try:
+        parse_colour(text)
+    except BadGoal:
+        return False
+    return True
+
+
 def from_integer(rgb: int) -> Colour:
     """A colour from 0x00RRGGBB."""
     return ((rgb >> 16 & 0xFF) / 255.0, (rgb >> 8 & 0xFF) / 255.0, (rgb & 0xFF) / 255.0)

@@ -55,7 +55,8 @@ class BadGoal(NaoError):  # noqa: N818  named like the errors of the proxy layer
             allowed: What it may hold, in words.
             problem: What is wrong, where "<value> is not allowed" says too little.
         """
-        super().__init__(f"field {field}: {problem or f'{value!r} is not allowed'}: {allowed}")
+        problem = problem or f"{value!r} is not allowed"
+        super().__init__(f"field {field}: {problem}{';' if problem.endswith('?') else ':'} {allowed}")
         self.field = field
         self.value = value
         self.allowed = allowed
@@ -70,7 +71,7 @@ class UnknownFunction(NaoError):  # noqa: N818  named like the errors of the pro
     """
 
     def __init__(self, name: str, known: Iterable[str], server: str = "") -> None:
-        """Compose the text: the closest names, and where all are to be seen; all of them if none is close.
+        """Compose the text: the closest names, and where all are to be seen, or all of them where there is no server.
 
         Args:
             name: The name that was asked for.
@@ -80,7 +81,7 @@ class UnknownFunction(NaoError):  # noqa: N818  named like the errors of the pro
         self.name = name
         self.known = sorted(known)
         hint = did_you_mean(name, self.known)
-        rest = f"`nao list {server} --all` tells all" if hint and server else f"known are {', '.join(self.known)}"
+        rest = f"`nao list {server} --all` tells all" if server else f"known are {', '.join(self.known)}"
         super().__init__(f"unknown function {name!r}{hint}; {rest}")
 
 

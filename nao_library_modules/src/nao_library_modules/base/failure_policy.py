@@ -6,10 +6,11 @@ import re
 from dataclasses import dataclass
 
 from .errors import BadGoal
+from .limits import limit
 
 ALLOWED = 'empty or "stop", "skip", "retry N" or "retry N skip" with N from 1 to 100'
 _RETRY = re.compile(r"retry +(\d{1,3})(?: +(stop|skip))?")
-MOST_RETRIES = 100
+MOST_RETRIES = limit("retries").highest
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ def config_file(name: str) -> Path:
     Raises:
         FileNotFoundError: If it is in neither place.
     """
-    beside = Path(__file__).resolve().parents[2] / "config" / name
+    beside = Path(__file__).resolve().parents[3] / "config" / name
     if beside.exists():
         return beside
     import rospkg  # only an installation gets here, and it has ROS

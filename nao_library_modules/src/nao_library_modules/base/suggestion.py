@@ -8,6 +8,8 @@ from collections.abc import Iterable
 
 LIKENESS = 0.6
 """Names less alike than this (0..1) are no suggestion."""
+TEXT, TEXT_WORDS = "str_param", ("text", "color", "colour", "posture", "pose", "param", "string", "value")
+"""The field that most functions take their text, name or colour from, and what it is taken for."""
 
 
 def closest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
@@ -42,3 +44,18 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     if not matches:
         return ""
     return f": did you mean {', '.join(repr(match) for match in matches)}?"
+
+
+def of_those(name: str, known: Iterable[str]) -> str:
+    """Text to append to "there is no ...": the closest names where there are some, and all that there are."""
+    names = list(known)
+    hint = did_you_mean(name, names)
+    return f"{hint}{';' if hint else ':'} there are {', '.join(names) or 'none'}"
+
+
+def field_hint(name: str, known: Iterable[str]) -> str:
+    """Text to append to "there is no field ...": the fields that look like it, or the one for the argument in text."""
+    names = list(known)
+    if TEXT in names and name.lower() in TEXT_WORDS:
+        return f": did you mean {TEXT!r}?"
+    return did_you_mean(name, names)

@@ -10,13 +10,13 @@ The action server is in `server`; what is needed to run behaviours elsewhere is 
 
 from __future__ import annotations
 
-from .binder import bind
-from .checking import check, problems_of
-from .errors import BehaviorError, NoSuchBehavior, Problem, StepFailed
-from .model import Behavior
-from .reader import read
-from .store import BehaviorStore
-from .writer import from_goal
+from .language.binder import bind
+from .language.checking import check, problems_of
+from .language.errors import BehaviorError, NoSuchBehavior, Problem, StepFailed
+from .language.model import Behavior
+from .language.reader import read
+from .language.store import BehaviorStore
+from .language.writer import from_goal
 
 __all__ = [
     "Behavior",

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from nao_library_actions.msg import NaoBehaviorAction
+from nao_library_msgs.msg import FunctionResult
 from nao_library_msgs.srv import ListBehaviors, ListBehaviorsResponse
 
-from ..answers import Outcome
-from ..launcher import LaunchPath
-from ..nao_basic import NaoBasic
-from ..paths import config_file
-from .checking import Facts, facts_of
-from .clients import Clients, GoalLog
-from .keeping import KeepingFunctions
-from .noting import NotingFunctions
-from .recording import Recording
-from .report import Event, Record
-from .running import RunningFunctions, info_message, step_message
-from .servers import NAMES, FunctionTables
-from .store import BehaviorStore
+from ..base.answers import Outcome
+from ..base.paths import config_file
+from ..processes.launcher import LaunchPath
+from ..server.nao_basic import NaoBasic
+from .language.checking import Facts, facts_of
+from .language.reader import NAME
+from .language.servers import NAMES, FunctionTables
+from .language.store import BehaviorStore
+from .run.clients import Clients, GoalLog, describe, running
+from .run.keeping import KeepingFunctions
+from .run.noting import NotingFunctions
+from .run.recording import Recording
+from .run.report import Event, Record
+from .run.running import RunningFunctions, info_message, step_message
 
 PARAMETERS = {"behavior_dir": "~/.ros/nao_behaviors"}
 """Private parameters of the node -> default."""
@@ -70,13 +72,14 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
             options: As NaoBasic takes them.
         """
         super().__init__(ip, port, autostart, launchpath, **options)
-        self.clients = clients or Clients()
-        self.goals = GoalLog(self._edge)
         self.store = BehaviorStore(Path(behavior_dir).expanduser(), config_file(SHIPPED))
-        self.tables = FunctionTables()
+        self.tables = FunctionTables(describe, running)
+        self.clients = clients or Clients(self.tables.server)
+        self.goals = GoalLog(self._edge, map(self.tables.server, NAMES))
         self.recording: Recording | None = None
         self.steps: list[Record] = []
         self.shown: list[Facts] = []
+        self.cut_short: list[FunctionResult] = []
         self.replaced = self.ended_behavior = ""
         own = {**self.running_functions(), **self.keeping_functions(), **self.noting_functions()}
         self.without_robot = frozenset(own)  # the servers of the steps need it
@@ -88,7 +91,7 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
 
     def begin_chain(self) -> None:
         """Forget what the last chain did, but for what it was doing when this one came."""
-        self.steps, self.shown = [], []
+        self.steps, self.shown, self.cut_short = [], [], []
         self.replaced, self.ended_behavior = self.ended_behavior, ""
 
     def tell(self, event: Event) -> None:
@@ -104,6 +107,11 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
             text=event.text,
         )
 
+    def tell_recording(self) -> None:
+        """Publish that what is sent from now on is recorded."""
+        if self.recording is not None:
+            self.publish_feedback(behavior=self.recording.name, what="recordBehavior", state="recording")
+
     def tell_recorded(self, server: str, goal: Any) -> None:
         """Publish that a goal was recorded, while a goal records. Called from threads of subscribers."""
         _, function, _ = self._progress
@@ -116,13 +124,13 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add what became of the steps, and what was asked about behaviours."""
         super().fill_result(result, outcomes)
+        result.results += self.cut_short
         result.steps = [step_message(record) for record in self.steps]
         result.behaviors = [info_message(facts, self._is_shipped(facts.name)) for facts in self.shown]
 
-    def shut_down(self) -> None:
-        """As NaoBasic does; a recording that goes on is stored."""
-        super().shut_down()
-        self.keep_recording()
+    def shutdown_steps(self) -> list[Callable[[], Any]]:
+        """As NaoBasic has them; a recording that goes on is stored."""
+        return [*super().shutdown_steps(), self.keep_recording]
 
     def argument_choices(self, function: str, field: str) -> Sequence[str]:
         """Names of the behaviours and servers, for the description of the functions."""
@@ -133,10 +141,16 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
 
     def answer_list(self, request: Any) -> ListBehaviorsResponse:
         """Which behaviours there are; called in threads of clients."""
-        names = [name for name in self.store.names() if request.name in ("", name)]
-        facts = [self.outlook(name) if request.name else facts_of(name, self.store.load, self.tables) for name in names]
-        return ListBehaviorsResponse([info_message(each, self._is_shipped(each.name)) for each in facts])
+        if request.name or request.text:
+            there = request.text or request.name in self.store.names()
+            asked = (request.name, request.text, request.file, request.parameters, request.validate)
+            facts = [self.outlook(*asked)] if there else []
+        else:
+            facts = [facts_of(name, self.store.load, self.tables) for name in self.store.names()]
+        return ListBehaviorsResponse(
+            [info_message(each, not request.text and self._is_shipped(each.name)) for each in facts]
+        )
 
     def _is_shipped(self, name: str) -> bool:
         """Whether a name means one that comes with the library."""
-        return self.store.is_shipped(name) and not self.store.of_user(name)
+        return NAME.fullmatch(name) is not None and self.store.is_shipped(name) and not self.store.of_user(name)

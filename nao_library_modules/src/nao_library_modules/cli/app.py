@@ -34,6 +34,7 @@ COMMANDS = {
     "get": ("memory", "Values in the robot's memory."),
     "set": ("memory", "Write a value into the robot's memory."),
     "watch": ("memory", "Events and values of the robot's memory as they come."),
+    "new": ("new", "Write a skeleton: a package for a study of one's own."),
     "sim": ("simulator", "Touch, push and picture a simulated robot, and rule its time."),
     "completion": ("completing", "Completion for bash, zsh or fish, to be sourced."),
 }
@@ -66,6 +67,17 @@ class Commands(NaoGroup):
                 say_json({"error": "interrupted", "status": INTERRUPTED}, compact=True)
             raise
 
+    def instead_of(self, word: str) -> str:
+        """Behaviours and motions that come along are run by commands."""
+        from ..base.paths import config_file
+        from ..behaviors.server import SHIPPED as BEHAVIORS
+        from ..motion.server import SHIPPED as MOTIONS
+
+        for folder, line in ((BEHAVIORS, "nao run {}"), (MOTIONS, "nao call NaoMotion playMotion str_param:={}")):
+            if word in {file.stem for file in config_file(folder).glob("*.yaml")}:
+                return f": {line.format(word)}"
+        return ""
+
     def list_commands(self, context: click.Context) -> list[str]:
         """Names, in the order of the table."""
         return list(COMMANDS)
@@ -74,7 +86,7 @@ class Commands(NaoGroup):
         """A command by its name; None if there is none."""
         if name not in COMMANDS:
             return None
-        module = import_module(f"{__package__}.{COMMANDS[name][0]}_commands")
+        module = import_module(f"{__package__}.commands.{COMMANDS[name][0]}_commands")
         return getattr(module, f"{name}_command")
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:

@@ -8,7 +8,10 @@ from typing import Any
 
 import click
 
-from ..suggestion import did_you_mean
+from ..base.degrees import ANGLES, DEGREES, in_rad
+from ..base.errors import BadGoal
+from ..base.limits import limit
+from ..base.suggestion import field_hint
 
 NEXT = (",", "--then")
 """What stands between two functions."""
@@ -50,7 +53,10 @@ def read_chain(words: Iterable[str]) -> list[TypedFunction]:
         for word in piece[1:]:
             field, assigned, value = word.partition(ASSIGN)
             if not assigned or not field:
-                raise click.UsageError(f"{piece[0]}: {word!r} is no field:=value")
+                hint = ": a comma between functions stands by itself" if _after_comma(piece, word) else ""
+                if not hint and "=" in word:
+                    hint = f": did you mean {word.replace('=', ASSIGN, 1)}?"
+                raise click.UsageError(f"{piece[0]}: {word!r} is no field:=value{hint}")
             if field in fields:
                 raise click.UsageError(f"{piece[0]}: {field} is there twice")
             fields[field] = value
@@ -58,8 +64,18 @@ def read_chain(words: Iterable[str]) -> list[TypedFunction]:
     return chain
 
 
-def build_message(function: TypedFunction, kind: Any) -> Any:
+def _after_comma(piece: Sequence[str], word: str) -> bool:
+    """Whether a comma at the end of a value comes before a word: it was meant to end the function."""
+    return piece[piece.index(word) - 1].endswith(NEXT[0])
+
+
+def build_message(function: TypedFunction, kind: Any, taken: Sequence[str] = ()) -> Any:
     """The function message of a typed function.
+
+    Args:
+        function: It.
+        kind: Type of the message.
+        taken: Fields that the function reads, where that is known: errors name these.
 
     Raises:
         click.UsageError: A field is not there, or its value is none of its type.
@@ -68,10 +84,12 @@ def build_message(function: TypedFunction, kind: Any) -> Any:
     message = kind(function=function.name)
     for field, text in function.fields.items():
         if field not in types or field == "function":
-            known = [name for name in types if name != "function"]
-            where = f"{function.name}: there is no field {field!r}{did_you_mean(field, known)}"
-            raise click.UsageError(f"{where}; there are {', '.join(known)}")
+            known = taken or [name for name in types if name != "function"]
+            told = f"{field_hint(field, known)}; there are {', '.join(known)}"
+            raise click.UsageError(f"{function.name}: there is no field {field!r}{told}")
         try:
+            if field not in ANGLES and types[field].startswith("float") and DEGREES in text:
+                raise ValueError(f"{text!r} is an angle, and this field is none")
             setattr(message, field, read_value(types[field], text))
         except (ValueError, TypeError) as error:
             raise click.UsageError(f"{function.name}: {field}: {error}") from None
@@ -109,15 +127,37 @@ def _single(kind: str, value: Any) -> Any:
     if kind.startswith(("int", "uint")):
         return _whole(value)
     if kind.startswith("float"):
-        return _number(value)
+        return in_rad(value)
     return _message(kind, value)
 
 
-def _number(value: Any) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{value!r} is no number") from None
+class Angle(click.ParamType):
+    """An angle in rad, or in degrees with `deg` behind the number; rad."""
+
+    name = "angle"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
+        """As click does."""
+        try:
+            return in_rad(value)
+        except ValueError as error:
+            self.fail(f"{error}: rad, or degrees as 90deg", parameter, context)
+
+
+class Number(click.types.FloatParamType):
+    """A number within the declared bounds of its kind, see `limits`."""
+
+    def __init__(self, kind: str) -> None:
+        """Keep the kind."""
+        self._limit = limit(kind)
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
+        """As click does."""
+        number = super().convert(value, parameter, context)
+        lowest, highest, unit = self._limit
+        if not lowest <= number <= highest:
+            self.fail(f"{number:g} is not allowed: {lowest:g} to {highest:g} {unit}".strip(), parameter, context)
+        return number
 
 
 def _whole(value: Any) -> int:
@@ -142,7 +182,7 @@ def _truth(value: Any) -> bool:
 def _duration(value: Any) -> Any:
     import rospy
 
-    seconds = _number(value)
+    seconds = in_rad(value)
     if not abs(seconds) < LONGEST_TIME:
         raise ValueError(f"{value!r} is no time: at most {LONGEST_TIME:g} s")
     return rospy.Duration.from_sec(seconds)
@@ -156,18 +196,17 @@ _READERS: dict[str, Callable[[Any], Any]] = {
 
 
 def _message(kind: str, value: Any) -> Any:
-    import genpy
     import roslib.message
+
+    from ..behaviors.language.messages import message_of
 
     fields = _yaml(value) if isinstance(value, str) else value
     if not isinstance(fields, dict):
         raise ValueError(f"{value!r} is no {kind}: its fields in braces are wanted, as YAML")
-    message = roslib.message.get_message_class(kind)()
     try:
-        genpy.message.fill_message_args(message, [fields])
-    except genpy.MessageException as error:
+        return message_of(roslib.message.get_message_class(kind), fields)
+    except BadGoal as error:
         raise ValueError(str(error)) from None
-    return message
 
 
 def _yaml(text: str) -> Any:

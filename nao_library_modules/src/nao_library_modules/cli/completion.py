@@ -2,35 +2,10 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-import click
-
-from .settings import Settings, settings_of
-
-
-def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
-    """An offer of words that fails in silence and is narrowed to what was begun."""
-
-    @functools.wraps(offer)
-    def run(context: click.Context, start: str, *more: Any) -> list[str]:
-        settings = settings_of(context)
-        settings.completing = True
-        try:
-            words = list(offer(settings, start, *more))
-        except Exception:  # an error text would end up in the line that is being typed
-            return []
-        return [word for word in words if word.startswith(start)]
-
-    return run
-
-
-@quietly
-def robots(settings: Settings, start: str) -> list[str]:
-    """Namespaces of robots."""
-    return [name.strip("/") or "/" for name in settings.stack.robots()]
+from .settings import Settings, quietly
 
 
 @quietly
@@ -43,8 +18,8 @@ def servers(settings: Settings, start: str) -> list[str]:
 def all_functions(settings: Settings, start: str) -> list[str]:
     """Names of all functions of all servers, and of the servers."""
     names = dict.fromkeys(settings.stack.servers())
-    for server in settings.stack.servers():
-        names.update(dict.fromkeys(function.name for function in settings.stack.describe(server, names=True).functions))
+    for _, told in settings.stack.described(names=True):
+        names.update(dict.fromkeys(function.name for function in told.functions))
     return list(names)
 
 
@@ -83,17 +58,13 @@ def choices(settings: Settings, start: str, server: str, function: str, field: s
 @quietly
 def behaviors(settings: Settings, start: str) -> list[str]:
     """Names of the stored behaviours."""
-    from .behaviors_commands import stored
-
-    return [behavior["name"] for behavior in stored(settings)]
+    return [behavior["name"] for behavior in settings.stack.behaviors()]
 
 
 @quietly
 def parameters(settings: Settings, start: str, behavior: str) -> list[str]:
     """Parameters of a behaviour."""
-    from .behaviors_commands import stored
-
-    return [f"{p['name']}=" for found in stored(settings, behavior) for p in found["parameters"]]
+    return [f"{p['name']}=" for found in settings.stack.behaviors(behavior) for p in found["parameters"]]
 
 
 @quietly

@@ -6,7 +6,7 @@ import logging
 import signal
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
@@ -14,11 +14,11 @@ from typing import Any
 
 import click
 
+from ..functions.server_types import DESCRIBE
 from .errors import CommandFailed, Interrupted, StackMissing
 from .output import plain, say_json, say_result
-from .progress import Progress
+from .progress import NO_NAMES, Progress
 from .settings import Settings
-from .stack import DESCRIBE
 
 SERVER_LIMIT = 10.0
 """s until a server that is there must have been found."""
@@ -91,7 +91,7 @@ def show(settings: Settings, end: GoalEnd) -> None:
     if settings.json:
         say_json(vars(end))
     else:
-        say_result(end.result, end.text)
+        say_result(end.result, end.text, failed=not end.succeeded)
 
 
 def fail(settings: Settings, end: GoalEnd) -> None:
@@ -110,20 +110,23 @@ def fail(settings: Settings, end: GoalEnd) -> None:
 class GoalRun:
     """One goal of one server, from a node that lives as long as the program.
 
+    Args:
+        settings: Of this run.
+        server: The server, as `Stack.server` takes it.
+        called: As `Progress` takes it.
+
     Attributes:
         last: How it ended, also if it was interrupted; None before.
     """
 
-    def __init__(self, settings: Settings, server: str) -> None:
+    def __init__(self, settings: Settings, server: str, called: Mapping[str, str] = NO_NAMES) -> None:
         self._settings = settings
+        self._called = called
         self._name = settings.stack.server(server)
         self._relative = self._name[len(settings.stack.namespace) :]
         kind = settings.stack.describe(server, brief=True).action
-        package, _, action = kind.partition("/")
-        messages = import_module(f"{package}.msg")
-        self._action = getattr(messages, f"{action}Action")
-        self._goal = getattr(messages, f"{action}Goal")
-        from ..goal_watch import GoalWatch
+        self._action, self._goal = message_class(f"{kind}Action"), message_class(f"{kind}Goal")
+        from ..ros.goal_watch import GoalWatch
 
         self._watch = GoalWatch()
         self.last: GoalEnd | None = None
@@ -140,7 +143,7 @@ class GoalRun:
         if not found.wait(SERVER_LIMIT):
             raise StackMissing(f"the server {self._name} does not answer")
         handle: Any = None
-        with Progress(shown=not self._settings.json) as progress:
+        with Progress(not self._settings.json, self._called) as progress:
             try:
                 with interrupt_held():  # a goal that is sent and of which nobody knows could not be cancelled
                     handle = client.send_goal(
@@ -245,4 +248,6 @@ def message_class(kind: str) -> Any:
     try:
         return getattr(import_module(f"{package}.msg"), name)
     except (ImportError, AttributeError):
-        raise click.ClickException(f"the message {kind} is not built here") from None
+        raise click.ClickException(
+            f"the message {kind} is not known here: build its package, and source that workspace before you call nao"
+        ) from None

@@ -17,6 +17,8 @@ from .errors import CommandFailed, StackMissing
 DEFAULT_MASTER = "http://localhost:11311"
 LIMIT = 10.0
 """s that master and services have for an answer."""
+START = "roslaunch nao_library nao_sim.launch, or nao.launch nao_ip:=ROBOT"
+"""What starts the servers."""
 CALLER = "/nao_command"
 
 
@@ -132,9 +134,8 @@ class Graph:
             return getattr(self._master, method)(CALLER, *arguments)
         except (OSError, xmlrpc.client.Error, http.client.HTTPException) as error:
             reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
-            raise StackMissing(
-                f"there is no ROS master at {self.uri} ({reason}): does the robot's stack run?"
-            ) from None
+            remedy = f"start the robot's stack ({START}), or set ROS_MASTER_URI to where it runs"
+            raise StackMissing(f"there is no ROS master at {self.uri} ({reason}): {remedy}") from None
 
 
 def _write_header(stream: Any, fields: Mapping[str, str]) -> None:

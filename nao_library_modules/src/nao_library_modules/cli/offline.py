@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from ..suggestion import did_you_mean
+from ..base.suggestion import of_those
 
 
 def described_by_code(
@@ -33,15 +33,13 @@ def described_by_code(
     chosen = [found for found in servers if not server or same_server(found.name, server)]
     if not chosen:
         known = [found.name for found in servers]
-        raise click.UsageError(
-            f"there is no server {server!r}{did_you_mean(server, known)}; there are {', '.join(known)}"
-        )
+        raise click.UsageError(f"there is no server {server!r}{of_those(server, known)}")
     request = DescribeFunctionsRequest(list(functions), names, brief)
     return [(found.name, found.service.answer(request)) for found in chosen]
 
 
 @lru_cache(maxsize=None)
 def _servers() -> list[Any]:
-    from ..describe_offline import offline_servers
+    from ..functions.describe_offline import offline_servers
 
     return offline_servers()

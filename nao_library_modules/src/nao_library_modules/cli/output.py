@@ -11,7 +11,7 @@ import click
 
 SAID, BEGUN = f"{__name__}.said", f"{__name__}.begun"
 """Places of notes in the context that all commands of a run share."""
-LEFT_OUT = frozenset({"memList", "results", "steps", "header"})
+LEFT_OUT = frozenset({"memList", "results", "steps", "header", "onsets", "ends", "volume"})
 """Fields of results that answers or the progress tell better, or that say nothing to people."""
 
 
@@ -81,12 +81,14 @@ def filled(value: Any) -> bool:
     return not (value is None or value == "" or value == [] or value is False)
 
 
-def say_result(result: Mapping[str, Any], end: str = "") -> None:
+def say_result(result: Mapping[str, Any], end: str = "", failed: bool = False) -> None:
     """Print what a goal answered: each function's values, then the fields that the result has of its own.
 
     Args:
         result: The result as plain values.
-        end: What is told at the end in any case; an error that is in there is not told twice.
+        end: What is told at the end, of a success here, of a failure in any case: an error in it is not told twice.
+        failed: Of its own fields only the lists are told, what was made and found until then: the rest is state. Where
+            no function was done, nothing was.
     """
     told = result.get("results", [])
     several = len(told) > 1
@@ -100,8 +102,13 @@ def say_result(result: Mapping[str, Any], end: str = "") -> None:
         elif text:
             click.echo(text)
     own = {name: value for name, value in result.items() if name not in LEFT_OUT and filled(value)}
+    if failed:
+        done = any(not answer.get("error") for answer in told)
+        own = {name: value for name, value in own.items() if isinstance(value, list) and done}
     for line in _own_lines(own):
         click.echo(line)
+    if end and not failed:
+        click.echo(end)
 
 
 def _own_lines(fields: Mapping[str, Any]) -> Sequence[str]:

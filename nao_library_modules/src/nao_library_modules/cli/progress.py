@@ -5,6 +5,8 @@ from __future__ import annotations
 import shutil
 import sys
 import threading
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import click
@@ -16,6 +18,7 @@ PERIOD = 0.15
 """s between two turns of the wheel."""
 STEP = ("path", "what", "state", "text")
 """Fields that tell of a step of a behaviour."""
+NO_NAMES: Mapping[str, str] = MappingProxyType({})
 TOLD_ELSEWHERE = frozenset({"index", "function", "count"})
 
 
@@ -26,9 +29,11 @@ class Progress:
 
     Args:
         shown: False: nothing is printed.
+        called: Function -> what it is called here, where its name says nothing to people.
     """
 
-    def __init__(self, shown: bool) -> None:
+    def __init__(self, shown: bool, called: Mapping[str, str] = NO_NAMES) -> None:
+        self._called = called
         self._shown = shown
         self._live = shown and sys.stderr.isatty()
         self._lock = threading.Lock()
@@ -40,7 +45,8 @@ class Progress:
     def feedback(self, message: Any) -> None:
         """Show a feedback message."""
         fields = plain(message)
-        text = f"{fields.get('index', 0) + 1}/{fields.get('count', 1)} {fields.get('function', '')}"
+        function = fields.get("function", "")
+        text = f"{fields.get('index', 0) + 1}/{fields.get('count', 1)} {self._called.get(function, function)}"
         if fields.get("waiting"):
             text = f"waits for {fields['waiting']}"
         elif fields.get("what"):  # a step of a behaviour

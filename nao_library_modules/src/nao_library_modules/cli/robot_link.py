@@ -9,12 +9,12 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ..base.suggestion import did_you_mean
 from .errors import CommandFailed, StackMissing
 
 LIMIT = 5.0
 """s that the robot has for an answer."""
 MEMORY = "ALMemory"
-WILD = "*?["
 
 
 class RobotLink:
@@ -58,6 +58,20 @@ class RobotLink:
         """Call a method of the memory."""
         return self.call(MEMORY, method, *arguments)
 
+    def value(self, key: str) -> Any:
+        """Value of a key.
+
+        Raises:
+            CommandFailed: There is none; the text has the keys that come close.
+        """
+        try:
+            return self.memory("getData", key)
+        except CommandFailed:
+            known = self.memory_names()
+            if key in known:
+                raise
+            raise CommandFailed(f"there is no key {key!r}{_instead(key, known)}") from None
+
     def memory_names(self) -> list[str]:
         """All keys and events."""
         return sorted({*self.memory("getDataListName"), *self.memory("getEventList")})
@@ -75,15 +89,21 @@ class RobotLink:
         names: list[str] = []
         known: list[str] | None = None
         for pattern in patterns:
-            if not any(sign in pattern for sign in WILD):
+            if not _is_pattern(pattern):
                 names.append(pattern)
                 continue
             known = self.memory_names() if known is None else known
             found = [name for name in known if fnmatch.fnmatchcase(name, pattern)]
             if not found:
-                raise CommandFailed(f"there is no key and no event {pattern}")
+                raise CommandFailed(f"there is no key and no event {pattern}{did_you_mean(pattern, known)}")
             names += found
         return list(dict.fromkeys(names))
+
+    def unknown(self, names: Sequence[str]) -> list[str]:
+        """What is to be said of names that are neither an event nor a key so far; patterns are none of them."""
+        known = self.memory_names()
+        plain = [name for name in names if name not in known and not _is_pattern(name)]
+        return [f"there is no event and no key {name} so far{did_you_mean(name, known)}" for name in plain]
 
     def subscriber(self, event: str) -> Any:
         """Subscriber of an event, as the memory gives it."""
@@ -98,3 +118,15 @@ class RobotLink:
         if module not in self._proxies:
             self._proxies[module] = naoqi.ALProxy(module, *self._address, lazy=True)
         return self._proxies[module]
+
+
+def _is_pattern(name: str) -> bool:
+    return any(sign in name for sign in "*?[")
+
+
+def _instead(key: str, known: Sequence[str]) -> str:
+    """Text to append to "there is no key ...": keys that come close, and how to see those that it is a part of."""
+    hint, parts = did_you_mean(key, known), [name for name in known if key in name]
+    if not parts:
+        return hint
+    return f"{hint or ':'}{' or' if hint else ''} one of the {len(parts)} of nao get '*{key}*'?"

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import difflib
+import functools
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import click
 
+from .chain_text import Number
 from .stack import Stack
 
 QUICK = 1.0
@@ -45,17 +49,35 @@ def settings_of(context: click.Context) -> Settings:
     return context.ensure_object(Settings)
 
 
+def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
+    """An offer of words that fails in silence and is narrowed to what was begun."""
+
+    @functools.wraps(offer)
+    def run(context: click.Context, start: str, *more: Any) -> list[str]:
+        settings = settings_of(context)
+        settings.completing = True
+        try:
+            words = list(offer(settings, start, *more))
+        except Exception:  # an error text would end up in the line that is being typed
+            return []
+        return [word for word in words if word.startswith(start)]
+
+    return run
+
+
+@quietly
+def robots(settings: Settings, start: str) -> list[str]:
+    """Namespaces of robots."""
+    return [name.strip("/") or "/" for name in settings.stack.robots()]
+
+
 def _keep(context: click.Context, parameter: click.Parameter, value: Any) -> None:
     # Standing behind the command as well as before it; what is not given here must not hide what was given there.
-    if value != value:  # what is no number is neither too small nor too great
-        raise click.BadParameter(f"{value} is no time in s")
     if value is not None and value is not False:
         setattr(settings_of(context), parameter.human_readable_name, value)
 
 
 def _complete_robot(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from .completion import robots
-
     return robots(context, start)
 
 
@@ -73,13 +95,30 @@ def common_options() -> list[click.Option]:
         click.Option(["--json"], is_flag=True, help="Answer in JSON.", callback=_keep, expose_value=False),
         click.Option(
             ["--timeout"],
-            type=click.FloatRange(min=0.0, min_open=True),
+            type=Number("duration"),
             metavar="S",
             help="Give up after so many seconds; a goal is cancelled then.",
             callback=_keep,
             expose_value=False,
         ),
     ]
+
+
+class OneOf(click.Choice):
+    """One of several words; another one is told with those that look like it."""
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        """As click does."""
+        from ..base.suggestion import of_those
+
+        if value not in self.choices:
+            self.fail(f"there is no {value!r}{of_those(str(value), map(str, self.choices))}", parameter, context)
+        return super().convert(value, parameter, context)
+
+
+LENGTHS = ("--duration", "--time", "--seconds")
+ELSEWHERE = {**dict.fromkeys(LENGTHS, "--for"), "--fps": "--rate", "--frequency": "--rate", "--force": "--overwrite"}
+"""Options that other programs have -> what they are called here."""
 
 
 class NaoCommand(click.Command):
@@ -90,18 +129,57 @@ class NaoCommand(click.Command):
         self.params.extend(common_options())
         self.context_settings.setdefault("help_option_names", ["-h", "--help"])
 
+    def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
+        """As click does; an option that there is not is told with what it may be called here."""
+        try:
+            return super().parse_args(context, args)
+        except click.NoSuchOption as error:
+            known = [name for parameter in self.get_params(context) for name in parameter.opts]
+            error.possibilities = self.instead_of(error.option_name, known)
+            raise
+
+    def instead_of(self, option: str, known: Sequence[str]) -> list[str]:
+        """What an option that there is not may be called here."""
+        here = ELSEWHERE.get(option)
+        return [here] if here in known else difflib.get_close_matches(option, known, cutoff=0.7)
+
+
+class SignedCommand(NaoCommand):
+    """A command whose arguments may begin with a minus sign, as numbers do; with two it is an option all the same."""
+
+    words: tuple[str, ...] = ()
+    """Arguments that look like options."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.context_settings["ignore_unknown_options"] = True
+
+    def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
+        """As click does, but for options that there are not."""
+        known = {name for parameter in self.get_params(context) for name in parameter.opts}
+        options = args[: args.index("--")] if "--" in args else args
+        for word in options:
+            name = word.partition("=")[0]
+            if name.startswith("--") and name not in known and name not in self.words:
+                raise click.NoSuchOption(name, possibilities=self.instead_of(name, list(known)), ctx=context)
+        return super().parse_args(context, args)
+
 
 class NaoGroup(click.Group):
     """Commands that are told apart from options by their first letter alone."""
 
     command_class = NaoCommand
 
+    def instead_of(self, word: str) -> str:
+        """Text to append to "there is no command ...": what does what the word says; empty if nothing is known."""
+        return ""
+
     def resolve_command(self, context: click.Context, arguments: list[str]) -> Any:
         """As click does; a word that is no command is told with those that look like it."""
-        from ..suggestion import did_you_mean
+        from ..base.suggestion import did_you_mean
 
         word, known = arguments[0], self.list_commands(context)
         # Click takes "*" for an option, too, and shows the help as if it had been asked for.
         if word not in known and (word == "-" or not word.startswith("-")):
-            context.fail(f"there is no command {word!r}{did_you_mean(word, known)}")
+            context.fail(f"there is no command {word!r}{self.instead_of(word) or did_you_mean(word, known)}")
         return super().resolve_command(context, arguments)

@@ -8,20 +8,24 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..server_types import ACTIONS
-from ..suggestion import did_you_mean
+from ..base.suggestion import of_those
+from ..functions.server_types import ACTIONS, DESCRIBE, servers_among, those_in
 from .errors import StackMissing
-from .graph import LIMIT, Graph
+from .graph import LIMIT, START, Graph
+from .output import plain
 
 if TYPE_CHECKING:
-    from nao_library_msgs.srv import DescribeFunctionsResponse
+    from nao_library_msgs.srv import DescribeFunctionsResponse, ListBehaviorsRequest, ListBehaviorsResponse
 
-DESCRIBE = "/describe"
 SIMULATOR = "nao_sim"
+BEHAVIORS = "NaoBehavior/list"
 
 
 class Stack:
     """Servers of one namespace. Nothing is asked before it is needed, and each question once.
+
+    Attributes:
+        silent: Servers that the master knows and that did not answer.
 
     Args:
         namespace: Of the robot, as it was given; None: that of the environment, or of the only robot there is.
@@ -32,6 +36,7 @@ class Stack:
         self.graph = Graph(limit)
         self._given = namespace if namespace is not None else os.environ.get("ROS_NAMESPACE") or None
         self._namespace: str | None = None
+        self.silent: list[str] = []
         self._described: dict[tuple[Any, ...], Any] = {}
 
     @property
@@ -55,8 +60,7 @@ class Stack:
         Raises:
             StackMissing: It has none.
         """
-        space = self.namespace
-        return sorted((name[len(space) :] for name in self._all_servers() if _in(name, space)), key=str.lower)
+        return sorted(those_in(self.namespace, self._all_servers()), key=str.lower)
 
     def server(self, name: str) -> str:
         """Full name of a server; `lights`, `naolights` and `NaoLights` are the same.
@@ -70,10 +74,13 @@ class Stack:
             if same_server(server, name):
                 return self.namespace + server
         if any(same_server(known, name) for known in ACTIONS):
-            raise StackMissing(f"the server {name} does not run; there are {', '.join(servers)}")
-        raise click.UsageError(
-            f"there is no server {name!r}{did_you_mean(name, servers)}; there are {', '.join(servers)}"
-        )
+            remedy = "its node ended, or was not launched (see its log, or launch the stack again)"
+            raise StackMissing(f"the server {name} does not run: {remedy}; there are {', '.join(servers)}")
+        if f"{self.namespace}{name}/goal" in self.graph.subscribed():
+            raise click.UsageError(
+                f"the action {name} has no service {name}/describe: its module makes it by self.serve"
+            )
+        raise click.UsageError(f"there is no server {name!r}{of_those(name, servers)}")
 
     def describe(
         self, server: str, functions: Sequence[str] = (), brief: bool = False, names: bool = False
@@ -95,6 +102,25 @@ class Stack:
             self._described[key] = self.graph.call(full + DESCRIBE, DescribeFunctions, request)
         return self._described[key]
 
+    def described(
+        self, functions: Sequence[str] = (), brief: bool = False, names: bool = False
+    ) -> list[tuple[str, DescribeFunctionsResponse]]:
+        """Servers that answer, with what they say, as `describe` takes it; `silent` has the others from then on.
+
+        Raises:
+            StackMissing: None answers.
+        """
+        found, missing = [], {}
+        for name in self.servers():
+            try:
+                found.append((name, self.describe(name, functions, brief, names)))
+            except StackMissing as error:  # a node that died without a word is in the master's books for ever
+                missing[name] = error
+        self.silent = list(missing)
+        if not found:
+            raise next(iter(missing.values()))
+        return found
+
     def connected(self, server: str) -> bool:
         """Whether a server reaches its robot at this moment."""
         self._described.clear()
@@ -102,9 +128,8 @@ class Stack:
 
     def robot_address(self) -> tuple[str, int]:
         """IP and port of the robot, as its servers know it."""
-        for server in self.servers():
-            address = self.describe(server, brief=True).robot
-            ip, _, port = address.rpartition(":")
+        for _, told in self.described(brief=True):
+            ip, _, port = told.robot.rpartition(":")
             if ip and port.isdigit():
                 return ip, int(port)
         raise StackMissing("no server knows the address of the robot")
@@ -122,31 +147,40 @@ class Stack:
         missing = f"there is no service {self.namespace}{name}"
         raise StackMissing(f"{missing}: is this a simulated robot?" if name.startswith(SIMULATOR) else missing)
 
+    def behaviors(self, name: str = "") -> list[dict[str, Any]]:
+        """The stored behaviours, or the one of a name, as plain values."""
+        from nao_library_msgs.srv import ListBehaviorsRequest
+
+        return plain(self.list_behaviors(ListBehaviorsRequest(name=name)))["behaviors"]
+
+    def list_behaviors(self, request: ListBehaviorsRequest, patient: bool = False) -> ListBehaviorsResponse:
+        """What the server of behaviours answers; see `Graph.call`."""
+        from nao_library_msgs.srv import ListBehaviors
+
+        return self.graph.call(self.service(BEHAVIORS), ListBehaviors, request, patient)
+
     def _all_servers(self) -> list[str]:
         listened = self.graph.subscribed()
-        names = [name[: -len(DESCRIBE)] for name in self.graph.services() if name.endswith(DESCRIBE)]
-        return [name for name in names if f"{name}/goal" in listened]
+        return [name for name in servers_among(self.graph.services()) if f"{name}/goal" in listened]
 
     def _choose(self) -> str:
         robots = self.robots()
         if not robots:
-            raise StackMissing(f"no robot's servers run at {self.graph.uri}")
+            raise StackMissing(f"no robot's servers run at {self.graph.uri}: start them with {START}")
         if self._given is not None:
             wanted = "/" + self._given.strip("/") + "/" if self._given.strip("/") else "/"
             if wanted in robots:
                 return wanted
-            raise StackMissing(f"no servers run in {wanted.rstrip('/') or '/'}; {_where(robots)}")
+            known = [_plain(robot) for robot in robots]
+            raise StackMissing(f"there is no robot {_plain(wanted)!r}{of_those(_plain(wanted), known)}")
         if len(robots) > 1 and "/" not in robots:
-            raise click.UsageError(f"choose a robot with --robot; {_where(robots)}")
+            raise click.UsageError(f"choose a robot with --robot; there are {', '.join(map(_plain, robots))}")
         return "/" if "/" in robots else robots[0]
 
 
-def _where(robots: Sequence[str]) -> str:
-    return f"there are {', '.join(robot.strip('/') or '/' for robot in robots)}"
-
-
-def _in(name: str, space: str) -> bool:
-    return name.startswith(space) and "/" not in name[len(space) :]
+def _plain(namespace: str) -> str:
+    """A robot's namespace as it is given on the command line."""
+    return namespace.strip("/") or "/"
 
 
 def same_server(server: str, name: str) -> bool:

@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ..body_devices import CHARGE
+from ..nao.body_devices import CHARGE
 from .errors import CommandFailed, StackMissing
 from .output import table
 from .stack import Stack
@@ -142,8 +142,11 @@ def status_lines(found: Mapping[str, Any]) -> Iterator[str]:
     yield "diagnostics: " + ", ".join(
         f"{reports[level]} {level}" for level in LEVELS if reports[level] or level == "ok"
     )
+    alike: dict[tuple[str, str], list[str]] = {}
     for problem in reports["problems"]:
-        yield f"  {problem['level']}: {problem['name']}: {problem['message']}"
+        alike.setdefault((problem["level"], problem["message"]), []).append(problem["name"])
+    for (level, message), names in alike.items():
+        yield f"  {level}: {names[0] if len(names) == 1 else f'{len(names)} reports'}: {message}"
 
 
 def _does(server: Mapping[str, Any]) -> str:

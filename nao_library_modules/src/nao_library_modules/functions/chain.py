@@ -16,17 +16,26 @@ before anything of the chain runs:
 from __future__ import annotations
 
 import inspect
-import math
+from collections import ChainMap
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Callable, TypeVar
 
-from .errors import BadGoal, FunctionFailed, Preempted, UnknownFunction
-from .failure_policy import FailurePolicy
+from naoqi.errors import NaoError
+
+from ..base.errors import BadGoal, FunctionFailed, Preempted, UnknownFunction
+from ..base.failure_policy import FailurePolicy
+from ..base.field_checks import require_length, require_within
+from ..base.limits import limit
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+StandIn = Callable[[object], object]
 
+WAIT = limit("wait")
+FUNCTIONS, NAMES, NUMBERS, CHARACTERS = map(limit, ("functions", "names", "numbers", "characters"))
 CHECK_ATTRIBUTE = "goal_check"
+COMMON = ("time", "on_error")
+"""Fields that every function has."""
 CONTEXT = "context"
 REST = "args"
 OF_THE_SERVER = frozenset({"function", "time", "on_error"})
@@ -156,20 +165,42 @@ class Binding:
             self._bound_self = getattr(function, "__self__", None)
             self._check_arguments = _Signature(self.check, message_type, self._bound_self).arguments
 
-    def run_check(self, message: Any, context: dict[str, Any], stand_in: object | None = None) -> None:
+    def run_check(self, message: Any, context: dict[str, Any], stand_in: StandIn = lambda owner: owner) -> None:
         """Run the check, if there is one.
 
         Args:
             message: The function message.
             context: What the checks of a chain share.
-            stand_in: Takes the place of the module in the check of its method.
+            stand_in: Owner of the function -> what takes its place in the check.
         """
         if self.check is None:
             return
         arguments = self._check_arguments(message, context)
-        if stand_in is not None and self._bound_self is not None:
-            arguments = (stand_in, *arguments[1:])
+        if self._bound_self is not None:
+            arguments = (stand_in(self._bound_self), *arguments[1:])
         self.check(*arguments)
+
+
+def require_callable(name: str, function: Any) -> Callable[..., Any]:
+    """The function of a table's entry itself.
+
+    Raises:
+        NaoError: If it cannot be called.
+    """
+    if not callable(function):
+        raise NaoError(f"function_table[{name!r}] is {function!r}: a function or method is needed, without ()")
+    return function
+
+
+class FunctionTable(ChainMap):
+    """A module's own functions over those of the robot's memory; it takes callables only."""
+
+    def __setitem__(self, name: str, function: Callable[..., Any]) -> None:
+        super().__setitem__(name, require_callable(name, function))
+
+    def __ior__(self, table: Mapping[str, Callable[..., Any]]) -> FunctionTable:
+        self.update(table)
+        return self
 
 
 class FunctionChain:
@@ -195,9 +226,12 @@ class FunctionChain:
 
         Raises:
             UnknownFunction: With the closest names, or the list of all.
+            NaoError: What the table has there cannot be called.
         """
+        if not name:
+            raise BadGoal("function", name, "the name of a function", problem="it is empty")
         try:
-            return self._table[name]
+            return require_callable(name, self._table[name])
         except KeyError:
             raise UnknownFunction(name, self._table, self.server) from None
 
@@ -209,7 +243,7 @@ class FunctionChain:
             before_check: Called with the place of each function, counted from 1, before it is checked.
 
         Raises:
-            BadGoal: If the chain is empty.
+            BadGoal: If the chain is empty or too long.
             FunctionFailed: Names the first function that is wrong and says why.
         """
         context: dict[str, Any] = {}
@@ -224,6 +258,36 @@ class FunctionChain:
             steps.append(step)
         return steps
 
+    def failures(
+        self,
+        messages: Sequence[Any],
+        before_check: Callable[[int], None] = lambda _: None,
+        context: dict[str, Any] | None = None,
+        stand_in: StandIn = lambda owner: owner,
+    ) -> list[FunctionFailed]:
+        """All that `read` would find, function by function; nothing runs.
+
+        Args:
+            messages: Function messages.
+            before_check: As `read` takes it.
+            context: What the checks share, with those of the chains before.
+            stand_in: As `Binding.run_check` takes it.
+
+        Raises:
+            BadGoal: If the chain is empty or too long.
+        """
+        _require_some(messages)
+        context = {} if context is None else context
+        found = []
+        for i, message in enumerate(messages, start=1):
+            before_check(i)
+            try:
+                binding = self._guarded(i, message, self.bind_one)
+                self._guarded(i, message, lambda m, b=binding: b.run_check(m, context, stand_in))
+            except FunctionFailed as failed:
+                found.append(failed)
+        return found
+
     def bind(self, messages: Sequence[Any]) -> list[Binding]:
         """Look at what concerns no robot: names of functions, times, failure policies.
 
@@ -231,11 +295,10 @@ class FunctionChain:
             For each message what is to be called; its `run_check` runs the check.
 
         Raises:
-            BadGoal: If the chain is empty.
+            BadGoal: If the chain is empty or too long.
             FunctionFailed: Names the first function that is wrong and says why.
         """
-        if not messages:
-            raise BadGoal("functions", list(messages), "at least one function", problem="the chain is empty")
+        _require_some(messages)
         return [self._guarded(i, message, self.bind_one) for i, message in enumerate(messages, start=1)]
 
     @staticmethod
@@ -245,13 +308,13 @@ class FunctionChain:
         except Preempted:
             raise
         except Exception as error:  # a check with a mistake in it as well: the text names the function
-            raise FunctionFailed(position, message.function, error) from error
+            raise FunctionFailed(position, message.function, _text_for_list(message, error) or error) from error
 
     def bind_one(self, message: Any) -> Binding:
         """As `bind`, for one message; raises what is wrong with it, BadGoal or UnknownFunction."""
+        _require_lengths(message)
         sleep_time = seconds(message.time)
-        if not (math.isfinite(sleep_time) and sleep_time >= 0.0):
-            raise BadGoal("time", sleep_time, "0 s or more")
+        require_within("time", sleep_time, WAIT)
         _policy(message)
         function = self.look_up(message.function)
         key = (message.function, type(message))
@@ -259,6 +322,32 @@ class FunctionChain:
         if binding is None or binding.function is not function:
             binding = self._bindings[key] = Binding(function, type(message))
         return binding
+
+
+def _text_for_list(message: Any, error: Exception) -> BadGoal | None:
+    """The error to tell where the field that is wrong is a text in letters: ROS takes "Eyes" as a list of four."""
+    values = getattr(message, error.field, None) if isinstance(error, BadGoal) else None
+    if not isinstance(values, (list, tuple)) or len(values) < 2:
+        return None
+    if not all(isinstance(value, str) and len(value) == 1 for value in values):
+        return None
+    return BadGoal(error.field, values, repr(["".join(values)]), problem="it is a text, and a list is needed")
+
+
+def _require_some(messages: Sequence[Any]) -> None:
+    if not messages:
+        raise BadGoal("functions", list(messages), "at least one function", problem="the chain is empty")
+    require_length("functions", len(messages), FUNCTIONS)
+
+
+def _require_lengths(message: Any) -> None:
+    """See that no list and no text of a message is too long, whatever the function does with it."""
+    for field in type(message).__slots__:
+        value = getattr(message, field)
+        if isinstance(value, (list, tuple)) and value:
+            require_length(field, len(value), NAMES if isinstance(value[0], str) else NUMBERS)
+        elif isinstance(value, str):
+            require_length(field, len(value), CHARACTERS)
 
 
 def _policy(message: Any) -> FailurePolicy:

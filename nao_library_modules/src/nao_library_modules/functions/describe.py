@@ -15,18 +15,19 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..base.failure_policy import ALLOWED as POLICIES
+from .chain import CHECK_ATTRIBUTE, COMMON, WAIT, fields_taken
 from .describe_checks import allowed_in
 from .describe_fields import FieldComment, FieldHelp, read_fields
 from .describe_limits import Allowed
-from .failure_policy import ALLOWED as POLICIES
-from .function_chain import CHECK_ATTRIBUTE, fields_taken
 from .memory_functions import MemoryFunctions
 
-COMMON = ("time", "on_error")
-"""Fields that every function has."""
 NOTHING = "nothing"
 _ANSWERS = {"str": "text", "float": "number", "int": "whole number", "bool": "truth value", "Any": "value"}
-_COMMON_LIMITS = {"time": Allowed("0 s or more", 0.0), "on_error": Allowed(POLICIES)}
+_COMMON_LIMITS = {
+    "time": Allowed("{:g}..{:g} {}".format(*WAIT), WAIT.lowest, WAIT.highest),
+    "on_error": Allowed(POLICIES),
+}
 _MANY = re.compile(r"(?:list|List|Sequence|tuple)\[(.*)\]")
 
 

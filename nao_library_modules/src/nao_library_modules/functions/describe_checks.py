@@ -14,8 +14,8 @@ import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from ..base.errors import BadGoal
 from .describe_limits import Allowed, told_by
-from .errors import BadGoal
 
 DEEPEST = 8
 """Calls inside of calls that are followed."""
@@ -53,7 +53,7 @@ class _Walk:
     def __init__(self, check: Callable[..., None], fields: frozenset[str]) -> None:
         self.found: dict[str, dict[str, None]] = {}
         self._fields = fields
-        self._package = check.__module__.partition(".")[0]
+        self._packages = {module.partition(".")[0] for module in (check.__module__, __name__)}
         self._seen: set[tuple[Any, ...]] = set()
 
     def into(self, function: Callable[..., Any], known: dict[str, Any], depth: int) -> None:
@@ -84,8 +84,8 @@ class _Walk:
             self.found.setdefault(name, {}).setdefault(allowed)
 
     def follows(self, function: object) -> bool:
-        """Whether a function is one of ours."""
-        return inspect.isfunction(function) and function.__module__.partition(".")[0] == self._package
+        """Whether a function is of the check's package, or of this one."""
+        return inspect.isfunction(function) and function.__module__.partition(".")[0] in self._packages
 
 
 class _Body:

@@ -9,6 +9,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ..nao.light_names import plain_words
+
 log = logging.getLogger(__name__)
 
 LIMIT = 3.0
@@ -69,7 +71,9 @@ class Choices:
         questions = OF_FUNCTIONS.get(key) or OF_FIELDS.get((self._message, field), ())
         if not questions or self._robot.connection.state != "connected":
             return ()
-        return tuple(dict.fromkeys(word for question in questions for word in self._answer(question)))
+        told = [word for question in questions for word in self._answer(question)]
+        words = plain_words(told) if questions is LIGHTS else []
+        return tuple(dict.fromkeys([*told, *words]))
 
     def _answer(self, question: Question) -> tuple[str, ...]:
         with self._lock:

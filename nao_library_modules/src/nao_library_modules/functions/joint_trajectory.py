@@ -15,14 +15,16 @@ Efforts are not looked at: ALMotion does not know them.
 
 from __future__ import annotations
 
-import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, List, Tuple
 
-from .errors import BadGoal
-from .function_chain import seconds
-from .suggestion import did_you_mean
+from ..base.errors import BadGoal
+from ..base.field_checks import KEY_FRAMES, require_each, require_length, require_zero_or
+from ..base.limits import Limit, limit
+from ..base.suggestion import did_you_mean
+from .chain import seconds
 
 H25_BODY = tuple(
     """HeadYaw HeadPitch LShoulderPitch LShoulderRoll LElbowYaw LElbowRoll LWristYaw LHand
@@ -32,6 +34,8 @@ H25_BODY = tuple(
 )
 """The chain Body of a NAO with moving wrists and hands. Poses written for it are sent to NAOs without them as well."""
 PIECES = 4
+DURATION, ANGLE, NAMES = limit("duration"), limit("angle"), limit("names")
+SLOPES = {"velocities": limit("joint velocity"), "accelerations": limit("joint acceleration")}
 BEZIER = 3
 """ALMotion's number for a control point with tangents."""
 
@@ -122,6 +126,8 @@ def read_trajectory(trajectory: Any, chains: Chains, relative: bool = False, fie
     points = list(trajectory.points)
     if not points:
         raise BadGoal(f"{field}.points", [], "at least one point", problem="there is no point")
+    pieces = PIECES if any(len(point.accelerations) for point in points) else 1
+    require_length(f"{field}.points", len(points) * len(joints) * pieces, KEY_FRAMES)
     times = _times(points, field)
     source = _body_order(names, joints, len(points[0].positions))
     values = [_row(point.positions, source, joints, f"{field}.points[{i}].positions") for i, point in enumerate(points)]
@@ -151,8 +157,9 @@ def expand_names(names: Sequence[str], chains: Chains, field: str = "joint_names
         field: What errors call the names.
 
     Raises:
-        BadGoal: If there is none, one is unknown, or a joint comes twice.
+        BadGoal: If there is none, one is unknown, a joint comes twice, or they are too many.
     """
+    require_length(field, len(names), NAMES)
     known = tuple(chains["Body"])
     if not names:
         raise BadGoal(field, list(names), "joints or chains", problem="no joint is named")
@@ -166,7 +173,7 @@ def expand_names(names: Sequence[str], chains: Chains, field: str = "joint_names
             near = did_you_mean(name, [*chains, *known])
             allowed = f"joints {', '.join(known)}; chains {', '.join(chains)}"
             raise BadGoal(field, name, allowed, problem=f"{name!r} is no joint and no chain{near}")
-    twice = sorted({joint for joint in joints if joints.count(joint) > 1})
+    twice = sorted(joint for joint, count in Counter(joints).items() if count > 1)
     if twice:
         raise BadGoal(field, list(names), "every joint once", problem=f"named twice: {', '.join(twice)}")
     return tuple(joints)
@@ -209,6 +216,7 @@ def _times(points: Sequence[Any], field: str) -> list[float]:
         if not time > before:
             name = f"{field}.points[{i}].time_from_start"
             raise BadGoal(name, time, what, problem=f"{time:g} s after {before:g} s")
+    require_zero_or(f"{field}.points[{len(times) - 1}].time_from_start", times[-1], DURATION)
     return times
 
 
@@ -223,7 +231,8 @@ def _slopes(
         if not len(numbers):
             problem = f"point {i} has no {what}, others have"
             raise BadGoal(f"{field}.points[{i}].{what}", [], f"{what} in every point or in none", problem=problem)
-    return [_row(numbers, source, joints, f"{field}.points[{i}].{what}") for i, numbers in enumerate(given)]
+    kind = SLOPES[what]
+    return [_row(numbers, source, joints, f"{field}.points[{i}].{what}", kind) for i, numbers in enumerate(given)]
 
 
 Rows = List[Tuple[float, ...]]
@@ -275,12 +284,10 @@ def _body_order(names: Sequence[str], joints: Sequence[str], count: int) -> Sequ
 
 
 def _row(
-    numbers: Sequence[float], source: Sequence[int] | None, joints: Sequence[str], field: str
+    numbers: Sequence[float], source: Sequence[int] | None, joints: Sequence[str], field: str, kind: Limit = ANGLE
 ) -> tuple[float, ...]:
     row = [float(number) for number in numbers]
-    for number in row:
-        if not math.isfinite(number):
-            raise BadGoal(field, number, "finite numbers")
+    require_each(field, row, kind)
     if source is not None and len(row) == len(H25_BODY):
         row = [row[i] for i in source]
     if len(row) == 1:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from typing import Any
 
-from .errors import BadGoal
-from .function_chain import checked_by
+from ..base.answers import value_of_json
+from ..base.errors import BadGoal
+from .chain import checked_by
 
 MEMORY = "ALMemory"
 
@@ -23,7 +23,7 @@ def parse_assignment(text: str) -> tuple[str, Any]:
     if not equals or not key:
         raise BadGoal("str_param", text, "'key=value', the value as JSON or plain text")
     try:
-        return key, json.loads(value)
+        return key, value_of_json(value)
     except ValueError:
         return key, value
 
@@ -35,7 +35,7 @@ def parse_pairs(text: str) -> list[list[Any]]:
         BadGoal: If it is something else.
     """
     try:
-        told = json.loads(text)
+        told = value_of_json(text)
     except ValueError:
         told = None
     pairs = list(told.items()) if isinstance(told, dict) else told

@@ -5,15 +5,16 @@ from __future__ import annotations
 import inspect
 import logging
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from naoqi.errors import NaoError
 
-from .errors import BadGoal
-from .function_chain import FunctionChain, seconds
-from .interrupt import Interrupt
-from .robot import CLEAN_UP_LIMIT, wait_for_calls
+from ..base.errors import BadGoal
+from ..base.interrupt import Interrupt
+from ..robot.robot import CLEAN_UP_LIMIT, wait_for_calls
+from .chain import FunctionChain, seconds
 
 log = logging.getLogger(__name__)
 
@@ -39,6 +40,16 @@ class FunctionRunner:
         self.chain = FunctionChain(function_table)
         # Of each thread its own, so that functions may also be run outside of a goal.
         self._clean_up = threading.local()
+        self._asking = threading.local()
+
+    @contextmanager
+    def asking(self) -> Iterator[None]:
+        """In this thread, let calls to the robot go on whatever becomes of the goal that runs: they ask for facts."""
+        self._asking.interrupt = Interrupt()
+        try:
+            yield
+        finally:
+            del self._asking.interrupt
 
     def call(self, proxy: Any, method: str, *args: Any) -> Any:
         """Call a method of the robot; preemption ends the wait and cancels the method.
@@ -60,8 +71,9 @@ class FunctionRunner:
         Returns:
             The results, in the order of the arguments.
         """
-        self.interrupt.check()
-        return wait_for_calls([proxy.call_async(method, *args) for args in arguments], self.interrupt)
+        interrupt = getattr(self._asking, "interrupt", self.interrupt)
+        interrupt.check()
+        return wait_for_calls([proxy.call_async(method, *args) for args in arguments], interrupt)
 
     def call_now(self, proxy: Any, method: str, *args: Any) -> Any:
         """Call a quick method that preemption must not end, as clean-up needs it.

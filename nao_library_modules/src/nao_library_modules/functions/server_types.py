@@ -2,25 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from typing import Any
 
-from .suggestion import did_you_mean
+from ..base.errors import BadGoal
+from ..base.suggestion import of_those
 
+DESCRIBE = "/describe"
+"""What the service by which a server describes itself is called behind the name of the action."""
 PACKAGE = "nao_library_actions"
 SERVERS = {
-    "NaoLights": ("NaoLed", "lights.NaoLights"),
-    "NaoMotion": ("NaoMotion", "motion.NaoMotion"),
-    "nao_audio_out": ("NaoAudioOut", "audio_out.NaoAudioOutput"),
-    "nao_audio_in": ("NaoAudioIn", "audio_in.NaoAudioInput"),
-    "NaoVision": ("NaoVision", "vision.NaoVision"),
-    "NaoTactile": ("NaoTactile", "tactile.NaoTactile"),
+    "NaoLights": ("NaoLed", "lights.server.NaoLights"),
+    "NaoMotion": ("NaoMotion", "motion.server.NaoMotion"),
+    "nao_audio_out": ("NaoAudioOut", "audio_out.server.NaoAudioOutput"),
+    "nao_audio_in": ("NaoAudioIn", "audio_in.server.NaoAudioInput"),
+    "NaoVision": ("NaoVision", "vision.server.NaoVision"),
+    "NaoTactile": ("NaoTactile", "tactile.server.NaoTactile"),
     "NaoBehavior": ("NaoBehavior", "behaviors.server.NaoBehavior"),
 }
 """Relative name of each server -> its action in nao_library_actions, and the class behind it in this package."""
 ACTIONS = {name: action for name, (action, _) in SERVERS.items()}
+
+
+def servers_among(services: Iterable[str]) -> list[str]:
+    """Names of the servers that describe themselves by one of these services, in their order; full names of both."""
+    return [name[: -len(DESCRIBE)] for name in services if name.endswith(DESCRIBE)]
+
+
+def those_in(space: str, names: Iterable[str]) -> list[str]:
+    """Relative names of those that are right in a namespace, which has a slash at both ends, in their order."""
+    inner = [name[len(space) :] for name in names if name.startswith(space)]
+    return [name for name in inner if "/" not in name]
 
 
 @dataclass(frozen=True)
@@ -32,7 +47,7 @@ class ServerType:
         action: Type of its action, as NaoLedAction.
         goal: Type of its goals; their first field is the list of function messages.
         function: Type of the function messages, as LedFunction.
-        path: The class behind it, in this package: lights.NaoLights.
+        path: The class behind it, in this package: lights.NaoLights; empty if it is none of this package's servers.
     """
 
     name: str
@@ -42,10 +57,15 @@ class ServerType:
     path: str
 
     @property
+    def ours(self) -> bool:
+        """Whether this package has the class behind it."""
+        return bool(self.path)
+
+    @property
     def module(self) -> type:
         """The class behind it; it is imported when it is asked for first."""
         source, _, name = self.path.rpartition(".")
-        return getattr(import_module(f".{source}", __package__), name)
+        return getattr(import_module(f"..{source}", __package__), name)
 
 
 @lru_cache(maxsize=None)
@@ -56,11 +76,32 @@ def server_type(name: str) -> ServerType:
         KeyError: There is no such server; the text names those that there are.
     """
     if name not in SERVERS:
-        raise KeyError(f"no server {name!r}{did_you_mean(name, SERVERS)}; there are {', '.join(SERVERS)}")
+        raise KeyError(f"no server {name!r}{of_those(name, SERVERS)}")
     action, path = SERVERS[name]
     messages = import_module(f"{PACKAGE}.msg")
     goal = getattr(messages, f"{action}Goal")
     return ServerType(name, getattr(messages, f"{action}Action"), goal, _message_type(goal._slot_types[0]), path)
+
+
+def described_type(name: str, response: Any) -> ServerType:
+    """The types of a server that is none of this package's, as it describes itself.
+
+    Args:
+        name: Its relative name.
+        response: DescribeFunctionsResponse of its service NAME/describe.
+
+    Raises:
+        BadGoal: Its messages are not known in this process.
+    """
+    from roslib.message import get_message_class  # not needed by who only looks at names
+
+    types = [
+        get_message_class(kind) for kind in (f"{response.action}Action", f"{response.action}Goal", response.message)
+    ]
+    if None in types:
+        problem = f"its messages {response.action} and {response.message} are not known to this process"
+        raise BadGoal("step", name, "a server whose messages are built, in a workspace that was sourced", problem)
+    return ServerType(name, *types, path="")
 
 
 def _message_type(kind: str) -> Any:

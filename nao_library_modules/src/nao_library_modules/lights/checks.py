@@ -5,20 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol
 
-from .errors import BadGoal
+from ..base.errors import BadGoal
+from ..base.field_checks import require_rising, require_within, require_zero_or
+from ..base.limits import limit
+from ..nao.light_names import LightNames
+from .goals import colour_steps, colours, intensities, one_colour, require_angle, require_coloured, require_lights
 from .led_access import LedAccess
-from .light_goals import (
-    colour_steps,
-    colours,
-    intensities,
-    one_colour,
-    require_angle,
-    require_coloured,
-    require_lights,
-    require_seconds,
-    require_times,
-)
-from .light_names import LightNames
+
+DURATION, COLOURS = limit("duration"), limit("colours")
 
 
 class HasLeds(Protocol):
@@ -63,7 +57,7 @@ def check_fade(
 ) -> None:
     """As setIntensity, and a duration."""
     check_intensities(self, lights, i_values, context)
-    require_seconds("duration", duration, zero=True)
+    require_zero_or("duration", duration, DURATION)
 
 
 def check_colours(
@@ -89,7 +83,7 @@ def check_fade_rgb(
 ) -> None:
     """As setColor, and a duration."""
     check_colours(self, lights, i_values, str_param, context)
-    require_seconds("duration", duration, zero=True)
+    require_zero_or("duration", duration, DURATION)
 
 
 def check_fade_list(
@@ -102,13 +96,13 @@ def check_fade_list(
 ) -> None:
     """Coloured lights, rising times, one colour a time."""
     require_coloured(_names(self, lights, context), lights)
-    require_times(times)
+    require_rising("times", times, DURATION, COLOURS)
     colour_steps(times, i_values, str_param)
 
 
 def check_animation(_self: object, duration: float) -> None:
     """A duration."""
-    require_seconds("duration", duration, zero=False)
+    require_within("duration", duration, DURATION)
 
 
 def check_rotation(
@@ -116,14 +110,14 @@ def check_rotation(
 ) -> None:
     """One colour, the time of a turn, and a duration."""
     one_colour(i_values, str_param)
-    require_seconds("rotation_time", rotation_time, zero=False)
-    require_seconds("duration", duration, zero=False)
+    require_within("rotation_time", rotation_time, DURATION)
+    require_within("duration", duration, DURATION)
 
 
 def check_ear_angle(_self: object, angle: int, duration: float) -> None:
     """An angle and a duration."""
     require_angle(angle)
-    require_seconds("duration", duration, zero=False)
+    require_within("duration", duration, DURATION)
 
 
 def check_new_group(self: HasLeds, str_param: str, lights: Sequence[str], context: dict[str, Any]) -> None:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import TypeVar
 
-from .colours import Colour, parse_colour
-from .errors import BadGoal
-from .light_names import LightNames, UnknownLight
+from ..base.colours import Colour, is_colour, parse_colour
+from ..base.errors import BadGoal
+from ..nao.light_names import LightNames, UnknownLight
 
 Value = TypeVar("Value")
 
@@ -20,6 +19,9 @@ def require_lights(names: LightNames, lights: Sequence[str]) -> None:
     try:
         names.expand(lights)
     except UnknownLight as error:
+        if is_colour(error.name):
+            problem = f"{error.name!r} is a colour"
+            raise BadGoal("lights", error.name, "lights here, and the colour behind them", problem) from None
         raise BadGoal("lights", error.name, error.hint, problem=f"unknown light {error.name!r}") from None
 
 
@@ -34,28 +36,6 @@ def require_coloured(names: LightNames, lights: Sequence[str]) -> None:
                 "a light with red, green and blue LEDs; setIntensity and fade take this one",
                 problem=f"{light!r} has one colour only",
             )
-
-
-def require_seconds(field: str, value: float, zero: bool) -> None:
-    """Check a length of time.
-
-    Args:
-        field: Name of the field.
-        value: s.
-        zero: Whether zero is allowed.
-    """
-    if not math.isfinite(value) or value < 0.0 or (value == 0.0 and not zero):
-        raise BadGoal(field, value, "0 s or more" if zero else "more than 0 s")
-
-
-def require_times(times: Sequence[float]) -> None:
-    """Check moments that follow each other."""
-    if not times:
-        raise BadGoal("times", list(times), "one moment in s a colour", problem="it is empty")
-    if not all(math.isfinite(time) for time in times) or any(
-        later <= earlier for earlier, later in zip([0.0, *times], times)
-    ):
-        raise BadGoal("times", list(times), "s from the start, above 0 and rising")
 
 
 def require_angle(angle: int) -> None:
@@ -83,6 +63,9 @@ def colours(lights: Sequence[str], i_values: Sequence[float], str_param: str) ->
     if str_param.strip():
         _require_one_source(i_values)
         return _spread([parse_colour(str_param)], len(lights))
+    if not i_values:
+        problem = "there is no colour"
+        raise BadGoal("str_param", "", "a name or '#RRGGBB' here, or red, green and blue in i_values", problem)
     if len(i_values) not in (3, 3 * len(lights)):
         raise _wrong_count(i_values, f"the colours of {_count(lights)}", _for_all_or_each(3, len(lights)))
     _require_intensities(i_values)

@@ -7,10 +7,10 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .light_names import LightNames
-from .light_state import Values, light_intensity, memory_keys, restoring_calls
-from .memory_functions import MEMORY
-from .robot import CLEAN_UP_LIMIT
+from ..functions.memory_functions import MEMORY
+from ..nao.light_names import LightNames
+from ..robot.robot import CLEAN_UP_LIMIT
+from .state import Values, light_intensity, memory_keys, restoring_calls
 
 LEDS = "ALLeds"
 DECIMALS = 6

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import copy
+from collections.abc import Iterable, Sequence
+from itertools import repeat
 from typing import Any
 
 from nao_library_actions.msg import NaoLedAction
 
-from .colours import to_integer
-from .function_chain import checked_by
-from .launcher import LaunchPath
-from .led_access import LedAccess
-from .light_checks import (
+from ..base.colours import to_integer
+from ..functions.chain import checked_by
+from ..processes.launcher import LaunchPath
+from ..server.nao_basic import NaoBasic
+from .checks import (
     check_animation,
     check_colours,
     check_ear_angle,
@@ -25,9 +27,9 @@ from .light_checks import (
     check_readable_colours,
     check_rotation,
 )
-from .light_goals import colour_steps, colours, intensities, one_colour
-from .light_state import mean_colour, mean_intensity
-from .nao_basic import NaoBasic
+from .goals import colour_steps, colours, intensities, one_colour
+from .led_access import LedAccess
+from .state import mean_colour, mean_intensity
 
 EYES = "FaceLeds"
 EARS = "EarLeds"
@@ -93,22 +95,22 @@ class NaoLights(NaoBasic):
     @checked_by(check_lights)
     def on(self, lights: Sequence[str], revert: bool) -> None:
         """Light up fully."""
-        self._act(lights, revert, "on", [(light,) for light in lights])
+        self._act(lights, revert, "on", self._each(lights, repeat(())))
 
     @checked_by(check_lights)
     def off(self, lights: Sequence[str], revert: bool) -> None:
         """Switch off."""
-        self._act(lights, revert, "off", [(light,) for light in lights])
+        self._act(lights, revert, "off", self._each(lights, repeat(())))
 
     @checked_by(check_lights)
     def reset(self, lights: Sequence[str], revert: bool) -> None:
         """Bring lights to the robot's default."""
-        self._act(lights, revert, "reset", [(light,) for light in lights])
+        self._act(lights, revert, "reset", self._each(lights, repeat(())))
 
     @checked_by(check_intensities)
     def set_intensity(self, lights: Sequence[str], i_values: Sequence[float], revert: bool) -> None:
         """Set intensities at once; one value for all lights, or one a light."""
-        self._act(lights, revert, "setIntensity", list(zip(lights, intensities(lights, i_values))))
+        self._act(lights, revert, "setIntensity", self._each(lights, zip(intensities(lights, i_values))))
 
     @checked_by(check_lights)
     def get_intensity(self, lights: Sequence[str]) -> list[float]:
@@ -132,16 +134,16 @@ class NaoLights(NaoBasic):
     @checked_by(check_fade)
     def fade(self, lights: Sequence[str], i_values: Sequence[float], duration: float, revert: bool) -> None:
         """Fade to intensities, all lights together."""
-        arguments = [(light, value, duration) for light, value in zip(lights, intensities(lights, i_values))]
-        self._act(lights, revert, "fade", arguments, together=duration > 0.0)
+        fades = [(value, duration) for value in intensities(lights, i_values)]
+        self._act(lights, revert, "fade", self._each(lights, fades), together=duration > 0.0)
 
     @checked_by(check_fade_rgb)
     def fade_rgb(
         self, lights: Sequence[str], i_values: Sequence[float], str_param: str, duration: float, revert: bool
     ) -> None:
         """Fade to colours, all lights together."""
-        arguments = [(light, *colour, duration) for light, colour in zip(lights, colours(lights, i_values, str_param))]
-        self._act(lights, revert, "fadeRGB", arguments, together=duration > 0.0)
+        fades = [(*colour, duration) for colour in colours(lights, i_values, str_param)]
+        self._act(lights, revert, "fadeRGB", self._each(lights, fades), together=duration > 0.0)
 
     @checked_by(check_fade_list)
     def fade_list_rgb(
@@ -154,7 +156,7 @@ class NaoLights(NaoBasic):
     ) -> None:
         """Fade through colours, each reached at its time, all lights together."""
         steps = [to_integer(colour) for colour in colour_steps(times, i_values, str_param)]
-        self._act(lights, revert, "fadeListRGB", [(light, steps, list(times)) for light in lights], together=True)
+        self._act(lights, revert, "fadeListRGB", self._each(lights, repeat((steps, list(times)))), together=True)
 
     @checked_by(check_animation)
     def random_eyes(self, duration: float, revert: bool) -> None:
@@ -212,6 +214,10 @@ class NaoLights(NaoBasic):
         self.leds.names.expand(lights)
         self._touched.update(dict.fromkeys(lights))
 
+    def _each(self, lights: Sequence[str], more: Iterable[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
+        """Arguments of methods that begin with a light: each by ALLeds' own name for it, and what follows."""
+        return [(self.leds.names.of_robot(light), *rest) for light, rest in zip(lights, more)]
+
     def _act(
         self,
         lights: Sequence[str],
@@ -235,7 +241,13 @@ class NaoLights(NaoBasic):
             self.after_wait(self.leds.restorer(lights))
         self.leds.call(method, arguments, together)
 
-    # Results
+    # Checks and results
+
+    def view_for_checks(self) -> Any:
+        """As NaoBasic gives it; with names of its own, which may be read again while a goal runs."""
+        view = super().view_for_checks()
+        view.leds = copy.copy(self.leds)
+        return view
 
     def begin_chain(self) -> None:
         """Forget what the last chain touched."""

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any, Mapping, Tuple
 
-from .body_devices import PREFIX
-from .light_names import COLOUR_PARTS, LightNames, colour_part
+from ..nao.body_devices import PREFIX
+from ..nao.light_names import COLOUR_PARTS, LightNames, colour_part
 
 Values = Mapping[str, float]
 """Device name -> intensity 0..1."""

@@ -8,11 +8,11 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .errors import MotionStopped
-from .interrupt import Interrupt
-from .motion_facts import MOTION, MotionAccess
-from .motion_plan import MotionPlan
-from .motion_walk_plan import ARMS
+from ..base.errors import MotionStopped
+from ..base.interrupt import Interrupt
+from .facts import MOTION, MotionAccess
+from .plan import MotionPlan
+from .walk_plan import ARMS
 
 log = logging.getLogger(__name__)
 

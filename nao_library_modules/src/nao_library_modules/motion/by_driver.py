@@ -9,12 +9,15 @@ not know which way their calls take.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, Protocol
 
-from .joint_trajectory import KeyFrames
-from .places import Place
+from ..base.places import Place
+from ..functions.joint_trajectory import KeyFrames
 
 MOTION, POSTURE = "ALMotion", "ALRobotPosture"
+WALKS = ("moveTo", "moveToward")
+"""The node of the driver that walks owns the robot's walk as well, and goes on when who asked for it dies."""
 SOON = 0.05
 """s in which stiffnesses are set that NAOqi would set at once: a trajectory takes time."""
 SAME = 1e-6
@@ -48,6 +51,9 @@ class Driver(Protocol):
     def leave_walk(self) -> None:
         """Want no walk any more that was begun."""
 
+    def walk_cure(self) -> Sequence[Any]:
+        """What stops a walk of this process when it has died; see `owners/line.py`."""
+
     def take_posture(self, name: str, speed: float) -> Any:
         """Take a posture; False if the robot did not get there."""
 
@@ -63,8 +69,8 @@ class RobotByDriver:
     def __init__(self, robot: Any, driver: Driver) -> None:
         self._robot = robot
         self._proxies = {
-            MOTION: ProxyByDriver(robot.proxy(MOTION), driver, _MotionWays(driver).all),
-            POSTURE: ProxyByDriver(robot.proxy(POSTURE), driver, {"goToPosture": driver.take_posture}),
+            MOTION: ProxyByDriver(robot, MOTION, driver, _MotionWays(driver).all),
+            POSTURE: ProxyByDriver(robot, POSTURE, driver, {"goToPosture": driver.take_posture}),
         }
 
     def proxy(self, name: str) -> Any:
@@ -79,13 +85,15 @@ class ProxyByDriver:
     """Stands for the proxy of a module.
 
     Args:
-        proxy: The proxy.
+        robot: The robot.
+        module: Name of the module.
         driver: Where methods go, if it is there.
         ways: Name of a method -> the call of the driver for its arguments, None if nao_robot has no words for them.
     """
 
-    def __init__(self, proxy: Any, driver: Driver, ways: dict[str, Callable[..., Any]]) -> None:
-        self._proxy = proxy
+    def __init__(self, robot: Any, module: str, driver: Driver, ways: dict[str, Callable[..., Any]]) -> None:
+        self._proxy = robot.proxy(module)
+        self._witness = partial(robot.owners.sending, module)
         self._driver = driver
         self._ways = ways
 
@@ -93,7 +101,13 @@ class ProxyByDriver:
         """Begin a call."""
         way = self._ways.get(method)
         call = way(*args) if way is not None and self._driver.there() else None
-        return self._proxy.call_async(method, *args) if call is None else call
+        if call is None:
+            return self._proxy.call_async(method, *args)
+        # It would go on without this process all the same.
+        ended = self._witness(method, args, self._driver.walk_cure() if method in WALKS else None)
+        if ended is not None:
+            call.add_done_callback(ended)
+        return call
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._proxy, name)

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from .errors import BadGoal
-from .function_chain import checked_by
-from .motion_base import DEFAULT_SPEED, MotionBase
-from .motion_facts import BODY
-from .motion_plan import MotionPlan, require_fraction, require_rising
-from .suggestion import did_you_mean
+from ..base.errors import BadGoal
+from ..base.field_checks import require_count, require_each, require_length, require_rising
+from ..base.limits import limit
+from ..base.suggestion import did_you_mean
+from ..functions.chain import checked_by
+from .base import DEFAULT_SPEED, MotionBase
+from .facts import BODY
+from .plan import DURATION, MotionPlan, require_fraction
 
 FRAMES = ("FRAME_TORSO", "FRAME_WORLD", "FRAME_ROBOT")
 POSITION, ALL_AXES = 7, 63
 POSE, TRANSFORM = 6, 12
+POSE_NUMBER, POSES = limit("pose"), limit("poses")
 # Chains that an effector moves; the torso moves on both legs.
 CHAINS: Mapping[str, Sequence[str]] = {
     "Head": ("Head",),
@@ -53,13 +55,8 @@ def _effectors(names: Sequence[str]) -> list[str]:
 
 def _rows(values: Sequence[float], count: int, size: int) -> list[list[float]]:
     """Numbers as `count` rows of `size`."""
-    if len(values) != count * size or not all(map(math.isfinite, values)):
-        raise BadGoal(
-            "values",
-            list(values),
-            f"{count * size} finite numbers: {size} for each of {count}",
-            problem=f"{len(values)} numbers",
-        )
+    require_count("values", values, count * size, f"{size} for each of {count}")
+    require_each("values", values, POSE_NUMBER)
     return [list(values[i * size : (i + 1) * size]) for i in range(count)]
 
 
@@ -140,7 +137,8 @@ def _check_paths(
     stiffness: float,
 ) -> None:
     _check_move(self.plan, names, frame, axis_mask, stiffness)
-    require_rising(times)
+    require_rising("times", times, DURATION, POSES)
+    require_length("times", len(names) * len(times), POSES)
     _rows(values, len(names) * len(times), size)
     self.plan.takes(times[-1])
 

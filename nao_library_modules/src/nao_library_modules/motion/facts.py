@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .errors import BadGoal
-from .joint_names import MOTION, JointNames
-from .joint_trajectory import expand_names
+from ..base.errors import BadGoal
+from ..functions.joint_trajectory import expand_names
+from ..nao.joint_names import MOTION, JointNames
 
 BODY = "Body"
 
@@ -54,11 +54,11 @@ class JointState:
     """Where the joints are told to be, and how stiff they are.
 
     Attributes:
-        angles: Joint -> rad (hands 0..1).
+        angles: Joint -> rad (hands 0..1); None where it is not known.
         stiffnesses: Joint -> 0..1.
     """
 
-    angles: Mapping[str, float]
+    angles: Mapping[str, float | None]
     stiffnesses: Mapping[str, float]
 
 

@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, List, Tuple, Union
 
-from .errors import BadGoal
-from .motion_facts import MOTION
-from .places import Place
-from .suggestion import did_you_mean
+from ..base.errors import BadGoal
+from ..base.places import Place
+from ..base.suggestion import did_you_mean
+from .facts import MOTION
 
 SETTABLE = (
     "MaxStepX",

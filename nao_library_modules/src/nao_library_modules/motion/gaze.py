@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-from .paths import config_file
+from ..base.paths import config_file
 
 FILE = "head.json"
 

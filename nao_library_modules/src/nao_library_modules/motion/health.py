@@ -9,9 +9,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .body_devices import CHARGE, CURRENT, FOOT_CONTACT, HOT_MOTOR, TOO_HOT_MOTOR, temperature_key
-from .errors import CannotWalk, NotFit
-from .memory_functions import MEMORY
+from ..base.errors import CannotWalk, NotFit
+from ..functions.memory_functions import MEMORY
+from ..nao.body_devices import CHARGE, CURRENT, FOOT_CONTACT, HOT_MOTOR, TOO_HOT_MOTOR, temperature_key
 
 log = logging.getLogger(__name__)
 

@@ -7,14 +7,16 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .errors import BadGoal
-from .function_chain import checked_by
-from .joint_trajectory import KeyFrames, read_trajectory
-from .motion_base import DEFAULT_SPEED, MotionBase
-from .motion_facts import BODY, one_each
-from .motion_plan import MotionPlan, require_fraction, require_rising
-from .motion_poses import NamedPoses
-from .robot import wait_for_calls
+from ..base.errors import BadGoal
+from ..base.field_checks import KEY_FRAMES, require_length, require_rising, require_zero_or
+from ..base.suggestion import did_you_mean
+from ..functions.chain import checked_by
+from ..functions.joint_trajectory import KeyFrames, read_trajectory
+from ..robot.robot import wait_for_calls
+from .base import DEFAULT_SPEED, MotionBase
+from .facts import BODY, one_each
+from .plan import DURATION, MotionPlan, require_fraction
+from .poses import NamedPoses
 
 OPEN, CLOSED = 1.0, 0.0
 # A hand closes or opens in about this time, s.
@@ -39,18 +41,26 @@ def _key_angles(
 ) -> dict[str, list[float]]:
     """Joint -> its values at the times, from one flat list: one joint after the other."""
     joints = plan.facts.joints(names)
-    require_rising(times)
+    require_rising("times", times, DURATION, shared=len(joints) > 1)
     count = len(times)
+    require_length("times", count * len(joints), KEY_FRAMES)
     if len(angles) == count:
         return {joint: list(angles) for joint in joints}
     if len(angles) != count * len(joints):
-        raise BadGoal(
-            field,
-            list(angles),
-            f"{count} for all joints, or {count * len(joints)}: {count} for each joint, one joint after the other",
-            problem=f"{len(angles)} values for {len(joints)} joints and {count} times",
-        )
+        raise BadGoal(field, list(angles), *_angles_needed(len(angles), joints, count))
     return {joint: list(angles[i * count : (i + 1) * count]) for i, joint in enumerate(joints)}
+
+
+def _angles_needed(given: int, joints: Sequence[str], times: int) -> tuple[str, str]:
+    """What to write instead of angles whose number does not fit, and what is wrong with them."""
+    here = f"here {'is' if given == 1 else 'are'} {given}"
+    need = f"{times} time{'s need' if times > 1 else ' needs'} {times} angle{'s' * (times > 1)}"
+    if len(joints) == 1:
+        return here, f"{need} for {joints[0]}"
+    return here, (
+        f"{need} for all of the {len(joints)} joints, or {times * len(joints)}: {times} for {joints[0]}, "
+        f"then {times} for {joints[1]}{' and so on' if len(joints) > 2 else ''}"
+    )
 
 
 def _key_frames(plan: MotionPlan, names: Sequence[str], trajectory: Any, relative: bool) -> KeyFrames:
@@ -169,7 +179,8 @@ def check_hands(self: MotionBase, names: Sequence[str], stiffness: float) -> Non
     known = [joint for joint in self.plan.facts.limits if joint.endswith("Hand")]
     for hand in hands:
         if hand not in known:
-            raise BadGoal("names", hand, ", ".join(known), problem=f"{hand!r} is no hand")
+            problem = f"{hand!r} is no hand{did_you_mean(hand, known)}"
+            raise BadGoal("names", hand, ", ".join(known), problem=problem)
     self.plan.touch(hands)
     self.plan.forget(hands)
     self.plan.takes(HAND_TIME)
@@ -334,8 +345,7 @@ class JointMotion(MotionBase):
                 "either angles, or one point in trajectory, or a pose's name in str_param",
                 problem=problem,
             )
-        if duration < 0.0:
-            raise BadGoal("duration", duration, "0 s or more")
+        require_zero_or("duration", duration, DURATION)
         if angles:
             return _angles_of(self.plan, names, angles), duration
         if trajectory.points:

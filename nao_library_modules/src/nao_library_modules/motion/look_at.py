@@ -6,16 +6,20 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .errors import BadGoal
-from .function_chain import checked_by
+from ..base.errors import BadGoal
+from ..base.field_checks import require_each, require_zero_or
+from ..base.limits import limit
+from ..base.suggestion import did_you_mean
+from ..functions.chain import checked_by
+from .base import DEFAULT_SPEED, MotionBase
+from .cartesian import FRAMES, require_frame
 from .gaze import load_head, look_at
-from .motion_base import DEFAULT_SPEED, MotionBase
-from .motion_cartesian import FRAMES, require_frame
-from .motion_plan import require_fraction
+from .plan import DURATION, require_fraction
 
 HEAD = ("HeadYaw", "HeadPitch")
 CAMERA = "CameraTop"
 TORSO = 0
+POINT = limit("point")
 
 
 def check_look(
@@ -28,15 +32,16 @@ def check_look(
     stiffness: float,
 ) -> None:
     """A point in a known frame, a camera, a speed or a time, a stiff head."""
-    if len(values) != 3 or not all(map(math.isfinite, values)):
+    if len(values) != 3:
         raise BadGoal("values", list(values), "x, y, z of a point in m")
+    require_each("values", values, POINT)
     require_frame(frame)
     cameras = load_head().cameras
     if str_param and str_param not in cameras:
-        raise BadGoal("str_param", str_param, f"{', '.join(cameras)}, or nothing for {CAMERA}")
+        problem = f"there is no camera {str_param!r}{did_you_mean(str_param, cameras)}"
+        raise BadGoal("str_param", str_param, f"{', '.join(cameras)}, or nothing for {CAMERA}", problem=problem)
     require_fraction("speed", speed, DEFAULT_SPEED)
-    if not (math.isfinite(duration) and duration >= 0.0):
-        raise BadGoal("duration", duration, "0 s or more")
+    require_zero_or("duration", duration, DURATION)
     self.plan.require_stiff(HEAD, stiffness)
     self.plan.touch(HEAD)
     self.plan.forget(HEAD)

@@ -9,16 +9,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from .errors import BadGoal
-from .motion_facts import JointState, MotionFacts
-from .motion_health import Health
-from .motion_walk_plan import LEGS, WalkPlan
+from ..base.errors import BadGoal
+from ..base.field_checks import degrees_hint, require_within, require_zero_or
+from ..base.limits import limit
+from .facts import JointState, MotionFacts
+from .health import Health
+from .walk_plan import LEGS, WalkPlan
 
 # The robot's numbers have 32 bits: a limit that it tells must be allowed as a target. rad.
 TOLERANCE = 1e-4
 # A motion that takes this share longer than a joint at top speed would is taken as possible.
 SPEED_TOLERANCE = 1.001
 POSTURE_TIME = 2.0
+DURATION, FRACTION, ANGLE = limit("duration"), limit("fraction"), limit("angle")
 
 
 class MotionPlan:
@@ -166,11 +169,12 @@ class MotionPlan:
         """
         limits = self.facts.limits[joint]
         if not (math.isfinite(angle) and limits.lower - TOLERANCE <= angle <= limits.upper + TOLERANCE):
+            hint = degrees_hint(angle, limits.lower, limits.upper)
             raise BadGoal(
                 field,
                 angle,
-                f"{limits.lower:.4f} to {limits.upper:.4f}",
-                problem=f"{joint} cannot go to {angle:.4f}",
+                f"{limits.lower:.4f} to {limits.upper:.4f}{_unit(joint)}{hint}",
+                problem=f"{joint} cannot go to {angle:.4f}{_unit(joint)}",
             )
 
     def targets(self, angles: Mapping[str, float], relative: bool, field: str = "angles") -> dict[str, float | None]:
@@ -190,6 +194,8 @@ class MotionPlan:
             goals[joint] = None if before is None else before + angle
             if goals[joint] is not None:
                 self.require_angle(joint, goals[joint], field)  # type: ignore[arg-type]
+            else:
+                require_within(field, angle, ANGLE)
         return goals
 
     def move(self, goals: Mapping[str, float | None], duration: float) -> None:
@@ -237,6 +243,8 @@ class MotionPlan:
                 if goal is not None:
                     self.require_angle(joint, goal, field)
                     self._require_time(joint, before, goal, time - since, time)
+                else:
+                    require_within(field, angle, ANGLE)
                 before, since = goal, time
             goals[joint] = before
         self.move(goals, times[-1])
@@ -264,23 +272,14 @@ class MotionPlan:
             self._angles, self._stiffnesses = dict(state.angles), dict(state.stiffnesses)
 
 
+def _unit(joint: str) -> str:
+    return "" if joint.endswith("Hand") else " rad"
+
+
 def require_fraction(field: str, value: float, default: float) -> float:
     """A fraction of the top speed; 0 stands for the default.
 
     Raises:
         BadGoal: If it is none.
     """
-    if not (math.isfinite(value) and 0.0 <= value <= 1.0):
-        raise BadGoal(field, value, f"above 0 to 1, or 0 for {default:g}")
-    return value or default
-
-
-def require_rising(times: Sequence[float]) -> None:
-    """Check moments that follow each other.
-
-    Raises:
-        BadGoal: If there is none or they do not rise from above 0.
-    """
-    rise = all(b > a for a, b in zip([0.0, *times], times)) and all(map(math.isfinite, times))
-    if not times or not rise:
-        raise BadGoal("times", list(times), "s from the start, at least one, above 0 and rising")
+    return require_zero_or(field, value, FRACTION, f" for {default:g}") or default

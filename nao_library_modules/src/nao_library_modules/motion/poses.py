@@ -7,10 +7,10 @@ from pathlib import Path
 
 from naoqi.errors import NaoError
 
-from .errors import BadGoal
-from .paths import config_file
-from .suggestion import did_you_mean
-from .xap import read_poses
+from ..base.errors import BadGoal
+from ..base.paths import config_file
+from ..base.suggestion import did_you_mean
+from ..nao.xap import read_poses
 
 SUFFIX = ".xap"
 OURS = "poses.xap"
@@ -41,8 +41,8 @@ class NamedPoses:
             raise BadGoal(
                 "str_param",
                 name,
-                f"one of {', '.join(poses)}{did_you_mean(pose, poses)}",
-                problem=f"there is no pose {pose!r}",
+                f"one of {', '.join(poses)}",
+                problem=f"there is no pose {pose!r}{did_you_mean(pose, poses)}",
             )
         return {joint: angle for joint, angle in poses[pose].items() if joint in joints}
 

@@ -7,12 +7,12 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .errors import BadGoal
-from .function_chain import checked_by
-from .motion_base import MotionBase
-from .motion_facts import BODY
-from .motion_plan import POSTURE_TIME, require_fraction
-from .suggestion import did_you_mean
+from ..base.errors import BadGoal
+from ..base.suggestion import did_you_mean
+from ..functions.chain import checked_by
+from .base import MotionBase
+from .facts import BODY
+from .plan import POSTURE_TIME, require_fraction
 
 POSTURES = "ALRobotPosture"
 # Fraction of the top speed where a message leaves it to us.

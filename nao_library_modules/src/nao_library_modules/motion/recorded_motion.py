@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from .errors import BadGoal
+from ..base.errors import BadGoal
 
 # Between two key frames of a replayed motion a joint may be off the recording by this, rad: what the encoders tell
 # apart, several times over.

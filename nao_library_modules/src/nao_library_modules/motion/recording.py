@@ -6,29 +6,37 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .errors import BadGoal, Preempted
-from .function_chain import checked_by
-from .motion_base import DEFAULT_SPEED, MotionBase
-from .motion_facts import BODY
-from .motion_store import MotionStore
+from nao_library_msgs.msg import FunctionResult
+
+from ..base.answers import values_of
+from ..base.errors import BadGoal
+from ..base.field_checks import require_within, require_zero_or
+from ..base.limits import limit
+from ..base.whole_file import written
+from ..functions.chain import checked_by
+from .base import DEFAULT_SPEED, MotionBase
+from .facts import BODY
 from .recorded_motion import RecordedMotion, recorded
+from .store import MotionStore
 
 RATE = 25.0
 """Samples a second where a message leaves it to us."""
-FASTEST_RATE = 100.0
-LONGEST = 3600.0
+SAMPLING, LENGTH, FACTOR = limit("sampling rate"), limit("recording"), limit("factor")
 # The way to the first pose of a motion takes that long at least, s.
 APPROACH = 0.5
 
 
-def check_recording(self: MotionRecording, str_param: str, names: Sequence[str], duration: float, rate: float) -> None:
-    """A name for the motion, known joints, a duration, a rate."""
-    self.store.path(str_param)
+def check_recording(
+    self: MotionRecording, str_param: str, names: Sequence[str], duration: float, rate: float, overwrite: bool
+) -> None:
+    """A name for the motion, free or to be overwritten, known joints, a duration, a rate."""
+    require_within("duration", duration, LENGTH)
+    require_zero_or("rate", rate, SAMPLING, f" for {RATE:g}")
+    if overwrite:
+        self.store.path(str_param)
+    else:
+        self.require_free(str_param, "str_param")
     joints = self.plan.facts.joints(names or [BODY])
-    if not (math.isfinite(duration) and 0.0 < duration <= LONGEST):
-        raise BadGoal("duration", duration, f"above 0 to {LONGEST:g} s")
-    if not (math.isfinite(rate) and 0.0 <= rate <= FASTEST_RATE):
-        raise BadGoal("rate", rate, f"above 0 to {FASTEST_RATE:g} a second, or 0 for {RATE:g}")
     self.plan.touch(joints)
     self.plan.forget(joints)
     self.plan.takes(duration)
@@ -37,8 +45,7 @@ def check_recording(self: MotionRecording, str_param: str, names: Sequence[str],
 
 def check_replay(self: MotionRecording, str_param: str, speed: float, mirror: bool, stiffness: float) -> None:
     """A recorded motion that the joints can follow at that speed."""
-    if not (math.isfinite(speed) and speed >= 0.0):
-        raise BadGoal("speed", speed, "a factor above 0, or 0 for the speed of the recording")
+    require_zero_or("speed", speed, FACTOR, " for the speed of the recording")
     if str_param in self.recording_names:
         return  # recorded by an earlier function of this chain: nothing is known of it yet
     motion = self.replay(str_param, speed, mirror)
@@ -55,7 +62,7 @@ def check_rename(self: MotionRecording, str_param: str, texts: Sequence[str]) ->
     if len(texts) != 1:
         raise BadGoal("texts", list(texts), "the new name, and nothing else")
     check_deletion(self, str_param)
-    self.store.require_free(texts[0])
+    self.require_free(texts[0], "texts")
     self.recording_names.add(texts[0])
 
 
@@ -73,10 +80,13 @@ class MotionRecording(MotionBase):
     Attributes:
         store: Recorded motions by name.
         recording_names: Motions that the chain records or gives these names.
+        cut_short: What recordings that were interrupted have left, for the result of the chain.
     """
 
     store: MotionStore
     recording_names: set[str]
+    cut_short: list[FunctionResult]
+    remark: Callable[[str], None]  # of NaoBasic
     clock: Any  # of NaoBasic
     wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
     after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
@@ -93,7 +103,7 @@ class MotionRecording(MotionBase):
 
     @checked_by(check_recording)
     def record_motion(
-        self, str_param: str, names: Sequence[str], duration: float, rate: float, limp: bool
+        self, str_param: str, names: Sequence[str], duration: float, rate: float, limp: bool, overwrite: bool
     ) -> dict[str, Any]:
         """Record joints for a time, or until the goal is cancelled; with `limp` they can be moved by hand."""
         joints = self.joints(names or [BODY])
@@ -102,11 +112,16 @@ class MotionRecording(MotionBase):
         samples: list[tuple[float, list[float]]] = []
         try:
             self._sample(joints, duration, 1.0 / (rate or RATE), samples)
-        except Preempted:
-            # Whoever teaches by hand does not know beforehand how long it takes, and cancels at the end.
-            self._save(str_param, joints, samples)
+        except BaseException:
+            # Whoever teaches by hand does not know beforehand how long it takes, and cancels at the end. What came
+            # until then is kept in any case; why it ends is what the goal tells.
+            if samples:
+                answer, told = self._save(str_param, joints, samples, overwrite)
+                self.cut_short.append(FunctionResult(function="recordMotion", values=[*values_of(answer), told]))
             raise
-        return self._save(str_param, joints, samples)
+        answer, told = self._save(str_param, joints, samples, overwrite)
+        self.remark(told)
+        return answer
 
     @checked_by(check_replay)
     def play_motion(self, str_param: str, speed: float, mirror: bool, stiffness: float) -> float:
@@ -122,6 +137,16 @@ class MotionRecording(MotionBase):
         self.require_reached(dict(zip(joints, motion.angles[-1])))
         return self.clock.now() - began
 
+    def require_free(self, name: str, field: str) -> None:
+        """See that a motion can get this name.
+
+        Raises:
+            BadGoal: It will not do, or there is one, or will be one by then.
+        """
+        if name in self.recording_names:
+            raise BadGoal(field, name, "a name that is free", problem=f"the chain makes a motion {name!r} before")
+        self.store.require_free(name, field)
+
     def list_motions(self) -> list[str]:
         """Names of the recorded motions."""
         return self.store.names()
@@ -129,7 +154,7 @@ class MotionRecording(MotionBase):
     @checked_by(check_rename)
     def rename_motion(self, str_param: str, texts: Sequence[str]) -> None:
         """Give a recorded motion the name in `texts`."""
-        self.store.rename(str_param, texts[0])
+        self.remark(f"written: {self.store.rename(str_param, texts[0])}")
 
     @checked_by(check_deletion)
     def delete_motion(self, str_param: str) -> None:
@@ -167,13 +192,15 @@ class MotionRecording(MotionBase):
             due = (math.floor(now / period + 0.5) + 1) * period
             self.wait(max(0.0, min(due, duration) - (self.clock.now() - began)))
 
-    def _save(self, name: str, joints: list[str], samples: list[tuple[float, list[float]]]) -> dict[str, Any]:
+    def _save(
+        self, name: str, joints: list[str], samples: list[tuple[float, list[float]]], overwrite: bool
+    ) -> tuple[dict[str, Any], str]:
+        """Keep a motion; what the function answers, and where the motion is."""
         rising = [row for i, row in enumerate(samples) if i == 0 or row[0] > samples[i - 1][0]]
-        if not rising:
-            return {}
         motion = recorded(joints, rising)
-        self.store.save(name, motion)
-        return {"motion": name, "samples": len(motion.times), "duration": round(motion.duration, 3)}
+        path = self.store.save(name, motion, numbered=not overwrite)
+        answer = {"motion": path.stem, "samples": len(motion.times), "duration": round(motion.duration, 3)}
+        return answer, written(path, self.store.path(name))
 
     def _approach(self, motion: RecordedMotion) -> None:
         now = self.motion("getAngles", list(motion.joints), False)

@@ -3,40 +3,41 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from nao_library_actions.msg import NaoMotionAction
 from naoqi.errors import NaoError
 
-from .answers import Outcome
-from .errors import PutToRest, RobotFell
-from .event_relay import EventRelay
-from .function_chain import Step
-from .launcher import LaunchPath
-from .memory_functions import MEMORY
-from .motion_by_driver import RobotByDriver
-from .motion_cartesian import CartesianFunctions
-from .motion_facts import MotionAccess
-from .motion_gait import GaitAccess
-from .motion_gaze import GazeFunctions
-from .motion_health import HealthAccess, in_chain
-from .motion_joints import JointMotion
-from .motion_plan import MotionPlan
-from .motion_poses import NamedPoses
-from .motion_postures import POSTURES, PostureFunctions
-from .motion_recording import MotionRecording
-from .motion_state import MotionState
-from .motion_stiffness import StiffnessFunctions
-from .motion_store import MotionStore
-from .motion_switches import MotionSwitches
-from .motion_walk import WalkFunctions
-from .motion_walk_end import WalkFailure
-from .motion_walk_state import WalkState
-from .nao_basic import NaoBasic
-from .paths import config_file
-from .places import Place
+from ..base.answers import Outcome
+from ..base.errors import PutToRest, RobotFell
+from ..base.paths import config_file
+from ..base.places import Place
+from ..functions.chain import Step
+from ..functions.goal_checks import NotKnownHere
+from ..functions.memory_functions import MEMORY
+from ..processes.launcher import LaunchPath
+from ..robot.event_relay import EventRelay
+from ..server.nao_basic import NaoBasic
+from .by_driver import RobotByDriver
+from .cartesian import CartesianFunctions
+from .facts import BODY, JointState, MotionAccess
+from .gait import GaitAccess
+from .health import HealthAccess, in_chain
+from .joints import JointMotion
+from .look_at import GazeFunctions
+from .plan import MotionPlan
+from .poses import NamedPoses
+from .postures import POSTURES, PostureFunctions
+from .recording import MotionRecording
+from .state import MotionState
+from .stiffness import StiffnessFunctions
+from .store import MotionStore
+from .switches import MotionSwitches
+from .walk import WalkFunctions
+from .walk_end import WalkFailure
+from .walk_state import WalkState
 
 log = logging.getLogger(__name__)
 
@@ -88,6 +89,8 @@ class NaoMotion(
     typed_answers = ASKING
     without_robot = frozenset({"listMotions", "renameMotion", "deleteMotion"})
 
+    left_by_goals = frozenset({"store", "poses"})
+
     def __init__(
         self,
         ip: str,
@@ -124,6 +127,7 @@ class NaoMotion(
         self.store = MotionStore(folder, config_file(SHIPPED))
         self.plan = self._new_plan()
         self.recording_names = set()
+        self.cut_short = []
         self._dry_run = False
         self._mishaps = EventRelay(lambda: self.robot.proxy(MEMORY), self._told)
         for functions in (
@@ -141,6 +145,24 @@ class NaoMotion(
             self.function_table.update(functions)
         self.serve("NaoMotion", NaoMotionAction)
 
+    # Checks without a goal
+
+    def view_for_checks(self) -> Any:
+        """As NaoBasic gives it; with a plan and names of its own."""
+        view = super().view_for_checks()
+        view.recording_names = set()
+        return view
+
+    def begin_goal_check(self, now: bool) -> None:
+        """Plan from where the joints are, or from where nobody knows."""
+        self.plan = self._new_plan() if now else MotionPlan(lambda: self.access.facts, self._any_state)
+        if not now:
+            self.locate = _frame_not_known  # type: ignore[method-assign]
+
+    def _any_state(self) -> JointState:
+        joints = self.access.facts.chains[BODY]
+        return JointState(dict.fromkeys(joints), dict.fromkeys(joints, 1.0))
+
     # The life of a goal
 
     def locate(self, frame: str) -> Place:
@@ -151,6 +173,7 @@ class NaoMotion(
         """Forget what the last chain did."""
         self.plan = self._new_plan()
         self.recording_names.clear()
+        self.cut_short = []
         for event in (FALLING, MOVE_FAILED, DISABLED):
             try:
                 self._mishaps.subscribe(event)
@@ -179,6 +202,7 @@ class NaoMotion(
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add the joints that the chain moved or asked for; what an interrupted chain has set going is stopped."""
         super().fill_result(result, outcomes)
+        result.results += self.cut_short
         joints = list(self.plan.touched)
         if self.interrupt.is_set():
             self.halt()
@@ -191,12 +215,13 @@ class NaoMotion(
             result.position = list(self.call_now(self.robot.proxy("ALMotion"), "getAngles", joints, True))
         result.name = joints
 
-    def shut_down(self) -> None:
-        """As NaoBasic does; nothing is watched any more, and a walk that a goal left going is stopped."""
-        super().shut_down()
-        if self._left_walking and self.robot.connection.state == "connected":
+    def shutdown_steps(self) -> list[Callable[[], Any]]:
+        """As NaoBasic has them; a walk that a goal left going is stopped, and nothing is watched any more."""
+        return [*super().shutdown_steps(), self.with_robot(self._stop_left_walk), self._mishaps.close]
+
+    def _stop_left_walk(self) -> None:
+        if self._left_walking:
             self.stop_walk()
-        self._mishaps.close()
 
     def _connection_changed(self, *args: Any) -> None:
         super()._connection_changed(*args)
@@ -230,3 +255,7 @@ class NaoMotion(
             lambda: str(self.call(self.robot.proxy(POSTURES), "getPostureFamily")),
             lambda: self.health.read(list(self.access.facts.limits)),
         )
+
+
+def _frame_not_known(frame: str) -> Place:
+    raise NotKnownHere(f"where {frame} will be is not known before")

@@ -5,16 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .errors import BadGoal
-from .function_chain import checked_by
-from .motion_base import MotionBase
-from .motion_facts import BODY
+from ..base.errors import BadGoal
+from ..base.field_checks import require_whole
+from ..functions.chain import checked_by
+from .base import MotionBase
+from .facts import BODY
+
+MOST_TASKS = 2**31 - 1
 
 
 def check_task(_self: object, values: Sequence[float]) -> None:
     """The number of a task."""
-    if len(values) != 1 or values[0] != int(values[0]):
+    if len(values) != 1:
         raise BadGoal("values", list(values), "the number of one task")
+    require_whole("values", values[0], 0, MOST_TASKS)
 
 
 def check_kill_all(self: MotionBase) -> None:

@@ -6,11 +6,12 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .errors import BadGoal
-from .function_chain import checked_by
-from .motion_base import MotionBase
-from .motion_facts import BODY, one_each
-from .motion_plan import POSTURE_TIME, require_rising
+from ..base.errors import BadGoal
+from ..base.field_checks import KEY_FRAMES, require_length, require_rising
+from ..functions.chain import checked_by
+from .base import MotionBase
+from .facts import BODY, one_each
+from .plan import DURATION, POSTURE_TIME
 
 
 def _require_stiffnesses(values: Sequence[float]) -> None:
@@ -31,11 +32,13 @@ def check_stiffness_interpolation(
     self: MotionBase, names: Sequence[str], angles: Sequence[float], times: Sequence[float]
 ) -> None:
     """Known joints, stiffnesses 0..1 at rising times."""
-    require_rising(times)
+    require_rising("times", times, DURATION)
     _require_stiffnesses(angles)
     if len(angles) != len(times):
         raise BadGoal("angles", list(angles), f"{len(times)}, one a time, the same for all joints")
-    self.plan.set_stiffness(dict.fromkeys(self.plan.facts.joints(names), angles[-1]))
+    joints = self.plan.facts.joints(names)
+    require_length("times", len(times) * len(joints), KEY_FRAMES)
+    self.plan.set_stiffness(dict.fromkeys(joints, angles[-1]))
     self.plan.takes(times[-1])
 
 

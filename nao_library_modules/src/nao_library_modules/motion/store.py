@@ -7,10 +7,10 @@ from pathlib import Path
 
 import yaml
 
-from .errors import BadGoal
+from ..base.errors import BadGoal
+from ..base.suggestion import did_you_mean
+from ..base.whole_file import give_name, tidy, write_whole
 from .recorded_motion import RecordedMotion, motion_of
-from .suggestion import did_you_mean
-from .whole_file import write_whole
 
 SUFFIX = ".yaml"
 # No separators and no dot in front: a name stays in the folder.
@@ -28,6 +28,7 @@ class MotionStore:
     def __init__(self, folder: Path, shipped: Path | None = None) -> None:
         self.folder = folder
         self._shipped = shipped
+        tidy(folder)
 
     def names(self) -> list[str]:
         """Names of the motions in the folder, sorted."""
@@ -46,23 +47,27 @@ class MotionStore:
             raise BadGoal("str_param", name, "a recorded motion", problem=f"motion {name!r}: {error}") from error
         return motion_of(content, name)
 
-    def save(self, name: str, motion: RecordedMotion) -> None:
+    def save(self, name: str, motion: RecordedMotion, numbered: bool = False) -> Path:
         """Write a motion; one of that name is replaced as a whole, never left half written.
 
+        Args:
+            name: Its name.
+            motion: What to write.
+            numbered: Whether, where there is one of that name, it becomes name-2, name-3, ... and replaces none.
+
+        Returns:
+            Its file.
+
         Raises:
-            BadGoal: If the name will not do, or the file cannot be written.
+            BadGoal: If the name will not do.
+            FileTrouble: If the file cannot be written.
         """
         path = self.path(name)
         text = yaml.safe_dump(motion.to_content(), default_flow_style=None, sort_keys=False, width=10**6)
-        try:
-            write_whole(path, text)
-        except OSError as error:
-            raise BadGoal(
-                "str_param", name, "a folder to write to", problem=f"{path} cannot be written: {error}"
-            ) from error
+        return write_whole(path, text, numbered)
 
-    def rename(self, name: str, new_name: str) -> None:
-        """Give a motion another name.
+    def rename(self, name: str, new_name: str) -> Path:
+        """Give a motion another name; answers its file.
 
         Raises:
             BadGoal: If there is none of that name, it comes with the library, there is one of the new name already, or
@@ -70,10 +75,11 @@ class MotionStore:
         """
         path, target = self._existing(name), self.require_free(new_name)
         try:
-            path.rename(target)
+            given = give_name(path, target)
         except OSError as error:
             problem = f"{path} cannot be renamed to {target.name}: {error.strerror or error}"
             raise BadGoal("texts", new_name, "a folder to write to", problem) from error
+        return target if given else self.rename(name, new_name)  # one of that name came a moment ago
 
     def delete(self, name: str) -> None:
         """Delete a motion.
@@ -96,15 +102,20 @@ class MotionStore:
         """
         self._existing(name)
 
-    def require_free(self, name: str) -> Path:
-        """File of a new motion, for a message that has its name in `texts`.
+    def require_free(self, name: str, field: str = "texts") -> Path:
+        """File of a new motion.
+
+        Args:
+            name: Its name.
+            field: Of the message that has the name.
 
         Raises:
             BadGoal: If the name will not do, or there is a motion of that name already.
         """
-        path = self.path(name, "texts")
+        path = self.path(name, field)
         if path.exists():
-            raise BadGoal("texts", name, "a name that is free", problem=f"there is a motion {name!r} already")
+            allowed = "a name that is free, or overwrite" if field == "str_param" else "a name that is free"
+            raise BadGoal(field, name, allowed, problem=f"there is a motion {name!r} already: {path}")
         return path
 
     def path(self, name: str, field: str = "str_param") -> Path:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .errors import BadGoal
-from .function_chain import checked_by
-from .motion_base import DEFAULT_SPEED, MotionBase
-from .motion_facts import BODY
-from .motion_plan import require_fraction
-from .suggestion import did_you_mean
+from ..base.errors import BadGoal
+from ..base.field_checks import require_each, require_within
+from ..base.limits import limit
+from ..base.suggestion import did_you_mean
+from ..functions.chain import checked_by
+from .base import DEFAULT_SPEED, MotionBase
+from .cartesian import POSE_NUMBER, require_frame
+from .facts import BODY
+from .plan import DURATION, require_fraction
 
 CHAINS = ("Body", "Head", "LArm", "RArm", "Arms", "LLeg", "RLeg", "Legs")
 ARMS = ("LArm", "RArm", "Arms")
@@ -23,6 +25,7 @@ FOOT_STATES = ("Fixed", "Plane", "Free")
 BALANCE_TIME = 2.0
 """s that a shift of weight is planned to take where a speed is given."""
 BREATH_KEYS = ("Bpm", "Amplitude")
+SETTING = limit("setting")
 
 
 def _require(field: str, value: str, allowed: Sequence[str]) -> str:
@@ -46,6 +49,12 @@ def _chains_check(allowed: Sequence[str]) -> Callable[..., None]:
     return check
 
 
+def check_obstacles(self: object, names: Sequence[str], frame: int) -> None:
+    """Arms, a known frame."""
+    _chains_check(ARMS[:2])(self, names)
+    require_frame(frame)
+
+
 def check_leg(_self: object, str_param: str) -> None:
     """A leg, or both."""
     _require("str_param", str_param, LEGS)
@@ -62,8 +71,7 @@ def check_foot_state(_self: object, texts: Sequence[str], str_param: str) -> Non
 def check_balance(self: MotionBase, str_param: str, duration: float) -> None:
     """A leg, or both, and a time."""
     _require("str_param", str_param, ONE_LEG_OR_BOTH)
-    if not (math.isfinite(duration) and duration > 0.0):
-        raise BadGoal("duration", duration, "more than 0 s")
+    require_within("duration", duration, DURATION)
     body = self.plan.facts.chains[BODY]
     self.plan.walk.require_free(body)
     self.plan.forget(body)
@@ -80,6 +88,7 @@ def check_config(_self: object, texts: Sequence[str], values: Sequence[float]) -
     """Names of switches, a value each: 0 for off."""
     if not texts or len(values) != len(texts):
         raise BadGoal("values", list(values), f"one for each of {', '.join(texts) or 'the names in texts'}")
+    require_each("values", values, SETTING)
 
 
 def check_effector(_self: object, names: Sequence[str], values: Sequence[float]) -> None:
@@ -87,8 +96,9 @@ def check_effector(_self: object, names: Sequence[str], values: Sequence[float])
     if len(names) != 1:
         raise BadGoal("names", list(names), f"one of {', '.join(EFFECTORS)}")
     _require("names", names[0], EFFECTORS)
-    if len(values) not in (3, 6) or not all(map(math.isfinite, values)):
+    if len(values) not in (3, 6):
         raise BadGoal("values", list(values), "wx wy wz (Head), x y z or x y z wx wy wz (arms)")
+    require_each("values", values, POSE_NUMBER)
 
 
 def check_breath(_self: object, texts: Sequence[str], values: Sequence[float]) -> None:
@@ -97,6 +107,7 @@ def check_breath(_self: object, texts: Sequence[str], values: Sequence[float]) -
         _require("texts", text, BREATH_KEYS)
     if not texts or len(values) != len(texts):
         raise BadGoal("values", list(values), f"one for each of {', '.join(texts) or ', '.join(BREATH_KEYS)}")
+    require_each("values", values, SETTING)
 
 
 class MotionSwitches(MotionBase):
@@ -288,7 +299,7 @@ class MotionSwitches(MotionBase):
         """Whether it does."""
         return bool(self.motion("areNotificationsEnabled"))
 
-    @checked_by(_chains_check(ARMS[:2]))
+    @checked_by(check_obstacles)
     def get_chain_closest_obstacle_position(self, names: Sequence[str], frame: int) -> list[list[float]]:
         """What is nearest to each arm: x, y, z in m in a frame (0 torso, 1 world, 2 robot)."""
         return [list(self.motion("getChainClosestObstaclePosition", name, frame)) for name in names]

@@ -9,12 +9,14 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .errors import WalkStopped
-from .function_chain import checked_by
-from .motion_base import NEWS_TIME
-from .motion_facts import MOTION
-from .motion_gait import GaitPairs
-from .motion_walk_checks import (
+from ..base.errors import WalkStopped
+from ..base.places import Place
+from ..functions.chain import checked_by
+from ..robot.robot_task import wait_for_call
+from .base import NEWS_TIME
+from .facts import MOTION
+from .gait import GaitPairs
+from .walk_checks import (
     WalkBase,
     check_end,
     check_fast_steps,
@@ -30,9 +32,7 @@ from .motion_walk_checks import (
     step_speeds,
     steps,
 )
-from .motion_walk_end import WalkFailure
-from .places import Place
-from .robot_task import wait_for_call
+from .walk_end import WalkFailure
 
 log = logging.getLogger(__name__)
 
@@ -210,9 +210,11 @@ class WalkFunctions(WalkBase):
             arguments.append(duration)
         if config:
             arguments.append(config)
-        begin = lambda: self.robot.proxy(MOTION).call_async("moveTo", *arguments)  # noqa: E731
-        if planned and len(points) == 1 and not config:
-            direct, begin = begin, lambda: self.walk_by_plan(points[0]) or direct()
+
+        def begin() -> Any:
+            call = self.walk_by_plan(points[0]) if planned and len(points) == 1 and not config else None
+            return call or self.robot.proxy(MOTION).call_async("moveTo", *arguments)
+
         if self._await_walk(begin) is False:
             self._stopped(points[-1], before)
         return list(self._place().seen_from(before))

@@ -2,25 +2,34 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 
-from .errors import BadGoal
-from .motion_base import MotionBase
-from .motion_cartesian import require_frame
-from .motion_gait import CONFIGS, GaitAccess, GaitPairs, read_gait, walk_time
-from .motion_plan import require_rising
-from .motion_walk_plan import ARMS, LEGS
-from .places import Place
-from .suggestion import did_you_mean
+from ..base.errors import BadGoal
+from ..base.field_checks import (
+    degrees_hint,
+    require_count,
+    require_length,
+    require_rising,
+    require_within,
+    require_zero_or,
+)
+from ..base.limits import limit
+from ..base.places import Place
+from ..base.suggestion import did_you_mean
+from .base import MotionBase
+from .cartesian import require_frame
+from .gait import CONFIGS, GaitAccess, GaitPairs, read_gait, walk_time
+from .plan import ANGLE, DURATION, FRACTION
+from .walk_plan import ARMS, LEGS
 
 WORLD = 1
-FURTHEST = 100.0
-"""m. Who asks for more has mistaken the unit; the battery would not do."""
-HALF_TURN = math.pi + 1e-4
+PLACE = "x, y (m), theta (rad)"
+FURTHEST, HALF_TURN = limit("way").highest, limit("turn").highest
+"""m and rad. Who asks for more has mistaken the unit; the battery would not do."""
 # Far above what a NAO reaches: faster is no wish but a mistake in the unit. m/s and rad/s.
-FASTEST, FASTEST_TURN = 1.0, 2.0 * math.pi
-LONGEST = 3600.0
+FASTEST, FASTEST_TURN = limit("walking speed").highest, limit("turning speed").highest
+PACE, DISTANCE = limit("recording"), limit("place")
+PLACES, FOOTSTEPS = limit("places"), limit("footsteps")
 # m that sonars see.
 FARTHEST_SEEN = 2.5
 # Where a foot can be put beside the other one, m and rad. Source: NAOqi's documentation of the clipping of footsteps,
@@ -65,24 +74,26 @@ def require_way(way: Place, field: str = "values") -> None:
     numbers = ("x", way.x, FURTHEST, "m"), ("y", way.y, FURTHEST, "m"), ("theta", way.yaw, HALF_TURN, "rad")
     for name, value, most, unit in numbers:
         if not abs(value) <= most:
-            raise BadGoal(field, value, f"-{most:.5g} to {most:.5g} {unit}", problem=f"{name} cannot be {value:g}")
+            hint = degrees_hint(value, -most, most) if unit == "rad" else ""
+            allowed = f"-{most:.5g} to {most:.5g} {unit}{hint}"
+            raise BadGoal(field, value, allowed, problem=f"{name} cannot be {value:g}")
 
 
 def places(values: Sequence[float]) -> list[Place]:
     """Places from one flat list.
 
     Raises:
-        BadGoal: If there is none, or not three numbers for each.
+        BadGoal: If there is none, not three numbers for each, or too many.
     """
-    if not values or len(values) % 3:
-        problem = f"{len(values)} numbers"
-        raise BadGoal("values", list(values), "x, y (m) and theta (rad), again for each further place", problem=problem)
+    require_length("values", len(values) // 3, PLACES)
+    if len(values) < 3:
+        require_count("values", values, 3, PLACE)
+    require_count("values", values, 3, PLACE, "place")
     return [Place(*values[i : i + 3]) for i in range(0, len(values), 3)]
 
 
 def _require_seconds(duration: float) -> None:
-    if not (math.isfinite(duration) and 0.0 <= duration <= LONGEST):
-        raise BadGoal("duration", duration, f"above 0 to {LONGEST:g} s, or 0 for none")
+    require_zero_or("duration", duration, PACE, " for none")
 
 
 def _begin(self: MotionBase) -> None:
@@ -121,8 +132,7 @@ def check_target(
     gait_values: Sequence[float],
 ) -> None:
     """One place in a known frame, parameters of the walk, legs that can."""
-    if len(values) != 3:
-        raise BadGoal("values", list(values), "x, y (m) and theta (rad)", problem=f"{len(values)} numbers")
+    require_count("values", values, 3, PLACE)
     check_path(self, values, frame, str_param, gait, gait_values)
 
 
@@ -137,8 +147,8 @@ def check_path(
     """Places in a known frame, parameters of the walk, legs that can."""
     points = places(values)
     for point in points:
-        if not all(map(math.isfinite, point)):
-            require_way(point)
+        for value, kind in zip(point, (DISTANCE, DISTANCE, ANGLE)):
+            require_within("values", value, kind)
     require_frame(frame)
     config = self.walk_config(gait, gait_values)
     origin = self.origin(frame, str_param)
@@ -158,7 +168,7 @@ def check_move(
     self: WalkBase, values: Sequence[float], duration: float, gait: Sequence[str], gait_values: Sequence[float]
 ) -> None:
     """A velocity, a time, parameters of the walk, legs that can."""
-    _check_velocity(self, values, (FASTEST, FASTEST, FASTEST_TURN), "x, y (m/s) and theta (rad/s)")
+    _check_velocity(self, values, (FASTEST, FASTEST, FASTEST_TURN), "x, y (m/s), theta (rad/s)")
     _check_pace(self, duration, gait, gait_values)
 
 
@@ -166,16 +176,15 @@ def check_move_toward(
     self: WalkBase, values: Sequence[float], duration: float, gait: Sequence[str], gait_values: Sequence[float]
 ) -> None:
     """Shares of the top speed, a time, parameters of the walk, legs that can."""
-    _check_velocity(self, values, (1.0, 1.0, 1.0), "x, y and theta, shares of the top speed")
+    _check_velocity(self, values, (1.0, 1.0, 1.0), "x, y, theta, shares of the top speed")
     _check_pace(self, duration, gait, gait_values)
 
 
 def _check_velocity(self: WalkBase, values: Sequence[float], most: Sequence[float], what: str) -> None:
-    if len(values) != 3:
-        raise BadGoal("values", list(values), what, problem=f"{len(values)} numbers")
-    for name, value, limit in zip(("x", "y", "theta"), values, most):
-        if not abs(value) <= limit:
-            allowed = f"-{limit:.4g} to {limit:.4g} ({what})"
+    require_count("values", values, 3, what)
+    for name, value, top in zip(("x", "y", "theta"), values, most):
+        if not abs(value) <= top:
+            allowed = f"-{top:.4g} to {top:.4g} ({what})"
             raise BadGoal("values", value, allowed, problem=f"{name} cannot be {value:g}")
 
 
@@ -197,16 +206,21 @@ def steps(names: Sequence[str], values: Sequence[float]) -> list[list[float]]:
     """Footsteps of a message: x, y and theta of each, seen from the other foot.
 
     Raises:
-        BadGoal: If a leg is not known, moves twice in a row, or cannot put its foot there.
+        BadGoal: If a leg is not known, moves twice in a row, or cannot put its foot there, or steps are too many.
     """
-    if not names or any(name not in LEGS for name in names):
-        raise BadGoal("names", list(names), f"for each step one of {', '.join(LEGS)}")
+    require_length("names", len(names), FOOTSTEPS)
+    if not names:
+        raise BadGoal("names", [], f"for each step one of {', '.join(LEGS)}", problem="it is empty")
+    for leg in names:
+        if leg not in LEGS:
+            problem = f"{leg!r} is no leg{did_you_mean(leg, LEGS)}"
+            raise BadGoal("names", leg, f"for each step one of {', '.join(LEGS)}", problem=problem)
     for leg, following in zip(names, names[1:]):
         if leg == following:
             raise BadGoal("names", list(names), "one leg after the other", problem=f"{leg} cannot step twice in a row")
     if len(values) != 3 * len(names):
-        problem = f"{len(values)} numbers for {len(names)} steps"
-        raise BadGoal("values", list(values), "x, y (m) and theta (rad) for each step", problem=problem)
+        problem = f"3 numbers for each step are needed, {3 * len(names)} in all"
+        raise BadGoal("values", list(values), f"{PLACE}; here are {len(values)}", problem=problem)
     rows = [list(values[i : i + 3]) for i in range(0, len(values), 3)]
     for leg, (x, y, theta) in zip(names, rows):
         across = STEP_Y if leg == LEGS[0] else (-STEP_Y[1], -STEP_Y[0])
@@ -221,7 +235,7 @@ def steps(names: Sequence[str], values: Sequence[float]) -> list[list[float]]:
 def check_timed_steps(self: WalkBase, names: Sequence[str], values: Sequence[float], times: Sequence[float]) -> None:
     """Legs, where they step, when; legs that can."""
     steps(names, values)
-    require_rising(times)
+    require_rising("times", times, DURATION)
     if len(times) != len(names):
         raise BadGoal("times", list(times), "one for each step", problem=f"{len(times)} times for {len(names)} steps")
     _begin(self)
@@ -248,8 +262,7 @@ def step_speeds(count: int, speed: float, speeds: Sequence[float]) -> list[float
     if len(given) not in (1, count):
         raise BadGoal("speeds", given, "one, or one for each step", problem=f"{len(given)} speeds for {count} steps")
     for value in given:
-        if not 0.0 < value <= 1.0:
-            raise BadGoal("speeds" if speeds else "speed", value, "above 0 to 1")
+        require_within("speeds" if speeds else "speed", value, FRACTION)
     return given if len(given) == count else given * count
 
 
@@ -285,4 +298,5 @@ def check_arms(_self: object, names: Sequence[str]) -> None:
     """Arms, or nothing for both."""
     for name in names:
         if name not in (*ARMS, "Arms"):
-            raise BadGoal("names", name, f"{', '.join(ARMS)}, Arms, or nothing for both")
+            problem = f"{name!r} is no arm{did_you_mean(name, (*ARMS, 'Arms'))}"
+            raise BadGoal("names", name, f"{', '.join(ARMS)}, Arms, or nothing for both", problem=problem)

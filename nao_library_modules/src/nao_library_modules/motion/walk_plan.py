@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from .errors import BadGoal, CannotWalk
+from ..base.errors import BadGoal, CannotWalk
 
 LEGS = ("LLeg", "RLeg")
 ARMS = ("LArm", "RArm")

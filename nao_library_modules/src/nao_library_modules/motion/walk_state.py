@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .function_chain import checked_by
-from .motion_gait import DEFAULT
-from .motion_walk_checks import WalkBase, check_arms, check_config, check_distance
-from .motion_walk_plan import ARMS
+from ..functions.chain import checked_by
+from .gait import DEFAULT
+from .walk_checks import WalkBase, check_arms, check_config, check_distance
+from .walk_plan import ARMS
 
 
 class WalkState(WalkBase):

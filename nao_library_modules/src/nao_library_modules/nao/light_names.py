@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from naoqi.errors import NaoError
 
-from .suggestion import closest
+from ..base.suggestion import closest
 
 COLOUR_PARTS = ("Red", "Green", "Blue")
+PLAIN_WORDS = {
+    "Eyes": "FaceLeds",
+    "LeftEye": "LeftFaceLeds",
+    "RightEye": "RightFaceLeds",
+    "Ears": "EarLeds",
+    "LeftEar": "LeftEarLeds",
+    "RightEar": "RightEarLeds",
+    "Chest": "ChestLeds",
+    "Feet": "FeetLeds",
+    "LeftFoot": "LeftFootLeds",
+    "RightFoot": "RightFootLeds",
+}
+"""Names that ALLeds does not know -> those of its groups that they mean. A light or group of the robot comes before."""
 
 
 class UnknownLight(NaoError):  # noqa: N818  named like the errors of the proxy layer
@@ -23,9 +37,15 @@ class UnknownLight(NaoError):  # noqa: N818  named like the errors of the proxy 
     def __init__(self, name: str, known: Iterable[str]) -> None:
         """Compose the text with the closest names."""
         self.name = name
-        matches = ", ".join(map(repr, closest(name, known)))
+        in_its_words = re.sub("lights?", "Leds", name, flags=re.IGNORECASE)
+        matches = ", ".join(map(repr, closest(in_its_words, known)))
         self.hint = f"did you mean {matches}?" if matches else "listLEDs and listGroups tell the names"
         super().__init__(f"unknown light {name!r}: {self.hint}")
+
+
+def plain_words(groups: Container[str]) -> list[str]:
+    """Plain words for the groups that a robot has."""
+    return [word for word, group in PLAIN_WORDS.items() if group in groups]
 
 
 def colour_part(device: str) -> str:
@@ -38,7 +58,8 @@ class LightNames:
     """Names of lights as a robot knows them.
 
     A single light has a short name (`LeftFaceLed1`), or is one LED under its device name
-    (`Face/Led/Red/Left/0Deg/Actuator/Value`). Groups are used like single lights everywhere.
+    (`Face/Led/Red/Left/0Deg/Actuator/Value`). Groups are used like single lights everywhere, and so are the plain words
+    for them: `Eyes` is `FaceLeds`.
 
     Attributes:
         lights: Short name -> device names.
@@ -69,11 +90,19 @@ class LightNames:
 
     @property
     def all_names(self) -> list[str]:
-        """Groups and short names."""
-        return [*self.groups, *self.lights]
+        """Groups, short names, and plain words for groups."""
+        return list(dict.fromkeys([*self.groups, *self.lights, *plain_words(self.groups)]))
+
+    def of_robot(self, name: str) -> str:
+        """The name that ALLeds has for a light or group: `FaceLeds` for `Eyes`; any other stays as it is."""
+        group = PLAIN_WORDS.get(name, name)
+        return name if self._lists(name) or group not in self.groups else group
 
     def knows(self, name: str) -> bool:
-        """Whether there is a light, group or device of that name."""
+        """Whether there is a light, group or device of that name, or a plain word for a group."""
+        return self._lists(self.of_robot(name))
+
+    def _lists(self, name: str) -> bool:
         return name in self.groups or name in self.lights or name in self._devices()
 
     def _devices(self) -> frozenset[str]:
@@ -86,10 +115,10 @@ class LightNames:
             UnknownLight: If a name is unknown.
         """
         expanded: dict[str, None] = {}
-        for name in names:
+        for name in map(self.of_robot, names):
             if name in self.groups:
                 expanded.update(dict.fromkeys(self.groups[name]))
-            elif self.knows(name):
+            elif self._lists(name):
                 expanded[name] = None
             else:
                 raise UnknownLight(name, self.all_names)

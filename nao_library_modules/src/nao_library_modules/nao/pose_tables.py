@@ -10,8 +10,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .paths import config_file
-from .suggestion import did_you_mean
+from ..base.paths import config_file
+from ..base.suggestion import did_you_mean
 from .xap import read_poses
 
 FIELDS = ("joint_names", "positions", "time_from_start")

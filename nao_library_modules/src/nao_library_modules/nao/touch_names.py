@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from ..base.errors import BadGoal
+from ..base.suggestion import did_you_mean
 from .body_devices import sensor_key
-from .errors import BadGoal
-from .suggestion import did_you_mean
 
 
 @dataclass(frozen=True)
@@ -86,13 +86,34 @@ def sensors_of(words: Sequence[str], field: str = "sensors") -> tuple[Sensor, ..
     return tuple(sensor for sensor in SENSORS if sensor in wanted)
 
 
+def devices_of(words: Sequence[str]) -> list[str]:
+    """Devices behind words as `sensors_of` takes them, each once; a device means itself alone.
+
+    Raises:
+        BadGoal: Something has none of these names.
+    """
+    found: dict[str, None] = {}
+    for word in words:
+        sensors = _behind(word, "sensors")
+        devices = [device for sensor in sensors for device in sensor.devices]
+        found.update(dict.fromkeys([word] if word in devices else devices))
+    return list(found)
+
+
 def _behind(word: str, field: str) -> list[Sensor]:
     plain = " ".join(word.replace("_", " ").split())
     lower = plain.lower()
-    found = [s for s in SENSORS if lower == s.name or lower in s.groups or word.strip() in (s.event, *s.devices)]
+    words = sorted(lower.split())  # in any order: head front, front head
+    found = [
+        s
+        for s in SENSORS
+        if any(words == sorted(name.split()) for name in (s.name, *s.groups)) or word.strip() in (s.event, *s.devices)
+    ]
     if not found:
         known = [*GROUPS, *names_of(SENSORS)]
         events = ", ".join(sensor.event for sensor in SENSORS)
-        problem = f"{word!r} is nothing that can be touched{did_you_mean(lower, known)}"
+        devices = [device for sensor in SENSORS for device in sensor.devices]
+        hint = did_you_mean(lower, known) or did_you_mean(word, devices)
+        problem = f"{word!r} is nothing that can be touched{hint}"
         raise BadGoal(field, word, f"one of {', '.join(known)}, or an event: {events}", problem=problem)
     return found

@@ -9,6 +9,8 @@ from pathlib import Path
 import av
 from PIL import Image, ImageDraw, ImageFont
 
+from ..base.whole_file import WholeFile
+
 MOMENTS = 6
 BAND = 22
 """Height of the line with a name over its strip, pixels."""
@@ -104,4 +106,5 @@ def _middle(picture: Image.Image, share: float) -> Image.Image:
 
 def save_small(sheet: Image.Image, path: Path) -> None:
     """Save a sheet as a PNG of few colours."""
-    sheet.quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+    with WholeFile(path) as file:
+        sheet.quantize(COLOURS, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)

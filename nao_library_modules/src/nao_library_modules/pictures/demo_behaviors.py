@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .contact_sheet import Part, contact_sheet
-from .own_stack import OwnStack
+from ..processes.own_stack import OwnStack
+from .contact_sheet import Part, contact_sheet, save_small
 
 FILM, SHEET = "behaviors.mp4", "behaviors.png"
 SIZE, RATE, VIEW = 360, 15.0, "stage"
@@ -104,7 +104,7 @@ class BehaviorShow:
             told = f"{parts[-1].end - begin:.1f} s, {late * 1000.0:.0f} ms late at most, torso at {height:.2f} m"
             report(f"behaviour {turn.name}", told if not end else f"{told}; {end}", not end and stands)
         film = world.stop_film()
-        contact_sheet(self._output / FILM, parts).save(self._output / SHEET, optimize=True)
+        save_small(contact_sheet(self._output / FILM, parts), self._output / SHEET)
         told = f"{film.frames} pictures, {film.length.to_sec():.0f} s, with sound; {SHEET} has six of each"
         report(f"film {FILM}", told, film.frames > 0)
         return parts

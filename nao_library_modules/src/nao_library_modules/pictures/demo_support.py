@@ -7,7 +7,8 @@ import time
 from pathlib import Path
 from typing import Callable, Sequence
 
-from .own_stack import OwnStack
+from ..base.whole_file import write_whole
+from ..processes.own_stack import OwnStack
 
 WORLD = "lab"
 # Everything the loudspeakers play.
@@ -67,4 +68,4 @@ def write_table(rows: Sequence[tuple[str, str, bool]], path: Path) -> None:
     """Write the table of what was asked and what the robot reports."""
     lines = ["| asked | the robot reports | |", "|---|---|---|"]
     lines += [f"| {asked} | {reported} | {'ok' if good else 'FAIL'} |" for asked, reported, good in rows]
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_whole(path, "\n".join(lines) + "\n")

@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Callable, List, Sequence
 
+from ..base.whole_file import write_whole
+
 FORMAT = "nao_library dialogue 1"
 ROBOT, PERSON = "robot", "person"
 SAYS, HEARS, DOES = "says", "hears", "does"
@@ -91,7 +93,7 @@ class Notes:
 def save(turns: Sequence[Turn], path: Path) -> None:
     """Write a record as JSON."""
     content = {"format": FORMAT, "units": "s", "turns": [asdict(turn) for turn in turns]}
-    path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    write_whole(path, json.dumps(content, indent=1) + "\n")
 
 
 def load(path: Path) -> List[Turn]:

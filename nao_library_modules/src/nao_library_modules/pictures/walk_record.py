@@ -13,6 +13,8 @@ from typing import Any, List, Optional, Sequence, Tuple
 
 from naoqi.errors import NaoError
 
+from ..base.whole_file import write_whole
+
 Point = Tuple[float, float]
 # x, y in m, heading in rad.
 Place = Tuple[float, float, float]
@@ -109,7 +111,7 @@ def footprints(samples: Sequence[Sample]) -> List[Footprint]:
 def save(samples: Sequence[Sample], path: Path) -> None:
     """Write a record as JSON."""
     content = {"format": FORMAT, "units": "m, rad, kg", "samples": [asdict(sample) for sample in samples]}
-    path.write_text(json.dumps(content), encoding="utf-8")
+    write_whole(path, json.dumps(content))
 
 
 def load(path: Path) -> List[Sample]:

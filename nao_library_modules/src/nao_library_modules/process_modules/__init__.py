@@ -6,21 +6,19 @@ What plans are written with can be imported from here, and what starts the modul
 
 from __future__ import annotations
 
-import importlib
-from typing import Any
-
-from .control import (
-    do,
-    par,
-    par_loop,
-    partial_order,
-    pursue,
-    seq,
-    subtask,
-    top_level,
-    try_all,
-    try_each_in_order,
-    try_in_order,
+from ..base.doors import door
+from .core.perception import at_location, examine, go_to, perceive
+from .core.process_module import AsynchronousProcessModule, ProcessModule, pm_cancel, pm_run, pm_status
+from .core.registry import (
+    available_process_module,
+    matching_process_module,
+    monitor_process_module,
+    perform,
+    pm_execute,
+    pm_execute_matching,
+    stop_process_modules,
+    with_process_module_aliases,
+    with_process_modules_running,
 )
 from .designators.designator import (
     Designator,
@@ -40,14 +38,34 @@ from .designators.designator import (
 )
 from .designators.objects import BELIEFS
 from .designators.rules import Command, command, rule
-from .failures import CompositeFailure, PlanError, PlanFailure, SimplePlanFailure, fail
-from .flow import checkpoint, retry_after_suspension, sleep, uninterrupted, wait_until
-from .fluents import Fluent, fl_and, fl_eq, fl_funcall, fl_not, fl_or, fl_value_changed, pulsed
-from .goals import ANY, achieve, declare_goal, def_goal, holds, perceive_state
-from .handling import do_retry, get_counter, give, reset_counter, retry, with_failure_handling, with_retry_counters
-from .perception import at_location, examine, go_to, perceive
-from .plans import StartedPlan, def_plan, def_top_level_plan
-from .policies import (
+from .language.control import (
+    do,
+    par,
+    par_loop,
+    partial_order,
+    pursue,
+    seq,
+    subtask,
+    top_level,
+    try_all,
+    try_each_in_order,
+    try_in_order,
+)
+from .language.failures import CompositeFailure, PlanError, PlanFailure, SimplePlanFailure, fail
+from .language.flow import checkpoint, retry_after_suspension, sleep, uninterrupted, wait_until
+from .language.fluents import Fluent, fl_and, fl_eq, fl_funcall, fl_not, fl_or, fl_value_changed, pulsed
+from .language.goals import ANY, achieve, declare_goal, def_goal, holds, perceive_state
+from .language.handling import (
+    do_retry,
+    get_counter,
+    give,
+    reset_counter,
+    retry,
+    with_failure_handling,
+    with_retry_counters,
+)
+from .language.plans import StartedPlan, def_plan, def_top_level_plan
+from .language.policies import (
     Policy,
     define_policy,
     named_policy,
@@ -57,39 +75,22 @@ from .policies import (
     with_policies,
     with_policy,
 )
-from .process_module import AsynchronousProcessModule, ProcessModule, pm_cancel, pm_run, pm_status
-from .registry import (
-    available_process_module,
-    matching_process_module,
-    monitor_process_module,
-    perform,
-    pm_execute,
-    pm_execute_matching,
-    stop_process_modules,
-    with_process_module_aliases,
-    with_process_modules_running,
+from .language.space import Point3, Position
+from .language.tasks import Task, TaskState, current_task
+from .language.trace import Trace, trace_of
+from .language.waiting import wait_for, whenever
+
+# Loaded when it is asked for: plans alone need no ROS.
+__getattr__ = door(
+    __name__,
+    {
+        "start_process_modules": "low_level",
+        "StartProcessModules": "low_level:start_process_modules",
+        "ManipulationProcessModule": "modules.manipulation:Manipulation",
+        "NavigationProcessModule": "modules.navigation:Navigation",
+        "SpeechProcessModule": "modules.speech:Speech",
+    },
 )
-from .space import Point3, Position
-from .tasks import Task, TaskState, current_task
-from .trace import Trace, trace_of
-from .waiting import wait_for, whenever
-
-_IN_ROS = {
-    "start_process_modules": ("low_level", "start_process_modules"),
-    "StartProcessModules": ("low_level", "start_process_modules"),
-    "ManipulationProcessModule": ("modules.manipulation", "Manipulation"),
-    "NavigationProcessModule": ("modules.navigation", "Navigation"),
-    "SpeechProcessModule": ("modules.speech", "Speech"),
-}
-"""Name -> module and name there, of what is loaded when it is asked for: plans alone need no ROS."""
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _IN_ROS:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module, attribute = _IN_ROS[name]
-    return getattr(importlib.import_module(f".{module}", __name__), attribute)
-
 
 __all__ = [
     "ANY",

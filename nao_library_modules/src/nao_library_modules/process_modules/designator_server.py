@@ -6,26 +6,27 @@ from collections.abc import Callable
 from typing import Any
 
 import rospy
-import yaml
-from actionlib import ActionServer
 from std_msgs.msg import String
 
 from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorFeedback, PerformDesignatorResult
 
-from ..answers import json_of
-from ..goal_crowd import GoalCrowd, Outcome
-from ..interrupt import Interrupt
-from .control import do, top_level
-from .designators.designator import Designator, designator
-from .failures import PlanError, PlanFailure
+from ..base.answers import json_of
+from ..base.interrupt import Interrupt
+from ..base.yaml_values import Budget
+from ..processes.closing import close_all
+from ..ros.action_server import ActionServer
+from ..ros.goal_crowd import GoalCrowd, Outcome
+from .core.registry import perform, start_process_modules, stop_process_modules
+from .designators.designator import Designator, designator, read_yaml, require_short, text_budget
+from .language.control import do, top_level
+from .language.failures import PlanError, PlanFailure
+from .language.tasks import Task
 from .low_level import make_process_modules, this_robot
 from .modules.manipulation import Grip
-from .registry import perform, start_process_modules, stop_process_modules
-from .tasks import Task
 
 ACTION, TOPIC = "perform_designator", "designators"
-SHUTDOWN_LIMIT = 5.0
-"""s that the end of the node waits for what the modules do."""
+SHUTDOWN_LIMIT = 2.0
+"""s that the end of the node waits for goals, before the modules are ended with whatever they do."""
 
 
 class DesignatorServer:
@@ -52,9 +53,7 @@ class DesignatorServer:
 
     def close(self) -> None:
         """End what is done, and the modules."""
-        self._closing.trigger()
-        self._crowd.close(SHUTDOWN_LIMIT)
-        stop_process_modules()
+        close_all(self._closing.trigger, lambda: self._crowd.close(SHUTDOWN_LIMIT), stop_process_modules)
 
     def _perform_goal(self, goal: Any, interrupt: Interrupt, publish: Callable[[Any], None]) -> Outcome:
         def tell(task: Task) -> None:
@@ -105,14 +104,11 @@ def read(goal: Any) -> Designator:
     kind = goal.kind.strip() or "action"
     if not goal.pairs:
         raise PlanError("designator: there is neither text nor keys and values")
-    return designator([(pair.key, _value(pair.value)) for pair in goal.pairs], kind)
+    require_short(sum(len(pair.key) + len(pair.value) for pair in goal.pairs))
+    budget = text_budget()
+    return designator([(pair.key, _value(pair.value, budget)) for pair in goal.pairs], kind)
 
 
-def _value(text: str) -> Any:
+def _value(text: str, budget: Budget) -> Any:
     """What a text stands for: a designator in Lisp, or YAML."""
-    if text.lstrip().startswith("("):
-        return designator(text)
-    try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise PlanError(f"designator: the value {text!r} is no YAML: {error}") from error
+    return designator(text) if text.lstrip().startswith("(") else read_yaml(text, budget)

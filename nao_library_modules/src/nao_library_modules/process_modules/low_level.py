@@ -10,20 +10,20 @@ import threading
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..places import Place
+from ..base.places import Place
 from .action_rules.values import a_place, a_point, a_position
+from .core.process_module import ProcessModule
+from .core.registry import start_process_modules as start_modules
 from .designators.patterns import Mismatch, Pattern
-from .failures import PlanError
+from .language.failures import PlanError
+from .language.plans import def_top_level_plan
+from .language.space import Point3
 from .modules.lights import Lights
 from .modules.manipulation import Grip, Manipulation
 from .modules.navigation import Navigation
 from .modules.speech import Speech
 from .modules.vision import Vision
-from .plans import def_top_level_plan
-from .process_module import ProcessModule
-from .registry import start_process_modules as start_modules
-from .robot_link import RobotLink
-from .space import Point3
+from .robot.robot_link import RobotLink
 
 _lock = threading.Lock()
 _robots: list[RobotLink] = []

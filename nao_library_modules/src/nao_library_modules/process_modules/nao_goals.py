@@ -12,16 +12,18 @@ The process modules have to run, as `run_and_tell` and `start_process_modules` s
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from ..places import wrapped
+from ..base.places import wrapped
 from . import low_level
 from .action_rules.values import ODOM, a_place
+from .core.registry import perform
 from .designators.designator import action, an
 from .designators.patterns import Mismatch
-from .goals import achieved_by, declare_goal, def_goal
+from .language.goals import Goal, achieved_by, declare_goal, def_goal
 from .low_level import this_robot
-from .registry import perform
 
 
 def _there(reached: bool) -> bool | None:
@@ -30,7 +32,7 @@ def _there(reached: bool) -> bool | None:
 
 
 def _opening(side: str) -> float:
-    return this_robot().angles().get(f"{str(side)[:1].upper()}Hand", -1.0)
+    return this_robot().angles().get(f"{str(side)[:1].upper()}Hand", math.inf)
 
 
 @declare_goal
@@ -67,7 +69,9 @@ def stable() -> bool | None:
     """The robot is in the pose from which everything else can begin."""
     robot = this_robot()
     now, tolerance = robot.angles(), robot.settings.head_tolerance
-    return _there(all(abs(now.get(name, 9.0) - angle) < tolerance for name, angle in robot.settings.stable.items()))
+    return _there(
+        all(abs(now.get(name, math.inf) - angle) < tolerance for name, angle in robot.settings.stable.items())
+    )
 
 
 @declare_goal
@@ -79,7 +83,7 @@ def at_place(target: Any) -> bool | None:
         return None  # a designator
     robot = this_robot()
     here, (near, _) = robot.place(frame or ODOM), robot.settings.walk_tolerance
-    turned_well = place.yaw != place.yaw or abs(wrapped(here.yaw - place.yaw)) < robot.settings.walk_tolerance[1]
+    turned_well = math.isnan(place.yaw) or abs(wrapped(here.yaw - place.yaw)) < robot.settings.walk_tolerance[1]
     return _there(here.distance_to(place) < near and turned_well)
 
 
@@ -88,24 +92,32 @@ def said(sentence: str) -> None:
     """A sentence has been said."""
 
 
-@def_goal(opened_gripper)
-def _open(side: str) -> Any:
-    return perform(an(action, type="opening", gripper=side))
+def _by_action(goal: Goal, kind: str, values: Mapping[str, str]) -> Callable[..., Any]:
+    """A plan that performs an action.
+
+    Args:
+        goal: That it achieves.
+        kind: The action's type.
+        values: Key of the action -> name of the goal's argument that is its value.
+    """
+
+    def plan(*arguments: Any) -> Any:
+        given = dict(zip(goal.parameters, arguments))
+        return perform(an(action, type=kind, **{key: given[name] for key, name in values.items()}))
+
+    return plan
 
 
-@def_goal(closed_gripper)
-def _close(side: str) -> Any:
-    return perform(an(action, type="closing", gripper=side))
-
-
-@def_goal(gripped)
-def _grip(side: str) -> Any:
-    return perform(an(action, type="gripping", gripper=side))
-
-
-@def_goal(moved_arm)
-def _reach(target: Any, side: str) -> Any:
-    return perform(an(action, type="reaching", side=side, target=target))
+for _goal, _kind, _values in (
+    (opened_gripper, "opening", {"gripper": "side"}),
+    (closed_gripper, "closing", {"gripper": "side"}),
+    (gripped, "gripping", {"gripper": "side"}),
+    (moved_arm, "reaching", {"side": "side", "target": "target"}),
+    (stable, "standing", {}),
+    (at_place, "going", {"target": "target"}),
+    (said, "saying", {"text": "sentence"}),
+):
+    def_goal(_goal)(_by_action(_goal, _kind, _values))
 
 
 @def_goal(looking_at)
@@ -113,21 +125,6 @@ def _look(target: Any, y: float | None, z: float | None) -> Any:
     if y is not None:
         target = [target, y] if z is None else [target, y, z]
     return perform(an(action, type="looking", target=target))
-
-
-@def_goal(stable)
-def _stand() -> Any:
-    return perform(an(action, type="standing"))
-
-
-@def_goal(at_place)
-def _go(target: Any) -> Any:
-    return perform(an(action, type="going", target=target))
-
-
-@def_goal(said)
-def _say(sentence: str) -> Any:
-    return perform(an(action, type="saying", text=sentence))
 
 
 open_gripper = openGripper = opened_gripper  # noqa: N816  names of the thesis, here and below

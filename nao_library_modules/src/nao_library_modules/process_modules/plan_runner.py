@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 import threading
 import time
@@ -11,14 +12,18 @@ from typing import Any
 import rospy
 from std_srvs.srv import Empty
 
-from .control import Branch, top_level
-from .failures import LowLevelFailure, PlanFailure
+from ..base.whole_file import NoPlaceForFile, require_new, write_whole
+from ..owners.line import OwnerLine
+from ..ros.goal_watch import GoalWatch
+from ..ros.node import own_goals, robot_address, robot_beside
+from .core.registry import with_process_modules_running
+from .language.control import Branch, top_level
+from .language.failures import LowLevelFailure, PlanFailure
+from .language.tasks import Task
+from .language.trace import Trace, trace_of
 from .low_level import make_process_modules, this_robot
-from .plan_topic import PlanTopic
-from .registry import with_process_modules_running
-from .robot_link import RobotLink
-from .tasks import Task
-from .trace import Trace, trace_of
+from .robot.plan_topic import PlanTopic
+from .robot.robot_link import RobotLink
 
 WAKE_UP = "wakeup"
 ROBOT_LIMIT = 60.0
@@ -53,9 +58,15 @@ class PlanRun:
     def run(self, body: Branch, name: str = "") -> Any:
         """Run a plan with all process modules; what it answers. The end of the node ends it, and stops the robot.
 
+        If the process is killed instead, the servers see to that: those of the robot of `~pip` and `~pport`, by default
+        the one of this namespace.
+
         Raises:
             PlanFailure: What it failed with.
         """
+        if GoalWatch.owners is None:
+            ip, port = robot_address(argparse.Namespace(pip=None, pport=None), robot_beside)
+            own_goals(OwnerLine(f"{ip}:{port}"))
         topic = PlanTopic()
         rospy.on_shutdown(self._end)
         try:
@@ -99,9 +110,9 @@ class PlanRun:
 
     def _keep(self, trace: Trace) -> None:
         if self._trace_file is not None:
-            self._trace_file.write_text(trace.to_json() + "\n", encoding="utf-8")
+            write_whole(self._trace_file, trace.to_json() + "\n")
         if self._picture_file is not None:
-            from .trace_picture import save  # Pillow takes its time
+            from .language.trace_picture import save  # Pillow takes its time
 
             save(trace, self._picture_file)
 
@@ -126,16 +137,24 @@ def wake_up() -> None:
         time.sleep(RETRY)
 
 
-def run_and_tell(plan: Branch, name: str = "", trace: str = "", picture: str = "") -> int:
+def run_and_tell(plan: Branch, name: str = "", trace: str = "", picture: str = "", overwrite: bool = False) -> int:
     """Run a plan and print its tree; the exit status of a program that does nothing else.
+
+    A file that is there already is told of, and the plan does not run.
 
     Args:
         plan: The plan.
         name: Of its root.
         trace: File for the trace as JSON; empty for none.
         picture: File for its picture as PNG; empty for none.
+        overwrite: Whether files that are there are replaced.
     """
-    run = PlanRun(trace_file=Path(trace) if trace else None, picture_file=Path(picture) if picture else None)
+    try:
+        trace_file, picture_file = (require_new(file, overwrite) if file else None for file in (trace, picture))
+    except NoPlaceForFile as error:
+        print(error, file=sys.stderr)
+        return 1
+    run = PlanRun(trace_file=trace_file, picture_file=picture_file)
     status = 0
     try:
         run.run(plan, name)
@@ -144,4 +163,6 @@ def run_and_tell(plan: Branch, name: str = "", trace: str = "", picture: str = "
         status = 1
     if run.trace is not None:
         print(run.trace)
+        for file in filter(None, (trace_file, picture_file)):
+            print(f"written: {file}")
     return status

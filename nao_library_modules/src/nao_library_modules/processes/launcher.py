@@ -9,6 +9,7 @@ from typing import Tuple
 
 from naoqi.errors import NaoError
 
+from ..base.suggestion import did_you_mean
 from .supervisor import Supervisor
 
 LaunchPath = Tuple[str, str]
@@ -42,7 +43,23 @@ def find_launch_file(launchpath: LaunchPath) -> Path:
     except (TypeError, ValueError):
         raise BadLaunchPath(launchpath, "not a pair of names") from None
     except RLException as error:
-        raise BadLaunchPath(launchpath, str(error)) from error
+        raise BadLaunchPath(launchpath, _missing(package, launchfile) or str(error)) from error
+
+
+def _missing(package: str, launchfile: str) -> str:
+    """Which of the two is not there, with the names that come close; empty: both are."""
+    import roslib.packages
+    import rospkg
+
+    packages = rospkg.RosPack()
+    try:
+        folder = packages.get_path(package)
+    except rospkg.ResourceNotFound:
+        return f"there is no package {package!r}{did_you_mean(package, packages.list())}"
+    if roslib.packages.find_resource(package, launchfile):
+        return ""
+    files = [path.name for path in Path(folder).rglob("*.launch")]
+    return f"the package {package} has no {launchfile!r}{did_you_mean(launchfile, files)}"
 
 
 def declared_arguments(launch_file: Path) -> set[str]:

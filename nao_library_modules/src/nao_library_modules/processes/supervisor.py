@@ -17,6 +17,11 @@ from .process_tree import descendants, kill_survivors
 log = logging.getLogger(__name__)
 
 
+WITH_ITS_PARENT = ("setpriv", "--pdeathsig", "TERM")
+"""Before a command: the system ends the program when the thread that started it has ended, as in a process that was
+killed. roslaunch ends its nodes then."""
+
+
 class State(enum.Enum):
     """What a supervised program does at present."""
 
@@ -41,9 +46,9 @@ class Timing:
     first_delay: float = 1.0
     longest_delay: float = 30.0
     settled: float = 60.0
-    interrupt: float = 8.0
-    terminate: float = 3.0
-    kill: float = 2.0
+    interrupt: float = 2.5
+    terminate: float = 0.5
+    kill: float = 0.5
 
 
 @dataclass(frozen=True)
@@ -166,7 +171,9 @@ class Supervisor:
             try:
                 # A session of its own: Ctrl-C in the terminal reaches this process, which then ends the
                 # program.
-                process = subprocess.Popen(self._command, env=self._environment, start_new_session=True)
+                process = subprocess.Popen(
+                    [*WITH_ITS_PARENT, *self._command], env=self._environment, start_new_session=True
+                )
             except OSError as error:
                 return f"cannot be started: {error}"
             running = self._running = _Running(process.pid, threading.Event())

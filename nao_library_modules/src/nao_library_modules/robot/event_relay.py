@@ -66,7 +66,7 @@ class EventRelay:
         for name in self.names:
             try:
                 self._link(name)
-            except NaoError as error:
+            except (NaoError, RuntimeError) as error:  # libqi's own where the connection breaks again meanwhile
                 log.warning("event %s could not be subscribed again: %s", name, error)
             else:
                 log.info("event %s is subscribed again", name)

@@ -9,7 +9,8 @@ from typing import Any
 import naoqi
 from naoqi.errors import NaoError
 
-from .interrupt import Interrupt
+from ..base.interrupt import Interrupt
+from ..owners.line import OwnerLine
 
 # A cancelled call ends at once on a robot that knows cancellation. One that does not must not hold up
 # preemption.
@@ -27,6 +28,7 @@ class Robot:
     Attributes:
         connection: The connection that all proxies share.
         address: `ip:port`, for texts.
+        owners: Where this process tells what it sets going.
     """
 
     def __init__(self, ip: str, port: int) -> None:
@@ -38,6 +40,8 @@ class Robot:
         """
         self.address = f"{ip}:{port}"
         self.connection = naoqi.connection(ip, port, wait=False)
+        self.owners = OwnerLine(self.address)
+        self.connection.witness = self.owners.sending
         self._ip = ip
         self._port = port
         self._proxies: dict[str, Any] = {}

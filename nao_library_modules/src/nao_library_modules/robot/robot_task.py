@@ -9,7 +9,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .interrupt import Interrupt
+from ..base.interrupt import Interrupt
 from .robot import CANCEL_LIMIT, QUICK_ANSWER
 
 log = logging.getLogger(__name__)

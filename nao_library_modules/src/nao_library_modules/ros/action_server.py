@@ -1,16 +1,18 @@
-"""actionlib's SimpleActionServer without its stall between goals."""
+"""actionlib's servers: SimpleActionServer without its stall between goals, and both without a traceback at the end."""
 
 from __future__ import annotations
 
 import logging
 import time
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from .heap import Heap
+from ..processes.heap import Heap
 from .soonest_end import SOONEST_END, let_the_client_note_the_goal
 
 log = logging.getLogger(__name__)
@@ -24,6 +26,27 @@ OVER = frozenset(
     (GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.PREEMPTED, GoalStatus.RECALLED, GoalStatus.REJECTED)
 )
 """States of goals that have ended."""
+
+
+class ActionServer(actionlib.ActionServer):
+    """actionlib's, whose timer does not raise when the node closes its topics while it tells of its goals."""
+
+    def publish_status(self) -> None:
+        """As actionlib's."""
+        publish_status(super().publish_status)
+
+
+def publish_status(publish: Callable[[], None]) -> None:
+    """Publish the status of a server's goals, if the node has not closed its topics meanwhile.
+
+    Args:
+        publish: actionlib's way.
+    """
+    try:
+        publish()
+    except rospy.ROSException:
+        if not rospy.is_shutdown():
+            raise
 
 
 class PromptActionServer(actionlib.SimpleActionServer):
@@ -61,6 +84,7 @@ class PromptActionServer(actionlib.SimpleActionServer):
         self._no_goal = type(action().action_goal)()
         self._heap = Heap()
         super().__init__(name, action, *arguments, **options)
+        self.action_server.publish_status = partial(publish_status, self.action_server.publish_status)
 
     # The name is actionlib's: the constructor starts a thread with it.
     def executeLoop(self) -> None:  # noqa: N802
@@ -74,7 +98,6 @@ class PromptActionServer(actionlib.SimpleActionServer):
             self._taken_up = time.monotonic()
             self._carry_out(goal)
             self._empty_goals()
-            self._forget_old_goals()
             self._heap.tidy()
 
     # Called under the lock of actionlib's ActionServer.
@@ -92,22 +115,17 @@ class PromptActionServer(actionlib.SimpleActionServer):
         self._empty_goals()
 
     def _empty_goals(self) -> None:
-        """Put an empty goal in the place of each one that is over."""
-        server = self.action_server
-        with server.lock:
-            for tracker in server.status_list:
-                if tracker.status.status in OVER:
-                    tracker.goal = self._no_goal
-            for handle in (self.current_goal, self.next_goal):
-                if handle.status_tracker is not None and handle.status_tracker.status.status in OVER:
-                    handle.goal = self._no_goal
-
-    def _forget_old_goals(self) -> None:
+        """Put an empty goal in the place of each one that is over, and forget all of these but the last few."""
         server = self.action_server
         with server.lock:
             over = [tracker for tracker in server.status_list if tracker.status.status in OVER]
-            forgotten = set(map(id, over[:-REMEMBERED]))
-            server.status_list = [tracker for tracker in server.status_list if id(tracker) not in forgotten]
+            for tracker in over:
+                tracker.goal = self._no_goal
+            forgotten = set(over[:-REMEMBERED])
+            server.status_list = [tracker for tracker in server.status_list if tracker not in forgotten]
+            for handle in (self.current_goal, self.next_goal):
+                if handle.status_tracker is not None and handle.status_tracker.status.status in OVER:
+                    handle.goal = self._no_goal
 
     # The names are actionlib's.
 

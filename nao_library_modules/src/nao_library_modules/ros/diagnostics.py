@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable, Mapping
 
 from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
-from .health import Report
+from .health import Level, Report
+
+log = logging.getLogger(__name__)
 
 PERIOD = 1.0
 
@@ -41,14 +44,25 @@ class DiagnosticsPublisher:
         self._ended.set()
 
     def _run(self) -> None:
+        failed = False
         while not self._ended.is_set():
-            self._updater.force_update()
+            try:
+                self._updater.force_update()
+                failed = False
+            except Exception:
+                if not failed and not self._ended.is_set():  # of several in a row only the first
+                    log.exception("nothing was published on /diagnostics")
+                failed = True
             self._ended.wait(PERIOD)
 
 
 def _task(report: Callable[[], Report]) -> Callable[[DiagnosticStatusWrapper], DiagnosticStatusWrapper]:
     def run(status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        facts = report()
+        try:
+            facts = report()
+        except Exception as error:  # the others are published all the same
+            status.summary(int(Level.ERROR), f"there is no report: {error!r}")
+            return status
         status.summary(int(facts.level), facts.message)
         for name, value in facts.values.items():
             status.add(name, value)

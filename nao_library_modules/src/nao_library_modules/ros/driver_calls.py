@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
+from concurrent import futures
+from concurrent.futures import Future, InvalidStateError
 from typing import Any
 
 import actionlib
@@ -22,19 +24,15 @@ class DriverCall:
     """A call under way; see `naoqi.calls.Call`. Any thread."""
 
     def __init__(self) -> None:
-        self._over = threading.Event()
-        self._lock = threading.Lock()
-        self._callbacks: list[Callable[[Any], None]] = []
-        self._value: Any = None
-        self._error: NaoError | None = None
+        self._answer: Future = Future()
 
     def done(self) -> bool:
         """Whether it is over."""
-        return self._over.is_set()
+        return self._answer.done()
 
     def wait(self, timeout: float | None = None) -> bool:
         """Wait for its end, at most so many s; whether it is over."""
-        return self._over.wait(timeout)
+        return bool(futures.wait([self._answer], timeout).done)
 
     def result(self, timeout: float | None = None) -> Any:
         """Wait for its end, and what it answered.
@@ -42,19 +40,13 @@ class DriverCall:
         Raises:
             NaoError: It failed, or is not over in time.
         """
-        if not self._over.wait(timeout):
+        if not self.wait(timeout):
             raise NaoError(f"{self}: no answer within {timeout:g} s")
-        if self._error is not None:
-            raise self._error
-        return self._value
+        return self._answer.result()
 
     def add_done_callback(self, callback: Callable[[Any], None]) -> None:
         """Have a function called with this call at its end, at once if it is over."""
-        with self._lock:
-            if not self._over.is_set():
-                self._callbacks.append(callback)
-                return
-        callback(self)
+        self._answer.add_done_callback(lambda _: callback(self))
 
     def cancel(self) -> None:
         """Give it up."""
@@ -62,14 +54,13 @@ class DriverCall:
 
     def end(self, value: Any = None, error: NaoError | None = None) -> None:
         """It is over; the first end counts."""
-        with self._lock:
-            if self._over.is_set():
-                return
-            self._value, self._error = value, error
-            self._over.set()
-            callbacks, self._callbacks = self._callbacks, []
-        for callback in callbacks:
-            callback(self)
+        try:
+            if error is None:
+                self._answer.set_result(value)
+            else:
+                self._answer.set_exception(error)
+        except InvalidStateError:
+            pass  # it has ended already
 
     def end_by(self, read: Callable[[], Any]) -> None:
         """It is over: with what a function answers, or with the error that it raises."""

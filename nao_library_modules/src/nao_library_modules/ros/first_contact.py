@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import logging
-import math
 import threading
 import time
 from collections.abc import Callable
 from typing import Any
 
-from naoqi.errors import NaoError
-
-from .interrupt import Interrupt
+from ..base.field_checks import number_parameter
+from ..base.interrupt import Interrupt
+from ..base.limits import limit
 
 log = logging.getLogger(__name__)
 
@@ -25,9 +24,7 @@ def require_patience(value: Any) -> float:
     Raises:
         NaoError: If it is none.
     """
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value < math.inf:
-        raise NaoError(f"~patience {value!r}: it is a time of 0 s or more")
-    return float(value)
+    return number_parameter("~patience", value, limit("wait"))
 
 
 class FirstContact:

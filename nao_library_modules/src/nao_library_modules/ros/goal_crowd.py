@@ -11,16 +11,19 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .errors import Preempted
+from ..base.errors import Preempted
+from ..base.interrupt import Interrupt
+from ..base.limits import limit
 from .first_contact import FirstContact
 from .health import GoalCounter
-from .interrupt import Interrupt
 from .soonest_end import let_the_client_note_the_goal
 
 log = logging.getLogger(__name__)
 
 NEWER_GOAL = "a newer goal needs {}"
 CANCELED = "canceled"
+MOST = int(limit("goals").highest)
+FULL = f"{MOST} goals of this action are under way: no more are taken at once"
 PATIENCE = 10.0
 """s from the start of a node for which goals wait for a robot that was never reached yet."""
 
@@ -90,14 +93,17 @@ class GoalCrowd:
         self.counter = GoalCounter()
 
     def on_goal(self, handle: Any) -> None:
-        """Take a goal; called by actionlib."""
+        """Take a goal, or abort it where too many are under way; called by actionlib."""
         member = _Member(handle)
         with self._lock:
-            self._members.append(member)
+            full = len(self._members) >= MOST
+            if not full:
+                self._members.append(member)
             if self._closed:
                 member.interrupt.trigger()
         handle.set_accepted()
-        threading.Thread(target=self._run, args=(member,), name="goal", daemon=True).start()
+        run = self._refuse if full else self._run
+        threading.Thread(target=run, args=(member,), name="goal", daemon=True).start()
 
     def on_cancel(self, handle: Any) -> None:
         """End a goal; called by actionlib."""
@@ -129,6 +135,12 @@ class GoalCrowd:
         self.interrupt_all()
         for member in members:
             member.ended.wait(limit / max(1, len(members)))
+
+    def _refuse(self, member: _Member) -> None:
+        """Abort a goal that is one too many; takes no longer than a client needs to note it."""
+        let_the_client_note_the_goal(time.monotonic())
+        self.counter.ended("aborted", FULL)
+        member.handle.set_aborted(None, FULL)
 
     def _run(self, member: _Member) -> None:
         taken_up = time.monotonic()

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 from actionlib import CommState
+
+from ..owners.line import GOAL, OwnerLine
 
 ACKNOWLEDGEMENT_LIMIT = 5.0
 """s that a server may take to tell of a goal before it is cancelled all the same."""
@@ -19,13 +21,18 @@ ACKNOWLEDGEMENT_LIMIT = 5.0
 class GoalWatch:
     """Sees what becomes of one goal.
 
+    While it goes on it is noted as owned by this process, so that it is cancelled if the process dies.
+
     Attributes:
+        owners: The line of this process to the watch of owners, None where its node has none.
         acknowledged: Set as soon as the server has told of the goal.
         over: Set by its end.
 
     Args:
         on_end: Called at the end, in actionlib's thread and under the client's lock: it has to be quick.
     """
+
+    owners: ClassVar[OwnerLine | None] = None
 
     def __init__(self, on_end: Callable[[], None] | None = None) -> None:
         self.acknowledged = threading.Event()
@@ -35,6 +42,8 @@ class GoalWatch:
     def look(self, handle: Any) -> None:
         """To be called at each transition: the `transition_cb` of `send_goal`."""
         state = handle.get_comm_state()
+        if self.owners is not None:
+            self.owners.let_go(self) if state == CommState.DONE else self.owners.hold(self, "goal", _cure(handle))
         if state != CommState.WAITING_FOR_GOAL_ACK:
             self.acknowledged.set()
         if state == CommState.DONE:
@@ -58,6 +67,12 @@ class GoalWatch:
                 return False
             handle.cancel()
             return True
+
+
+def _cure(handle: Any) -> list[Any]:
+    """What cancels a goal whose client has died: see `owners/stops.py`."""
+    goal = handle.comm_state_machine
+    return [GOAL, goal.send_cancel_fn.__self__.resolved_name, goal.action_goal.goal_id.id]
 
 
 def server_connection(client: Any) -> Any:

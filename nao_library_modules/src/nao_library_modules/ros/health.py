@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any
 
-from .supervisor import State, Supervisor
+from ..processes.supervisor import State, Supervisor
 
 SLOW_ANSWER = 0.5
 """A robot that takes longer than this (s) to answer is reported as slow."""

@@ -30,10 +30,11 @@ from nao_library_actions.msg import (
 from nao_library_msgs.srv import CmdPoseService, CmdVelService
 from naoqi.errors import NaoError
 
+from ..base.places import Place
+from ..functions.joint_trajectory import KeyFrames
+from ..nao.pose_tables import built_in
+from ..owners.line import SERVICE
 from .driver_calls import DriverAction, DriverCall, GoalCall, ServiceCall
-from .joint_trajectory import KeyFrames
-from .places import Place
-from .pose_tables import built_in
 from .robot_frames import tf_prefix
 
 log = logging.getLogger(__name__)
@@ -121,6 +122,10 @@ class NaoRobotDriver:
             action = self._actions.get("walk_target")
         for call in action.running if action else ():
             call.cancel()
+
+    def walk_cure(self) -> list[Any]:
+        """What stops a walk of this process when it has died."""
+        return [SERVICE, rospy.resolve_name("stop_walk_srv"), rospy.get_name()]
 
     def take_pose(self, name: str) -> DriverCall | None:
         """Take a pose of the pose_manager's tables."""

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import rosgraph
 import rospy
 
 from naoqi.errors import NaoError
 
+from ..owners.host import watch_owners
+from ..owners.line import OwnerLine
+from ..processes.closing import exit_in_time
 from .first_contact import require_patience
+from .goal_watch import GoalWatch
+from .master_watch import MasterWatch
+from .node_place import TAKEN, NodePlace, wait_for_name
 from .ros_edge import forward_logs
 
 DEFAULT_IP = "127.0.0.1"
 DEFAULT_PORT = 9559
 FORWARDED_LOGGERS = ("naoqi", "nao_library_modules")
+SERVER = "NaoLights"
+"""Whose parameters tell which robot the nodes of a namespace are for."""
 
 
 def robot_parser(description: str) -> argparse.ArgumentParser:
@@ -25,16 +35,19 @@ def robot_parser(description: str) -> argparse.ArgumentParser:
     """
     parser = argparse.ArgumentParser(
         description=description,
-        epilog="The private parameters ~pip and ~pport stand in for options that are not given. "
+        epilog="The private parameters ~pip and ~pport stand in for options that are not given, and NAO_IP "
+        "and NAO_PORT of the environment for these. "
         "Names and parameters are set with ROS remappings: name:=other, _parameter:=value.",
     )
-    parser.add_argument("--pip", metavar="IP", help=f"address of the robot (default {DEFAULT_IP})")
-    parser.add_argument("--pport", metavar="PORT", type=int, help=f"port of its NAOqi (default {DEFAULT_PORT})")
+    parser.add_argument("--pip", metavar="IP", help=f"address of the robot (default NAO_IP, else {DEFAULT_IP})")
+    parser.add_argument(
+        "--pport", metavar="PORT", type=int, help=f"port of its NAOqi (default NAO_PORT, else {DEFAULT_PORT})"
+    )
     return parser
 
 
 def robot_address(options: argparse.Namespace, get_param: Callable[[str, Any], Any]) -> tuple[str, int]:
-    """Address and port of the robot: command line, then parameter, then default.
+    """Address and port of the robot: command line, then parameter, then environment (NAO_IP, NAO_PORT), then default.
 
     Args:
         options: What `robot_parser` gave.
@@ -43,11 +56,17 @@ def robot_address(options: argparse.Namespace, get_param: Callable[[str, Any], A
     Raises:
         NaoError: If the port is no port.
     """
-    ip = options.pip if options.pip is not None else get_param("~pip", DEFAULT_IP)
-    port = options.pport if options.pport is not None else get_param("~pport", DEFAULT_PORT)
+    ip = options.pip if options.pip is not None else get_param("~pip", os.environ.get("NAO_IP") or DEFAULT_IP)
+    port = options.pport if options.pport is not None else get_param("~pport", _usual_port())
     if isinstance(port, bool) or not isinstance(port, int) or not 0 < port < 65536:
         raise NaoError(f"port {port!r} is no port: 1..65535")
     return str(ip), port
+
+
+def _usual_port() -> Any:
+    """The port of the environment; its text as it is where that is no number."""
+    text = os.environ.get("NAO_PORT") or str(DEFAULT_PORT)
+    return int(text) if text.isdecimal() else text
 
 
 def launch_path(value: Any) -> tuple[str, str] | None:
@@ -70,8 +89,11 @@ def run_module(
     description: str,
     argv: Sequence[str] | None = None,
     parameters: Mapping[str, Any] | None = None,
+    watches: bool = False,
 ) -> int:
     """Start a module as a node and keep it until the node ends.
+
+    A launched node whose name another node takes comes back when that one has ended.
 
     Args:
         module: Class of the module.
@@ -79,6 +101,8 @@ def run_module(
         description: What `--help` says.
         argv: Arguments, those of the process by default.
         parameters: Name -> default of further private parameters, which the module takes by name.
+        watches: Whether the node stops what others leave going that die, and tells a new ROS master of all nodes; for
+            nodes that set nothing going themselves.
 
     Returns:
         Exit status.
@@ -88,13 +112,10 @@ def run_module(
         file to start with the module. `~patience`: s from the start for which goals wait for a robot that has never
         been reached (default 30).
     """
-    arguments = rospy.myargv(argv)[1:]
-    options = robot_parser(description).parse_args(arguments)
-    rospy.init_node(name)
-    forward_logs(*FORWARDED_LOGGERS)
+    options = start_node(name, description, argv)
     try:
         ip, port = robot_address(options, rospy.get_param)
-        module(
+        made = module(
             ip,
             port,
             autostart=bool(rospy.get_param("~autostart", False)),
@@ -105,8 +126,58 @@ def run_module(
     except NaoError as error:
         rospy.logfatal("%s", error)
         return 1
+    own_as_node(made.robot, watches)
+    place = NodePlace()
     rospy.spin()
+    place.come_back()
     return 0
+
+
+def start_node(name: str, description: str, argv: Sequence[str] | None) -> argparse.Namespace:
+    """Make this process a node that ends in time and whose log has what the libraries tell.
+
+    A launched node whose name another node takes waits here until that one has ended.
+
+    Returns:
+        What `robot_parser` gives for the arguments.
+    """
+    options = robot_parser(description).parse_args(rospy.myargv(argv)[1:])
+    waited_for = wait_for_name()
+    end_in_time()  # before rospy's own hook, which hangs where Ctrl-C comes while the node talks to the master
+    rospy.init_node(name)
+    if waited_for:
+        rospy.logwarn("the name %s is free again: this node is back", waited_for)
+    forward_logs(*FORWARDED_LOGGERS)
+    return options
+
+
+def own_as_node(robot: Any, watches: bool) -> None:
+    """Own what is set going under the name of this node.
+
+    Args:
+        robot: Its proxies and connection.
+        watches: As `run_module` takes it.
+    """
+    own_goals(robot.owners)
+    if watches:
+        watch_owners(robot)
+        rospy.on_shutdown(MasterWatch(rosgraph.get_master_uri(), rospy.get_name()).close)
+
+
+def own_goals(owners: OwnerLine) -> None:
+    """Own the goals that this process sends, under the name of its node: they are cancelled if it dies."""
+    owners.name = rospy.get_name()
+    GoalWatch.owners = owners
+
+
+def end_in_time() -> None:
+    """See that this process ends soon after its node; one whose name was taken begins anew instead."""
+    rospy.core.add_preshutdown_hook(lambda reason: TAKEN in reason or exit_in_time())
+
+
+def robot_beside(name: str, default: Any) -> Any:
+    """`~pip` or `~pport` of this node; else that of the servers in its namespace, else the default."""
+    return rospy.get_param(name, rospy.get_param(name.replace("~", f"{SERVER}/"), default))
 
 
 def _patience() -> dict[str, float]:

@@ -7,7 +7,7 @@ import tf2_ros
 
 from naoqi.errors import NaoError
 
-from .places import Place, yaw_of_quaternion
+from ..base.places import Place, yaw_of_quaternion
 
 ROBOT = "base_footprint"
 """The frame of the robot: on the floor between its feet, as nao_joint_states publishes it."""

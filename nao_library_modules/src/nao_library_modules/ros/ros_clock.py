@@ -5,11 +5,16 @@ from __future__ import annotations
 import rospy
 from rospy.rostime import get_rostime_cond, is_wallclock
 
-from .interrupt import Interrupt
+from ..base.interrupt import Interrupt
 
 
 class RosClock:
     """Wall-clock time, or the time on /clock when `use_sim_time` is set."""
+
+    @property
+    def simulated(self) -> bool:
+        """Whether it is the time on /clock."""
+        return not is_wallclock()
 
     def now(self) -> float:
         """ROS time in s."""

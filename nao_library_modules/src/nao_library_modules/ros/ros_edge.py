@@ -4,26 +4,30 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import rospy
+from rospkg import get_ros_home
 
 from nao_library_msgs.msg import MemoryEvent
 from nao_library_msgs.srv import DescribeFunctions
 from naoqi.errors import NaoError
 
+from ..base.answers import json_of
+from ..base.kept import Kept
+from ..base.places import Place
+from ..functions.server_types import DESCRIBE
 from .action_server import PromptActionServer
-from .answers import json_of
 from .diagnostics import DiagnosticsPublisher
 from .health import Report
 from .nao_robot_driver import NaoRobotDriver
-from .places import Place
 from .robot_frames import RobotFrames, tf_prefix
 from .ros_clock import RosClock
 from .soonest_end import SOONEST_END
 
 EVENT_TOPIC = "memory_events"
-LATEST_SOONEST_END = 1.0
+LONGEST_SECONDS = 1.0
 
 
 class RosEdge:
@@ -35,7 +39,7 @@ class RosEdge:
     ROS API:
         Publishes `memory_events` (nao_library_msgs/MemoryEvent) and `/diagnostics`. Services NAME/describe
         (nao_library_msgs/DescribeFunctions). Listens to /tf when asked for a frame. Parameter `~soonest_end` (0.005 s):
-        no goal that is taken up is over sooner.
+        no goal that is taken up is over sooner; others as a module asks for them with `seconds`.
     """
 
     def __init__(self) -> None:
@@ -63,9 +67,22 @@ class RosEdge:
             execute: Carries out a goal, in the server's own thread.
             on_preempt: Called under actionlib's lock: it must do no more than set a flag.
         """
-        server = PromptActionServer(name, action, execute_cb=execute, auto_start=False, soonest_end=_soonest_end())
+        server = PromptActionServer(
+            name, action, execute_cb=execute, auto_start=False, soonest_end=self.seconds("soonest_end", SOONEST_END)
+        )
         server.register_preempt_callback(on_preempt)
         return server
+
+    def seconds(self, name: str, default: float) -> float:
+        """A private parameter of the node that is a time, s.
+
+        Raises:
+            NaoError: It is no time from 0 to 1 s.
+        """
+        value = rospy.get_param(f"~{name}", default)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value <= LONGEST_SECONDS:
+            raise NaoError(f"~{name} is {value!r}: 0 to {LONGEST_SECONDS:g} s")
+        return float(value)
 
     def event_sink(self) -> Callable[[str, Any], None]:
         """A function that publishes an event of the robot's memory: name and value."""
@@ -91,7 +108,7 @@ class RosEdge:
             name: Relative name of the action.
             answer: Request -> response of DescribeFunctions; called in a thread of each client.
         """
-        rospy.Service(f"{name}/describe", DescribeFunctions, answer)
+        rospy.Service(name + DESCRIBE, DescribeFunctions, answer)
 
     def serve(self, name: str, kind: type, answer: Callable[[Any], Any]) -> None:
         """Answer a service.
@@ -127,21 +144,19 @@ class RosEdge:
             self._frames = RobotFrames()
         return self._frames.locate(frame)
 
+    def kept(self) -> Kept:
+        """What users have set up in this node and is there again after its death."""
+        return node_file()
+
     def on_shutdown(self, action: Callable[[], None]) -> None:
         """Call `action` when the node ends, while it can still publish."""
         rospy.on_shutdown(action)
 
 
-def _soonest_end() -> float:
-    """The parameter.
-
-    Raises:
-        NaoError: It is no time.
-    """
-    value = rospy.get_param("~soonest_end", SOONEST_END)
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value <= LATEST_SOONEST_END:
-        raise NaoError(f"~soonest_end is {value!r}: 0 to {LATEST_SOONEST_END:g} s")
-    return float(value)
+def node_file() -> Kept:
+    """The file of this node, for this run of the ROS master."""
+    name = rospy.get_name().strip("/").replace("/", "_")
+    return Kept(Path(get_ros_home()) / "nao_library" / f"{name}.json", str(rospy.get_param("/run_id", "")))
 
 
 def _json_type(value: Any) -> str:

@@ -12,9 +12,13 @@ class SimpleActionClient(actionlib.SimpleActionClient):
     """As actionlib's, for goals that may be over within milliseconds.
 
     actionlib's notes which goal it sent after it has sent it. What the server says before that is taken for news of
-    another goal and dropped: on a busy computer, the end of one goal in a thousand that only asks for a value. Then
-    `wait_for_result` waits for ever. (ros/actionlib #206; the server's part is done, so it cannot help.) This one looks
-    at news when the goal is noted, and says nothing of news of the goal before.
+    another goal and dropped (ros/actionlib #206): on a busy computer, the end of one goal in a thousand that only asks
+    for a value. Then `wait_for_result` waits for ever, or up to its limit.
+
+    The servers of this library end no goal so soon (`~soonest_end`, 5 ms; docs/functions.md), so actionlib's own client
+    with a limit does for them. This one is for servers of others, and for whoever sets `~soonest_end` to 0 because
+    goals shall take no longer than they must. It looks at news when the goal is noted, and says nothing of news of the
+    goal before.
     """
 
     def __init__(self, name: str, action: type) -> None:

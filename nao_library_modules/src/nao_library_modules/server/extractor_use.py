@@ -8,17 +8,32 @@ import socket
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
 from naoqi.errors import NaoError
 
-from .event_relay import EventRelay
-from .interrupt import Interrupt
-from .memory_functions import MEMORY
-from .robot import CLEAN_UP_LIMIT
-from .robot_task import wait_for_call
+from ..base.interrupt import Interrupt
+from ..functions.memory_functions import MEMORY
+from ..robot.event_relay import EventRelay
+from ..robot.robot import CLEAN_UP_LIMIT
+from ..robot.robot_clock import RobotClock
+from ..robot.robot_task import wait_for_call
 
 log = logging.getLogger(__name__)
+
+
+class Event(NamedTuple):
+    """An event of the robot's memory.
+
+    Attributes:
+        name: Its name.
+        value: What it says.
+        arrived: ROS time of its arrival, s; `event_time` knows when it was raised.
+    """
+
+    name: str
+    value: Any
+    arrived: float
 
 
 class Events:
@@ -37,14 +52,14 @@ class Events:
         self._clock = clock
         self._interrupt = interrupt
         self._news = Interrupt()
-        self._events: deque[tuple[str, Any]] = deque()
+        self._events: deque[Event] = deque()
 
     def tell(self, name: str, value: Any) -> None:
         """Take an event."""
-        self._events.append((name, value))
+        self._events.append(Event(name, value, self._clock.now()))
         self._news.trigger()
 
-    def until(self, end: float) -> Iterator[tuple[str, Any]]:
+    def until(self, end: float) -> Iterator[Event]:
         """Events as they come.
 
         Args:
@@ -76,6 +91,7 @@ class ExtractorUse:
     """
 
     robot: Any  # Robot
+    robot_clock: RobotClock
     interrupt: Interrupt
     clock: Any  # WallClock or RosClock
     call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts
@@ -150,6 +166,10 @@ class ExtractorUse:
     def subscriber_for(self, purpose: str) -> str:
         """Name of a subscription: two of one server must not end each other."""
         return f"{self.subscriber}_{purpose}"
+
+    def event_time(self, event: Event) -> float:
+        """ROS time at which an event was raised on the robot, s; preemption ends the look at its clock."""
+        return self.robot_clock.event_time(self.call, *event)
 
     @contextmanager
     def events_of(self, *names: str) -> Iterator[Events]:

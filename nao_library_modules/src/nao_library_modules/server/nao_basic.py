@@ -2,29 +2,35 @@
 
 from __future__ import annotations
 
+import copy
 import logging
 import threading
-from collections import ChainMap
 from collections.abc import Callable, Mapping, MutableMapping, Sequence
+from functools import wraps
 from typing import Any, ClassVar
 
-from genpy import Duration
+from genpy import Duration, Time
 
 from nao_library_msgs.msg import FunctionResult
+from nao_library_msgs.srv import CheckGoals
 from naoqi.errors import NaoError
 
-from .answers import Outcome, values_of
-from .describe_service import DescribeService
-from .errors import FunctionFailed, Preempted, RobotLost, cut
-from .event_relay import EventRelay
-from .first_contact import PATIENCE, FirstContact
-from .function_chain import Step
-from .function_runner import FunctionRunner
-from .health import GoalCounter, connection_report, launch_report
-from .launcher import LaunchPath, launch_supervisor
-from .memory_functions import MEMORY, MemoryFunctions
-from .robot import Robot
-from .supervisor import Supervisor
+from ..base.answers import Outcome, values_of
+from ..base.errors import FunctionFailed, Preempted, RobotLost, cut
+from ..functions.chain import FunctionTable, Step, require_callable
+from ..functions.check_service import CHECK, CheckService
+from ..functions.describe_service import DescribeService
+from ..functions.goal_checks import GoalCheck, check_goals
+from ..functions.memory_functions import MEMORY, MemoryFunctions
+from ..functions.runner import FunctionRunner
+from ..processes.closing import close_all
+from ..processes.launcher import LaunchPath, launch_supervisor
+from ..processes.supervisor import Supervisor
+from ..robot.event_relay import EventRelay
+from ..robot.robot import Robot
+from ..robot.robot_clock import RobotClock
+from ..ros.first_contact import PATIENCE, FirstContact
+from ..ros.health import GoalCounter, connection_report, launch_report
 
 log = logging.getLogger(__name__)
 
@@ -50,11 +56,15 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             as values, and changed or replaced at any time; the functions of the robot's memory are always in it.
         robot: Proxies and connection.
         clock: Time for waits.
+        robot_clock: Turns times of the robot into ROS time.
+        happened: ROS times, s, at which what the running function waits for or does in the world began and ended (a
+            word, a touch, a sound); 0: not known. A function may set it; its result tells it.
         interrupt: Ends whatever the module waits for.
         server: The action server, None before there is one.
 
     ROS API:
-        Action as named in `serve`, and beside it the service NAME/describe (nao_library_msgs/DescribeFunctions).
+        Action as named in `serve`, and beside it the services NAME/describe (nao_library_msgs/DescribeFunctions) and
+        NAME/check (nao_library_msgs/CheckGoals).
         Publishes `memory_events` (nao_library_msgs/MemoryEvent) and `/diagnostics`.
     """
 
@@ -62,6 +72,8 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
     """Functions whose answers have fields of their own in the result, so that they stay out of memList."""
     without_robot: frozenset[str] = frozenset()
     """Functions that do not need the robot: a goal of nothing else never waits for it."""
+    left_by_goals: frozenset[str] = frozenset()
+    """Attributes that checks look at and goals change: what is stored, loaded, running."""
     _declared: ClassVar[Mapping[str, Callable[..., Any]]] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -81,6 +93,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         robot: Any = None,
         edge: Any = None,
         patience: float = PATIENCE,
+        kept: Any = None,
     ) -> None:
         """Connect in the background; the robot need not be there yet.
 
@@ -92,6 +105,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             robot: Proxies and connection, where not those of ip and port.
             edge: ROS side, where not that of this process's node.
             patience: s from now on for which goals wait for a robot that has never been reached.
+            kept: Where what goals set up is kept beyond the death of the node, where not in the file of the node.
 
         Raises:
             BadLaunchPath: If the launch file is to be started and is not there.
@@ -99,7 +113,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         if not isinstance(autostart, bool):
             raise NaoError(f"autostart is {autostart!r}: True or False")
         if edge is None:
-            from .ros_edge import RosEdge
+            from ..ros.ros_edge import RosEdge
 
             edge = RosEdge()
         self.ip = ip
@@ -110,15 +124,20 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         self._served: Any = None  # the server that `serve` made
         self._heeded: Any = None  # the server of the module's own whose preemption ends waits
         super().__init__(self.function_table, edge.clock)
+        self.robot_clock = RobotClock(self.robot, edge.clock)
+        self.happened = (0.0, 0.0)
+        self._remarks: list[str] = []
         self.events = EventRelay(lambda: self.robot.proxy(MEMORY), edge.event_sink())
         self._failures: list[Outcome] = []
         self._edge = edge
+        self.kept = kept or edge.kept()
         self._goals = GoalCounter()
         self._first_contact = FirstContact(self.robot, patience)
         self._progress = (0, "", 0)  # index of the function that began last, its name, how many the chain has
         self._running: tuple[tuple[str, ...], int] = ((), 0)  # functions of the goal that runs, and the one that does
         self._idle = threading.Event()
         self._idle.set()
+        self._ready = threading.Event()
         self._launch: Supervisor | None = None
         self._launched: LaunchPath | None = None
         self._diagnostics: Any = None
@@ -134,13 +153,15 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         """The module's own functions, over those of the robot's memory."""
         table = self.__dict__.get("_function_table")
         if table is None:
-            declared = {name: self._method(function) for name, function in self._declared.items()}
-            table = self._function_table = ChainMap(declared, self.memory_functions())
+            table = self._function_table = FunctionTable({}, self.memory_functions())
+            table.update({name: self._method(function) for name, function in self._declared.items()})
         return table
 
     @function_table.setter
     def function_table(self, table: MutableMapping[str, Callable[..., Any]]) -> None:
         if table is not self.function_table:  # as |= gives it back
+            for name, function in table.items():
+                require_callable(name, function)
             self.function_table.maps[0] = table
 
     def _method(self, function: Any) -> Callable[..., Any]:
@@ -150,7 +171,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         return function if name is None else getattr(self, name)
 
     def serve(self, name: str, action: type) -> None:
-        """Start the action server, its description and the diagnostics: the last line of a module's constructor.
+        """Start the action server, its services and the diagnostics: the last line of a module's constructor.
 
         Args:
             name: Relative name of the action.
@@ -169,6 +190,14 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         self._diagnostics = self._edge.publish_diagnostics(self.robot.address, reports)
         description = DescribeService(self, action, lambda: self._running)
         self._edge.serve_description(name, description.answer)
+        self._edge.serve(name + CHECK, CheckGoals, CheckService(self, action).answer)
+        self._tell_ready()
+
+    def _tell_ready(self) -> None:
+        """Say once that goals are carried out from now on: the server is there, and the robot."""
+        if self.chain.server and self.robot.connection.state == "connected" and not self._ready.is_set():
+            self._ready.set()
+            log.info("%s is ready, with the robot at %s", self.chain.server, self.robot.address)
 
     def start_launch(self) -> None:
         """Start the launch file and keep it running, instead of one that was started for another `launchpath`.
@@ -188,15 +217,35 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             self._launch.stop()
 
     def shut_down(self) -> None:
-        """End: interrupt the running function, let it clean up, unsubscribe, stop the launch file."""
+        """End: make all steps of the end, whatever becomes of each."""
+        close_all(*self.shutdown_steps())
+
+    def shutdown_steps(self) -> list[Callable[[], Any]]:
+        """What the end of the node does, in order, beginning with the function that runs.
+
+        For modules with more to end; a step that needs the robot is made `with_robot`.
+        """
+        steps = [self.end_function, self.kept.forget, self._stop_listening, self.events.close, self.stop_launch]
+        return steps if self._diagnostics is None else [*steps, self._diagnostics.close]
+
+    def with_robot(self, step: Callable[[], Any]) -> Callable[[], Any]:
+        """A step of the end that is left out when there is no connection to the robot."""
+
+        @wraps(step)
+        def guarded() -> None:
+            if self.robot.connection.state == "connected":
+                step()
+
+        return guarded
+
+    def _stop_listening(self) -> None:
+        self.robot.connection.remove_listener(self._connection_changed)
+
+    def end_function(self) -> None:
+        """Interrupt the running function, and let it clean up."""
         self.interrupt.stop()
         if not self._idle.wait(SHUTDOWN_LIMIT):
             log.warning("a function did not end within %g s", SHUTDOWN_LIMIT)
-        self.robot.connection.remove_listener(self._connection_changed)
-        self.events.close()
-        self.stop_launch()
-        if self._diagnostics is not None:
-            self._diagnostics.close()
 
     # Goals
 
@@ -228,6 +277,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         self.begin_chain()
         outcomes: list[Outcome] = []
         self._failures = []
+        self._remarks = []
         end, text = self._run_chain(goal, outcomes)
         self.end_chain(end)
         result = self.server.get_default_result()
@@ -276,6 +326,32 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
     def begin_check(self, position: int) -> None:
         """Called before the function at a place of the chain, counted from 1, is checked."""
 
+    # Checks without a goal
+
+    @property
+    def busy(self) -> bool:
+        """Whether a goal runs."""
+        return not self._idle.is_set()
+
+    def check(self, *goals: Any) -> GoalCheck:
+        """What is wrong with goals, by the checks that come before the first function. Nothing is done; any thread.
+
+        Args:
+            goals: In the order in which they would be sent.
+        """
+        return check_goals(self, goals)
+
+    def view_for_checks(self) -> Any:
+        """This module as the checks see it that belong to no goal: what they note does not reach the goal that runs."""
+        return copy.copy(self)
+
+    def begin_goal_check(self, now: bool) -> None:
+        """Called for such a view before the chain of each goal is checked.
+
+        Args:
+            now: Whether the goal finds the robot as it is at this moment.
+        """
+
     def argument_choices(self, function: str, field: str) -> Sequence[str]:
         """Words that a field of a function may hold, for its description: none.
 
@@ -295,14 +371,26 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         """
         return steps
 
+    def remark(self, text: str) -> None:
+        """Have the text of the goal say something if it succeeds, of the function that runs."""
+        names, index = self._running
+        self._remarks.append(f"function {index + 1} ({names[index]}): {text}" if len(names) > 1 else text)
+
     def publish_feedback(self, **fields: Any) -> None:
         """Publish how far the chain is. Any thread.
 
         Args:
-            fields: What else the feedback of the module's action has.
+            fields: What else the feedback of the module's action has; `stamp`: ROS time of what it tells, s, if that
+                is not now.
         """
         index, function, count = self._progress
-        self.server.publish_feedback(self._feedback_type(index=index, function=function, count=count, **fields))
+        self._send_feedback(index=index, function=function, count=count, **fields)
+
+    def _send_feedback(self, stamp: float | None = None, **fields: Any) -> None:
+        feedback = self._feedback_type(**fields)
+        if hasattr(feedback, "stamp"):  # an action of a user's own may do without
+            feedback.stamp = Time.from_sec(self.clock.now() if stamp is None else stamp)
+        self.server.publish_feedback(feedback)
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Fill the result message. Modules with more fields extend it.
@@ -315,7 +403,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             NaoError: If the robot cannot be asked; the goal is aborted then.
         """
         told = sorted([*outcomes, *self._failures], key=lambda outcome: outcome.position)
-        result.results = [FunctionResult(o.function, o.values, Duration.from_sec(o.elapsed), o.error) for o in told]
+        result.results = [_result_of(outcome) for outcome in told]
         result.memList = [value for o in outcomes if o.function not in self.typed_answers for value in o.values]
 
     def _await_robot(self, goal: Any) -> None:
@@ -347,12 +435,13 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             return "preempted", f"preempted in function {position} ({function})" if position else "preempted"
         except Exception as error:
             return "aborted", _why(error, position, function)
-        return "succeeded", ""
+        return "succeeded", "; ".join(self._remarks)
 
     def _run_step(self, step: Step, count: int, outcomes: list[Outcome]) -> None:
         """Run one function of a chain, as often as its policy says."""
         for tries_left in range(step.policy.retries, -1, -1):
             self._tell_progress(step.position, step.function, count)
+            self.happened = (0.0, 0.0)
             answered, began = len(outcomes), self.clock.now()
             try:
                 self.run(
@@ -381,10 +470,13 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
                 return
 
     def _note_failure(self, step: Step, began: float, error: Exception) -> None:
-        self._failures.append(Outcome(step.position, step.function, [], self._since(began), _told(error)))
+        outcome = Outcome(step.position, step.function, [], self._since(began), _told(error), began, self.happened)
+        self._failures.append(outcome)
 
     def _answered(self, step: Step, answer: Any, began: float, outcomes: list[Outcome]) -> None:
-        outcomes.append(Outcome(step.position, step.function, values_of(answer), self._since(began)))
+        elapsed = self._since(began)
+        outcome = Outcome(step.position, step.function, values_of(answer), elapsed, "", began, self.happened)
+        outcomes.append(outcome)
 
     def _since(self, began: float) -> float:
         return max(0.0, self.clock.now() - began)
@@ -394,7 +486,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         self.publish_feedback()
 
     def _tell_wait(self, awaited: str, count: int) -> None:
-        self.server.publish_feedback(self._feedback_type(count=count, waiting=awaited))
+        self._send_feedback(count=count, waiting=awaited)
 
     # The connection
 
@@ -404,9 +496,17 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         if connection.state == "connected":
             if connection.generation > 1:
                 self.events.renew()
+            else:
+                self._tell_ready()
         elif connection.state == "lost":
             # A function that only waits would otherwise not notice.
             self.interrupt.trigger(RobotLost(self.robot.address, connection.last_error or "no answer"))
+
+
+def _result_of(outcome: Outcome) -> FunctionResult:
+    begin, end = outcome.began, outcome.began + outcome.elapsed
+    times = (Time.from_sec(time) for time in (begin, end, *outcome.happened))
+    return FunctionResult(outcome.function, outcome.values, Duration.from_sec(outcome.elapsed), outcome.error, *times)
 
 
 def _why(error: Exception, position: int, function: str) -> str:

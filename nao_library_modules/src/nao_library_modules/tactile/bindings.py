@@ -11,10 +11,11 @@ from typing import Any, Protocol
 
 from naoqi.errors import NaoError
 
-from .event_relay import EventRelay
-from .interrupt import Interrupt
-from .tactile_names import BY_EVENT, Sensor, names_of
-from .tactile_touch import TouchWatch, Wanted
+from ..base.interrupt import Interrupt
+from ..nao.touch_names import BY_EVENT, Sensor, names_of
+from ..robot.event_relay import EventRelay
+from ..server.extractor_use import Event
+from .touch import Contact, TouchWatch, Wanted
 
 log = logging.getLogger(__name__)
 
@@ -52,12 +53,14 @@ class BindingState:
         runs: How often it was started.
         last: How it ended last; empty if it never has.
         text: What was said about that.
+        touched: ROS time, s, of the first contact of the touch that started it last; 0 if none has.
     """
 
     running: bool = False
     runs: int = 0
     last: str = ""
     text: str = ""
+    touched: float = 0.0
 
 
 class BehaviorRunner(Protocol):
@@ -78,7 +81,7 @@ class _Entry:
         self.watch = watch
         self.running = False
         self.runs = 0
-        self.ready_at = 0.0
+        self.ready_at = self.touched = 0.0
         self.last = self.text = ""
 
 
@@ -92,15 +95,19 @@ class TouchBindings:
         memory: Gives the proxy of ALMemory.
         runner: Runs behaviours.
         clock: ROS time.
+        event_time: ROS time at which an event was raised, s; may raise NaoError.
     """
 
-    def __init__(self, memory: Callable[[], Any], runner: BehaviorRunner, clock: Any) -> None:
+    def __init__(
+        self, memory: Callable[[], Any], runner: BehaviorRunner, clock: Any, event_time: Callable[[Event], float]
+    ) -> None:
         self._relay = EventRelay(memory, self._told)
         self._runner = runner
         self._clock = clock
+        self._event_time = event_time
         self._lock = threading.Lock()
         self._entries: dict[str, _Entry] = {}
-        self._touches: deque[tuple[str, bool]] = deque()
+        self._touches: deque[Event] = deque()
         self._news = Interrupt()
         self._thread: threading.Thread | None = None
         self._closed = False
@@ -115,11 +122,11 @@ class TouchBindings:
         """All bindings and what became of them."""
         with self._lock:
             return [
-                (each.binding, BindingState(each.running, each.runs, each.last, each.text))
+                (each.binding, BindingState(each.running, each.runs, each.last, each.text, each.touched))
                 for each in self._entries.values()
             ]
 
-    def bind(self, binding: Binding, pressed: Sequence[str]) -> None:
+    def bind(self, binding: Binding, pressed: Sequence[Contact]) -> None:
         """Start a behaviour at touches from now on; one of the same name is replaced.
 
         Args:
@@ -132,7 +139,8 @@ class TouchBindings:
         for sensor in binding.sensors:
             self._relay.subscribe(sensor.event)
         names = names_of(binding.sensors)
-        watch = TouchWatch(binding.wanted, [name for name in pressed if name in names], self._clock.now())
+        held = {contact.name: contact.begin for contact in pressed if contact.name in names}
+        watch = TouchWatch(binding.wanted, held, self._clock.now())
         with self._lock:
             self._entries.pop(binding.name, None)
             self._entries[binding.name] = _Entry(binding, watch)
@@ -167,7 +175,7 @@ class TouchBindings:
 
     def _told(self, event: str, value: Any) -> None:
         """Called from a thread of libqi."""
-        self._touches.append((BY_EVENT[event].name, bool(value)))
+        self._touches.append(Event(event, value, self._clock.now()))
         self._news.trigger()
 
     def _follow(self) -> None:
@@ -180,21 +188,31 @@ class TouchBindings:
     def _take_touches(self, now: float) -> float:
         """Start what the touches until now start; returns when to look again."""
         while self._touches:
-            name, pressed = self._touches.popleft()
-            self._look(lambda entry, n=name, p=pressed: self._tell(entry, n, p, now))
+            event = self._touches.popleft()
+            name, pressed, when = BY_EVENT[event.name].name, bool(event.value), self._time_of(event)
+            self._look(lambda entry, n=name, p=pressed, w=when: self._tell(entry, n, p, w))
         return self._look(lambda entry: entry.watch.look(now))
 
-    @staticmethod
-    def _tell(entry: _Entry, name: str, pressed: bool, now: float) -> list[str]:
-        return entry.watch.tell(name, pressed, now) if name in names_of(entry.binding.sensors) else []
+    def _time_of(self, event: Event) -> float:
+        try:
+            return self._event_time(event)
+        except NaoError as error:
+            log.debug("when %s happened is not known: %s", event.name, error)
+            return event.arrived
 
-    def _look(self, touched: Callable[[_Entry], list[str]]) -> float:
-        """Start what `touched` says is to be started; returns when to look again."""
+    @staticmethod
+    def _tell(entry: _Entry, name: str, pressed: bool, when: float) -> list[Contact]:
+        return entry.watch.tell(name, pressed, when) if name in names_of(entry.binding.sensors) else []
+
+    def _look(self, look: Callable[[_Entry], list[Contact]]) -> float:
+        """Start what is touched as wanted, by what `look` says; returns when to look again."""
         now, due, to_start = self._clock.now(), [], []
         with self._lock:
             for entry in self._entries.values():
-                if touched(entry) and not entry.running and now >= entry.ready_at:
+                touched = look(entry)
+                if touched and not entry.running and now >= entry.ready_at:
                     entry.running, entry.runs = True, entry.runs + 1
+                    entry.touched = min(contact.begin for contact in touched)
                     to_start.append(entry)
                 if entry.watch.due is not None:
                     due.append(entry.watch.due)

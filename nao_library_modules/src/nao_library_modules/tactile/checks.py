@@ -6,14 +6,15 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from .body_devices import SIDES
-from .errors import BadGoal
-from .field_checks import require_known, require_number, require_text, require_whole
-from .tactile_names import BUMPERS, names_of, sensors_of
-from .tactile_touch import COUNT, HOLD, KINDS, PRESS, Wanted
+from ..base.errors import BadGoal
+from ..base.field_checks import require_known, require_text, require_whole, require_within, require_zero_or
+from ..base.limits import limit
+from ..nao.body_devices import SIDES
+from ..nao.touch_names import BUMPERS, names_of, sensors_of
+from .touch import COUNT, HOLD, KINDS, PRESS, Wanted
 
-DEFAULT_TIMEOUT, LONGEST_TIMEOUT = 10.0, 3600.0
-DEFAULT_HOLD, LONGEST_HOLD = 1.0, 60.0
+TIMEOUT, HOLD_TIME, SONAR = limit("timeout"), limit("hold"), limit("sonar distance")
+DEFAULT_TIMEOUT, DEFAULT_HOLD = 10.0, 1.0
 DEFAULT_WINDOW, DEFAULT_COUNT = 2.0, 2
 DEFAULT_DISTANCE = 0.5
 FEET = tuple(f"{side} foot" for side in SIDES)
@@ -68,26 +69,25 @@ def check_feet(_self: Any, sensors: Sequence[str]) -> None:
 def check_touch(_self: Any, sensors: Sequence[str], touch: str, count: int, duration: float, timeout: float) -> None:
     """Known sensors, a kind of touch, times."""
     _check_wanted(sensors, touch, count, duration)
-    require_number("timeout", timeout, 0.0, LONGEST_TIMEOUT, "0..3600 s")
+    require_within("timeout", timeout, TIMEOUT)
 
 
 def check_clicks(_self: Any, count: int, timeout: float) -> None:
     """One to three clicks."""
     require_whole("count", count, 0, 3)
-    require_number("timeout", timeout, 0.0, LONGEST_TIMEOUT, "0..3600 s")
+    require_within("timeout", timeout, TIMEOUT)
 
 
 def check_obstacle(_self: Any, sensors: Sequence[str], distance: float, timeout: float) -> None:
     """A distance that the sonars can measure."""
     words_of(sensors, SIDES, "sonar")
-    if distance:
-        require_number("distance", distance, 0.1, 2.5, "0.1..2.5 m, or 0 for 0.5 m")
-    require_number("timeout", timeout, 0.0, LONGEST_TIMEOUT, "0..3600 s")
+    require_zero_or("distance", distance, SONAR, f" for {DEFAULT_DISTANCE:g} m")
+    require_within("timeout", timeout, TIMEOUT)
 
 
 def check_timeout(_self: Any, timeout: float) -> None:
     """A time to wait."""
-    require_number("timeout", timeout, 0.0, LONGEST_TIMEOUT, "0..3600 s")
+    require_within("timeout", timeout, TIMEOUT)
 
 
 def check_binding(
@@ -108,7 +108,7 @@ def check_binding(
     for parameter in parameters:
         if not PARAMETER.fullmatch(parameter):
             raise BadGoal("parameters", parameter, "name=value")
-    require_number("cooldown", cooldown, 0.0, LONGEST_TIMEOUT, "0..3600 s")
+    require_within("cooldown", cooldown, TIMEOUT)
     context.setdefault("bindings", set(self.bindings.names)).add(str_param.strip() or name)
 
 
@@ -127,4 +127,4 @@ def _check_wanted(sensors: Sequence[str], touch: str, count: int, duration: floa
     if kind == COUNT:
         require_whole("count", count, 0, 20)
     if kind in (COUNT, HOLD):
-        require_number("duration", duration, 0.0, LONGEST_HOLD, "0..60 s")
+        require_within("duration", duration, HOLD_TIME)

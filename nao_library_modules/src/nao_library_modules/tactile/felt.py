@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from genpy import Time
 from sensor_msgs.msg import BatteryState
 
 from nao_library_msgs.msg import TouchBinding
+
+from .touch import Contact
 
 
 class Felt:
@@ -15,7 +18,7 @@ class Felt:
 
     def __init__(self) -> None:
         """Nothing yet."""
-        self.touched: list[str] = []
+        self.touched: list[Contact] = []
         self.sonars: list[tuple[str, float]] = []
         self.weights: list[tuple[str, float]] = []
         self.batteries: list[BatteryState] = []
@@ -23,14 +26,15 @@ class Felt:
         self.fell = False
         self.bindings: list[TouchBinding] = []
 
-    def touch(self, names: Sequence[str]) -> list[str]:
-        """Note what was touched, and answer it."""
-        self.touched += names
-        return list(names)
+    def touch(self, contacts: Sequence[Contact]) -> list[str]:
+        """Note what was touched, and answer the names."""
+        self.touched += contacts
+        return [contact.name for contact in contacts]
 
     def fill(self, result: Any) -> None:
         """Put everything into a result message."""
-        result.touched = self.touched
+        result.touched = [contact.name for contact in self.touched]
+        result.touch_times = [Time.from_sec(contact.begin) for contact in self.touched]
         result.sonar_names, result.sonar = _columns(self.sonars, 2)
         result.fsr_names, result.fsr = _columns(self.weights, 2)
         result.battery = self.batteries

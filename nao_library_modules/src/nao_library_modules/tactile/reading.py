@@ -8,7 +8,13 @@ from typing import Any
 
 from sensor_msgs.msg import BatteryState
 
-from .body_devices import (
+from naoqi.errors import RobotError
+
+from ..base.errors import BadGoal
+from ..base.suggestion import did_you_mean
+from ..functions.chain import checked_by
+from ..functions.memory_functions import MEMORY
+from ..nao.body_devices import (
     BATTERY_STATUS,
     CHARGE,
     CHARGING_BIT,
@@ -22,14 +28,11 @@ from .body_devices import (
     temperature_key,
     weight_keys,
 )
-from .errors import BadGoal
-from .extractor_use import ExtractorUse
-from .function_chain import checked_by
-from .memory_functions import MEMORY
-from .suggestion import did_you_mean
-from .tactile_checks import FEET, check_bumpers, check_feet, check_sensors, check_sonars, words_of
-from .tactile_felt import Felt
-from .tactile_names import Sensor, sensors_of
+from ..nao.touch_names import Sensor, sensors_of
+from ..server.extractor_use import Event, ExtractorUse
+from .checks import FEET, check_bumpers, check_feet, check_sensors, check_sonars, words_of
+from .felt import Felt
+from .touch import Contact
 
 SONAR = "ALSonar"
 BATTERY_KEYS = (
@@ -71,12 +74,12 @@ class ReadingFunctions(ExtractorUse):
     @checked_by(check_sensors)
     def get_touched(self, sensors: Sequence[str]) -> list[str]:
         """Which sensors are touched now."""
-        return self.felt.touch(self.pressed(sensors_of(sensors)))
+        return self.felt.touch(self.contacts(sensors_of(sensors)))
 
     @checked_by(check_bumpers)
     def get_bumpers(self, sensors: Sequence[str]) -> list[str]:
         """Which bumpers are pressed now."""
-        return self.felt.touch(self.pressed(sensors_of(sensors or ["bumpers"])))
+        return self.felt.touch(self.contacts(sensors_of(sensors or ["bumpers"])))
 
     @checked_by(check_sonars)
     def get_sonar(self, sensors: Sequence[str]) -> list[float]:
@@ -140,6 +143,26 @@ class ReadingFunctions(ExtractorUse):
         keys = [key for sensor in sensors for key in sensor.keys]
         values = dict(zip(keys, self._values(keys)))
         return [sensor.name for sensor in sensors if any(_number(values[key]) > 0.5 for key in sensor.keys)]
+
+    def contacts(self, sensors: Sequence[Sensor]) -> list[Contact]:
+        """Those that are pressed now, and since when: now, where the robot does not tell."""
+        pressed, now = self.pressed(sensors), self.clock.now()
+        return [Contact(each.name, min(self._said(each, 1.0), now)) for each in sensors if each.name in pressed]
+
+    def released(self, sensors: Sequence[Sensor]) -> list[Contact]:
+        """Those that were let go at last, by their events, and when; the beginning of the touch is not asked for.
+
+        A V6 refreshes the keys of its sensors twice a second only.
+        """
+        ends = [Contact(sensor.name, 0.0, self._said(sensor, 0.0)) for sensor in sensors]
+        return [contact for contact in ends if contact.end < math.inf]
+
+    def _said(self, sensor: Sensor, value: float) -> float:
+        """ROS time, s, at which the event of a sensor had this value, if it was its last; else infinity."""
+        try:
+            return self.event_time(Event(sensor.event, value, math.inf))
+        except RobotError:  # it has not been raised yet
+            return math.inf
 
     def sonar(self, sides: Sequence[str]) -> list[float]:
         """Distances in m; infinite where nothing is heard, not a number where a sonar failed."""

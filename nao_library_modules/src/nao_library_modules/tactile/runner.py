@@ -14,6 +14,8 @@ from nao_library_actions.msg import NaoBehaviorAction, NaoBehaviorGoal
 from nao_library_msgs.msg import BehaviorFunction
 from naoqi.errors import NaoError
 
+from ..ros.goal_watch import GoalWatch
+
 SERVER = "NaoBehavior"
 SERVER_LIMIT = 5.0
 """s to wait for the server, when a touch asks for it."""
@@ -50,20 +52,21 @@ class BehaviorClient:
         if not client.wait_for_server(rospy.Duration(SERVER_LIMIT)):
             raise NaoError(f"there is no server {rospy.resolve_name(self._name)}: nobody can run {behavior}")
         function = BehaviorFunction(function="runBehavior", str_param=behavior, parameters=list(parameters))
-        over = threading.Event()
+        watch = GoalWatch()
         key = object()
 
         def changed(handle: Any) -> None:
-            if handle.get_comm_state() != actionlib.CommState.DONE or over.is_set():
+            was_over = watch.over.is_set()
+            watch.look(handle)
+            if was_over or not watch.over.is_set():
                 return
-            over.set()
             with self._lock:
                 self._handles.pop(key, None)
             done(GoalStatus.to_string(handle.get_terminal_state()).lower(), handle.get_goal_status_text())
 
         handle = client.send_goal(NaoBehaviorGoal([function]), changed)
         with self._lock:
-            if not over.is_set():
+            if not watch.over.is_set():
                 # actionlib forgets a goal whose handle nobody holds.
                 self._handles[key] = handle
 

@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from typing import Any
+
+from genpy import Time
 
 from nao_library_actions.msg import NaoTactileAction
 from nao_library_msgs.msg import TouchBinding
 from naoqi.errors import NaoError
 
-from .answers import Outcome
-from .extractor_use import subscriber_name
-from .function_chain import checked_by
-from .launcher import LaunchPath
-from .memory_functions import MEMORY
-from .nao_basic import NaoBasic
-from .tactile_bindings import Binding, BindingState, TouchBindings
-from .tactile_checks import check_binding, check_removal, wanted_of
-from .tactile_felt import Felt
-from .tactile_names import names_of, sensors_of
-from .tactile_reading import ReadingFunctions
-from .tactile_waiting import WaitingFunctions
+from ..base.answers import Outcome
+from ..functions.chain import checked_by
+from ..functions.memory_functions import MEMORY
+from ..nao.touch_names import names_of, sensors_of
+from ..processes.launcher import LaunchPath
+from ..server.extractor_use import subscriber_name
+from ..server.nao_basic import NaoBasic
+from .bindings import Binding, BindingState, TouchBindings
+from .checks import check_binding, check_removal, wanted_of
+from .felt import Felt
+from .reading import ReadingFunctions
+from .touch import Wanted
+from .waiting import WaitingFunctions
 
 log = logging.getLogger(__name__)
 
@@ -29,7 +34,8 @@ log = logging.getLogger(__name__)
 class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
     """Touch goals: what the robot feels, sonars, feet, battery, temperatures, and behaviours that a touch starts.
 
-    A link between a touch and a behaviour outlives its goal: it ends when it is removed, or with the server.
+    A link between a touch and a behaviour outlives its goal: it ends when it is removed, or with the server. A
+    server that is started again because it died makes its links again.
 
     Attributes:
         felt: What the chain has felt so far.
@@ -43,6 +49,8 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
     """
 
     typed_answers = frozenset({"getSonar", "getFsr", "getTemperatures"})
+
+    left_by_goals = frozenset({"bindings"})
 
     def __init__(
         self,
@@ -64,20 +72,27 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
             options: As NaoBasic takes them.
         """
         if runner is None:
-            from .tactile_runner import BehaviorClient
+            from .runner import BehaviorClient
 
             runner = BehaviorClient()
+        self._restoring = threading.Lock()
         super().__init__(ip, port, autostart, launchpath, **options)
         self.felt = Felt()
         self.sonar_on = False
         self.subscriber = subscriber_name("NaoTactile", str(self._edge.namespace))
-        self.bindings = TouchBindings(lambda: self.robot.proxy(MEMORY), runner, self.clock)
+        event_time = lambda event: self.robot_clock.event_time(self.call_now, *event)  # noqa: E731
+        self.bindings = TouchBindings(lambda: self.robot.proxy(MEMORY), runner, self.clock, event_time)
         self.function_table.update(self.reading_functions())
         self.function_table.update(self.waiting_functions())
         self.function_table.update(
             onTouch=self.on_touch, listOnTouch=self.list_on_touch, removeOnTouch=self.remove_on_touch
         )
+        self._unrestored = self.kept.load() or ()
         self.serve("NaoTactile", NaoTactileAction)
+        if self._unrestored:
+            self.robot.connection.in_background(self._restore)
+
+    _unrestored: Sequence[dict[str, Any]] = ()  # links that are not made again yet
 
     @checked_by(check_binding)
     def on_touch(
@@ -97,19 +112,24 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
         binding = Binding(
             name, wanted, wanted_of(touch, count, duration), behavior.strip(), tuple(parameters), cooldown
         )
-        self.bindings.bind(binding, self.pressed(wanted))
+        self._restore()
+        self.bindings.bind(binding, self.contacts(wanted))
+        self._keep()
         self.felt.bindings += [_message(*each) for each in self.bindings.states() if each[0].name == name]
         return name
 
     def list_on_touch(self) -> list[str]:
         """Names of the links between touches and behaviours; what they are is in the result."""
+        self._restore()
         self.felt.bindings += [_message(*each) for each in self.bindings.states()]
         return self.bindings.names
 
     @checked_by(check_removal)
     def remove_on_touch(self, str_param: str) -> None:
         """Start the behaviour of a link, or of all of them, no more; what runs goes on."""
+        self._restore()
         self.bindings.remove(str_param.strip())
+        self._keep()
 
     # The life of a goal
 
@@ -117,15 +137,18 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
         """Forget what the last chain felt."""
         self.felt = Felt()
 
-    def tell(self, status: str, touched: Sequence[str] = (), sonar: Sequence[float] = ()) -> None:
+    def tell(
+        self, status: str, touched: Sequence[str] = (), sonar: Sequence[float] = (), stamp: float | None = None
+    ) -> None:
         """Publish what is felt meanwhile. Called from the thread that executes goals.
 
         Args:
             status: What the function does.
             touched: What is pressed.
             sonar: m, left and right.
+            stamp: ROS time of the change, s; None for now.
         """
-        self.publish_feedback(status=status, touched=list(touched), sonar=list(sonar))
+        self.publish_feedback(stamp=stamp, status=status, touched=list(touched), sonar=list(sonar))
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add what was felt."""
@@ -136,24 +159,48 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
         """Names of the links that can be removed, for the description of the functions."""
         return self.bindings.names if (function, field) == ("removeOnTouch", "str_param") else ()
 
-    def shut_down(self) -> None:
-        """As NaoBasic does; touches start nothing any more, and the sonars are let go."""
-        super().shut_down()
-        self.bindings.close()
-        if self.robot.connection.state == "connected":
-            try:
-                self.drop_sonar()
-            except NaoError as error:
-                log.debug("the sonars may go on for nobody: %s", error)
+    def shutdown_steps(self) -> list[Callable[[], Any]]:
+        """As NaoBasic has them; touches start nothing any more, and the sonars are let go."""
+        return [*super().shutdown_steps(), self.bindings.close, self.with_robot(self.drop_sonar)]
+
+    def _keep(self) -> None:
+        """Keep the links as they are now."""
+        self.kept.save([_told(binding) for binding, _ in self.bindings.states()])
+
+    def _restore(self) -> None:
+        """Make the links again that the node had before it died, as soon as the robot is there."""
+        with self._restoring:
+            if self.robot.connection.state != "connected":
+                return
+            unrestored, self._unrestored = self._unrestored, ()
+            for told in unrestored:
+                try:
+                    self.bindings.bind(_binding(told), [])
+                    log.info("the touch %s starts its behaviour again", told["name"])
+                except (NaoError, KeyError, TypeError) as error:
+                    log.warning("a link between a touch and a behaviour is not there again: %s: %s", told, error)
 
     def _connection_changed(self, *args: Any) -> None:
         super()._connection_changed(*args)
+        self._restore()
         if self.robot.connection.state == "connected" and self.robot.connection.generation > 1:
             self.bindings.renew()
             try:
                 self.renew_sonar()
             except NaoError as error:
                 log.warning("the sonars of the robot that came back stay silent: %s", error)
+
+
+def _told(binding: Binding) -> dict[str, Any]:
+    """A link in words of JSON."""
+    told = asdict(binding)
+    return {**told, "sensors": names_of(binding.sensors)}
+
+
+def _binding(told: dict[str, Any]) -> Binding:
+    """A link from words of JSON."""
+    read = {"sensors": sensors_of(told["sensors"]), "wanted": Wanted(**told["wanted"])}
+    return Binding(**{**told, **read, "parameters": tuple(told["parameters"])})
 
 
 def _message(binding: Binding, state: BindingState) -> TouchBinding:
@@ -170,4 +217,5 @@ def _message(binding: Binding, state: BindingState) -> TouchBinding:
         runs=state.runs,
         last=state.last,
         text=state.text,
+        touched=Time.from_sec(state.touched),
     )

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 PRESS, RELEASE, HOLD, COUNT = "press", "release", "hold", "count"
 KINDS = (PRESS, RELEASE, HOLD, COUNT)
@@ -25,20 +26,35 @@ class Wanted:
     duration: float = 1.0
 
 
-class TouchWatch:
-    """Tells of each touch that is wanted. Times are passed in, s.
+class Contact(NamedTuple):
+    """One touch of a sensor.
 
-    What is pressed when the watch begins counts for a hold and for a release, but it is no press.
+    Attributes:
+        name: Short name of the sensor.
+        begin: ROS time of the first contact, s.
+        end: That of the last one; 0 while it lasts.
+    """
+
+    name: str
+    begin: float
+    end: float = 0.0
+
+
+class TouchWatch:
+    """Tells of each touch that is wanted. Times are passed in, s: when sensors changed, not when that was heard of.
+
+    What is pressed when the watch begins counts for a release and, from then on, for a hold, but it is no press.
 
     Args:
         wanted: What counts.
-        pressed: What is pressed already, by name.
-        now: When that is.
+        pressed: What is pressed already: name -> time of the first contact.
+        now: When the watch begins.
     """
 
-    def __init__(self, wanted: Wanted, pressed: Iterable[str], now: float) -> None:
+    def __init__(self, wanted: Wanted, pressed: Mapping[str, float], now: float) -> None:
         self._wanted = wanted
-        self._since = dict.fromkeys(pressed, now)
+        self._begin = now
+        self._since = dict(pressed)
         # Who asked for events before asking what is pressed may be told of the same press twice.
         self._untold = set(self._since)
         self._held: set[str] = set()
@@ -54,10 +70,10 @@ class TouchWatch:
         """When `look` may have something to tell; None if only a touch can change that."""
         if self._wanted.kind != HOLD:
             return None
-        begun = [since for name, since in self._since.items() if name not in self._held]
+        begun = [max(since, self._begin) for name, since in self._since.items() if name not in self._held]
         return min(begun) + self._wanted.duration if begun else None
 
-    def tell(self, name: str, pressed: bool, now: float) -> list[str]:
+    def tell(self, name: str, pressed: bool, now: float) -> list[Contact]:
         """Take a change of a sensor; returns what has been touched as wanted by it."""
         held_enough = self.look(now)
         untold = name in self._untold
@@ -65,25 +81,31 @@ class TouchWatch:
         if pressed == (name in self._since) and not (pressed and untold):
             return held_enough
         if pressed:
-            self._since.setdefault(name, now)
+            self._since[name] = min(self._since.get(name, now), now)
             return self._pressed(name, now)
-        del self._since[name]
+        begin = self._since.pop(name)
         self._held.discard(name)
-        return [name] if self._wanted.kind == RELEASE else held_enough
+        if self._wanted.kind == RELEASE:
+            return [Contact(name, begin, now)]
+        return [held._replace(end=now) if held.name == name else held for held in held_enough]
 
-    def look(self, now: float) -> list[str]:
+    def look(self, now: float) -> list[Contact]:
         """What has been held long enough by now, and was not told of before."""
         if self._wanted.kind != HOLD:
             return []
         # Sums of times are not exact: who waits until `due` comes a hair before.
         limit = now - self._wanted.duration + 1e-6
-        held = [name for name, since in self._since.items() if since <= limit and name not in self._held]
-        self._held.update(held)
+        held = [
+            Contact(name, since)
+            for name, since in self._since.items()
+            if max(since, self._begin) <= limit and name not in self._held
+        ]
+        self._held.update(contact.name for contact in held)
         return held
 
-    def _pressed(self, name: str, now: float) -> list[str]:
+    def _pressed(self, name: str, now: float) -> list[Contact]:
         if self._wanted.kind == PRESS:
-            return [name]
+            return [Contact(name, now)]
         if self._wanted.kind != COUNT:
             return []
         self._presses.append((now, name))
@@ -91,6 +113,8 @@ class TouchWatch:
             self._presses.popleft()
         if len(self._presses) < self._wanted.count:
             return []
-        names = list(dict.fromkeys(name for _, name in self._presses))
+        first: dict[str, float] = {}
+        for time, pressed in self._presses:
+            first.setdefault(pressed, time)
         self._presses.clear()
-        return names
+        return [Contact(*each) for each in first.items()]

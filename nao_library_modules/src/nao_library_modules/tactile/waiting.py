@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .function_chain import checked_by
-from .tactile_checks import (
+from ..functions.chain import checked_by
+from ..nao.touch_names import BY_EVENT, Sensor, sensors_of
+from .checks import (
     CLICKS,
     DEFAULT_DISTANCE,
     SIDES,
@@ -19,20 +20,22 @@ from .tactile_checks import (
     wanted_of,
     words_of,
 )
-from .tactile_names import BY_EVENT, sensors_of
-from .tactile_reading import SONAR, SONAR_START, ReadingFunctions
-from .tactile_touch import TouchWatch
+from .reading import SONAR, SONAR_START, ReadingFunctions
+from .touch import Contact, TouchWatch
 
 SONAR_PERIOD = 0.1
 """s between two measurements of a sonar."""
 FALLEN = "robotHasFallen"
 WAITING = "waiting"
+CHEST = sensors_of(["chest"])
 
 
 class WaitingFunctions(ReadingFunctions):
-    """Parameters are fields of TactileFunction."""
+    """Parameters are fields of TactileFunction. What a function waited for has the robot's own times."""
 
     tell: Callable[..., None]  # of NaoTactile: publishes what is felt meanwhile
+    remark: Callable[[str], None]  # of NaoBasic
+    happened: tuple[float, float]  # of NaoBasic
 
     def waiting_functions(self) -> dict[str, Callable[..., Any]]:
         """Name -> function, to be put into the function table of a module."""
@@ -51,31 +54,63 @@ class WaitingFunctions(ReadingFunctions):
         wanted = sensors_of(sensors)
         end = self.clock.now() + timeout_of(timeout)
         with self.events_of(*(sensor.event for sensor in wanted)) as events:
-            watch = TouchWatch(wanted_of(touch, count, duration), self.pressed(wanted), self.clock.now())
+            pressed = {contact.name: contact.begin for contact in self.contacts(wanted)}
+            watch = TouchWatch(wanted_of(touch, count, duration), pressed, self.clock.now())
             self.tell(WAITING, touched=watch.pressed)
             while True:
                 due = watch.due
-                for event, value in events.until(end if due is None else min(due, end)):
-                    touched = watch.tell(BY_EVENT[event].name, bool(value), self.clock.now())
-                    self.tell(WAITING, touched=watch.pressed)
+                for event in events.until(end if due is None else min(due, end)):
+                    when = self.event_time(event)
+                    touched = watch.tell(BY_EVENT[event.name].name, bool(event.value), when)
+                    self.tell(WAITING, touched=watch.pressed, stamp=when)
                     if touched:
-                        return self.felt.touch(touched)
+                        return self._touched(touched)
                     if watch.due != due:
                         break  # something is held, or no longer
                 else:
-                    touched = watch.look(self.clock.now())
-                    if touched or self.clock.now() >= end:
-                        return self.felt.touch(touched)
+                    touched = self._held(watch, wanted)
+                    if touched:
+                        return self._touched(touched)
+                    if self.clock.now() >= end:
+                        already = "".join(f"; {name} is pressed already" for name in watch.pressed)
+                        self.remark(f"no touch within {timeout_of(timeout):g} s{already}")
+                        return []
+
+    def _held(self, watch: TouchWatch, sensors: Sequence[Sensor]) -> list[Contact]:
+        """What has been held long enough, also by the robot's times: that it was let go may be on the way."""
+        if watch.due is None:
+            return []
+        held = [sensor for sensor in sensors if sensor.name in watch.pressed]
+        told = [watch.tell(contact.name, False, contact.end) for contact in self.released(held)]
+        return [*(contact for contacts in told for contact in contacts), *watch.look(self.clock.now())]
+
+    def _touched(self, contacts: Sequence[Contact]) -> list[str]:
+        ends = [contact.end for contact in contacts]
+        self.happened = (
+            min((contact.begin for contact in contacts), default=0.0),
+            max(ends) if ends and all(ends) else 0.0,
+        )
+        return self.felt.touch(contacts)
 
     @checked_by(check_clicks)
     def wait_for_chest_button(self, count: int, timeout: float) -> list[str]:
         """Wait until the chest button is clicked once, twice or three times; answers chest."""
-        event = CLICKS[count or 1]
+        clicked, (button,) = CLICKS[count or 1], CHEST
         end = self.clock.now() + timeout_of(timeout)
-        with self.events_of(event) as events:
-            self.tell(WAITING)
-            for _ in events.until(end):
-                return self.felt.touch(["chest"])
+        with self.events_of(clicked, button.event) as events:
+            presses = [contact.begin for contact in self.contacts(CHEST)]
+            self.tell(WAITING, touched=["chest"] * len(presses))
+            for event in events.until(end):
+                if event.name == clicked:
+                    # Of clicks that began before the wait the first contact is not known.
+                    first = presses[-(count or 1)] if len(presses) >= (count or 1) else 0.0
+                    (last,) = self.released(CHEST) or [Contact("chest", 0.0)]  # pressed again: its end is not known
+                    return self._touched([Contact("chest", first, last.end)])
+                when = self.event_time(event)
+                if event.value and when not in presses:
+                    presses.append(when)
+                self.tell(WAITING, touched=["chest"] if event.value else [], stamp=when)
+        self.remark(f"no click within {timeout_of(timeout):g} s")
         return []
 
     @checked_by(check_obstacle)
@@ -89,11 +124,15 @@ class WaitingFunctions(ReadingFunctions):
             # NAOqi's own events have a distance of their own; what the sonars measure is in the memory.
             self.wait(SONAR_START)
             while True:
+                now = self.clock.now()
                 distances = dict(zip(sides, self.sonar(sides)))
                 self.tell(WAITING, sonar=[distances.get(side, math.inf) for side in SIDES])
                 near = {side: metres for side, metres in distances.items() if metres < limit}
                 if near or self.clock.now() >= end:
                     self.felt.sonars += near.items()
+                    self.happened = (now if near else 0.0, 0.0)
+                    if not near:
+                        self.remark(f"nothing nearer than {limit:g} m within {timeout_of(timeout):g} s")
                     return list(near)
                 self.wait(SONAR_PERIOD)
 
@@ -103,8 +142,10 @@ class WaitingFunctions(ReadingFunctions):
         end = self.clock.now() + timeout_of(timeout)
         with self.events_of(FALLEN) as events:
             self.tell(WAITING)
-            for _, value in events.until(end):
-                if value:
+            for event in events.until(end):
+                if event.value:
+                    self.happened = (self.event_time(event), 0.0)
                     self.felt.fell = True
                     return True
+        self.remark(f"no fall within {timeout_of(timeout):g} s")
         return False

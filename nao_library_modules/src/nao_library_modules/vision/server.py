@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from nao_library_actions.msg import NaoVisionAction
 
-from ..answers import Outcome
-from ..errors import BadGoal
-from ..extractor_use import subscriber_name
-from ..launcher import LaunchPath, launched_nodes
-from ..nao_basic import NaoBasic
-from ..vision_detect import TYPED, DetectionFunctions
-from ..vision_faces import FaceFunctions
-from ..vision_files import DEFAULT_RECORD_DIR, VisionFiles
-from ..vision_results import Seen
-from ..vision_settings import SettingFunctions
-from ..vision_streaming import StreamingFunctions
-from ..vision_taken import Taken
-from ..vision_takes import PictureFunctions
-from ..vision_threads import VisionThreads
-from ..vision_track import TrackingFunctions
+from ..base.answers import Outcome
+from ..base.errors import BadGoal
+from ..processes.launcher import LaunchPath, launched_nodes
+from ..server.extractor_use import subscriber_name
+from ..server.nao_basic import NaoBasic
+from .capture.files import DEFAULT_RECORD_DIR, VisionFiles
+from .capture.jobs import VisionThreads
+from .capture.settings import SettingFunctions
+from .capture.streaming import StreamingFunctions
+from .capture.taken import Taken
+from .capture.takes import PictureFunctions
+from .detection.faces import FaceFunctions
+from .detection.results import Seen
+from .detection.things import TYPED, DetectionFunctions
+from .detection.track import TrackingFunctions
 
 CAMERAS = ("nao_library", "cameras.launch")
 """Launch file of the robot's cameras."""
@@ -71,6 +71,8 @@ class NaoVision(
 
     typed_answers = TYPED | {"takePicture", "takePictures", "stopRecording", "listThreads"}
 
+    left_by_goals = frozenset({"threads", "files", "topics"})
+
     def __init__(
         self,
         ip: str,
@@ -102,7 +104,7 @@ class NaoVision(
             options: As NaoBasic takes them.
         """
         if topics is None:
-            from ..vision_topics import VisionTopics
+            from .capture.topics import VisionTopics
 
             topics = VisionTopics()
         super().__init__(ip, port, autostart, launchpath or CAMERAS, **options)
@@ -131,6 +133,7 @@ class NaoVision(
             self.function_table.update(functions)
         # They take topics, of any camera.
         self.without_robot = frozenset({**self.streaming_functions(), **self.picture_functions()})
+        self.make_again()
         self.serve("NaoVision", NaoVisionAction)
 
     def camera_topic(self, camera: str) -> str:
@@ -174,15 +177,16 @@ class NaoVision(
         if not self._took_over and self.robot.connection.state == "connected":
             self._took_over = self.end_leftover_detections()
 
-    def tell(self, status: str, objects: Sequence[Any] = (), done: int = 0) -> None:
+    def tell(self, status: str, objects: Sequence[Any] = (), done: int = 0, stamp: float | None = None) -> None:
         """Publish what is seen meanwhile. Called from the thread that executes goals.
 
         Args:
             status: What the robot is doing.
             objects: SeenObject messages.
             done: How many pictures were taken.
+            stamp: ROS time of what is told, s; None for now.
         """
-        self.publish_feedback(status=status, done=done, objects=list(objects))
+        self.publish_feedback(stamp=stamp, status=status, done=done, objects=list(objects))
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add what was seen and taken."""
@@ -190,9 +194,9 @@ class NaoVision(
         self.seen.fill(result)
         self.taken.fill(result)
 
-    def shut_down(self) -> None:
-        """As NaoBasic does; streams and recordings end first, so that files are complete whatever else takes long."""
-        self.interrupt.stop()
-        self.threads.close()
-        super().shut_down()
-        self.threads.close()  # of a goal that was just about to start one
+    def shutdown_steps(self) -> list[Callable[[], Any]]:
+        """As NaoBasic has them; streams and recordings end first, so that files are complete whatever else takes long.
+
+        They end once more for a goal that was just about to start one.
+        """
+        return [self.interrupt.stop, self.threads.close, *super().shutdown_steps(), self.threads.close]

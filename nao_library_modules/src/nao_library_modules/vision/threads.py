@@ -17,14 +17,14 @@ from typing import Any
 
 from nao_library_msgs.msg import RecordedVideo, VisionThread
 
-from ..ros_clock import RosClock
-from ..vision_files import DEFAULT_RECORD_DIR, VisionFiles
-from ..vision_recorder import Recording, VideoWish
-from ..vision_stream import Stream
-from ..vision_thread import FrameThread
-from ..vision_threads import VisionThreads
-from ..vision_topics import VisionTopics
-from ..vision_video import VIDEO_TYPES, codec_name
+from ..ros.ros_clock import RosClock
+from .capture.files import DEFAULT_RECORD_DIR, VisionFiles
+from .capture.job import FrameThread
+from .capture.jobs import VisionThreads
+from .capture.recorder import Recording, VideoWish
+from .capture.stream import Stream
+from .capture.topics import VisionTopics
+from .capture.video import VIDEO_TYPES, codec_name
 
 
 class ImageThread:

@@ -8,9 +8,10 @@ from typing import Any, Callable
 
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal
+from ...base.errors import BadGoal
+from ...base.limits import limit
 from .errors import BehaviorError, Problem
-from .expressions import substitute, text_of
+from .expressions import UNKNOWN, NotKnown, substitute, text_of
 from .messages import message_of
 from .model import (
     Barrier,
@@ -22,18 +23,18 @@ from .model import (
     Repeat,
     Step,
     Timeline,
+    Unreadable,
     Wait,
     path_text,
 )
 from .parameters import arguments
 from .program import AllAtOnce, Goal, InOrder, Meeting, Node, OnTimeline, Pause, Rounds, servers_in
-from .servers import FunctionTables, server_of
+from .servers import FunctionTables
 from .times import At
 
 MOST_NODES = 10_000
 """Steps of a program, boxes unfolded: a few boxes in boxes can stand for more than any memory holds."""
-MOST_ROUNDS = 10_000
-LONGEST = 86_400.0
+MOST_ROUNDS, LONGEST = limit("rounds").highest, limit("wait").highest
 """s that a step may wait."""
 
 Library = Callable[[str], Behavior]
@@ -55,18 +56,33 @@ def bind(
         BehaviorError: With everything that is wrong.
         BadGoal: A value for a parameter will not do.
     """
-    binder = _Binder(library, tables)
-    program = binder.behavior(behavior, arguments(behavior.parameters, values), (), behavior.name)
-    if binder.problems:
-        raise BehaviorError(behavior.name, binder.problems)
+    program, problems = bind_what_can_be(behavior, values, library, tables)
+    if problems:
+        raise BehaviorError(behavior.name, problems)
     return program
+
+
+def bind_what_can_be(
+    behavior: Behavior, values: Mapping[str, Any], library: Library, tables: FunctionTables | None = None
+) -> tuple[InOrder, list[Problem]]:
+    """As `bind`: the program of all steps that could be read, and what is wrong with them and the others.
+
+    Raises:
+        BadGoal: A value for a parameter will not do.
+    """
+    binder = _Binder(library, tables or FunctionTables(), tables is not None)
+    program = binder.behavior(behavior, arguments(behavior.parameters, values), (), behavior.name)
+    return program, binder.problems
 
 
 class _Scope:
     """Where steps stand: the file, its parameters' values, the paths and boxes above."""
 
-    def __init__(self, behavior: str, values: Mapping[str, Any], prefix: PathParts, boxes: tuple[str, ...]) -> None:
+    def __init__(
+        self, behavior: str, file: str, values: Mapping[str, Any], prefix: PathParts, boxes: tuple[str, ...]
+    ) -> None:
         self.behavior = behavior
+        self.file = file
         self.values = values
         self.prefix = prefix
         self.boxes = boxes
@@ -81,10 +97,11 @@ class _Scope:
 class _Binder:
     """Makes nodes of steps, and notes what is wrong."""
 
-    def __init__(self, library: Library, tables: FunctionTables | None) -> None:
+    def __init__(self, library: Library, tables: FunctionTables, checks: bool) -> None:
         self.problems: list[Problem] = []
         self._library = library
         self._tables = tables
+        self._checks = checks
         self._loaded: dict[str, Behavior] = {}
         self._nodes = 0
 
@@ -97,10 +114,15 @@ class _Binder:
             prefix: Path of the box.
             boxes: Names of the behaviours that it is in, itself the last.
         """
-        scope = _Scope(behavior.name, values, prefix, boxes)
+        scope = _Scope(behavior.name, behavior.file, values, prefix, boxes)
         body = behavior.body
         return InOrder(
-            scope.path(body.path), behavior.name, "", f"behavior {behavior.name}", nodes=self._all(body, scope)
+            scope.path(body.path),
+            behavior.name,
+            "",
+            f"behavior {behavior.name}",
+            file=behavior.file,
+            nodes=self._all(body, scope),
         )
 
     def _all(self, step: Step, scope: _Scope, home: tuple[PathParts, int] | None = None) -> tuple[Node, ...]:
@@ -114,6 +136,8 @@ class _Binder:
             return None
         try:
             return self._node(step, scope, home)
+        except NotKnown:
+            pass  # the value that it depends on is told already
         except BehaviorError as error:
             for problem in error.problems:
                 self._note(step, scope, f"behavior {error.name}: {problem}")
@@ -123,23 +147,27 @@ class _Binder:
 
     def _note(self, step: Step, scope: _Scope, text: str) -> None:
         inside = f" in {scope.behavior}" if len(scope.boxes) > 1 else ""
-        problem = Problem(f"step {path_text(scope.path(step.path))}{inside}", text, step.line)
+        problem = Problem(f"step {path_text(scope.path(step.path))}{inside}", text, step.line, scope.file)
         if problem not in self.problems:  # a repetition is looked at in its first and its last round
             self.problems.append(problem)
 
-    def _node(self, step: Step, scope: _Scope, home: tuple[PathParts, int] | None) -> Node:
+    def _node(self, step: Step, scope: _Scope, home: tuple[PathParts, int] | None) -> Node | None:
         common: dict[str, Any] = {
             "path": scope.path(step.path),
             "behavior": scope.behavior,
             "label": step.label,
             "what": step.what,
             "policy": step.policy,
+            "file": scope.file,
+            "line": step.line,
         }
         if step.limit is not None:
             common["limit"] = _seconds("for", step.limit, scope.values)
         if step.at is not None:
             at = step.at
             common["at"] = At(_seconds("at", at.offset, scope.values), at.label, at.of_end)
+        if isinstance(step, Unreadable):
+            return None
         if isinstance(step, Functions):
             return self._goal(step, scope, common)
         if isinstance(step, Wait):
@@ -157,15 +185,28 @@ class _Binder:
             return OnTimeline(**common, nodes=self._all(step, scope))
         return InOrder(**common, nodes=self._all(step, scope, home))
 
-    def _goal(self, step: Functions, scope: _Scope, common: dict[str, Any]) -> Node:
-        server = server_of(step.server)
-        messages = []
+    def _goal(self, step: Functions, scope: _Scope, common: dict[str, Any]) -> Node | None:
+        server = self._tables.server(step.server)
+        messages, wrong = [], set()
         for position, fields in enumerate(step.functions, start=1):
             where = f"function {position}" if len(step.functions) > 1 else ""
-            messages.append(message_of(server.function, substitute(dict(fields), scope.values), where))
-        if self._tables is not None:
-            self._tables.check(server, messages)
-        return Goal(**common, server=server.name, goal=server.goal(messages))
+            message = server.function()
+            taken = self._tables.fields(server, fields.get("function", "")) if self._checks else []
+            for name, value in fields.items():
+                try:
+                    filled = message_of(server.function, {name: substitute(value, scope.values)}, where, taken)
+                    setattr(message, name, getattr(filled, name))
+                except NotKnown:
+                    wrong.add(position)
+                except NaoError as error:
+                    wrong.add(position)
+                    self._note(step, scope, str(error))
+            messages.append(message)
+        failures = self._tables.check(server, messages)[0] if self._checks else []
+        for failed in failures:
+            if failed.position not in wrong:  # a field without its value would be told as another mistake
+                self._note(step, scope, str(failed if len(messages) > 1 else failed.cause))
+        return None if wrong else Goal(**common, server=server.name, goal=server.goal(messages))
 
     def _box(self, step: Box, scope: _Scope, common: dict[str, Any]) -> Node:
         if step.name in scope.boxes:
@@ -174,7 +215,9 @@ class _Binder:
         if step.name not in self._loaded:
             self._loaded[step.name] = self._library(step.name)
         behavior = self._loaded[step.name]
-        values = arguments(behavior.parameters, substitute(dict(step.arguments), scope.values))
+        values = arguments(
+            behavior.parameters, {name: _or_unknown(each, scope) for name, each in step.arguments.items()}
+        )
         inside = self.behavior(behavior, values, common["path"], *scope.boxes, step.name)
         return InOrder(**common, nodes=inside.nodes, box=step.name)
 
@@ -206,7 +249,7 @@ class _Binder:
         def one(number: int, binder: _Binder) -> InOrder:
             values = {**scope.values, step.variable: number} if step.variable else scope.values
             # Steps of a round stand at 4#2.1: the path of the repetition makes way for the one with the round.
-            inside = _Scope(scope.behavior, values, (*path, ("#", number)), scope.boxes)
+            inside = _Scope(scope.behavior, scope.file, values, (*path, ("#", number)), scope.boxes)
             nodes = []
             for part in step.steps:
                 node = binder._guarded(_moved(part, len(step.path)), inside, None)
@@ -223,7 +266,7 @@ class _Binder:
         def round_(number: int) -> InOrder:
             if number == 1:
                 return first
-            binder = _Binder(self._library, None)
+            binder = _Binder(self._library, self._tables, checks=False)
             bound = one(number, binder)
             if binder.problems:
                 raise BehaviorError(scope.behavior, binder.problems)
@@ -238,6 +281,13 @@ def _moved(step: Step, depth: int) -> Step:
     if step.parts:
         changes["steps"] = tuple(_moved(part, depth) for part in step.parts)
     return replace(step, **changes)
+
+
+def _or_unknown(value: Any, scope: _Scope) -> Any:
+    try:
+        return substitute(value, scope.values)
+    except NotKnown:
+        return UNKNOWN
 
 
 def _seconds(key: str, value: Any, values: Mapping[str, Any]) -> float:

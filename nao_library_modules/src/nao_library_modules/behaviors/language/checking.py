@@ -1,20 +1,21 @@
-"""Whether a behaviour can be run, told without robot and servers; and what there is to know about it."""
+"""Whether a behaviour can be run, told before anything moves; and what there is to know about it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from naoqi.errors import NaoError
 
-from .binder import Library, bind
-from .errors import BehaviorError
+from .binder import Library, bind, bind_what_can_be
+from .errors import BehaviorError, Problem
 from .model import Behavior
 from .outlook import Outlook, outlook_of
 from .parameters import given_as_text
 from .program import InOrder, servers_in
 from .servers import FunctionTables
+from .validation import Ask, Validation, ask_nobody, validate
 
 
 def check(
@@ -23,7 +24,7 @@ def check(
     values: Mapping[str, Any] | None = None,
     tables: FunctionTables | None = None,
 ) -> InOrder:
-    """Check a behaviour as a whole: servers, functions, fields, boxes, times, and what else is known without a robot.
+    """Check a behaviour as a whole, without servers: functions, fields, boxes, times, and names that all robots have.
 
     Args:
         behavior: The behaviour.
@@ -38,16 +39,54 @@ def check(
         BehaviorError: With everything that is wrong.
         BadGoal: A value for a parameter will not do.
     """
-    return bind(behavior, values or {}, library, tables or FunctionTables())
+    tables = tables or FunctionTables()
+    program, problems = bind_what_can_be(behavior, values or {}, library, tables)
+    _require_none(behavior, [*problems, *validate(program, ask_nobody, tables).problems])
+    return program
 
 
-def check_given(behavior: Behavior, library: Library, given: Sequence[str], tables: FunctionTables) -> InOrder:
-    """As `check`, with values as "name=value"."""
-    return check(behavior, library, given_as_text(behavior.parameters, given), tables)
+def check_given(
+    behavior: Behavior,
+    library: Library,
+    given: Sequence[str],
+    tables: FunctionTables,
+    ask: Ask | None = None,
+    read_wrong: Sequence[Problem] = (),
+) -> tuple[InOrder, Validation]:
+    """What would run with values as "name=value", if nothing is wrong.
+
+    Args:
+        behavior: The behaviour.
+        library: Gives the behaviours of its boxes by name.
+        given: Values of its parameters.
+        tables: Functions of the servers.
+        ask: Has the servers check their goals; None: only what is true of any robot is looked at.
+        read_wrong: What was wrong with its file.
+
+    Raises:
+        BehaviorError: With everything that is wrong.
+    """
+    problems = [*read_wrong]
+    values = given_as_text(behavior.parameters, given, problems, behavior.file)
+    program, more = bind_what_can_be(behavior, values, library, tables)
+    validation = Validation() if ask is None else validate(program, ask, tables)
+    _require_none(behavior, [*problems, *more, *validation.problems])
+    return program, validation
+
+
+def _require_none(behavior: Behavior, problems: Sequence[Problem]) -> None:
+    if problems:
+        once = dict.fromkeys(problems)  # what is true of any robot the servers tell, too
+        own = sorted(once, key=lambda problem: (problem.file != behavior.file, problem.file, problem.line))
+        raise BehaviorError(behavior.name, own)
 
 
 def problems_of(
-    load: Callable[[], Behavior], library: Library, tables: FunctionTables | None = None, given: Sequence[str] = ()
+    load: Callable[[], Behavior],
+    library: Library,
+    tables: FunctionTables | None = None,
+    given: Sequence[str] = (),
+    ask: Ask = ask_nobody,
 ) -> list[str]:
     """What is wrong with a behaviour; nothing if it can be run.
 
@@ -56,16 +95,28 @@ def problems_of(
         library: For its boxes.
         tables: Functions of the servers, if they are known already.
         given: Values of its parameters as "name=value".
+        ask: Has the servers check their goals, where there are any.
     """
     try:
-        check_given(load(), library, given, tables or FunctionTables())
+        behavior, wrong = _as_far_as_read(load)
+        check_given(behavior, library, given, tables or FunctionTables(), ask, wrong)
     except NaoError as error:
-        return list(_problems(error))
+        return [str(problem) for problem in _problems(error)]
     return []
 
 
-def _problems(error: NaoError) -> tuple[str, ...]:
-    return tuple(map(str, error.problems)) if isinstance(error, BehaviorError) else (str(error),)
+def _as_far_as_read(load: Callable[[], Behavior]) -> tuple[Behavior, Sequence[Problem]]:
+    """A behaviour, and what was wrong with its file."""
+    try:
+        return load(), ()
+    except BehaviorError as error:
+        if error.readable is None:
+            raise
+        return error.readable, error.problems
+
+
+def _problems(error: NaoError) -> tuple[Problem, ...]:
+    return error.problems if isinstance(error, BehaviorError) else (Problem("", str(error)),)
 
 
 @dataclass(frozen=True)
@@ -79,14 +130,16 @@ class Facts:
         problem: What is wrong with it, in one text that may be cut; empty if it can be run.
         problems: All that is wrong with it, one by one; none if it can be run.
         outlook: What it would do; empty where nobody asked for that.
+        unvalidated: Servers that did not check their goals, and why.
     """
 
     name: str
     behavior: Behavior | None
     servers: tuple[str, ...]
     problem: str
-    problems: tuple[str, ...] = ()
+    problems: tuple[Problem, ...] = ()
     outlook: Outlook = Outlook()
+    unvalidated: tuple[str, ...] = ()
 
 
 def facts_of(name: str, library: Library, tables: FunctionTables) -> Facts:
@@ -100,13 +153,18 @@ def facts_of(name: str, library: Library, tables: FunctionTables) -> Facts:
     behavior = None
     try:
         behavior = library(name)
-        return Facts(name, behavior, tuple(servers_in(check(behavior, library, None, tables))), "")
+        return Facts(name, behavior, tuple(servers_in(bind(behavior, {}, library, tables))), "")
     except NaoError as error:
         return Facts(name, behavior, (), str(error), _problems(error))
 
 
 def outlook_facts(
-    name: str, load: Callable[[], Behavior], library: Library, tables: FunctionTables, given: Sequence[str] = ()
+    name: str,
+    load: Callable[[], Behavior],
+    library: Library,
+    tables: FunctionTables,
+    given: Sequence[str] = (),
+    ask: Ask | None = None,
 ) -> Facts:
     """As `facts_of`, with what it would do.
 
@@ -116,11 +174,18 @@ def outlook_facts(
         library: For its boxes.
         tables: Functions of the servers.
         given: Values of its parameters as "name=value".
+        ask: Has the servers check their goals, as `check_given` takes it.
     """
     behavior = None
     try:
-        behavior = load()
-        program = check_given(behavior, library, given, tables)
-        return Facts(name, behavior, tuple(servers_in(program)), "", outlook=outlook_of(program, tables))
+        readable, wrong = _as_far_as_read(load)
+        behavior = None if wrong else readable
+        program, validation = check_given(readable, library, given, tables, ask, wrong)
     except NaoError as error:
         return Facts(name, behavior, (), str(error), _problems(error))
+    outlook = outlook_of(program, tables)
+    if ask is not None:
+        outlook = replace(outlook, unchecked=tuple(validation.unchecked))
+    return Facts(
+        name, behavior, tuple(servers_in(program)), "", outlook=outlook, unvalidated=tuple(validation.unvalidated)
+    )

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..errors import cut
-from ..process_modules.failures import PlanFailure
-from ..suggestion import did_you_mean
+from ...base.errors import cut
+from ...base.suggestion import did_you_mean
+from ...process_modules.language.failures import PlanFailure
 
 MOST_TOLD = 10
 """Problems that the text of an error tells; the others are counted."""
@@ -30,15 +31,25 @@ class Problem:
         where: Path of the step, or the part of the file: "step 2.1", "parameters"; empty: the file as a whole.
         text: What is wrong, and what is allowed.
         line: Of the file, counted from 1; 0 if it is not known.
+        file: Path of the file; empty: a text of no file.
     """
 
     where: str
     text: str
     line: int = 0
+    file: str = ""
 
     def __str__(self) -> str:
-        line = f" (line {self.line})" if self.line else ""
-        return f"{self.where}{line}: {self.text}" if self.where else self.text
+        if self.file:
+            return place(self.file, self.line) + (f"{self.where}: {self.text}" if self.where else self.text)
+        line = f"line {self.line}" if self.line else ""
+        where = f"{self.where} ({line})" if self.where and line else self.where or line
+        return f"{where}: {self.text}" if where else self.text
+
+
+def place(file: str, line: int) -> str:
+    """What a text begins with that is about a line of a file: "hello.yaml:9: "; empty without a file."""
+    return f"{file}:{line}: " if file and line else f"{file}: " if file else ""
 
 
 class BehaviorError(NaoError):
@@ -47,20 +58,23 @@ class BehaviorError(NaoError):
     Attributes:
         name: Of the behaviour.
         problems: What is wrong, in the order of the file.
+        readable: The `model.Behavior` with all that could be read of its file; None if nothing is known of that.
     """
 
-    def __init__(self, name: str, problems: Sequence[Problem]) -> None:
+    def __init__(self, name: str, problems: Sequence[Problem], readable: Any = None) -> None:
         """Compose the text.
 
         Args:
             name: Of the behaviour.
             problems: At least one.
+            readable: See there.
         """
         told = "; ".join(map(str, problems[:MOST_TOLD]))
         more = f"; and {len(problems) - MOST_TOLD} more" if len(problems) > MOST_TOLD else ""
         super().__init__(cut(f"behavior {name}: {told}{more}"))
         self.name = name
         self.problems = tuple(problems)
+        self.readable = readable
 
 
 class NoSuchBehavior(NaoError):
@@ -88,6 +102,15 @@ class StepFailed(PlanFailure):
         problem: Why it failed.
     """
 
-    def __init__(self, path: str, what: str, problem: str) -> None:
-        """Compose the text."""
-        super().__init__(f"step {path} ({what}): {problem}", path=path, what=what, problem=problem)
+    def __init__(self, path: str, what: str, problem: str, file: str = "", line: int = 0) -> None:
+        """Compose the text.
+
+        Args:
+            path: Of the step.
+            what: What it is.
+            problem: Why it failed.
+            file: That the step is in, if it is in one.
+            line: Of the file.
+        """
+        text = f"{place(file, line)}step {path} ({what}): {problem}"
+        super().__init__(text, path=path, what=what, problem=problem)

@@ -6,16 +6,20 @@ Alone it stands for the value as it is; in a text it becomes text. `$${` stands 
 from __future__ import annotations
 
 import ast
+import keyword
 import math
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Union
 
-from ..errors import BadGoal
-from ..suggestion import did_you_mean
+from ...base.errors import BadGoal
+from ...base.suggestion import did_you_mean
 
 Number = Union[int, float]
 _PART = re.compile(r"\$\$\{|\$\{([^{}]*)\}|\$\{")
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_PLAIN = "__plain"
+"""Behind a word of Python's in what its parser reads: a parameter may be called `from`."""
 _OPERATIONS = {
     ast.Add: lambda a, b: a + b,
     ast.Sub: lambda a, b: a - b,
@@ -26,6 +30,20 @@ GRAMMAR = "a parameter, or arithmetic on numbers and parameters: + - * / and par
 LARGEST = 1e300
 LONGEST = 200
 """Characters of an expression: deeper ones than fit in would be too deep for the parser."""
+
+
+class Unknown:
+    """Takes the place of a value that is wrong: what depends on it is looked at no further, as that is told already."""
+
+    def __repr__(self) -> str:
+        return "a value that is wrong"
+
+
+UNKNOWN = Unknown()
+
+
+class NotKnown(Exception):  # noqa: N818  a signal: a value depends on one that is wrong
+    """Something cannot be worked out as a value in it is `UNKNOWN`."""
 
 
 class BadExpression(BadGoal):
@@ -45,7 +63,10 @@ def substitute(value: Any, values: Mapping[str, Any]) -> Any:
 
     Raises:
         BadExpression: If something cannot be worked out.
+        NotKnown: It depends on a value that is wrong.
     """
+    if value is UNKNOWN:
+        raise NotKnown
     if isinstance(value, str):
         return _substitute_text(value, values)
     if isinstance(value, list):
@@ -64,7 +85,7 @@ def names_in(value: Any) -> Iterator[str]:
     if isinstance(value, str):
         for match in _PART.finditer(value):
             if match[0] != "$${":
-                yield from (each.id for each in ast.walk(_parsed(match)) if isinstance(each, ast.Name))
+                yield from (_name(each) for each in ast.walk(_parsed(match)) if isinstance(each, ast.Name))
     elif isinstance(value, (list, tuple)):
         for each in value:
             yield from names_in(each)
@@ -113,19 +134,27 @@ def _parsed(match: re.Match[str]) -> ast.expr:
     if len(text) > LONGEST:
         raise BadExpression(text[:20] + "...", f"it has {len(text)} characters, at most {LONGEST} are read")
     try:
-        return ast.parse(text.strip(), mode="eval").body
+        plain = _WORD.sub(lambda word: word[0] + _PLAIN * keyword.iskeyword(word[0]), text.strip())
+        return ast.parse(plain, mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
         raise BadExpression(text, "it cannot be read") from error
 
 
+def _name(node: ast.Name) -> str:
+    return node.id[: -len(_PLAIN)] if node.id.endswith(_PLAIN) else node.id
+
+
 def _worked_out(node: ast.expr, text: str, values: Mapping[str, Any]) -> Any:
     if isinstance(node, ast.Name):
-        if node.id not in values:
+        name = _name(node)
+        if name not in values:
             known = f"there are {', '.join(values)}" if values else "there are no parameters"
-            raise BadExpression(text, f"there is no parameter {node.id!r}{did_you_mean(node.id, values)}", known)
-        return values[node.id]
+            raise BadExpression(text, f"there is no parameter {name!r}{did_you_mean(name, values)}", known)
+        if values[name] is UNKNOWN:
+            raise NotKnown
+        return values[name]
     if isinstance(node, ast.Constant) and type(node.value) in (int, float):
-        return node.value
+        return _checked(node.value, text)
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
         operand = _number(node.operand, text, values)
         return -operand if isinstance(node.op, ast.USub) else operand
@@ -137,10 +166,14 @@ def _worked_out(node: ast.expr, text: str, values: Mapping[str, Any]) -> Any:
             raise BadExpression(text, "it divides by zero") from None
         except OverflowError:
             raise BadExpression(text, "its result is too large") from None
-        if abs(result) > LARGEST or not math.isfinite(result):
-            raise BadExpression(text, "its result is too large")
-        return result
+        return _checked(result, text)
     raise BadExpression(text, "it cannot be read")
+
+
+def _checked(number: Number, text: str) -> Number:
+    if abs(number) > LARGEST or not math.isfinite(number):
+        raise BadExpression(text, "its result is too large")
+    return number
 
 
 def _number(node: ast.expr, text: str, values: Mapping[str, Any]) -> Number:

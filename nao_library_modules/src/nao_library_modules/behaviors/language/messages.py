@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import genpy
 import roslib.message
 
-from ..errors import BadGoal
-from ..suggestion import did_you_mean
+from ...base.degrees import ANGLES, in_rad, is_in_degrees
+from ...base.errors import BadGoal
+from ...base.suggestion import field_hint
 from .expressions import text_of
 
 _ARRAY = re.compile(r"(?P<item>.+)\[(?P<length>\d*)\]")
@@ -20,13 +22,14 @@ _FLOATS = {"float32": 3.4028235e38, "float64": math.inf}
 NANOSECONDS = 1_000_000_000
 
 
-def message_of(message_type: type, fields: Any, where: str = "") -> Any:
+def message_of(message_type: type, fields: Any, where: str = "", taken: Sequence[str] = ()) -> Any:
     """A message with some fields filled; the others have their defaults.
 
     Args:
         message_type: Of the message.
         fields: Name -> plain value; times and durations in s.
         where: What errors put before the names of fields.
+        taken: Fields that make sense here, where not all do: errors name these.
 
     Raises:
         BadGoal: If a field is unknown, or its value is of the wrong kind.
@@ -38,10 +41,22 @@ def message_of(message_type: type, fields: Any, where: str = "") -> Any:
     prefix = f"{where}." if where else ""
     for name, value in fields.items():
         if name not in types:
-            problem = f"{message_type.__name__} has no field {name!r}{did_you_mean(str(name), types)}"
-            raise BadGoal(f"{prefix}{name}", value, f"there are {', '.join(types)}", problem=problem)
-        setattr(message, name, _value(types[name], value, f"{prefix}{name}"))
+            known = [*taken] or [*types]
+            hint = field_hint(str(name), known)
+            problem = f"{message_type.__name__} has no field {name!r}{hint}"
+            raise BadGoal(f"{prefix}{name}", value, f"there are {', '.join(known)}", problem=problem)
+        setattr(message, name, _value(types[name], _in_rad(value) if name in ANGLES else value, f"{prefix}{name}"))
     return message
+
+
+def _in_rad(value: Any) -> Any:
+    """Angles in rad; what is no angle in degrees as it is."""
+    if isinstance(value, list):
+        return [_in_rad(each) for each in value]
+    try:
+        return in_rad(value) if is_in_degrees(value) else value
+    except ValueError:
+        return value
 
 
 def fields_of(message: Any) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import Any, Mapping, Tuple
 
-from ..failure_policy import FailurePolicy
+from ...base.failure_policy import FailurePolicy
 from .parameters import Parameter
 from .times import At
 
@@ -35,6 +35,7 @@ class Step(ABC):
         policy: What happens when it fails.
         limit: s after which it is ended and counts as done; None for no limit. May hold `${}`.
         at: When it begins, on a timeline.
+        whole: Whether all of it could be read; what is inside of it does not count.
     """
 
     path: PathParts
@@ -43,6 +44,7 @@ class Step(ABC):
     policy: FailurePolicy = FailurePolicy()
     limit: Any = None
     at: At | None = None
+    whole: bool = True
 
     @property
     @abstractmethod
@@ -53,6 +55,18 @@ class Step(ABC):
     def parts(self) -> tuple[Step, ...]:
         """Steps inside of it, in the same file."""
         return ()
+
+
+@dataclass(frozen=True)
+class Unreadable(Step):
+    """Something in the place of a step that is none."""
+
+    whole: bool = False
+
+    @property
+    def what(self) -> str:
+        """Nothing is known of it."""
+        return "step"
 
 
 @dataclass(frozen=True)
@@ -197,6 +211,7 @@ class Behavior:
         parameters: By name.
         body: What it does.
         tags: What it is filed under.
+        file: Path of its file; empty if it is none.
     """
 
     name: str
@@ -204,3 +219,4 @@ class Behavior:
     parameters: Mapping[str, Parameter]
     body: Sequence
     tags: Tuple[str, ...] = ()
+    file: str = ""

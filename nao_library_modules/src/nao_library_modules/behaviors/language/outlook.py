@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from .messages import fields_of
 from .program import AllAtOnce, Goal, InOrder, Meeting, Node, OnTimeline, Pause, Rounds, name_of, walk
-from .servers import FunctionTables, server_of
+from .servers import FunctionTables
 from .yaml_text import dump_line
 
 MOST_STEPS = 200
@@ -67,19 +67,30 @@ def _waits_inside(node: Node) -> float:
     if isinstance(node, AllAtOnce):
         return max(map(waits_of, node.parts), default=0.0)
     if isinstance(node, OnTimeline):
-        return max(_ends_of(node), default=0.0)
+        return max(_times_of(node)[1].values(), default=0.0)
     return sum(map(waits_of, node.parts))
 
 
-def _ends_of(timeline: OnTimeline) -> list[float]:
-    """When the entries of a timeline end, s from its beginning. None waits for itself: that was checked."""
+def in_order_of_time(node: Node) -> Sequence[Node]:
+    """Parts of a node as they begin if goals take no time; of a timeline that may be another order than its own."""
+    if not isinstance(node, OnTimeline):
+        return node.parts
+    begins, _ = _times_of(node)
+    return [node.nodes[i] for i in sorted(begins, key=lambda i: (begins[i], i))]
+
+
+def _times_of(timeline: OnTimeline) -> tuple[dict[int, float], dict[int, float]]:
+    """When the entries of a timeline begin and end, s from its beginning. None waits for itself: that was checked.
+
+    Of one from which others are missing, as something is wrong with them, as much as can be told.
+    """
     entries = timeline.nodes
     named = {name_of(entry): i for i, entry in enumerate(entries) if name_of(entry)}
     begins: dict[int, float] = {}
     ends: dict[int, float] = {}
     while len(ends) < len(entries):  # once is enough where nobody refers to what stands below
         for i, entry in enumerate(entries):
-            other = named[entry.at.label] if entry.at.label else None
+            other = named.get(entry.at.label) if entry.at.label else None
             if i in ends or not (other is None or other in ends):
                 continue
             if isinstance(entry, Meeting):
@@ -90,7 +101,7 @@ def _ends_of(timeline: OnTimeline) -> list[float]:
                 since = 0.0 if other is None else (ends if entry.at.of_end else begins)[other]
                 begins[i] = since + entry.at.offset
             ends[i] = begins[i] + waits_of(entry)
-    return list(ends.values())
+    return begins, ends
 
 
 def _told(node: Node) -> str:
@@ -107,7 +118,7 @@ def _told(node: Node) -> str:
 
 def _unchecked(node: Goal, tables: FunctionTables) -> Iterator[str]:
     messages = _messages(node)
-    for position in tables.check(server_of(node.server), messages):
+    for position in tables.check(tables.server(node.server), messages)[1]:
         message = messages[position - 1]
         yield _cut(f"{node.where} {node.server}.{message.function}: {_fields(message)}")
 

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..errors import BadGoal
-from ..suggestion import did_you_mean
-from .errors import BehaviorError
-from .expressions import LARGEST, text_of
+from ...base.errors import BadGoal
+from ...base.suggestion import did_you_mean
+from .errors import BehaviorError, Problem
+from .expressions import LARGEST, UNKNOWN, text_of
 from .yaml_text import load
 
 TEXT, NUMBER, TRUTH, LIST = "text", "number", "truth value", "list"
@@ -35,12 +35,13 @@ class Parameter:
 
     Attributes:
         name: That `${name}` stands for.
-        default: Value where none is given; its kind is that of the parameter.
+        default: Value where none is given; its kind is that of the parameter. `UNKNOWN`: the file is wrong about it.
         help: What it is for.
         choices: Values that it may have; empty: any.
         lowest: The least that a number may be.
         highest: The most that it may be.
         unit: Of a number.
+        line: Of its file, where it is declared; 0 if it is not known.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Parameter:
     lowest: float = -math.inf
     highest: float = math.inf
     unit: str = ""
+    line: int = 0
 
     @property
     def kind(self) -> str:
@@ -77,6 +79,8 @@ class Parameter:
         Raises:
             BadGoal: If the parameter cannot have it.
         """
+        if UNKNOWN in (self.default, value):
+            return UNKNOWN
         if self.kind == TEXT and kind_of(value) == NUMBER:
             value = text_of(value)
         if kind_of(value) != self.kind:
@@ -94,7 +98,7 @@ class Parameter:
         Raises:
             BadGoal: If it is none of the parameter's kind.
         """
-        if self.kind == TEXT:
+        if self.default is UNKNOWN or self.kind == TEXT:
             return self.check(text)
         try:
             value = load(text, self.name)
@@ -126,20 +130,31 @@ def require_known(names: Iterable[str], parameters: Mapping[str, Parameter]) -> 
             raise BadGoal("parameters", name, known, problem=problem)
 
 
-def given_as_text(parameters: Mapping[str, Parameter], texts: Sequence[str]) -> dict[str, Any]:
+def given_as_text(
+    parameters: Mapping[str, Parameter], texts: Sequence[str], problems: list[Problem], file: str = ""
+) -> dict[str, Any]:
     """Name -> value of what is given as "name=value".
 
-    Raises:
-        BadGoal: If one is unknown or comes twice, or a value will not do.
+    Args:
+        parameters: By name.
+        texts: What is given.
+        problems: Where to note what is unknown, comes twice, or has a value that will not do; that becomes `UNKNOWN`.
+        file: That declares the parameters.
     """
     given: dict[str, Any] = {}
     for text in texts:
         name, equals, value = text.partition("=")
         name = name.strip()
-        if not equals:
-            raise BadGoal("parameters", text, "name=value, each one string", problem=f"{text!r} has no '='")
-        if name in given:
-            raise BadGoal("parameters", text, "each once", problem=f"{name!r} comes twice")
-        require_known([name], parameters)
-        given[name] = parameters[name].parse(value)
+        try:
+            if not equals:
+                raise BadGoal("parameters", text, "name=value, each one string", problem=f"{text!r} has no '='")
+            if name in given:
+                raise BadGoal("parameters", text, "each once", problem=f"{name!r} comes twice")
+            require_known([name], parameters)
+            given[name] = parameters[name].parse(value)
+        except BadGoal as error:
+            if name in parameters:
+                given[name] = UNKNOWN
+            line = parameters[name].line if name in parameters else 0
+            problems.append(Problem(f"parameter {name}" if name in parameters else "", str(error), line, file))
     return given

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..errors import BadGoal
+from ...base.errors import BadGoal
 from .errors import NoSuchBehavior
 from .model import Behavior
 from .reader import read
@@ -49,7 +49,7 @@ class PlannedStore:
         change = self._changes.get(name)
         if change is _UNKNOWN:
             raise UnknownYet(name)
-        return read(self.text(name) or "", name)
+        return self._store.load(name) if change is None else read(self.text(name) or "", name)
 
     def text(self, name: str) -> str | None:
         """The text of a behaviour; None if it will be recorded."""

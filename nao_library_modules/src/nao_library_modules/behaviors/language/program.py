@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Callable, Tuple
 
-from ..failure_policy import FailurePolicy
+from ...base.failure_policy import FailurePolicy
 from .model import PathParts, path_text
 from .times import At
 
@@ -23,6 +23,8 @@ class Node:
         policy: What happens when it fails.
         limit: s after which it is ended and counts as done; None for no limit.
         at: When it begins, on a timeline.
+        file: Path of the file; empty: a text of no file.
+        line: Of the file; 0 if it is not known.
     """
 
     path: PathParts
@@ -32,6 +34,8 @@ class Node:
     policy: FailurePolicy = FailurePolicy()
     limit: float | None = None
     at: At = At()
+    file: str = ""
+    line: int = 0
 
     @property
     def where(self) -> str:
@@ -160,7 +164,7 @@ def _in_rounds(node: Node, rounds: tuple[tuple[int, int], ...]) -> Node:
     path = list(node.path)
     for depth, number in rounds:
         path[depth] = ("#", number)
-    return Node(tuple(path), node.behavior, node.label, node.what)
+    return Node(tuple(path), node.behavior, node.label, node.what, file=node.file, line=node.line)
 
 
 def servers_in(node: Node) -> dict[str, None]:

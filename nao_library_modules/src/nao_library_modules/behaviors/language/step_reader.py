@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Callable
 
-from ..errors import BadGoal
-from ..failure_policy import FailurePolicy
-from ..suggestion import did_you_mean
+from ...base.errors import BadGoal
+from ...base.failure_policy import FailurePolicy
+from ...base.suggestion import did_you_mean
 from .errors import Problem
-from .expressions import names_in
+from .expressions import UNKNOWN, names_in
 from .model import (
     Barrier,
     Box,
@@ -21,12 +22,13 @@ from .model import (
     Sequence,
     Step,
     Timeline,
+    Unreadable,
     Wait,
     child,
     path_text,
 )
 from .times import LABEL, at_of
-from .yaml_text import line_of
+from .yaml_text import line_in, line_of
 
 COMMON = ("label", "on_error", "for")
 KINDS = ("SERVER.FUNCTION", "parallel", "timeline", "behavior", "chain", "wait", "repeat", "do", "barrier")
@@ -48,6 +50,7 @@ class StepReader:
     def __init__(self, parameters: Mapping[str, Any], problems: list[Problem]) -> None:
         self._names = dict.fromkeys(parameters)
         self._problems = problems
+        self._here = ("", 0)
         self._kinds: dict[str, Callable[[Any, dict[Any, Any], dict[str, Any]], Step]] = {
             "wait": self._wait,
             "parallel": self._parallel,
@@ -60,7 +63,7 @@ class StepReader:
         }
 
     def steps(self, content: list[Any], path: PathParts, separator: str = ".", timed: bool = False) -> tuple[Step, ...]:
-        """The steps of a list. What cannot be read is left out, and noted.
+        """The steps of a list. What cannot be read is noted, and nothing is known of it.
 
         Args:
             content: The list.
@@ -74,7 +77,9 @@ class StepReader:
             try:
                 steps.append(self._step(each, where, timed))
             except BadGoal as error:
-                self._problems.append(Problem(f"step {path_text(where)}", str(error), line_of(each)))
+                line = line_of(each) or line_in(content, number - 1)
+                self._problems.append(Problem(f"step {path_text(where)}", str(error), line))
+                steps.append(Unreadable(where, line))
         return tuple(steps)
 
     def _step(self, content: Any, path: PathParts, timed: bool) -> Step:
@@ -84,6 +89,7 @@ class StepReader:
             return Sequence(path, steps=self.steps(content, path))
         if not isinstance(content, dict):
             raise BadGoal("step", content, f"a mapping with one of {', '.join(KINDS)}, or a list of steps")
+        self._here = (path_text(path), line_of(content))
         kind = self._kind(content)
         allowed = (*COMMON, *FURTHER.get(kind, ()), *(("at",) if timed else ()))
         for key in content:
@@ -98,7 +104,8 @@ class StepReader:
             common["limit"] = self._number("for", content["for"], "s")
         if timed:
             common["at"] = at_of(content.get("at", 0.0))
-            self._known_names("at", common["at"].offset)
+            if not self._known_names("at", common["at"].offset):
+                common["at"] = replace(common["at"], offset=UNKNOWN)
         if kind in self._kinds:
             return self._kinds[kind](content[kind], content, common)
         return self._function(kind, content[kind], common)
@@ -146,8 +153,8 @@ class StepReader:
             raise BadGoal(where, fields, "{FIELD: VALUE, ...} with fields of its function message")
         if "function" in fields:
             raise BadGoal(f"{where}: function", fields["function"], "no field 'function'", "the key names it already")
-        self._known_names(where, fields)
-        return {"function": function, **fields}
+        read = {name: value if self._known_names(name, value) else UNKNOWN for name, value in fields.items()}
+        return {"function": function, **read}
 
     def _wait(self, value: Any, _content: dict[Any, Any], common: dict[str, Any]) -> Step:
         return Wait(**common, duration=self._number("wait", value, "s"))
@@ -190,8 +197,8 @@ class StepReader:
         given = content.get("parameters") or {}
         if not isinstance(given, dict) or not all(isinstance(name, str) for name in given):
             raise BadGoal("parameters", given, "{NAME: VALUE, ...}")
-        self._known_names("parameters", given)
-        return Box(**common, name=value, arguments=dict(given))
+        read = {name: each if self._known_names(name, each) else UNKNOWN for name, each in given.items()}
+        return Box(**common, name=value, arguments=read)
 
     # --- values -------------------------------------------------------------------------------------------------------
 
@@ -216,15 +223,22 @@ class StepReader:
     def _number(self, key: str, value: Any, unit: str) -> Any:
         """A number of 0 or more, or an expression that will be one."""
         if isinstance(value, str) and value.strip().startswith("${"):
-            self._known_names(key, value)
-            return value.strip()
+            return value.strip() if self._known_names(key, value) else UNKNOWN
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value < 1e9:
             raise BadGoal(key, value, f"{unit}, a number of 0 or more")
         return value
 
-    def _known_names(self, where: str, value: Any) -> None:
-        for name in names_in(value):
-            if name not in self._names:
-                known = f"there are {', '.join(self._names)}" if self._names else "the behavior has none"
-                problem = f"there is no parameter {name!r}{did_you_mean(name, self._names)}"
-                raise BadGoal(where, "${" + name + "}", known, problem)
+    def _known_names(self, where: str, value: Any) -> bool:
+        """Whether all names in a value are known; those that are not are noted, and so is what cannot be read."""
+        wrong: list[BadGoal] = []
+        try:
+            for name in names_in(value):
+                if name not in self._names:
+                    known = f"there are {', '.join(self._names)}" if self._names else "the behavior has none"
+                    problem = f"there is no parameter {name!r}{did_you_mean(name, self._names)}"
+                    wrong.append(BadGoal(where, "${" + name + "}", known, problem))
+        except BadGoal as error:
+            wrong.append(error)
+        path, line = self._here
+        self._problems.extend(Problem(f"step {path}", str(error), line) for error in wrong)
+        return not wrong

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal
-from ..whole_file import write_whole
+from ...base.errors import BadGoal
+from ...base.whole_file import give_name, tidy, write_whole
 from .errors import BehaviorError, NoSuchBehavior, Problem
 from .model import Behavior, Box
 from .reader import read, require_name
@@ -28,6 +28,7 @@ class BehaviorStore:
     def __init__(self, folder: Path, shipped: Path) -> None:
         self.folder = folder
         self.shipped = shipped
+        tidy(folder)
 
     def names(self) -> list[str]:
         """Names of all behaviours, sorted."""
@@ -60,7 +61,8 @@ class BehaviorStore:
             NoSuchBehavior: If there is none of that name.
             BehaviorError: If there is something wrong with it.
         """
-        return read(self.text(name), name)
+        path = self._existing(name)
+        return read(self._read(path), name, str(path))
 
     def exists(self, name: str) -> bool:
         """Whether there is one of that name."""
@@ -86,28 +88,34 @@ class BehaviorStore:
                 users.append(other)
         return users
 
-    def save(self, name: str, text: str, overwrite: bool = False) -> None:
+    def save(self, name: str, text: str, overwrite: bool = False, numbered: bool = False) -> Path:
         """Write a behaviour; one of that name is replaced as a whole, never left half written.
 
         Args:
             name: A name that a behaviour may have.
             text: What to write; it is not looked at.
             overwrite: Whether one of the user's may be replaced.
+            numbered: Whether, where it may not, it becomes name-2, name-3, ...
+
+        Returns:
+            Its file.
 
         Raises:
-            BadGoal: If the name will not do or is taken, or the file cannot be written.
+            BadGoal: If the name will not do or is taken.
+            FileTrouble: If the file cannot be written.
         """
         path = self.path(name)
-        if not overwrite:
+        if not overwrite and not numbered:
             self.require_free(name)
         try:
-            write_whole(path, text)
-        except (OSError, UnicodeEncodeError) as error:
-            problem = f"{path} cannot be written: {error}"
-            raise BadGoal("str_param", name, "a folder to write to", problem=problem) from error
+            return write_whole(path, text, numbered and not overwrite)
+        except UnicodeEncodeError as error:
+            raise BadGoal(
+                "str_param", name, "characters of UTF-8", problem=f"{path} cannot be written: {error}"
+            ) from error
 
-    def rename(self, name: str, new_name: str, overwrite: bool = False) -> None:
-        """Give one of the user's behaviours another name.
+    def rename(self, name: str, new_name: str, overwrite: bool = False) -> Path:
+        """Give one of the user's behaviours another name; answers its file.
 
         Raises:
             NoSuchBehavior: If there is none of that name.
@@ -117,9 +125,10 @@ class BehaviorStore:
         if not overwrite:
             self.require_free(new_name, "new_name")
         try:
-            os.replace(path, target)
+            given = os.replace(path, target) is None if overwrite else give_name(path, target)
         except OSError as error:
             raise BadGoal("new_name", new_name, "a folder to write to", problem=str(error)) from error
+        return target if given else self.rename(name, new_name)  # one of that name came a moment ago
 
     def delete(self, name: str) -> None:
         """Delete one of the user's behaviours.

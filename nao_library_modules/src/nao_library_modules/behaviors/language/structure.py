@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..suggestion import did_you_mean
-from .errors import BehaviorError, Problem
+from ...base.suggestion import did_you_mean
+from .errors import Problem
 from .model import Barrier, Behavior, Parallel, PathParts, Repeat, Step, Timeline, path_text
 
 
-def check_structure(behavior: Behavior) -> None:
-    """Check labels, times and barriers of a behaviour.
-
-    Raises:
-        BehaviorError: With everything that is wrong.
-    """
-    problems = [*_labels(behavior), *_times(behavior.body), *_barriers(behavior.body, None)]
-    if problems:
-        raise BehaviorError(behavior.name, problems)
+def structure_problems(behavior: Behavior) -> list[Problem]:
+    """What is wrong with labels, times and barriers of a behaviour; nothing that a step not read whole may cause."""
+    return [*_labels(behavior), *_times(behavior.body), *_barriers(behavior.body, None)]
 
 
 def walk(step: Step) -> Iterator[Step]:
@@ -75,7 +69,7 @@ def _times_of(timeline: Timeline) -> Iterator[Problem]:
             continue
         if name in entries:
             after[entry.path].append(entries[name].path)
-        else:
+        elif all(each.whole for each in timeline.steps):
             known = f"there are {', '.join(entries)}" if entries else "none of its entries has a label"
             hint = did_you_mean(name, entries)
             yield _problem(entry, f"at: there is no label {name!r} on this timeline{hint}; {known}")
@@ -98,8 +92,8 @@ def _barriers(step: Step, home: Step | None) -> Iterator[Problem]:
         home: The parallel that barriers inside belong to.
     """
     if isinstance(step, Parallel):
-        orders = [barriers_in(branch) for branch in step.steps]
-        yield from _orders(step, orders)
+        if all(each.whole for branch in step.steps for each in walk(branch)):
+            yield from _orders(step, [barriers_in(branch) for branch in step.steps])
         home = step
     elif isinstance(step, Repeat):
         home = None

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from ..errors import BadGoal
+from ...base.errors import BadGoal
 
 LABEL = r"[A-Za-z_][A-Za-z0-9_-]*"
 _REFERENCE = re.compile(rf"\s*({LABEL})(\.end)?\s*(?:\+\s*(\S.*?))?\s*")

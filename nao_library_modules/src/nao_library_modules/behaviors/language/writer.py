@@ -6,9 +6,10 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ...base.errors import BadGoal
 from .expressions import escaped
 from .messages import fields_of
-from .servers import server_of
+from .servers import OWN
 from .yaml_text import dump
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -24,7 +25,9 @@ def step_of(server: str, goal: Any) -> dict[str, Any]:
     Raises:
         BadGoal: If steps may not use the server.
     """
-    messages = getattr(goal, server_of(server).goal.__slots__[0])
+    if server == OWN:
+        raise BadGoal("server", server, "another one", "a behavior that sends goals to NaoBehavior would end itself")
+    messages = getattr(goal, goal.__slots__[0])
     functions = [escaped(fields_of(message)) for message in messages]
     if len(functions) == 1 and _WORD.fullmatch(functions[0].get("function", "")):
         fields = dict(functions[0])

@@ -8,6 +8,7 @@ from typing import Any
 
 import yaml
 
+from ...base.yaml_values import Budget, ShallowLoader, TooMuch, load_within
 from .errors import BehaviorError, Problem
 
 LONGEST = 4_000_000
@@ -24,14 +25,33 @@ class Mapping(dict):  # type: ignore[type-arg]
 
     Attributes:
         line: Where it begins, counted from 1.
+        lines: Key -> its line.
     """
 
     line = 0
+    lines: dict[Any, int] = {}
+
+
+class Items(list):  # type: ignore[type-arg]
+    """A list of a file.
+
+    Attributes:
+        line: Where it begins, counted from 1.
+        lines: Position, counted from 0 -> line of what stands there.
+    """
+
+    line = 0
+    lines: dict[Any, int] = {}
 
 
 def line_of(value: Any) -> int:
     """Line of a value of a file; 0 if it is not known."""
     return getattr(value, "line", 0)
+
+
+def line_in(value: Any, key: Any) -> int:
+    """Line of a key of a mapping, or of a place in a list, counted from 0; 0 if it is not known."""
+    return getattr(value, "lines", {}).get(key, 0)
 
 
 # YAML 1.2's: on, off, yes and no are words as any other (NaoLights has functions of these names), 1e3 is a number, and
@@ -60,7 +80,7 @@ def _resolvers() -> dict[Any, list[tuple[str, re.Pattern[str]]]]:
     return by_first
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(ShallowLoader):
     """Plain values only."""
 
     yaml_implicit_resolvers = _resolvers()
@@ -69,7 +89,7 @@ class _Loader(yaml.SafeLoader):
 def _mapping(loader: _Loader, node: yaml.MappingNode) -> Mapping:
     loader.flatten_mapping(node)
     mapping = Mapping()
-    mapping.line = node.start_mark.line + 1
+    mapping.line, mapping.lines = node.start_mark.line + 1, {}
     for key_node, value_node in node.value:
         key = loader.construct_object(key_node, deep=True)
         if not isinstance(key, Hashable):
@@ -77,10 +97,19 @@ def _mapping(loader: _Loader, node: yaml.MappingNode) -> Mapping:
         if key in mapping:
             raise yaml.constructor.ConstructorError(None, None, f"the key {key!r} comes twice", key_node.start_mark)
         mapping[key] = loader.construct_object(value_node, deep=True)
+        mapping.lines[key] = key_node.start_mark.line + 1
     return mapping
 
 
+def _items(loader: _Loader, node: yaml.SequenceNode) -> Items:
+    items = Items(loader.construct_object(each, deep=True) for each in node.value)
+    items.line = node.start_mark.line + 1
+    items.lines = {i: each.start_mark.line + 1 for i, each in enumerate(node.value)}
+    return items
+
+
 _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
+_Loader.add_constructor("tag:yaml.org,2002:seq", _items)
 _Loader.add_constructor("tag:yaml.org,2002:int", lambda loader, node: int(loader.construct_scalar(node), 10))
 
 
@@ -97,37 +126,19 @@ def load(text: str, name: str) -> Any:
     if len(text) > LONGEST:
         raise BehaviorError(name, [Problem("", f"the file has {len(text)} characters: at most {LONGEST} are read")])
     try:
-        loader = _Loader(text)
-        try:
-            node = loader.get_single_node()
-            if node is None:
-                return None
-            _count(node, 0, [0], name)
-            return loader.construct_document(node)
-        finally:
-            loader.dispose()
-    except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
-        raise BehaviorError(name, [Problem("", f"no YAML: {_in_a_line(error)}")]) from error
+        return load_within(text, Budget(MOST_NODES, DEEPEST), _Loader)
+    except TooMuch as error:
+        raise BehaviorError(name, [Problem("", str(error))]) from error
+    except yaml.YAMLError as error:
+        text, line = _in_a_line(error)
+        raise BehaviorError(name, [Problem("", f"no YAML: {text}", line)]) from error
 
 
-def _count(node: yaml.Node, depth: int, nodes: list[int], name: str) -> None:
-    nodes[0] += 1
-    if depth > DEEPEST or nodes[0] > MOST_NODES:
-        raise BehaviorError(name, [Problem("", f"more than {MOST_NODES} values, or more than {DEEPEST} levels deep")])
-    if isinstance(node, yaml.SequenceNode):
-        for each in node.value:
-            _count(each, depth + 1, nodes, name)
-    elif isinstance(node, yaml.MappingNode):
-        for key, value in node.value:
-            _count(key, depth + 1, nodes, name)
-            _count(value, depth + 1, nodes, name)
-
-
-def _in_a_line(error: Exception) -> str:
+def _in_a_line(error: Exception) -> tuple[str, int]:
+    """What is wrong, and in which line; 0 if that is not known."""
     mark = getattr(error, "problem_mark", None)
     problem = getattr(error, "problem", None) or str(error)
-    where = f"line {mark.line + 1}: " if mark is not None else ""
-    return where + " ".join(str(problem).split())
+    return " ".join(str(problem).split()), 0 if mark is None else mark.line + 1
 
 
 class _Dumper(yaml.SafeDumper):
@@ -143,6 +154,7 @@ class _Dumper(yaml.SafeDumper):
 
 
 _Dumper.add_representer(Mapping, lambda dumper, value: dumper.represent_dict(value.items()))
+_Dumper.add_representer(Items, lambda dumper, value: dumper.represent_list(list(value)))
 
 
 def dump(value: Any) -> str:

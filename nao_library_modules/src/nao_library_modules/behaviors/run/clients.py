@@ -3,29 +3,73 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Any
 
-from ..process_modules.action_client import PlanActionClient
+import rospy
+
+from nao_library_msgs.srv import DescribeFunctions, DescribeFunctionsRequest, DescribeFunctionsResponse
+
+from ...functions.goal_checks import GoalCheck
+from ...functions.server_types import DESCRIBE, ServerType, servers_among, those_in
+from ...process_modules.robot.action_client import PlanActionClient
+from ...ros.check_client import check_goals
+from ...ros.service_call import NotAnswered, call_service
+from ..language.servers import NotDescribed
 from .recording import Recording
-from .servers import NAMES, server_of
 
 CLOCKS_APART = 1.0
 """s that the stamp of a goal may lie before its arrival, or after it where simulated time reaches one program later
 than the other: what is further away was stamped by another clock."""
 
 
+def describe(server: str, functions: Sequence[str] | None) -> DescribeFunctionsResponse:
+    """Have a server that runs describe functions; see `servers.Describe`."""
+    request = DescribeFunctionsRequest(
+        functions=functions or [], without_arguments=not functions, without_functions=functions is None
+    )
+    try:
+        return call_service(server + DESCRIBE, DescribeFunctions, request)
+    except NotAnswered as error:
+        raise NotDescribed(str(error)) from None
+
+
+def running() -> list[str]:
+    """Names of the servers that run in this node's namespace; none where there is no master."""
+    here = rospy.resolve_name("")
+    try:
+        _, _, (_, _, services) = rospy.get_master().getSystemState()
+    except OSError:
+        return []
+    return sorted(those_in(here, servers_among(name for name, _ in services)))
+
+
 class ServerClient(PlanActionClient):
     """Client of a server whose goals are chains of functions; see `PlanActionClient.call` and `wait_for_server`."""
 
-    def __init__(self, name: str) -> None:
-        super().__init__(name, server_of(name).action)
+    def __init__(self, server: ServerType) -> None:
+        super().__init__(server.name, server.action)
+        self._name = server.name
+
+    def check(self, goals: Sequence[Any]) -> GoalCheck:
+        """Have the server check goals without carrying them out.
+
+        Raises:
+            NotValidated: It does not, or not in time.
+        """
+        return check_goals(self._name, *goals)
 
 
 class Clients:
-    """The clients, each made when it is needed first and then kept."""
+    """The clients, each made when it is needed first and then kept.
 
-    def __init__(self) -> None:
+    Args:
+        types: Gives the types of a server, or raises BadGoal.
+    """
+
+    def __init__(self, types: Callable[[str], ServerType]) -> None:
+        self._types = types
         self._clients: dict[str, ServerClient] = {}
         self._lock = threading.Lock()
 
@@ -37,7 +81,7 @@ class Clients:
         """
         with self._lock:
             if name not in self._clients:
-                self._clients[name] = ServerClient(name)
+                self._clients[name] = ServerClient(self._types(name))
             return self._clients[name]
 
 
@@ -45,21 +89,32 @@ class GoalLog:
     """Listens to what anybody sends to the servers: keeps the last goal of each, and passes on what is recorded.
 
     ROS API:
-        Subscribes to `SERVER/goal` and `SERVER/result` of all servers that behaviours may use.
+        Subscribes to `SERVER/goal` and `SERVER/result` of all servers that it listens to.
 
     Args:
         edge: With `subscribe` and `clock`, see `ros_edge`.
+        servers: The servers that it listens to from the beginning.
     """
 
-    def __init__(self, edge: Any) -> None:
+    def __init__(self, edge: Any, servers: Iterable[ServerType]) -> None:
+        self._edge = edge
         self._clock = edge.clock
+        self._heard: set[str] = set()
         self._last: dict[str, Any] = {}
         self._recording: Recording | None = None
         self._lock = threading.Lock()
-        for name in NAMES:
-            action = server_of(name).action()
-            edge.subscribe(f"{name}/goal", type(action.action_goal), partial(self._sent, name))
-            edge.subscribe(f"{name}/result", type(action.action_result), self._ended)
+        for server in servers:
+            self.listen(server)
+
+    def listen(self, server: ServerType) -> None:
+        """Listen to a server from now on."""
+        with self._lock:
+            if server.name in self._heard:
+                return
+            self._heard.add(server.name)
+        action = server.action()
+        self._edge.subscribe(f"{server.name}/goal", type(action.action_goal), partial(self._sent, server.name))
+        self._edge.subscribe(f"{server.name}/result", type(action.action_result), self._ended)
 
     def last(self, server: str) -> Any:
         """The goal that a server got last; None if it got none."""

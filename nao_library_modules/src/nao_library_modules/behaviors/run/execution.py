@@ -12,15 +12,15 @@ from actionlib_msgs.msg import GoalStatus
 
 from naoqi.errors import NaoError
 
-from ..interrupt import Interrupt
-from ..process_modules.control import do, par, pursue, top_level
-from ..process_modules.failures import PlanFailure
-from ..process_modules.flow import Evaporated, sleep, wait_until
-from ..process_modules.fluents import Fluent
-from ..process_modules.tasks import current_task
-from .errors import StepFailed
-from .model import PathParts
-from .program import AllAtOnce, Goal, Meeting, Node, OnTimeline, Pause, Rounds, servers_in, walk
+from ...base.interrupt import Interrupt
+from ...process_modules.language.control import do, par, pursue, top_level
+from ...process_modules.language.failures import PlanFailure
+from ...process_modules.language.flow import Evaporated, sleep, wait_until
+from ...process_modules.language.fluents import Fluent
+from ...process_modules.language.tasks import current_task
+from ..language.errors import StepFailed
+from ..language.model import PathParts
+from ..language.program import AllAtOnce, Goal, Meeting, Node, OnTimeline, Pause, Rounds, servers_in, walk
 from .report import ENDED, FAILED, LATE, PREEMPTED, RETRIED, SKIPPED, TOLD, Event, Record, Report
 from .timeline import Timeline
 from .turns import Turns
@@ -119,7 +119,7 @@ class Execution:
                     return
                 if isinstance(failure, StepFailed):
                     raise
-                raise StepFailed(node.where, node.what, error) from failure
+                raise StepFailed(node.where, node.what, error, node.file, node.line) from failure
             except Evaporated:
                 # A step that is to be tried again may be waiting for its server: it has begun before.
                 for begun_before in record or former:
@@ -187,7 +187,7 @@ class Execution:
             if not end.succeeded:
                 # The behaviour itself cancels goals only where it does not look at their ends any more.
                 why = ": a goal of somebody else took its place" if end.status == GoalStatus.PREEMPTED else ""
-                raise StepFailed(node.where, node.what, f"{end}{why}")
+                raise StepFailed(node.where, node.what, f"{end}{why}", node.file, node.line)
 
     def _in_order(self, node: Node) -> None:
         parts = node.parts

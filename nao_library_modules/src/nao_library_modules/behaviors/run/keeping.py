@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..errors import BadGoal
-from ..field_checks import require_known
-from ..function_chain import checked_by
-from .checking import check
-from .planned import PlannedStore, UnknownYet
-from .reader import read
-from .servers import NAMES, FunctionTables
-from .store import BehaviorStore
-from .writer import from_goal
+from ...base.errors import BadGoal
+from ...functions.chain import checked_by
+from ..language.binder import bind
+from ..language.planned import PlannedStore, UnknownYet
+from ..language.reader import read
+from ..language.servers import NAMES, FunctionTables
+from ..language.store import BehaviorStore
+from ..language.writer import from_goal
 
 
 def check_new(
@@ -25,12 +24,12 @@ def check_new(
     if bool(text.strip()) == bool(server):
         raise BadGoal("text", text[:200], "either a behavior, or the server whose last goal is to be stored")
     if server:
-        require_known("server", server, NAMES, "server")
+        self.tables.server(server, "server")
     else:
         # It is there already: whoever is a box of itself is found out.
         planned.put(str_param, text)
         try:
-            check(read(text, str_param), planned.load, None, self.tables)
+            bind(read(text, str_param), {}, planned.load, self.tables)
         except UnknownYet:
             pass  # a box that an earlier function of this chain records
     planned.put(str_param, text or None)
@@ -73,6 +72,7 @@ class KeepingFunctions:
     store: BehaviorStore
     tables: FunctionTables
     goals: Any  # GoalLog
+    remark: Callable[[str], None]  # of NaoBasic
 
     def keeping_functions(self) -> dict[str, Callable[..., Any]]:
         """Name -> function, to be put into the function table of a module."""
@@ -87,23 +87,25 @@ class KeepingFunctions:
     def store_behavior(self, str_param: str, text: str, server: str, overwrite: bool) -> None:
         """Store a behaviour: the one in `text`, or the goal that `server` got last."""
         if server:
+            self.goals.listen(self.tables.server(server, "server"))
             goal = self.goals.last(server)
             if goal is None:
-                raise BadGoal("server", server, "one that got a goal", problem=f"{server} got no goal so far")
+                since = "so far" if server in NAMES else "since NaoBehavior listens to it, which it does from now on"
+                raise BadGoal("server", server, "one that got a goal", problem=f"{server} got no goal {since}")
             text = from_goal(server, goal)
-            check(read(text, str_param), self.store.load, None, self.tables)
-        self.store.save(str_param, text, overwrite)
+            bind(read(text, str_param), {}, self.store.load, self.tables)
+        self.remark(f"written: {self.store.save(str_param, text, overwrite)}")
 
     @checked_by(check_rename)
     def rename_behavior(self, str_param: str, new_name: str, overwrite: bool) -> list[str]:
         """Give one of one's own behaviours another name; answers which other ones still use the old one as a box."""
-        self.store.rename(str_param, new_name, overwrite)
+        self.remark(f"written: {self.store.rename(str_param, new_name, overwrite)}")
         return self._users_of(str_param)
 
     @checked_by(check_copy)
     def copy_behavior(self, str_param: str, new_name: str, overwrite: bool) -> None:
         """Make a behaviour of one's own that is the same as another one, also as one that comes with the library."""
-        self.store.save(new_name, self.store.text(str_param), overwrite)
+        self.remark(f"written: {self.store.save(new_name, self.store.text(str_param), overwrite)}")
 
     @checked_by(check_delete)
     def delete_behavior(self, str_param: str) -> list[str]:

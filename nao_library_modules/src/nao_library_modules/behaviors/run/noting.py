@@ -7,22 +7,24 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from nao_library_msgs.msg import FunctionResult
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal
-from ..field_checks import require_known, require_number
-from ..function_chain import checked_by
-from .checking import check
-from .planned import PlannedStore
-from .reader import read
+from ...base.errors import BadGoal
+from ...base.field_checks import require_zero_or
+from ...base.limits import limit
+from ...base.whole_file import written
+from ...functions.chain import checked_by
+from ..language.binder import bind
+from ..language.planned import PlannedStore
+from ..language.reader import read
+from ..language.servers import NAMES, FunctionTables
+from ..language.store import BehaviorStore
+from ..language.writer import text_of
 from .recording import Recording
-from .servers import NAMES, FunctionTables
-from .store import BehaviorStore
-from .writer import text_of
 
 log = logging.getLogger(__name__)
 
-LONGEST = 3600.0
 ON_THE_WAY = 0.2
 """s of the computer that a goal may take to be heard of."""
 TAG = "recorded"
@@ -41,8 +43,8 @@ def check_recording(
     planned = PlannedStore.of(self.store, context)
     planned.require_free(str_param, overwrite)
     for server in servers:
-        require_known("servers", server, NAMES, "server")
-    require_number("duration", duration, 0.0, LONGEST, "0..3600 s")
+        self.tables.server(server, "servers")
+    require_zero_or("duration", duration, limit("recording"), ": until stopRecording")
     if context.get(BEGUN, self.recording is not None):
         name = self.recording.name if self.recording is not None else "of this chain"
         raise BadGoal("function", "recordBehavior", "stopRecording before", problem=f"the recording {name} goes on")
@@ -63,12 +65,16 @@ class NotingFunctions:
     Attributes:
         store: Behaviours by name.
         recording: The one that goes on; None if none does.
+        cut_short: What a recording that was interrupted has left, for the result of the chain.
     """
 
     store: BehaviorStore
     tables: FunctionTables
     recording: Recording | None
+    cut_short: list[FunctionResult]
+    remark: Callable[[str], None]  # of NaoBasic
     goals: Any  # GoalLog
+    tell_recording: Callable[[], None]  # of NaoBehavior
     tell_recorded: Callable[[str, Any], None]  # of NaoBehavior
     wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
 
@@ -81,21 +87,51 @@ class NotingFunctions:
         self, str_param: str, servers: Sequence[str], duration: float, overwrite: bool
     ) -> list[str] | None:
         """Record what anybody sends to the servers, for `duration`, or on until stopRecording; answers as that does."""
+        for server in servers:
+            self.goals.listen(self.tables.server(server, "servers"))
         self.recording = Recording(str_param, servers or NAMES, overwrite, self.tell_recorded)
         self.goals.record(self.recording)
+        self.tell_recording()
         if duration == 0.0:
             return None
         try:
             self.wait(duration)
         except BaseException:
             # What came until then is kept; why it ends is what the goal tells.
-            self.keep_recording()
+            kept = self.keep_recording()
+            if kept:
+                self.cut_short.append(FunctionResult(function="recordBehavior", values=kept))
             raise
         return self.stop_recording()
 
     @checked_by(check_stop)
     def stop_recording(self) -> list[str]:
         """End a recording and store it; answers its name, how many goals it has, and what was left out."""
+        answer, told = self._store_recording()
+        self.remark(told)
+        return answer
+
+    def keep_recording(self) -> list[str]:
+        """Store what came so far of a recording that goes on, where nobody can be told if that fails.
+
+        Returns:
+            As stopRecording, and where it is; empty if nothing is stored.
+        """
+        if self.recording is None:
+            return []
+        name = self.recording.name
+        try:
+            answer, told = self._store_recording()
+        except NaoError as error:
+            log.warning("the recording %s is not stored: %s", name, error)
+            return []
+        for text in answer[2:]:
+            log.warning("recording %s: %s", name, text)
+        log.info("recording %s: %s", name, told)
+        return [*answer, told]
+
+    def _store_recording(self) -> tuple[list[str], str]:
+        """End a recording and store it; what stopRecording answers, and where it is."""
         # What was sent a moment ago may still be on its way here. Nothing tells whether it is: topics keep no order
         # among each other, and only the senders know how many messages they have handed to their connections.
         time.sleep(ON_THE_WAY)
@@ -105,20 +141,9 @@ class NotingFunctions:
             raise BadGoal("function", "stopRecording", "recordBehavior before", problem="nothing is recorded")
         entries, left_out = recording.timeline(self._check_step)
         length = max(entry["at"] for entry in entries)
-        help_ = f"Recorded: {len(entries)} goals in {length:.1f} s."
-        self.store.save(recording.name, text_of(help_, [{"timeline": entries}], [TAG]), recording.overwrite)
-        return [recording.name, str(len(entries)), *left_out]
-
-    def keep_recording(self) -> None:
-        """Store what came so far of a recording that goes on, where nobody can be told if that fails."""
-        if self.recording is None:
-            return
-        name = self.recording.name
-        try:
-            for text in self.stop_recording()[2:]:
-                log.warning("recording %s: %s", name, text)
-        except NaoError as error:
-            log.warning("the recording %s is not stored: %s", name, error)
+        text = text_of(f"Recorded: {len(entries)} goals in {length:.1f} s.", [{"timeline": entries}], [TAG])
+        path = self.store.save(recording.name, text, recording.overwrite, numbered=True)
+        return [path.stem, str(len(entries)), *left_out], written(path, self.store.path(recording.name))
 
     def _check_step(self, step: dict[str, Any]) -> None:
-        check(read(text_of("A step.", [step]), "recording"), self.store.load, None, self.tables)
+        bind(read(text_of("A step.", [step]), "recording"), {}, self.store.load, self.tables)

@@ -11,8 +11,8 @@ from actionlib_msgs.msg import GoalStatus
 
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal
-from .writer import step_of
+from ...base.errors import BadGoal
+from ..language.writer import step_of
 
 DIGITS = 3
 """Of times in s."""

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Callable
 
-from .model import PathParts
-from .program import Node, Rounds, walk, walk_rounds
+from ..language.model import PathParts
+from ..language.program import Node, Rounds, walk, walk_rounds
 
 BEGAN, ENDED, FAILED, SKIPPED, PREEMPTED = "began", "ended", "failed", "skipped", "preempted"
 RETRIED, LATE, TOLD, NOT_RUN = "retried", "late", "told", "not run"

@@ -3,33 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import PurePath
 from typing import Any
 
-from nao_library_msgs.msg import BehaviorInfo, BehaviorParameter, BehaviorStep
+from nao_library_msgs.msg import BehaviorInfo, BehaviorParameter, BehaviorProblem, BehaviorStep
 
-from ..errors import BadGoal, Preempted
-from ..function_chain import checked_by
-from ..interrupt import Interrupt
-from ..process_modules.failures import PlanFailure
-from .checking import Facts, check_given, facts_of, outlook_facts
+from ...base.errors import BadGoal, Preempted
+from ...base.interrupt import Interrupt
+from ...functions.chain import checked_by
+from ...functions.check_service import NotValidated
+from ...functions.goal_checks import GoalCheck
+from ...process_modules.language.failures import PlanFailure
+from ..language.binder import Library
+from ..language.checking import Facts, check_given, facts_of, outlook_facts
+from ..language.model import Behavior
+from ..language.parameters import Parameter
+from ..language.planned import PlannedStore, UnknownYet
+from ..language.reader import read
+from ..language.servers import FunctionTables
+from ..language.store import BehaviorStore
+from ..language.yaml_text import dump_line
 from .execution import Execution
-from .parameters import Parameter
-from .planned import PlannedStore, UnknownYet
-from .reader import read
 from .report import Event, Record
-from .servers import FunctionTables
-from .store import BehaviorStore
-from .yaml_text import dump_line
 
 UNNAMED = "text"
 """What a behaviour is called that has no name yet."""
 
 
-def check_run(self: RunningFunctions, str_param: str, parameters: Sequence[str], context: dict[str, Any]) -> None:
-    """A behaviour that can be run with these values."""
+def check_run(
+    self: RunningFunctions, str_param: str, text: str, file: str, parameters: Sequence[str], context: dict[str, Any]
+) -> None:
+    """A behaviour, stored or in `text`, that can be run with these values; its servers look at all of its goals."""
+    if text.strip():
+        _require_one(str_param, text)
     planned = PlannedStore.of(self.store, context)
     try:
-        check_given(planned.load(str_param), planned.load, parameters, self.tables)
+        behavior = _behavior(planned.load, str_param, text, file)
+        check_given(behavior, planned.load, parameters, self.tables, self.ask)
     except UnknownYet:
         pass  # an earlier function of this chain records it
 
@@ -41,10 +51,18 @@ def check_name(self: RunningFunctions, str_param: str, context: dict[str, Any]) 
 
 def check_what(self: RunningFunctions, str_param: str, text: str, context: dict[str, Any]) -> None:
     """A name or a text."""
-    if bool(str_param.strip()) == bool(text.strip()):
-        raise BadGoal("text", text[:200], "either a name in str_param or a behavior in text")
+    _require_one(str_param, text)
     if str_param.strip():
         check_name(self, str_param, context)
+
+
+def _require_one(str_param: str, text: str) -> None:
+    if bool(str_param.strip()) == bool(text.strip()):
+        raise BadGoal("text", text[:200], "either a name in str_param or a behavior in text")
+
+
+def _behavior(load: Library, str_param: str, text: str, file: str) -> Behavior:
+    return read(text, PurePath(file).stem or UNNAMED, file) if text.strip() else load(str_param)
 
 
 class RunningFunctions:
@@ -82,10 +100,11 @@ class RunningFunctions:
         }
 
     @checked_by(check_run)
-    def run_behavior(self, str_param: str, parameters: Sequence[str]) -> float:
-        """Run a behaviour, and wait for its end; answers how long it took, s of ROS time."""
+    def run_behavior(self, str_param: str, text: str, file: str, parameters: Sequence[str]) -> float:
+        """Run a behaviour, stored or in `text`, and wait for its end; answers how long it took, s of ROS time."""
         self.ended_behavior = ""
-        program = check_given(self.store.load(str_param), self.store.load, parameters, self.tables)
+        behavior = _behavior(self.store.load, str_param, text, file)
+        program, _ = check_given(behavior, self.store.load, parameters, self.tables)
         execution = Execution(program, self.clients, self.clock, self.tell)
         try:
             execution.run(self.interrupt)
@@ -93,7 +112,7 @@ class RunningFunctions:
             try:
                 self.interrupt.check()
             except Preempted:
-                self.ended_behavior = str_param
+                self.ended_behavior = behavior.name
                 raise
             raise
         finally:
@@ -119,17 +138,43 @@ class RunningFunctions:
         return text
 
     @checked_by(check_what)
-    def check_behavior(self, str_param: str, text: str, parameters: Sequence[str]) -> list[str]:
+    def check_behavior(self, str_param: str, text: str, file: str, parameters: Sequence[str]) -> list[str]:
         """What is wrong with a behaviour, stored or in `text`; nothing if it can be run; then the result tells more."""
-        name = str_param.strip()
-        load = (lambda: self.store.load(name)) if name else (lambda: read(text, UNNAMED))
-        facts = outlook_facts(name or UNNAMED, load, self.store.load, self.tables, parameters)
+        facts = self.outlook(str_param.strip(), text, file, parameters, validate=True)
         self.shown.append(facts)
-        return list(facts.problems)
+        return list(map(str, facts.problems))
 
-    def outlook(self, name: str) -> Facts:
-        """All there is to know about a stored behaviour, with the defaults of its parameters. Any thread may ask."""
-        return outlook_facts(name, lambda: self.store.load(name), self.store.load, self.tables)
+    def outlook(
+        self, name: str, text: str = "", file: str = "", parameters: Sequence[str] = (), validate: bool = False
+    ) -> Facts:
+        """All there is to know about a behaviour, stored or in a text. Any thread may ask.
+
+        Args:
+            name: Of one that is stored.
+            text: YAML.
+            file: That the text is from.
+            parameters: Values as "name=value".
+            validate: Whether its servers look at its goals.
+        """
+        return outlook_facts(
+            PurePath(file).stem or UNNAMED if text.strip() else name,
+            lambda: _behavior(self.store.load, name, text, file),
+            self.store.load,
+            self.tables,
+            parameters,
+            self.ask if validate else None,
+        )
+
+    def ask(self, server: str, goals: Sequence[Any]) -> GoalCheck:
+        """Have a server check goals.
+
+        Raises:
+            NotValidated: It does not.
+        """
+        check = getattr(self.clients(server), "check", None)
+        if check is None:
+            raise NotValidated("it cannot be asked")
+        return check(goals)
 
 
 def step_message(record: Record) -> BehaviorStep:
@@ -147,6 +192,8 @@ def step_message(record: Record) -> BehaviorStep:
         attempts=record.attempts,
         error=record.error,
         results=record.results,
+        file=node.file,
+        line=node.line,
     )
 
 
@@ -164,6 +211,8 @@ def info_message(facts: Facts, shipped: bool) -> BehaviorInfo:
     outlook = facts.outlook
     info.steps, info.boxes, info.unchecked = list(outlook.steps), list(outlook.boxes), list(outlook.unchecked)
     info.waits = outlook.waits
+    info.unvalidated = list(facts.unvalidated)
+    info.problems = [BehaviorProblem(each.file, each.line, each.where, each.text) for each in facts.problems]
     return info
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Callable
 
-from ..process_modules.control import do, par
-from ..process_modules.flow import sleep, wait_until
-from ..process_modules.fluents import Fluent
-from .program import Meeting, Node, OnTimeline, name_of, servers_in
+from ...process_modules.language.control import do, par
+from ...process_modules.language.flow import sleep, wait_until
+from ...process_modules.language.fluents import Fluent
+from ..language.program import Meeting, Node, OnTimeline, name_of, servers_in
 from .report import Report
 
 

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, Tuple
 
-from ..process_modules.flow import wait_until
-from ..process_modules.fluents import Fluent
-from .model import PathParts
+from ...process_modules.language.flow import wait_until
+from ...process_modules.language.fluents import Fluent
+from ..language.model import PathParts
 
 Ticket = Tuple[float, Tuple[int, ...], object]
 

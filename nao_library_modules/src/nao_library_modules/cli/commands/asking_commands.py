@@ -7,22 +7,22 @@ from typing import Any
 
 import click
 
-from .errors import StackMissing
-from .output import plain, say_json, table
-from .settings import NaoCommand, Settings, settings_of
-from .stack import same_server
+from ..errors import StackMissing
+from ..output import plain, say_json, table
+from ..settings import NaoCommand, Settings, settings_of
+from ..stack import same_server
 
 INDENT = "  "
 
 
 def _complete_server(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from .completion import servers
+    from ..completion import servers
 
     return servers(context, start)
 
 
 def _complete_function(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from .completion import all_functions
+    from ..completion import all_functions
 
     return all_functions(context, start)
 
@@ -34,7 +34,7 @@ def status_command(context: click.Context) -> None:
 
     The exit status is 3 if the robot cannot be reached.
     """
-    from .status import read_status, status_lines
+    from ..status import read_status, status_lines
 
     settings = settings_of(context)
     found = read_status(settings.stack)
@@ -123,12 +123,17 @@ def described_servers(
     """
     try:
         stack = settings.stack
-        found = [stack.server(server)[len(stack.namespace) :]] if server else stack.servers()
-        return [(name, stack.describe(name, functions, brief, names)) for name in found]
+        if server:
+            name = stack.server(server)[len(stack.namespace) :]
+            return [(name, stack.describe(name, functions, brief, names))]
+        told_before, found = stack.silent, stack.described(functions, brief, names)
+        if stack.silent != told_before:
+            click.echo(f"does not answer: {', '.join(stack.silent)}", err=True)
+        return found
     except StackMissing as missing:
         if settings.namespace is not None:
             raise
-        from .offline import described_by_code
+        from ..offline import described_by_code
 
         if not settings.told_offline:
             click.echo(f"{missing.message}\nthis is what the code says:", err=True)
@@ -142,7 +147,7 @@ def _help_server(settings: Settings, name: str, function: str) -> None:
     Raises:
         click.UsageError: There is neither a function nor a server of that name.
     """
-    from ..suggestion import did_you_mean
+    from ...base.suggestion import did_you_mean
 
     servers = described_servers(settings, names=True)
     known = [name for name, _ in servers]

@@ -2,42 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
-from ..suggestion import did_you_mean
-from .errors import CommandFailed
-from .goals import carry_out, function_message, run_functions
-from .output import plain, say_json, table
-from .settings import NaoCommand, Settings, settings_of
+from ...base.suggestion import did_you_mean
+from ..errors import CommandFailed, StackMissing
+from ..goals import carry_out, function_message
+from ..output import plain, say_json, table
+from ..settings import NaoCommand, Settings, settings_of
 
 SERVER = "NaoBehavior"
-SERVICE = "NaoBehavior/list"
 SUFFIX = ".yaml"
 
 
 def _complete_name(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from .completion import behaviors
+    from ..completion import behaviors
 
     return behaviors(context, start)
 
 
 def _complete_parameter(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from .completion import parameters
+    from ..completion import parameters
 
     return parameters(context, start, context.params.get("name") or "")
-
-
-def stored(settings: Settings, name: str = "") -> list[dict[str, Any]]:
-    """The stored behaviours, or the one of a name, as plain values."""
-    from nao_library_msgs.srv import ListBehaviors, ListBehaviorsRequest
-
-    stack = settings.stack
-    answer = stack.graph.call(stack.service(SERVICE), ListBehaviors, ListBehaviorsRequest(name=name))
-    return plain(answer)["behaviors"]
 
 
 def _the_stored(settings: Settings, name: str) -> dict[str, Any]:
@@ -46,28 +36,44 @@ def _the_stored(settings: Settings, name: str) -> dict[str, Any]:
     Raises:
         CommandFailed: There is none.
     """
-    found = stored(settings, name)
+    found = settings.stack.behaviors(name)
     if not found:
-        known = [behavior["name"] for behavior in stored(settings)]
-        raise CommandFailed(f"there is no behaviour {name!r}{did_you_mean(name, known)}; there are {', '.join(known)}")
+        known = [behavior["name"] for behavior in settings.stack.behaviors()]
+        hint = _file_of(name) or did_you_mean(name, known)
+        raise CommandFailed(f"there is no behaviour {name!r}{hint}; there are {', '.join(known)}")
     return found[0]
 
 
+def _file_of(name: str) -> str:
+    """A hint to the file that is beside the user and called like a behaviour; nothing where there is none."""
+    return f": did you mean the file {name + SUFFIX}?" if Path(name + SUFFIX).is_file() else ""
+
+
 @click.command(cls=NaoCommand, name="run")
-@click.argument("name", shell_complete=_complete_name)
+@click.argument("name", metavar="NAME|FILE", shell_complete=_complete_name)
 @click.argument("parameters", nargs=-1, shell_complete=_complete_parameter, metavar="[PARAMETER=VALUE]...")
 @click.pass_context
 def run_command(context: click.Context, name: str, parameters: tuple[str, ...]) -> None:
-    """Run the behaviour NAME. `nao behaviors NAME` tells its parameters."""
+    """Run a behaviour, stored as NAME or in a FILE (.yaml). `nao behaviors NAME` tells its parameters.
+
+    All of it is checked before anything moves, as `nao check` does.
+    """
     _require_assignments(parameters)
     settings = settings_of(context)
-    message = function_message(settings, SERVER, function="runBehavior", str_param=name, parameters=list(parameters))
+    of_file = name.endswith(SUFFIX)
+    if not of_file and _file_of(name):
+        _the_stored(settings, name)
+    which = {"text": _text_of(name), "file": name} if of_file else {"str_param": name}
+    message = function_message(settings, SERVER, function="runBehavior", parameters=list(parameters), **which)
     end = carry_out(settings, SERVER, [message], quiet=True)
     if not settings.json:
+        from ...behaviors.language.errors import place
+
         # A behaviour goes on after steps that may fail; progress has told of the others.
         for step in end.result.get("steps", []):
             if step["error"]:
-                click.echo(f"{step['path']} {step['what']} {step['state']}: {step['error']}", err=True)
+                told = f"{step['path']} {step['what']} {step['state']}: {step['error']}"
+                click.echo(place(step["file"], step["line"]) + told, err=True)
 
 
 @click.command(cls=NaoCommand, name="behaviors")
@@ -76,7 +82,7 @@ def run_command(context: click.Context, name: str, parameters: tuple[str, ...]) 
 def behaviors_command(context: click.Context, name: str) -> None:
     """The stored behaviours; of one, all there is to know: its parameters, what it does, what it needs."""
     settings = settings_of(context)
-    found = [_the_stored(settings, name)] if name else stored(settings)
+    found = [_the_stored(settings, name)] if name else settings.stack.behaviors()
     if settings.json:
         say_json(found)
         return
@@ -96,27 +102,56 @@ def behaviors_command(context: click.Context, name: str) -> None:
 def check_command(context: click.Context, what: str, parameters: tuple[str, ...]) -> None:
     """Whether a behaviour can be run, stored as NAME or in a FILE (.yaml), and what it would do.
 
-    With a FILE or a PARAMETER the server does it as a goal, and a behaviour that runs is ended. A NAME by itself ends
-    nothing.
+    The servers check their goals, and carry none of them out; what runs goes on. Servers that are not there are told,
+    and their goals compared with what every NAO has.
     """
+    from nao_library_msgs.srv import ListBehaviorsRequest
+
     _require_assignments(parameters)
     settings = settings_of(context)
-    if what.endswith(SUFFIX):
-        checked, problems = _checked_by_goal(settings, parameters, text=_text_of(what))
-        checked["name"] = Path(what).stem
-    elif parameters:
-        checked, problems = _checked_by_goal(settings, parameters, str_param=what)
-    else:
-        checked = _the_stored(settings, what)
-        problems = [checked["problem"]] if checked["problem"] else []
+    of_file = what.endswith(SUFFIX)
+    which = {"text": _text_of(what), "file": what} if of_file else {"name": what}
+    request = ListBehaviorsRequest(parameters=list(parameters), validate=True, **which)
+    try:
+        # The servers of its goals are asked in turn, and have their time each.
+        answer = settings.stack.list_behaviors(request, patient=True)
+    except StackMissing:
+        from ..offline_check import check_offline
+
+        answer = check_offline(settings.stack, request)
+    found = plain(answer)["behaviors"]
+    checked = found[0] if found else _the_stored(settings, what)
+    problems = [_line_of(problem) for problem in checked["problems"]] or [checked["problem"]] * bool(checked["problem"])
     if settings.json:
         say_json({**checked, "problems": problems})
     elif not problems:
-        _tell(checked)
+        _tell(checked, dict(_assigned(parameters)))
+    for problem in problems:
+        click.echo(problem, err=True)
     if problems:
-        raise CommandFailed(f"{what} cannot be run: {'; '.join(problems)}")
+        raise CommandFailed(f"{what} cannot be run{'' if of_file else _file_of(what)}")
     if not settings.json:
+        _tell_unvalidated(checked["unvalidated"])
+
+
+def _line_of(problem: dict[str, Any]) -> str:
+    from ...behaviors.language.errors import Problem
+
+    return str(Problem(problem["where"], problem["text"], problem["line"], problem["file"]))
+
+
+def _tell_unvalidated(servers: Sequence[str]) -> None:
+    if not servers:
         click.echo("it can be run")
+        return
+    click.echo("  not checked by their servers, only compared with what every NAO has")
+    of_reason: dict[str, list[str]] = {}
+    for server in servers:
+        name, _, reason = server.partition(": ")
+        of_reason.setdefault(reason, []).append(name)
+    for reason, names in of_reason.items():
+        click.echo(f"    {', '.join(names)}: {reason}")
+    click.echo("nothing wrong was found")
 
 
 def _text_of(file: str) -> str:
@@ -127,23 +162,21 @@ def _text_of(file: str) -> str:
         raise click.UsageError(f"{file} cannot be read: {reason}") from None
 
 
-def _checked_by_goal(settings: Settings, parameters: Sequence[str], **what: str) -> tuple[dict[str, Any], list[str]]:
-    """What the server tells of a behaviour, and what is wrong with it."""
-    message = function_message(settings, SERVER, function="checkBehavior", parameters=list(parameters), **what)
-    end = run_functions(settings, SERVER, [message])
-    (checked,), problems = end.result["behaviors"], end.result["memList"]
-    return checked, problems
-
-
 def _require_assignments(parameters: Sequence[str]) -> None:
     for parameter in parameters:
         if "=" not in parameter:
             raise click.UsageError(f"{parameter!r} is no PARAMETER=VALUE")
 
 
-def _tell(behavior: dict[str, Any]) -> None:
+def _assigned(parameters: Sequence[str]) -> Iterator[tuple[str, str]]:
+    for parameter in parameters:
+        name, _, value = parameter.partition("=")
+        yield name.strip(), value
+
+
+def _tell(behavior: dict[str, Any], values: Mapping[str, str] | None = None) -> None:
     click.echo(f"{behavior['name']}: {behavior['problem'] or behavior['help']}")
-    _tell_parameters(behavior)
+    _tell_parameters(behavior, values or {})
     told = {
         "tags": ", ".join(behavior["tags"]),
         "servers": ", ".join(behavior["servers"]),
@@ -157,16 +190,19 @@ def _tell(behavior: dict[str, Any]) -> None:
     for step in behavior["steps"]:
         click.echo(f"    {step}")
     if behavior["unchecked"]:
-        click.echo("  only the robot knows whether these can be done; their servers check them when the step begins")
+        click.echo(
+            "  not known until they run, as it depends on the robot then; or wrong, and skipped as on_error says"
+        )
     for function in behavior["unchecked"]:
         click.echo(f"    {function}")
 
 
-def _tell_parameters(behavior: dict[str, Any]) -> None:
+def _tell_parameters(behavior: dict[str, Any], values: Mapping[str, str]) -> None:
     rows = []
     for parameter in behavior["parameters"]:
         unit = f" {parameter['unit']}" if parameter["unit"] else ""
         choices = f"; one of {', '.join(parameter['choices'])}" if parameter["choices"] else ""
-        rows.append((f"{parameter['name']}={parameter['default']}{unit}", parameter["help"] + choices))
+        value = values.get(parameter["name"], parameter["default"])
+        rows.append((f"{parameter['name']}={value}{unit}", parameter["help"] + choices))
     for line in table(rows, indent="  "):
         click.echo(line)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import click
 from click.shell_completion import get_completion_class
 
-from .bash_completion import register
-from .settings import NaoCommand
+from ..bash_completion import register
+from ..settings import NaoCommand, OneOf
 
 SHELLS = ("bash", "zsh", "fish")
 
 
 @click.command(cls=NaoCommand, name="completion")
-@click.argument("shell", type=click.Choice(SHELLS))
+@click.argument("shell", type=OneOf(SHELLS))
 @click.pass_context
 def completion_command(context: click.Context, shell: str) -> None:
     """Print the completion for SHELL.

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import click
 
-from .goals import carry_out, function_message
-from .settings import NaoCommand, settings_of
+from ..chain_text import Angle, Number
+from ..goals import carry_out, function_message
+from ..settings import NaoCommand, SignedCommand, settings_of
 
 AUDIO_OUT, LIGHTS, MOTION = "nao_audio_out", "NaoLights", "NaoMotion"
+FAR = 3.0
+"""m of a walk that take longer than somebody expects who meant cm."""
 SWITCHES = ("on", "off", "reset")
 """What lights can be besides a colour and an intensity: functions of their own."""
-SIGNED = {"ignore_unknown_options": True}
-"""Numbers may begin with a minus sign."""
 
 
 def _seconds(value: float | None) -> Any:
@@ -26,7 +28,7 @@ def _seconds(value: float | None) -> Any:
 
 def _choices(server: str, function: str, field: str) -> Any:
     def complete(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-        from .completion import choices
+        from ..completion import choices
 
         return choices(context, start, server, function, field)
 
@@ -34,7 +36,7 @@ def _choices(server: str, function: str, field: str) -> Any:
 
 
 def _complete_look(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from .completion import choices
+    from ..completion import choices
 
     lights = choices(context, start, LIGHTS, "setColor", "lights")
     colours = choices(context, start, LIGHTS, "setColor", "str_param")
@@ -61,10 +63,10 @@ def say_command(context: click.Context, text: tuple[str, ...], animated: bool, *
     carry_out(settings, AUDIO_OUT, [message], quiet=True)
 
 
-@click.command(cls=NaoCommand, name="leds", context_settings=dict(SIGNED))
+@click.command(cls=SignedCommand, name="leds")
 @click.argument("lights", nargs=-1, required=True, shell_complete=_complete_look, metavar="LIGHT... LOOK")
-@click.option("--for", "seconds", type=float, metavar="S", help="Wait so long afterwards.")
-@click.option("--fade", "duration", type=float, metavar="S", help="Take so long to get there.")
+@click.option("--for", "seconds", type=Number("wait"), metavar="S", help="Wait so long afterwards.")
+@click.option("--fade", "duration", type=Number("wait"), metavar="S", help="Take so long to get there.")
 @click.option("--revert", is_flag=True, help="Afterwards the lights go back to what they were.")
 @click.pass_context
 def leds_command(
@@ -77,6 +79,8 @@ def leds_command(
     *names, look = lights
     fields: dict[str, Any] = {"lights": names, "revert": revert, "time": _seconds(seconds)}
     intensity = _number(look)
+    if any(_number(name) is not None for name in names):
+        raise click.UsageError("one look is wanted: a colour by its name or as '#FF8000', an intensity 0..1: --help")
     if intensity is not None:
         fields.update(function="setIntensity" if duration is None else "fade", i_values=[intensity], duration=duration)
     elif look in SWITCHES:
@@ -96,27 +100,34 @@ def _number(text: str) -> float | None:
 
 
 @click.command(cls=NaoCommand, name="pose")
-@click.argument("posture", shell_complete=_choices(MOTION, "goToPosture", "str_param"))
+@click.argument("posture", default="", shell_complete=_choices(MOTION, "goToPosture", "str_param"))
 @click.option("--speed", type=float, metavar="0..1", help="Fraction of the top speed.")
 @click.pass_context
 def pose_command(context: click.Context, posture: str, speed: float | None) -> None:
     """Go to a POSTURE from wherever the robot is."""
     settings = settings_of(context)
+    if not posture:
+        from ..completion import choices
+
+        known = choices(context, "", MOTION, "goToPosture", "str_param")
+        raise click.UsageError(f"a posture is wanted: {', '.join(known) or 'nao pose StandInit'}")
     message = function_message(settings, MOTION, function="goToPosture", str_param=posture, speed=speed)
     carry_out(settings, MOTION, [message], quiet=True)
 
 
-@click.command(cls=NaoCommand, name="walk", context_settings=dict(SIGNED))
-@click.argument("x", type=float)
-@click.argument("y", type=float, default=0.0)
-@click.argument("theta", type=float, default=0.0)
+@click.command(cls=SignedCommand, name="walk")
+@click.argument("x", type=Number("way"))
+@click.argument("y", type=Number("way"), default=0.0)
+@click.argument("theta", type=Angle(), default=0.0)
 @click.pass_context
 def walk_command(context: click.Context, x: float, y: float, theta: float) -> None:
-    """Walk X m ahead and Y m to the left, and turn THETA rad to the left; answers how far it got.
+    """Walk X m ahead and Y m to the left, and turn THETA rad (or 90deg) to the left; answers how far it got.
 
     A robot that does not stand stands up before.
     """
     settings = settings_of(context)
+    if math.hypot(x, y) > FAR:
+        click.echo(f"{math.hypot(x, y):g} m take a while; Ctrl-C stops the robot", err=True)
     stand = function_message(settings, MOTION, function="goToPosture", str_param="StandInit")
     walk = function_message(settings, MOTION, function="moveTo", values=[x, y, theta])
     end = carry_out(settings, MOTION, [walk] if _stands(settings) else [stand, walk], quiet=True)
@@ -127,7 +138,7 @@ def walk_command(context: click.Context, x: float, y: float, theta: float) -> No
 
 def _stands(settings: Any) -> bool:
     """Whether the robot is awake and on its feet."""
-    from .robot_link import RobotLink
+    from ..robot_link import RobotLink
 
     with RobotLink(settings.stack.robot_address()) as robot:
         awake = robot.call("ALMotion", "robotIsWakeUp")

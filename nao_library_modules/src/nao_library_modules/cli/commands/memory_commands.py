@@ -9,9 +9,11 @@ from typing import Any
 
 import click
 
-from .errors import StackMissing
-from .output import plain, say_json, table, words
-from .settings import NaoCommand, settings_of
+from ...base.limits import limit
+from ..chain_text import Number
+from ..errors import StackMissing
+from ..output import plain, say_json, table, words
+from ..settings import NaoCommand, SignedCommand, settings_of
 
 RATE = 10.0
 """Looks a second at values that are no events, and messages a second of one key at most, unless something else is
@@ -19,7 +21,7 @@ asked for."""
 
 
 def _complete_key(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from .completion import keys
+    from ..completion import keys
 
     return keys(context, start)
 
@@ -29,13 +31,13 @@ def _complete_key(context: click.Context, _parameter: click.Parameter, start: st
 @click.pass_context
 def get_command(context: click.Context, keys: tuple[str, ...]) -> None:
     """Values of KEYs; wildcards mean all that fit: 'Device/SubDeviceList/*/Temperature/Sensor/Value'."""
-    from .robot_link import RobotLink
+    from ..robot_link import RobotLink
 
     settings = settings_of(context)
     with RobotLink(settings.stack.robot_address()) as robot:
         names = robot.matching(keys)
         if len(names) == 1:
-            values = [robot.memory("getData", names[0])]
+            values = [robot.value(names[0])]
         else:
             values = list(robot.memory("getListData", names))
     if settings.json:
@@ -47,15 +49,15 @@ def get_command(context: click.Context, keys: tuple[str, ...]) -> None:
             click.echo(line)
 
 
-@click.command(cls=NaoCommand, name="set", context_settings={"ignore_unknown_options": True})
+@click.command(cls=SignedCommand, name="set")
 @click.argument("key", shell_complete=_complete_key)
 @click.argument("value")
 @click.option("--event", is_flag=True, help="Raise it as an event: whoever subscribed to it is told.")
 @click.pass_context
 def set_command(context: click.Context, key: str, value: str, event: bool) -> None:
     """Write VALUE, JSON or plain text, into KEY."""
-    from ..memory_functions import parse_assignment
-    from .robot_link import RobotLink
+    from ...functions.memory_functions import parse_assignment
+    from ..robot_link import RobotLink
 
     settings = settings_of(context)
     _, content = parse_assignment(f"key={value}")
@@ -67,10 +69,10 @@ def set_command(context: click.Context, key: str, value: str, event: bool) -> No
 
 @click.command(cls=NaoCommand, name="watch")
 @click.argument("names", nargs=-1, required=True, shell_complete=_complete_key, metavar="NAME...")
-@click.option("--count", type=click.IntRange(min=1), metavar="N", help="End after so many.")
+@click.option("--count", type=click.IntRange(*map(int, limit("news")[:2])), metavar="N", help="End after so many.")
 @click.option(
     "--rate",
-    type=click.FloatRange(min=0.1, max=100.0),
+    type=Number("sampling rate"),
     default=RATE,
     show_default=True,
     metavar="HZ",
@@ -82,12 +84,14 @@ def watch_command(context: click.Context, names: tuple[str, ...], count: int | N
 
     Events are told each time, values when they change. Ends with Ctrl-C, after --count or --timeout.
     """
-    from .robot_link import RobotLink
+    from ..robot_link import RobotLink
 
     settings = settings_of(context)
     with RobotLink(settings.stack.robot_address()) as robot:
         wanted = robot.matching(names)
         known = frozenset(robot.events())
+        for text in robot.unknown(names):  # they may come, or be misspelt
+            click.echo(text, err=True)
         with _Watch(robot, [n for n in wanted if n in known], [n for n in wanted if n not in known], rate) as watch:
             _tell(watch, settings, count)
 

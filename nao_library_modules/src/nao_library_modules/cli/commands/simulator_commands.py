@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-from pathlib import Path
 from typing import Any
 
 import click
 
-from .errors import CommandFailed
-from .output import say_json
-from .settings import NaoGroup, Settings, settings_of
-from .stack import SIMULATOR
+from ..chain_text import Number
+from ..errors import CommandFailed
+from ..files import bring, names_file, overwrite_option, passing_name, wanted_file
+from ..output import say_json
+from ..settings import NaoGroup, OneOf, Settings, SignedCommand, settings_of
+from ..stack import SIMULATOR
 
 VIEWS = ("front", "three_quarter", "side", "back", "far", "room", "face")
 
@@ -34,47 +33,55 @@ def _call(settings: Settings, name: str, kind: Any, **fields: Any) -> Any:
 
 
 def _complete_sensor(_context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from ..tactile_names import SENSORS
+    from ...nao.touch_names import GROUPS, SENSORS, names_of
 
-    return [device for sensor in SENSORS for device in sensor.devices if device.startswith(start)]
+    words = [name.replace(" ", "_") for name in (*GROUPS, *names_of(SENSORS))]
+    devices = [device for sensor in SENSORS for device in sensor.devices]
+    return [word for word in (*words, *devices) if word.startswith(start)]
 
 
 @sim_command.command("touch")
 @click.argument("sensors", nargs=-1, metavar="[SENSOR]...", shell_complete=_complete_sensor)
-@click.option(
-    "--for", "seconds", type=click.FloatRange(min=0.0), metavar="S", help="Let go after so long, in its time."
-)
+@click.option("--for", "seconds", type=Number("timeout"), metavar="S", help="Let go after so long, in its time.")
 @click.pass_context
 def touch(context: click.Context, sensors: tuple[str, ...], seconds: float | None) -> None:
     """Press SENSORs until they are let go: `nao sim touch` without any lets go of all.
 
+    A SENSOR is a word of NaoTactile (head, front_head, chest, ...), an event, or a device (Head/Touch/Front).
     With --for 0 they are let go at once: a tap.
     """
     from nao_library_msgs.srv import PressSensors
 
+    from ...base.errors import BadGoal
+    from ...nao.touch_names import devices_of
+
     settings = settings_of(context)
-    _call(settings, "press", PressSensors, sensors=list(sensors))
+    try:
+        devices = devices_of(sensors)
+    except BadGoal as error:
+        raise click.UsageError(str(error)) from None
+    _call(settings, "press", PressSensors, sensors=devices)
     if seconds is not None:
         # A finger that comes and goes between two ticks was never there.
         _pass_time(settings, max(seconds, 0.1))
         _call(settings, "press", PressSensors, sensors=[])
     if settings.json:
-        say_json({"pressed": list(sensors) if seconds is None else []})
+        say_json({"pressed": devices if seconds is None else []})
 
 
 def _pass_time(settings: Settings, seconds: float) -> None:
     """Wait until so much of the robot's time is over."""
     import rospy
 
-    from .goals import start_node
+    from ..goals import start_node
 
     start_node()
     rospy.sleep(seconds)
 
 
-@sim_command.command("push", context_settings={"ignore_unknown_options": True})
-@click.argument("force", nargs=3, type=float, metavar="X Y Z")
-@click.option("--for", "seconds", type=float, default=0.1, show_default=True, metavar="S", help="How long.")
+@sim_command.command("push", cls=SignedCommand)
+@click.argument("force", nargs=3, type=Number("force"), metavar="X Y Z")
+@click.option("--for", "seconds", type=Number("timeout"), default=0.1, show_default=True, metavar="S", help="How long.")
 @click.option("--link", default="", help="Where: torso, Head, l_wrist, ...  [default: torso]")
 @click.pass_context
 def push(context: click.Context, force: tuple[float, float, float], seconds: float, link: str) -> None:
@@ -92,18 +99,20 @@ def push(context: click.Context, force: tuple[float, float, float], seconds: flo
 
 @sim_command.command("picture")
 @click.argument("file", default="", type=click.Path())
-@click.option("--view", type=click.Choice(VIEWS), default="three_quarter", show_default=True, help="From where.")
+@click.option("--view", type=OneOf(VIEWS), default="three_quarter", show_default=True, help="From where.")
 @click.option("--size", default="640x480", show_default=True, metavar="WxH", help="In pixels.")
+@overwrite_option
 @click.pass_context
-def picture(context: click.Context, file: str, view: str, size: str) -> None:
-    """Take a picture from outside, and put it into FILE; without, it stays in the simulator's folder."""
+def picture(context: click.Context, file: str, view: str, size: str, overwrite: bool) -> None:
+    """Take a picture from outside, and put it into FILE or a folder; without, it stays in the simulator's folder."""
     from nao_library_msgs.srv import TakePicture
 
     settings = settings_of(context)
+    target = wanted_file(file, overwrite)
     width, height = read_size(size)
-    name = f"picture-{os.getpid()}.png" if file else "picture.png"
+    name = f"{passing_name()}.png" if names_file(target) else ""
     answer = _call(settings, "picture", TakePicture, view=view, width=width, height=height, file=name)
-    path = bring(answer.path, file)
+    path = bring(answer.path, target, overwrite)
     if settings.json:
         say_json({"path": path, "view": view})
     else:
@@ -122,28 +131,8 @@ def read_size(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
-def bring(path: str, file: str) -> str:
-    """Move a file that a server has written to where it is wanted; where that is, as a text.
-
-    Raises:
-        CommandFailed: It is on another computer, or cannot be moved.
-    """
-    if not file:
-        return path
-    if not os.path.exists(path):
-        raise CommandFailed(f"the file is on the computer of the server: {path}")
-    target = Path(file)
-    if target.is_dir():
-        target = target / Path(path).name
-    try:
-        shutil.move(path, target)
-    except OSError as error:
-        raise CommandFailed(f"{path} cannot be moved to {target}: {error.strerror or error}") from None
-    return str(target)
-
-
 @sim_command.command("advance")
-@click.argument("seconds", type=click.FloatRange(min=0.0))
+@click.argument("seconds", type=Number("wait"))
 @click.pass_context
 def advance(context: click.Context, seconds: float) -> None:
     """Let SECONDS of simulated time pass as fast as possible; answers the time afterwards."""

@@ -6,9 +6,9 @@ import threading
 
 import click
 
-from .goals import start_node
-from .output import say_json
-from .settings import NaoCommand, settings_of
+from ..goals import start_node
+from ..output import say_json
+from ..settings import NaoCommand, settings_of
 
 CANCEL = "/cancel"
 CONNECT_LIMIT = 3.0
@@ -56,7 +56,7 @@ def _cancel(topics: list[str]) -> None:
 
 def _stop_walk(settings: object) -> str:
     """Stop a walk that no goal holds any more; tells how that went."""
-    from .robot_link import RobotLink
+    from ..robot_link import RobotLink
 
     try:
         with RobotLink(settings.stack.robot_address()) as robot:

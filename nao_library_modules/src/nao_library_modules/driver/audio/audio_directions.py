@@ -9,9 +9,9 @@ from typing import Any
 
 from naoqi.errors import NaoError, UnknownModule
 
-from ..event_relay import EventRelay
-from ..health import Level, Report
-from .demand import Demand
+from ...robot.event_relay import EventRelay
+from ...ros.health import Level, Report
+from ..base.demand import Demand
 
 log = logging.getLogger(__name__)
 

@@ -8,8 +8,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..interrupt import Interrupt
-from ..robot_task import run_task
+from ...base.interrupt import Interrupt
+from ...robot.robot_task import run_task
 from .audio_requests import RecordingRequest
 
 log = logging.getLogger(__name__)

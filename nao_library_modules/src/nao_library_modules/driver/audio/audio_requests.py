@@ -6,7 +6,7 @@ import posixpath
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..errors import BadGoal
+from ...base.errors import BadGoal
 
 HOME = "/home/nao"
 """Home of the robot's user, which file names are relative to; the simulator keeps these files in its `record_dir`."""

@@ -12,8 +12,8 @@ from typing import Any
 from naoqi import ALBroker, ALModule
 from naoqi.errors import NaoError, UnknownModule
 
-from ..health import Level, Report
-from .demand import Demand
+from ...ros.health import Level, Report
+from ..base.demand import Demand
 from .microphone_blocks import FORMATS, RATES, BlockClock, BlockTime, channel_map, read_samples
 
 log = logging.getLogger(__name__)

@@ -16,19 +16,20 @@ from nao_library_msgs.srv import (
     GetAudioMasterVolumeResponse,
     SetAudioMasterVolume,
 )
-from naoqi.errors import NaoError
 
-from ..health import Report
-from ..interrupt import Interrupt
-from ..robot_frames import tf_prefix
-from ..ros_clock import RosClock
+from ...base.field_checks import number_parameter
+from ...base.interrupt import Interrupt
+from ...base.limits import limit
+from ...ros.health import Report
+from ...ros.robot_frames import tf_prefix
+from ...ros.ros_clock import RosClock
+from ..base.node import name_for_robot, publish
+from ..base.rotation import from_roll_pitch_yaw
+from ..base.services import offer
+from ..base.topic_demand import TopicDemand
 from .audio_directions import Direction, SoundDirections
 from .audio_player import AudioPlayer
 from .audio_requests import CHANNELS, file_on_robot, read_recording, read_volume
-from .node import name_for_robot, publish
-from .rotation import from_roll_pitch_yaw
-from .services import offer
-from .topic_demand import TopicDemand
 
 TORSO = "torso"
 ROBOTS_OWN = -1.0
@@ -61,12 +62,11 @@ class NaoAudioServices:
             NaoError: If a parameter is wrong.
         """
         sensitivity = rospy.get_param("~sensitivity", ROBOTS_OWN)
-        if isinstance(sensitivity, bool) or not isinstance(sensitivity, (int, float)) or sensitivity > 1.0:
-            raise NaoError(f"~sensitivity is {sensitivity!r}: 0 to 1, or -1 for what the robot has")
+        sensitivity = number_parameter("~sensitivity", sensitivity, limit("share"), also=ROBOTS_OWN)
         self._interrupt = Interrupt()
         self._frame = tf_prefix() + TORSO
         self._player = AudioPlayer(robot, RosClock(), self._interrupt)
-        self._directions = SoundDirections(robot, name_for_robot(), float(sensitivity), self._publish)
+        self._directions = SoundDirections(robot, name_for_robot(), sensitivity, self._publish)
         name = "nao_audio/audio_source_localization"
         self._topic = rospy.Publisher(name, AudioSourceLocalization, queue_size=10)
         self._demand = TopicDemand(self._topic, self._directions.want)

@@ -10,14 +10,14 @@ from rospy.rostime import is_wallclock
 
 from nao_library_msgs.msg import AudioBuffer
 
-from ..health import Report
-from ..robot_frames import tf_prefix
-from ..ros_clock import RosClock
+from ...ros.health import Report
+from ...ros.robot_frames import tf_prefix
+from ...ros.ros_clock import RosClock
+from ..base.node import name_for_robot, publish
+from ..base.reconfigure import Field, serve
+from ..base.topic_demand import TopicDemand
 from .microphone import Block, Microphone
 from .microphone_blocks import FORMATS, RATES
-from .node import name_for_robot, publish
-from .reconfigure import Field, serve
-from .topic_demand import TopicDemand
 
 HEAD = "Head"
 QUEUE = 50

@@ -7,7 +7,6 @@ from typing import Any
 
 import rosgraph
 import rospy
-from actionlib import ActionServer
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 
@@ -23,14 +22,16 @@ from nao_library_actions.msg import (
 from nao_library_msgs.msg import WordRecognized
 from naoqi.errors import NaoError, UnknownModule
 
-from ..errors import BadGoal
-from ..goal_crowd import GoalCrowd, Outcome
-from ..health import Report
-from ..interrupt import Interrupt
-from ..ros_clock import RosClock
-from .node import name_for_robot, publish
-from .reconfigure import Field, serve, update
-from .services import offer
+from ...base.errors import BadGoal
+from ...base.interrupt import Interrupt
+from ...base.suggestion import of_those
+from ...ros.action_server import ActionServer
+from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.health import Report
+from ...ros.ros_clock import RosClock
+from ..base.node import name_for_robot, publish
+from ..base.reconfigure import Field, serve, update
+from ..base.services import offer
 from .speech import Speech
 from .speech_recognition import Heard, Recognition
 from .speech_settings import (
@@ -181,7 +182,7 @@ class NaoSpeech:
             if wanted and wanted != getattr(former, name):
                 known = self._robot.proxy(SPEECH).call_async(method).result(timeout=ANSWER_LIMIT)
                 if wanted not in known:
-                    raise NaoError(f"the robot has no {name} {wanted!r}: it has {', '.join(sorted(known))}")
+                    raise NaoError(f"the robot has no {name} {wanted!r}{of_those(wanted, sorted(known))}")
 
     # --- the connection -------------------------------------------------------------------------------------------
 

@@ -11,11 +11,12 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..errors import Preempted, RobotLost
-from ..event_relay import EventRelay
-from ..health import Level, Report
-from ..interrupt import Interrupt
-from ..robot_task import end_call
+from ...base.errors import Preempted, RobotLost
+from ...base.interrupt import Interrupt
+from ...base.limits import limit
+from ...robot.event_relay import EventRelay
+from ...robot.robot_task import end_call
+from ...ros.health import Level, Report
 from .speech_settings import SpeechSettings
 from .speech_voice import ANSWER_LIMIT, SPEECH, BorrowedVoice
 
@@ -27,7 +28,7 @@ QUIET_LIMIT = 120.0
 """s of the robot's time without a word after which a text is given up."""
 PATIENCE = 3.0
 """s that a text waits for a robot that has never been reached yet: its sender may have started in the same moment."""
-LONGEST_QUEUE = 100
+LONGEST_QUEUE = int(limit("waiting texts").highest)
 CLOSE_LIMIT = 2.0
 
 

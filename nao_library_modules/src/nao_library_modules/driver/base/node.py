@@ -9,22 +9,33 @@ import rospy
 
 from naoqi.errors import NaoError
 
-from ..diagnostics import DiagnosticsPublisher
-from ..health import connection_report
-from ..node import FORWARDED_LOGGERS, robot_address, robot_parser
-from ..robot import Robot
-from ..ros_edge import forward_logs
-from .polling import FASTEST
+from ...base.field_checks import number_parameter
+from ...base.limits import limit
+from ...processes.closing import close_all
+from ...robot.robot import Robot
+from ...ros.diagnostics import DiagnosticsPublisher
+from ...ros.health import connection_report
+from ...ros.node import own_as_node, robot_address, start_node
+from ...ros.node_place import NodePlace
 
 
-def run_driver(make: Callable[[Robot], Any], name: str, description: str, argv: Sequence[str] | None = None) -> int:
+def run_driver(
+    make: Callable[[Robot], Any],
+    name: str,
+    description: str,
+    argv: Sequence[str] | None = None,
+    watches: bool = False,
+) -> int:
     """Start a driver node and keep it until it ends.
+
+    A launched node whose name another node takes comes back when that one has ended.
 
     Args:
         make: Makes the node's object for a robot: it has `close()`, and `reports()` for /diagnostics.
         name: Default name of the node.
         description: What `--help` says.
         argv: Arguments, those of the process by default.
+        watches: As `run_module` takes it.
 
     Returns:
         Exit status.
@@ -32,10 +43,7 @@ def run_driver(make: Callable[[Robot], Any], name: str, description: str, argv: 
     ROS API:
         Parameters `~pip`, `~pport`: the robot. Publishes `/diagnostics`.
     """
-    arguments = rospy.myargv(argv)[1:]
-    options = robot_parser(description).parse_args(arguments)
-    rospy.init_node(name)
-    forward_logs(*FORWARDED_LOGGERS)
+    options = start_node(name, description, argv)
     try:
         ip, port = robot_address(options, rospy.get_param)
         robot = Robot(ip, port)
@@ -43,11 +51,13 @@ def run_driver(make: Callable[[Robot], Any], name: str, description: str, argv: 
     except NaoError as error:
         rospy.logfatal("%s", error)
         return 1
+    own_as_node(robot, watches)
     reports = {"robot": lambda: connection_report(robot.address, robot.connection), **node.reports()}
     diagnostics = DiagnosticsPublisher(robot.address, reports)  # it puts the name of the node before each
-    rospy.on_shutdown(node.close)
-    rospy.on_shutdown(diagnostics.close)
+    rospy.on_shutdown(lambda: close_all(node.close, diagnostics.close))
+    place = NodePlace()
     rospy.spin()
+    place.come_back()
     return 0
 
 
@@ -70,7 +80,4 @@ def rate_parameter(name: str, default: float) -> float:
     Raises:
         NaoError: If it is none that a node can keep.
     """
-    rate = rospy.get_param(name, default)
-    if isinstance(rate, bool) or not isinstance(rate, (int, float)) or not 0.0 < rate <= 1.0 / FASTEST:
-        raise NaoError(f"{name} is {rate!r}: above 0 to {1.0 / FASTEST:g} Hz")
-    return float(rate)
+    return number_parameter(name, rospy.get_param(name, default), limit("reading rate"))

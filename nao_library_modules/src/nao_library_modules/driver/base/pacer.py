@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..clock import WallClock
-from ..interrupt import Interrupt
+from ...base.clock import WallClock
+from ...base.interrupt import Interrupt
 
 
 class Pacer:

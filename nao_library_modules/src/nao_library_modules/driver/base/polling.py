@@ -9,8 +9,8 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
-from ..health import Level, Report
-from ..interrupt import Interrupt
+from ...base.interrupt import Interrupt
+from ...ros.health import Level, Report
 from .pacer import Pacer
 
 log = logging.getLogger(__name__)

@@ -98,6 +98,8 @@ def serve(
 
     def callback(config: Any, _level: int) -> Any:
         try:
+            for field in fields:
+                _check(field.name, field, config[field.name])  # the server keeps numbers in their ranges, but NaN
             values = changed(dict(last), {name: config[name] for name in names})
         except NaoError as error:
             if last:  # the client of dynamic_reconfigure keeps the text of the error to itself
@@ -137,7 +139,7 @@ def _check(name: str, field: Field, value: Any) -> None:
     right = isinstance(value, (int, float) if kind is float else kind) and isinstance(value, bool) == (kind is bool)
     low = right and field.lowest is not None and value < field.lowest
     high = right and field.highest is not None and value > field.highest
-    if not right or low or high or (field.choices and value not in field.choices):
+    if not right or low or high or value != value or (field.choices and value not in field.choices):
         raise NaoError(f"{name} is {value!r}: {_allowed(field)}")
 
 

@@ -9,7 +9,7 @@ import rospy
 
 from naoqi.errors import NaoError
 
-from ..errors import Preempted
+from ...base.errors import Preempted
 
 
 def offer(name: str, kind: type, answer: Callable[[Any], Any]) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import vision_definitions as vision
 from naoqi.errors import NaoError
 
-from ..camera_facts import CAMERAS, SIZES
+from ...nao.camera_facts import CAMERAS, SIZES
 
 RESOLUTIONS = {number: f"{width}x{height}" for number, (width, height) in SIZES.items()}
 

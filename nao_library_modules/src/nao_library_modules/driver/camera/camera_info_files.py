@@ -11,7 +11,7 @@ from urllib.parse import unquote
 
 from naoqi.errors import NaoError
 
-from ..whole_file import write_whole
+from ...base.whole_file import write_whole
 from .camera_calibration import Calibration, from_yaml, to_yaml
 
 log = logging.getLogger(__name__)
@@ -83,9 +83,6 @@ def write(path: Path, calibration: Calibration) -> None:
     """Put a calibration into a file, all of it or nothing.
 
     Raises:
-        NaoError: If that does not work.
+        FileTrouble: If that does not work.
     """
-    try:
-        write_whole(path, to_yaml(calibration))
-    except OSError as error:
-        raise NaoError(f"{path} cannot be written: {error}") from error
+    write_whole(path, to_yaml(calibration))

@@ -14,7 +14,7 @@ from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
 
-from ..camera_facts import CAMERAS
+from ...nao.camera_facts import CAMERAS
 from .camera_calibration import Calibration, from_yaml, ideal, scaled
 from .image_messages import fill_info
 

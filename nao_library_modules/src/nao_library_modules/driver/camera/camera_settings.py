@@ -9,10 +9,10 @@ from typing import Any
 import vision_definitions as vision
 from naoqi.errors import NaoError
 
-from ..camera_facts import BOTTOM, CAMERAS, TOP
+from ...nao.camera_facts import BOTTOM, CAMERAS, TOP
+from ..base.reconfigure import Field
 from .camera_formats import COLOR_SPACES, RESOLUTIONS
 from .camera_subscriber import StreamSettings
-from .reconfigure import Field
 
 LEAST_RATE, MOST_RATE = 1.0, 30.0
 OFF_OR_AUTO = {0: "off: the fixed value", 1: "the camera chooses"}

@@ -11,16 +11,16 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
-from ..camera_facts import CAMERA_NAMES
-from ..errors import Preempted
-from ..health import Level, Report
-from ..image_clock import ImageClock
-from ..interrupt import Interrupt
-from ..robot import wait_for_calls
+from ...base.errors import Preempted
+from ...base.interrupt import Interrupt
+from ...nao.camera_facts import CAMERA_NAMES
+from ...robot.image_clock import ImageClock
+from ...robot.robot import wait_for_calls
+from ...ros.health import Level, Report
+from ..base.demand import Demand
 from .camera_formats import RESOLUTIONS, SPACES, Picture, read_picture
 from .camera_rate import RateMeter
 from .camera_subscriber import DEVICE, CameraSubscriber, StreamSettings
-from .demand import Demand
 
 log = logging.getLogger(__name__)
 

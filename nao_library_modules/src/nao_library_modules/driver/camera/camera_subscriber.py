@@ -8,7 +8,7 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotError, RobotUnreachable
 
-from ..camera_facts import CAMERA_NAMES
+from ...nao.camera_facts import CAMERA_NAMES
 
 log = logging.getLogger(__name__)
 

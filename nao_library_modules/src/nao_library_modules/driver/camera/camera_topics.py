@@ -16,10 +16,14 @@ from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
 
-from ..camera_facts import CAMERA_NAMES, CAMERAS, SIZES
-from ..health import Report
-from ..robot_frames import tf_prefix
-from ..ros_clock import RosClock
+from ...base.suggestion import did_you_mean
+from ...nao.camera_facts import CAMERA_NAMES, CAMERAS, SIZES
+from ...ros.health import Report
+from ...ros.robot_frames import tf_prefix
+from ...ros.ros_clock import RosClock
+from ..base.node import name_for_robot, publish
+from ..base.reconfigure import Field, serve, update
+from ..base.topic_demand import TopicDemand
 from .camera_formats import Picture
 from .camera_info_files import camera_name
 from .camera_infos import CameraInfos
@@ -29,9 +33,6 @@ from .camera_subscriber import ANSWER_LIMIT, DEVICE
 from .camera_tuning import NO_ANSWER, CameraTuning
 from .image_compression import FORMATS, JPEG, compress
 from .image_messages import from_info, header_of, to_compressed, to_image, to_info
-from .node import name_for_robot, publish
-from .reconfigure import Field, serve, update
-from .topic_demand import TopicDemand
 
 QUEUE = 2
 """Pictures that wait for a subscriber that is slow; the oldest is dropped."""
@@ -231,7 +232,8 @@ def _camera_name(camera: int) -> str:
 
 
 def _package_folder(package: str) -> str:
+    packages = rospkg.RosPack()
     try:
-        return rospkg.RosPack().get_path(package)
+        return packages.get_path(package)
     except rospkg.ResourceNotFound as error:
-        raise NaoError(f"there is no package {package}") from error
+        raise NaoError(f"there is no package {package!r}{did_you_mean(package, packages.list())}") from error

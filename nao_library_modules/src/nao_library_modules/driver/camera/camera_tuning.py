@@ -9,7 +9,7 @@ from typing import Any
 
 from naoqi.errors import CallTimeout, NaoError, RobotUnreachable, UnknownModule
 
-from ..camera_facts import CAMERA_NAMES
+from ...nao.camera_facts import CAMERA_NAMES
 from .camera_settings import TUNINGS
 
 log = logging.getLogger(__name__)

@@ -9,8 +9,8 @@ import rospy
 
 from naoqi.errors import NaoError
 
-from ..camera_facts import CAMERAS, TOP
-from ..health import Report
+from ...nao.camera_facts import CAMERAS, TOP
+from ...ros.health import Report
 from .camera_topics import CameraTopics
 
 ALONE = ("camera_switch", "source")

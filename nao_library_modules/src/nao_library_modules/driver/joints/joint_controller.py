@@ -8,15 +8,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..errors import BadGoal, Preempted
-from ..interrupt import Interrupt
-from ..joint_names import MOTION, JointNames
-from ..joint_trajectory import KeyFrames, check_range, expand_names, one_each, read_trajectory
-from ..robot_task import run_task
+from ...base.errors import BadGoal, Preempted
+from ...base.field_checks import require_within
+from ...base.interrupt import Interrupt
+from ...base.limits import limit
+from ...functions.joint_trajectory import KeyFrames, check_range, expand_names, one_each, read_trajectory
+from ...nao.joint_names import MOTION, JointNames
+from ...robot.robot_task import run_task
 
 log = logging.getLogger(__name__)
 
 Tell = Callable[[Sequence[str], Sequence[float], Sequence[float]], None]
+FRACTION = limit("fraction")
 LIFE = "ALAutonomousLife"
 STIFFEN_TIME = 0.5
 """s in which the whole body gets stiff or limp."""
@@ -216,9 +219,7 @@ class JointController:
         chains = self.names.chains
         joints = expand_names(names, chains)
         values = one_each(angles, names, chains, "joint_angles")
-        if not 0.0 < speed <= 1.0:
-            raise BadGoal("speed", speed, "above 0 to 1")
-        return joints, values, float(speed)
+        return joints, values, require_within("speed", speed, FRACTION)
 
     def _motion_ended(self, call: Any, joints: list[str], interrupt: Interrupt) -> Reached:
         preempted = self._ended(call, interrupt, lambda: self._quick("killTasksUsingResources", joints))

@@ -9,9 +9,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..joint_names import MOTION
+from ...nao.joint_names import MOTION
+from ..base.rotation import Vector
 from .motors import torque_per_ampere
-from .rotation import Vector
 
 MEMORY = "ALMemory"
 DEVICE = "Device/SubDeviceList/{}/Value"

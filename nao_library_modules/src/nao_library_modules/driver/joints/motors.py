@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 
-from ..paths import config_file
+from ...base.paths import config_file
 
 FIELDS = {"_source", "voltage_v", "gear_efficiency", "motors"}
 MOTOR_FIELDS = {"model", "no_load_rpm", "gear_ratios"}

@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import rospy
-from actionlib import ActionServer
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Empty, Trigger, TriggerResponse
@@ -21,12 +20,15 @@ from nao_library_actions.msg import (
 from nao_library_msgs.msg import JointAnglesWithSpeed
 from naoqi.errors import NaoError
 
-from ..errors import RobotLost
-from ..goal_crowd import GoalCrowd, Outcome
-from ..health import Report
-from ..interrupt import Interrupt
+from ...base.errors import RobotLost
+from ...base.field_checks import number_parameter
+from ...base.interrupt import Interrupt
+from ...base.limits import limit
+from ...ros.action_server import ActionServer
+from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.health import Report
+from ..base.services import offer
 from .joint_controller import JointController, Reached
-from .services import offer
 
 COMPLAINT_PERIOD = 5.0
 """s between two complaints about messages of one topic that cannot be carried out."""
@@ -62,9 +64,9 @@ class NaoController:
         """
         self._robot = robot
         self._joints = JointController(robot)
-        self._init_stiffness = float(rospy.get_param(f"~{START_STIFFNESS}", 0.0))
-        if not 0.0 <= self._init_stiffness <= 1.0:
-            raise NaoError(f"~{START_STIFFNESS} is {self._init_stiffness:g}: 0 to 1")
+        self._init_stiffness = number_parameter(
+            f"~{START_STIFFNESS}", rospy.get_param(f"~{START_STIFFNESS}", 0.0), limit("share")
+        )
         self._crowds = [
             self._serve("joint_trajectory", JointTrajectoryAction, self._trajectory_joints, self._trajectory, True),
             self._serve("joint_stiffness_trajectory", JointTrajectoryAction, self._trajectory_joints, self._stiffness),

@@ -16,18 +16,20 @@ from tf2_ros import TransformBroadcaster
 
 from naoqi.errors import NaoError, RobotUnreachable
 
-from ..clock import WallClock
-from ..health import Level, Report
-from ..interrupt import Interrupt
-from ..joint_names import JointNames
-from ..robot_frames import tf_prefix
-from ..ros_clock import RosClock
+from ...base.clock import WallClock
+from ...base.field_checks import number_parameter
+from ...base.interrupt import Interrupt
+from ...base.limits import limit
+from ...nao.joint_names import JointNames
+from ...ros.health import Level, Report
+from ...ros.robot_frames import tf_prefix
+from ...ros.ros_clock import RosClock
+from ..base.pacer import Pacer
 from . import state_messages as messages
 from .feet import LEG_JOINTS, footprint
 from .joint_sensors import JointSensors, Reading
 from .odometry_offset import OdometryOffset
 from .odometry_services import offer_odometry_services
-from .pacer import Pacer
 from .slope import SlopeEstimator
 
 log = logging.getLogger(__name__)
@@ -74,9 +76,7 @@ class NaoJointStates:
         self._robot = robot
         self._names = JointNames(robot)
         rate = rospy.get_param("~sensor_rate", rospy.get_param("~torso_odom_rate", DEFAULT_RATE))
-        if isinstance(rate, bool) or not isinstance(rate, (int, float)) or not 0.0 < rate <= 1.0 / FASTEST:
-            raise NaoError(f"~sensor_rate is {rate!r}: above 0 to {1.0 / FASTEST:g} Hz")
-        self._period = 1.0 / rate
+        self._period = 1.0 / number_parameter("~sensor_rate", rate, limit("reading rate"))
         prefix = tf_prefix()
         self._base = prefix + rospy.get_param("~base_frame_id", "base_link").lstrip("/")
         self._footprint = prefix + rospy.get_param("~footprint_frame_id", "base_footprint").lstrip("/")

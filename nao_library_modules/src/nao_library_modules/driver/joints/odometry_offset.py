@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from naoqi.errors import NaoError
 
-from ..places import ORIGIN, Place
+from ...base.places import ORIGIN, Place
 
 
 class OdometryOffset:

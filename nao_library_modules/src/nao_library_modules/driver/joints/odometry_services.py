@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import math
-
 from geometry_msgs.msg import Transform
 from std_srvs.srv import Empty
 
 from nao_library_msgs.srv import SetTransform
 
-from ..errors import BadGoal
-from ..places import Place, yaw_of_quaternion
+from ...base.errors import BadGoal
+from ...base.field_checks import require_within
+from ...base.places import Place, yaw_of_quaternion
+from ..base.services import offer
 from .odometry_offset import OdometryOffset
-from .services import offer
+from .planar_frames import PLACE
 
 
 def offer_odometry_services(offset: OdometryOffset) -> None:
@@ -35,8 +35,7 @@ def read_transform(transform: Transform) -> Place:
     """
     move, turn = transform.translation, transform.rotation
     for name in ("x", "y"):
-        if not math.isfinite(getattr(move, name)):
-            raise BadGoal(f"offset.translation.{name}", getattr(move, name), "a finite number, in m")
+        require_within(f"offset.translation.{name}", getattr(move, name), PLACE)
     yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
     if yaw is None:
         given = (turn.x, turn.y, turn.z, turn.w)

@@ -13,11 +13,14 @@ from nav_msgs.msg import Path
 
 from naoqi.errors import NaoError
 
-from ..clock import WallClock
-from ..errors import BadGoal
-from ..places import Place, yaw_of_quaternion
-from .rotation import from_roll_pitch_yaw, product, rotate
+from ...base.clock import WallClock
+from ...base.errors import BadGoal
+from ...base.field_checks import require_length, require_within
+from ...base.limits import limit
+from ...base.places import Place, yaw_of_quaternion
+from ..base.rotation import from_roll_pitch_yaw, product, rotate
 
+PLACE, PLACES = limit("place"), limit("places")
 PATIENCE = 2.0
 """s that a frame may take to appear."""
 OLDEST = 2.0
@@ -135,10 +138,8 @@ def read_point(field: str, pose: PoseStamped) -> Place:
     """
     point = pose.pose.position
     place = Place(point.x, point.y, 0.0)
-    for name in ("x", "y"):
-        value = getattr(point, name)
-        if not abs(value) < float("inf"):
-            raise BadGoal(f"{field}.pose.position.{name}", value, "a finite number, in m")
+    require_within(f"{field}.pose.position.x", point.x, PLACE)
+    require_within(f"{field}.pose.position.y", point.y, PLACE)
     return place
 
 
@@ -146,8 +147,9 @@ def read_path(path: Path) -> tuple[list[Place], str]:
     """Places and frame of a path. Only the last heading counts; without one it is that of the path.
 
     Raises:
-        BadGoal: If a number is none, the frame has no name, or poses are in different frames.
+        BadGoal: If a number is none, the frame has no name, poses are in different frames, or they are too many.
     """
+    require_length("path.poses", len(path.poses), PLACES)
     frames = {pose.header.frame_id.lstrip("/") for pose in path.poses} - {""}
     frame = path.header.frame_id.lstrip("/") or (min(frames) if frames else "")
     if not frame:

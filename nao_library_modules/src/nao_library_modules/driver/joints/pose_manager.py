@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any
 
 import rospy
-from actionlib import ActionServer
 from std_srvs.srv import Empty
 
 from nao_library_actions.msg import (
@@ -19,14 +18,16 @@ from nao_library_actions.msg import (
 )
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal, RobotLost
-from ..goal_crowd import GoalCrowd, Outcome
-from ..health import Report
-from ..interrupt import Interrupt
-from ..joint_names import MOTION
-from ..pose_tables import Pose, UnknownPose, built_in, library, pose_table
-from ..robot_task import run_task
-from .joint_controller import QUICK_LIMIT, STIFFEN_TIME
+from ...base.errors import RobotLost
+from ...base.field_checks import require_within
+from ...base.interrupt import Interrupt
+from ...nao.joint_names import MOTION
+from ...nao.pose_tables import Pose, UnknownPose, built_in, library, pose_table
+from ...robot.robot_task import run_task
+from ...ros.action_server import ActionServer
+from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.health import Report
+from .joint_controller import FRACTION, QUICK_LIMIT, STIFFEN_TIME
 from .trajectory_client import TrajectoryClient
 
 POSTURE = "ALRobotPosture"
@@ -109,8 +110,7 @@ class PoseManager:
     # --- postures of the robot ------------------------------------------------------------------------------------
 
     def _take_posture(self, goal: BodyPoseWithSpeedGoal, interrupt: Interrupt) -> Outcome:
-        if not 0.0 < goal.speed <= 1.0:
-            raise BadGoal("speed", goal.speed, "above 0 to 1")
+        require_within("speed", goal.speed, FRACTION)
         posture = self._robot.proxy(POSTURE)
         known = posture.call_async("getPostureList").result(timeout=QUICK_LIMIT)
         if goal.posture_name not in known:

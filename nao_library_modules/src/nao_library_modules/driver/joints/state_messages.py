@@ -9,8 +9,8 @@ from nav_msgs.msg import Odometry
 from rospy import Time
 from sensor_msgs.msg import Imu, JointState
 
+from ..base.rotation import from_roll_pitch_yaw, inverse, rotate
 from .joint_sensors import Reading
-from .rotation import from_roll_pitch_yaw, inverse, rotate
 
 # Rough figures for filters that fuse sensors, on the diagonal: the robot publishes none.
 TILT_VARIANCE, YAW_VARIANCE, UNKNOWN = 1e-4, 1e-2, 1e6

@@ -10,10 +10,10 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
 from naoqi.errors import NaoError
 
-from ..goal_watch import GoalWatch
-from ..interrupt import Interrupt
-from ..pose_tables import Pose
-from ..ros_clock import RosClock
+from ...base.interrupt import Interrupt
+from ...nao.pose_tables import Pose
+from ...ros.goal_watch import GoalWatch
+from ...ros.ros_clock import RosClock
 
 ACTION = "joint_trajectory"
 SERVER_LIMIT = 5.0

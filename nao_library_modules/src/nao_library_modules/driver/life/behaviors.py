@@ -7,11 +7,11 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal, Preempted
-from ..interrupt import Interrupt
-from ..robot import CLEAN_UP_LIMIT
-from ..robot_task import run_task
-from ..suggestion import did_you_mean
+from ...base.errors import BadGoal, Preempted
+from ...base.interrupt import Interrupt
+from ...base.suggestion import did_you_mean
+from ...robot.robot import CLEAN_UP_LIMIT
+from ...robot.robot_task import run_task
 
 log = logging.getLogger(__name__)
 

@@ -9,14 +9,17 @@ from typing import Any, Tuple
 
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal, Preempted
-from ..goal_crowd import Replaced
-from ..interrupt import Interrupt
-from ..robot import CLEAN_UP_LIMIT
-from ..robot_task import run_task
+from ...base.errors import BadGoal, Preempted
+from ...base.field_checks import require_within, require_zero_or
+from ...base.interrupt import Interrupt
+from ...base.limits import limit
+from ...robot.robot import CLEAN_UP_LIMIT
+from ...robot.robot_task import run_task
+from ...ros.goal_crowd import Replaced
 
 LEDS = "ALLeds"
 EYES = "FaceLeds"
+DURATION = limit("duration")
 LONGEST_PAUSE = 3.0
 """Standard deviations above the mean that a pause may last."""
 
@@ -54,12 +57,9 @@ class Blinks:
         for field, colour in fields:
             if not all(0.0 <= part <= 1.0 for part in colour):
                 raise BadGoal(field, tuple(colour), "red, green and blue, each 0 to 1")
-        if not self.duration > 0.0:
-            raise BadGoal("blink_duration", self.duration, "above 0 s")
-        if not 0.0 < self.mean_pause < float("inf"):
-            raise BadGoal("blink_rate_mean", self.mean_pause, "above 0 s")
-        if not 0.0 <= self.deviation < float("inf"):
-            raise BadGoal("blink_rate_sd", self.deviation, "0 s and above")
+        require_within("blink_duration", self.duration, DURATION)
+        require_within("blink_rate_mean", self.mean_pause, DURATION)
+        require_zero_or("blink_rate_sd", self.deviation, DURATION)
 
     def pause(self, chance: random.Random) -> float:
         """A pause between two blinks, s."""

@@ -11,10 +11,10 @@ from std_srvs.srv import Empty, SetBool, SetBoolResponse, Trigger, TriggerRespon
 
 from naoqi.errors import NaoError
 
-from ..health import Report
+from ...ros.health import Report
+from ..base.node import publish
+from ..base.services import offer
 from .autonomous_life import ABILITIES, STATES, Ability, AutonomousLife
-from .node import publish
-from .services import offer
 
 
 class NaoAlife:

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from actionlib import ActionServer
-
 from nao_library_actions.msg import RunBehaviorAction, RunBehaviorResult
 from nao_library_msgs.srv import GetInstalledBehaviors, GetInstalledBehaviorsResponse
 
-from ..errors import RobotLost
-from ..goal_crowd import GoalCrowd, Outcome
-from ..health import Report
-from ..interrupt import Interrupt
+from ...base.errors import RobotLost
+from ...base.interrupt import Interrupt
+from ...ros.action_server import ActionServer
+from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.health import Report
+from ..base.services import offer
 from .behaviors import Behaviors
-from .services import offer
 
 ROBOT = frozenset({"the robot"})
 """What a behaviour has for itself: all of it."""

@@ -7,19 +7,20 @@ from collections.abc import Callable
 from typing import Any
 
 import rospy
-from actionlib import ActionServer
 from std_msgs.msg import ColorRGBA
 
 from nao_library_actions.msg import BlinkAction, BlinkFeedback, BlinkResult
 from nao_library_msgs.msg import FadeRGB
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal, Preempted, RobotLost
-from ..goal_crowd import GoalCrowd, Outcome
-from ..health import Report
-from ..interrupt import Interrupt
-from ..ros_clock import RosClock
-from .blinking import EYES, Blinks, Colour, blink, fade
+from ...base.errors import BadGoal, Preempted, RobotLost
+from ...base.field_checks import require_zero_or
+from ...base.interrupt import Interrupt
+from ...ros.action_server import ActionServer
+from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.health import Report
+from ...ros.ros_clock import RosClock
+from .blinking import DURATION, EYES, Blinks, Colour, blink, fade
 
 QUEUE = 100
 COMPLAINT_PERIOD = 5.0
@@ -65,8 +66,7 @@ class NaoLeds:
         try:
             if not all(0.0 <= part <= 1.0 for part in colour):
                 raise BadGoal("color", colour, "red, green and blue, each 0 to 1")
-            if duration < 0.0:
-                raise BadGoal("fade_duration", duration, "0 s and above")
+            require_zero_or("fade_duration", duration, DURATION)
             fade(self._robot, message.led_name, colour, duration, self._interrupt)
         except Preempted:
             return  # the node ends

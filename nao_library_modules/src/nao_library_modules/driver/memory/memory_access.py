@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..errors import BadGoal
-from ..suggestion import did_you_mean
+from ...base.errors import BadGoal
+from ...base.suggestion import did_you_mean
 from .memory_names import is_pattern, matching
 
 MEMORY = "ALMemory"

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal
+from ...base.errors import BadGoal
+from ...base.field_checks import require_zero_or
+from ...base.limits import limit
 from .memory_access import check_pattern
 from .memory_names import is_pattern, matches
 from .memory_values import KINDS
 
-FASTEST = 100.0
+RATE = limit("sampling rate")
 """Hz, above which nobody asks."""
 
 
@@ -41,8 +42,7 @@ class Rule:
             BadGoal: If not.
         """
         check_pattern(self.pattern)
-        if not (math.isfinite(self.rate) and 0.0 <= self.rate <= FASTEST):
-            raise BadGoal("rate", self.rate, f"0 to {FASTEST:g} Hz")
+        require_zero_or("rate", self.rate, RATE)
         if self.kind and self.kind not in KINDS:
             raise BadGoal("type", self.kind, f"one of {', '.join(KINDS)}, or nothing")
 
@@ -67,6 +67,10 @@ class Rules:
         other = Rules()
         other._rules = list(self._rules)
         return other
+
+    def all(self) -> list[Rule]:
+        """The rules, the oldest first."""
+        return list(self._rules)
 
     def rule_for(self, key: str) -> Rule | None:
         """The rule that has a key watched; None if it is not to be."""

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from typing import Any
 
-from ..answers import json_of
+from ...base.answers import json_of, value_of_json
 
 BOOL, INT, FLOAT, TEXT = "bool", "int", "float", "string"
 INTS, FLOATS, TEXTS = "int[]", "float[]", "string[]"
@@ -62,7 +61,7 @@ def converted(value: Any, kind: str) -> Any:
 def parse_value(text: str) -> Any:
     """A value from JSON; what is no JSON is a text."""
     try:
-        return json.loads(text)
+        return value_of_json(text)
     except ValueError:
         return text
 

@@ -10,15 +10,15 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
-from ..errors import BadGoal
-from ..event_relay import EventRelay
-from ..health import Level, Report
-from ..interrupt import Interrupt
+from ...base.errors import BadGoal
+from ...base.interrupt import Interrupt
+from ...robot.event_relay import EventRelay
+from ...ros.health import Level, Report
+from ..base.polling import FASTEST, RETRY
 from .memory_access import MEMORY, MemoryAccess
 from .memory_key import WatchedKey
 from .memory_names import matching, topics_of
 from .memory_rules import Rule, Rules
-from .polling import FASTEST, RETRY
 
 log = logging.getLogger(__name__)
 
@@ -105,6 +105,12 @@ class MemoryWatch:
                 self._drop(key)
         self._wake()
         return ended
+
+    @property
+    def rules(self) -> list[Rule]:
+        """What is to be watched, the oldest rule first."""
+        with self._work:
+            return self._rules.all()
 
     def watched(self, pattern: str = "") -> dict[str, str]:
         """Key -> topic, empty as long as it has none, of those that a pattern stands for."""

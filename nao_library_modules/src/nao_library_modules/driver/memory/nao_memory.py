@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Any
 
 import rospy
@@ -30,17 +31,20 @@ from nao_library_msgs.srv import (
 )
 from naoqi.errors import NaoError
 
-from ..answers import json_of
-from ..health import Report
-from ..ros_clock import RosClock
-from ..suggestion import did_you_mean
+from ...base.answers import json_of
+from ...base.field_checks import number_parameter
+from ...base.limits import limit
+from ...base.suggestion import did_you_mean
+from ...ros.health import Report
+from ...ros.ros_clock import RosClock
+from ...ros.ros_edge import node_file
+from ..base.node import publish
+from ..base.topic_demand import TopicDemand
 from .memory_access import MemoryAccess, check_pattern
 from .memory_names import is_pattern, matching
 from .memory_rules import Rule, read_rules
 from .memory_values import BOOL, FLOAT, FLOATS, INT, INTS, TEXT, TEXTS, parse_value, type_of
 from .memory_watch import MemoryWatch
-from .node import publish
-from .topic_demand import TopicDemand
 
 MESSAGES = {
     BOOL: BoolStamped,
@@ -78,13 +82,14 @@ class NaoMemory:
             NaoError: If a parameter is wrong.
         """
         largest = rospy.get_param("~max_topics", MOST_TOPICS)
-        if isinstance(largest, bool) or not isinstance(largest, int) or largest < 1:
-            raise NaoError(f"~max_topics is {largest!r}: 1 and above")
+        largest = int(number_parameter("~max_topics", largest, limit("topics")))
         rules = read_rules(rospy.get_param("~keys", []), "~keys")
         self._robot = robot
         self._memory = MemoryAccess(robot)
         self._watch = MemoryWatch(robot, RosClock(), MemoryTopic, largest)
-        self._watch.watch(rules)
+        self._kept = node_file()
+        kept = self._kept.load()
+        self._watch.watch(rules if kept is None else [Rule(**told) for told in kept])
         _serve("~watch", WatchMemory, WatchMemoryResponse, self._on_watch)
         _serve("~unwatch", UnwatchMemory, UnwatchMemoryResponse, self._on_unwatch)
         _serve("~get", GetMemory, GetMemoryResponse, self._on_get)
@@ -97,12 +102,14 @@ class NaoMemory:
 
     def close(self) -> None:
         """Watch nothing any more."""
+        self._kept.forget()
         self._watch.close()
 
     # --- services -------------------------------------------------------------------------------------------------
 
     def _on_watch(self, request: Any) -> WatchMemoryResponse:
         self._watch.watch([Rule(request.pattern, request.rate, request.type)])
+        self._keep()
         found = self._watch.watched(request.pattern)
         topics = [_resolved(topic) for topic in found.values()]
         return WatchMemoryResponse(True, self._missing(request.pattern, topics), list(found), topics)
@@ -122,7 +129,13 @@ class NaoMemory:
         return f"there is no key like {pattern!r} yet{did_you_mean(pattern, known)}; topics appear when there is"
 
     def _on_unwatch(self, request: Any) -> UnwatchMemoryResponse:
-        return UnwatchMemoryResponse(True, "", self._watch.unwatch(request.pattern))
+        left = self._watch.unwatch(request.pattern)
+        self._keep()
+        return UnwatchMemoryResponse(True, "", left)
+
+    def _keep(self) -> None:
+        """Keep what is watched beyond the death of the node."""
+        self._kept.save([asdict(rule) for rule in self._watch.rules])
 
     def _on_get(self, request: Any) -> GetMemoryResponse:
         found = self._memory.find(request.pattern)

@@ -6,10 +6,11 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..errors import BadGoal
-from ..places import Place, wrapped
-from .path_follower_path import WalkPath
-from .path_follower_settings import Settings
+from ...base.errors import BadGoal
+from ...base.places import Place, wrapped
+from ..walk.walk_commands import require_way
+from .path import WalkPath
+from .settings import Settings
 
 WINDOW = 0.5
 """m of a path beyond the robot's last place in which it is looked for: it does not jump where a path crosses itself."""
@@ -48,7 +49,7 @@ class TargetCourse:
     def aim(self, robot: Place) -> Aim:
         """Where a robot at this place goes next."""
         target = self._target()
-        return Aim(target, final=True, rest=_effort(target.seen_from(robot)))
+        return Aim(target, final=True, rest=_effort(require_way("target_pose", target.seen_from(robot))))
 
 
 class PathCourse:

@@ -11,12 +11,13 @@ from std_srvs.srv import Empty
 
 from naoqi.errors import NaoError, RobotError
 
-from ..interrupt import Interrupt
-from ..joint_names import MOTION
-from ..places import Place
-from ..robot_task import run_task
-from .joint_controller import QUICK_LIMIT
-from .joint_sensors import MEMORY
+from ...base.interrupt import Interrupt
+from ...base.places import Place
+from ...nao.joint_names import MOTION
+from ...owners.line import SERVICE
+from ...robot.robot_task import run_task
+from ..joints.joint_controller import QUICK_LIMIT
+from ..joints.joint_sensors import MEMORY
 
 LISTENER_LIMIT = 5.0
 """s to wait for somebody who listens to the commands."""
@@ -80,10 +81,12 @@ class WalkTopics:
 
     def go_to(self, way: Place) -> None:
         """Walk to where a way leads, in the robot's frame."""
+        self._own_walk()
         self._commands.publish(Pose2D(way.x, way.y, way.yaw))
 
     def go_at(self, x: float, y: float, yaw: float) -> None:
         """Walk with shares -1..1 of the top speeds."""
+        self._own_walk()
         command = Twist()
         command.linear.x, command.linear.y, command.angular.z = x, y, yaw
         self._commands.publish(command)
@@ -113,14 +116,22 @@ class WalkTopics:
             self._stop_robot()
         standing = self._robot.proxy(MOTION).call_async("waitUntilMoveIsFinished")
         standing.result(timeout=STOP_LIMIT)
+        self._robot.owners.let_go(self)
 
     def reserve(self) -> None:
         """Keep others, a joystick for example, from walking."""
+        # Held before: who is killed in between must not leave it behind.
+        self._robot.owners.hold(INHIBIT, "hold on walking", [SERVICE, self._let_go.resolved_name, rospy.get_name()])
         self._call_if_there(self._inhibit)
 
     def release(self) -> None:
         """Let others walk again."""
         self._call_if_there(self._let_go)
+        self._robot.owners.let_go(INHIBIT)
+
+    def _own_walk(self) -> None:
+        """Note the walk as of this node: nao_walker, which begins it, goes on when this node dies."""
+        self._robot.owners.hold(self, "walk", [MOTION, "stopMove", []])
 
     def _last_failure(self) -> list:
         """Value of the event: cause, whether the walk had begun, place of an obstacle. Empty before the first one."""

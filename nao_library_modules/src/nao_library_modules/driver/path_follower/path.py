@@ -7,8 +7,8 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..errors import BadGoal
-from ..places import Place
+from ...base.errors import BadGoal
+from ...base.places import Place
 
 SHORTEST = 1e-3
 """m: waypoints nearer to each other than this are one."""

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any
 
 import rospy
-from actionlib import ActionServer
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseFeedback, MoveBaseGoal, MoveBaseResult
 from nav_msgs.msg import Path
@@ -21,19 +20,20 @@ from nao_library_actions.msg import (
 )
 from naoqi.errors import NaoError
 
-from ..errors import RobotLost
-from ..goal_crowd import GoalCrowd, Outcome, Replaced
-from ..health import Report
-from ..interrupt import Interrupt
-from ..places import Place
-from ..robot_frames import tf_prefix
-from ..ros_clock import RosClock
-from .path_follower_courses import Aim, PathCourse, TargetCourse
-from .path_follower_legs import WalkTopics
-from .path_follower_path import WalkPath
-from .path_follower_settings import Settings
-from .path_follower_walk import lead
-from .planar_frames import PlanarFrames, pose_stamped, read_path, read_place
+from ...base.errors import RobotLost
+from ...base.interrupt import Interrupt
+from ...base.places import Place
+from ...ros.action_server import ActionServer
+from ...ros.goal_crowd import GoalCrowd, Outcome, Replaced
+from ...ros.health import Report
+from ...ros.robot_frames import tf_prefix
+from ...ros.ros_clock import RosClock
+from ..joints.planar_frames import PlanarFrames, pose_stamped, read_path, read_place
+from .courses import Aim, PathCourse, TargetCourse
+from .legs import WalkTopics
+from .path import WalkPath
+from .settings import Settings
+from .walk import lead
 
 SHUTDOWN_LIMIT = 4.0
 LEGS = frozenset({"the legs"})

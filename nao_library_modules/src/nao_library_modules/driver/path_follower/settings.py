@@ -9,6 +9,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ...base.field_checks import number_parameter
+from ...base.limits import limit
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -82,7 +85,12 @@ class Settings:
         return cls(**{field.name: get_param(f"~{field.name}", field.default) for field in fields(cls)})
 
 
-_SHARES = ("max_vel_x", "max_vel_y", "max_vel_yaw")
+_KINDS = {
+    **dict.fromkeys(("max_vel_x", "max_vel_y", "max_vel_yaw"), "fraction"),
+    "step_freq": "share",
+    "stuck_time": "timeout",
+    "controller_frequency": "reading rate",
+}
 _SWITCHES = ("use_vel_ctrl", "use_foot_contact_protection")
 
 
@@ -91,13 +99,7 @@ def _check(name: str, value: Any) -> None:
         if not isinstance(value, bool):
             raise NaoError(f"~{name} is {value!r}: true or false")
         return
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise NaoError(f"~{name} is {value!r}: a number")
-    if name in _SHARES and not 0.0 < value <= 1.0:
-        raise NaoError(f"~{name} is {value:g}: above 0 to 1")
-    if name == "step_freq" and not 0.0 <= value <= 1.0:
-        raise NaoError(f"~{name} is {value:g}: 0 to 1")
-    if name == "stuck_time" and value < 0.0:
-        raise NaoError(f"~{name} is {value:g}: 0 (never) or more")
-    if name not in (*_SHARES, "step_freq", "stuck_time") and value <= 0.0:
+    kind = _KINDS.get(name, "setting")
+    number_parameter(f"~{name}", value, limit(kind))
+    if kind == "setting" and value <= 0.0:
         raise NaoError(f"~{name} is {value:g}: above 0")

@@ -6,9 +6,9 @@ import math
 
 from naoqi.errors import NaoError
 
-from ..places import Place, wrapped
-from .path_follower_courses import facing
-from .path_follower_settings import Settings
+from ...base.places import Place, wrapped
+from .courses import facing
+from .settings import Settings
 
 FACE_DISTANCE = 0.4
 """m: to what is further away the robot turns its face; it walks ahead faster than sideways."""

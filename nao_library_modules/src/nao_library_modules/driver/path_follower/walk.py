@@ -8,13 +8,13 @@ from typing import Any, Protocol
 
 from naoqi.errors import NaoError
 
-from ..clock import WallClock
-from ..interrupt import Interrupt
-from ..places import ORIGIN, Place
-from .pacer import Pacer
-from .path_follower_courses import Aim, reached
-from .path_follower_settings import Settings
-from .path_follower_steering import StuckWatch, velocity
+from ...base.clock import WallClock
+from ...base.interrupt import Interrupt
+from ...base.places import ORIGIN, Place
+from ..base.pacer import Pacer
+from .courses import Aim, reached
+from .settings import Settings
+from .steering import StuckWatch, velocity
 
 RESEND_DISTANCE, RESEND_TURN = 0.02, math.radians(4.0)
 """m and rad that the aim moves before the robot is told: it plans its steps anew each time."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..body_devices import (
+from ...nao.body_devices import (
     BATTERY_STATUS,
     CHARGE,
     CHARGING_BIT,
@@ -17,8 +17,8 @@ from ..body_devices import (
     TOO_HOT_MOTOR,
     temperature_key,
 )
-from ..body_devices import CURRENT as AMPERES
-from ..health import Level, Report
+from ...nao.body_devices import CURRENT as AMPERES
+from ...ros.health import Level, Report
 
 JOINT = "nao_joint: {}"
 BATTERY, CURRENT, HEAD = "nao_power: Battery", "nao_power: Current", "nao_cpu: Head Temperature"

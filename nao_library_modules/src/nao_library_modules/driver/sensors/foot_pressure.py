@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..body_devices import SIDES, sensor_key, weight_keys
+from ...nao.body_devices import SIDES, sensor_key, weight_keys
 
 MEMORY = "ALMemory"
 GRAVITY = 9.81

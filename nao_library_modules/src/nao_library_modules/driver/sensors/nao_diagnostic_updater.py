@@ -14,21 +14,23 @@ from nao_library_msgs.msg import ConnectionState, RobotInfo, StringStamped
 from nao_library_msgs.srv import GetRobotInfo, GetRobotInfoResponse
 from naoqi.errors import NaoError, UnknownMethod, UnknownModule
 
-from ..answers import json_of
-from ..health import Report
-from ..interrupt import Interrupt
-from ..joint_names import JointNames
+from ...base.answers import json_of
+from ...base.field_checks import number_parameter
+from ...base.interrupt import Interrupt
+from ...base.limits import Limit, limit
+from ...nao.joint_names import JointNames
+from ...ros.health import Report
+from ..base.node import publish
+from ..base.robot_facts import KEYS, facts_of, info_fields
+from ..base.services import offer
 from .body_reports import Thresholds, body_reports, keys_of, network_reports, part_of
-from .node import publish
-from .robot_facts import KEYS, facts_of, info_fields
-from .services import offer
 
 log = logging.getLogger(__name__)
 
 MEMORY, NETWORKS = "ALMemory", "ALConnectionManager"
 ANSWER_LIMIT = 2.0
 SHUTDOWN_LIMIT = 3.0
-DEFAULT_RATE, FASTEST = 0.5, 20.0
+DEFAULT_RATE, RATE, SETTING = 0.5, limit("report rate"), limit("setting")
 THRESHOLDS = {
     "warning_threshold": "warm",
     "error_threshold": "hot",
@@ -67,7 +69,7 @@ class NaoDiagnosticUpdater:
             NaoError: If a parameter is wrong.
         """
         self._robot = robot
-        self._period = 1.0 / _number("~update_rate", DEFAULT_RATE, 1e-3, FASTEST)
+        self._period = 1.0 / _number("~update_rate", DEFAULT_RATE, RATE)
         defaults = Thresholds()
         self._limits = Thresholds(
             **{field: _number(f"~{name}", getattr(defaults, field)) for name, field in THRESHOLDS.items()}
@@ -173,10 +175,5 @@ class NaoDiagnosticUpdater:
             publish(self._diagnostics, message)
 
 
-def _number(name: str, default: float, lowest: float | None = None, highest: float | None = None) -> float:
-    value = rospy.get_param(name, default)
-    right = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not right or (lowest is not None and value < lowest) or (highest is not None and value > highest):
-        allowed = "a number" if lowest is None else f"{lowest:g} to {highest:g}"
-        raise NaoError(f"{name} is {value!r}: {allowed}")
-    return float(value)
+def _number(name: str, default: float, kind: Limit = SETTING) -> float:
+    return number_parameter(name, rospy.get_param(name, default), kind)

@@ -9,13 +9,13 @@ from typing import Any
 import rospy
 from sensor_msgs.msg import Range
 
-from ..body_devices import FARTHEST, NEAREST, SONARS
-from ..health import Report
-from ..robot_frames import tf_prefix
-from ..ros_clock import RosClock
-from .node import name_for_robot, publish, rate_parameter
+from ...nao.body_devices import FARTHEST, NEAREST, SONARS
+from ...ros.health import Report
+from ...ros.robot_frames import tf_prefix
+from ...ros.ros_clock import RosClock
+from ..base.node import name_for_robot, publish, rate_parameter
+from ..base.topic_demand import TopicDemand
 from .sonars import CONE, Sonars
-from .topic_demand import TopicDemand
 
 QUEUE = 10
 DEFAULT_RATE = 10.0

@@ -11,13 +11,13 @@ from std_msgs.msg import Bool
 
 from nao_library_msgs.msg import Bumper, ChestButton, Fsr, HandTouch, HeadTouch, TactileTouch
 
-from ..health import Report
-from ..robot_frames import tf_prefix
-from ..ros_clock import RosClock
+from ...ros.health import Report
+from ...ros.robot_frames import tf_prefix
+from ...ros.ros_clock import RosClock
+from ..base.node import publish, rate_parameter
+from ..base.polling import Polling
+from ..base.topic_demand import TopicDemand
 from .foot_pressure import SIDES, FootPressure, read_feet
-from .node import publish, rate_parameter
-from .polling import Polling
-from .topic_demand import TopicDemand
 from .touch_sensors import BUMPER, CHEST, FEET, HAND, HEAD, Sensor, TouchSensors
 
 QUEUE = 10

@@ -16,13 +16,13 @@ from nao_library_msgs.msg import FaceDetected, LandmarkDetected, MovementDetecte
 from nao_library_msgs.srv import LearnFace, LearnFaceResponse, VisionMotionSensitivity
 from naoqi.errors import BadArguments, NaoError, UnknownMethod
 
-from ..camera_facts import CAMERA_NAMES, TOP
-from ..health import Report
-from ..image_clock import ImageClock
-from ..robot_frames import tf_prefix
-from .image_messages import header_of
-from .node import name_for_robot, publish
-from .services import offer
+from ...nao.camera_facts import CAMERA_NAMES, TOP
+from ...robot.image_clock import ImageClock
+from ...ros.health import Report
+from ...ros.robot_frames import tf_prefix
+from ..base.node import name_for_robot, publish
+from ..base.services import offer
+from ..camera.image_messages import header_of
 from .vision_detection import FACES, LANDMARKS, MOVEMENT, Detection, Kind
 from .vision_messages import to_face, to_landmarks, to_movement
 from .vision_values import MovementReader, View, read_faces, read_landmarks

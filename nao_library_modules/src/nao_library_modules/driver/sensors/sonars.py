@@ -8,10 +8,10 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..body_devices import NEAREST, SONARS, echo_of
-from ..health import Level, Report
-from .demand import Demand
-from .polling import Polling
+from ...nao.body_devices import NEAREST, SONARS, echo_of
+from ...ros.health import Level, Report
+from ..base.demand import Demand
+from ..base.polling import Polling
 
 SONAR, MEMORY = "ALSonar", "ALMemory"
 CONE = 1.05

@@ -10,11 +10,11 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..body_devices import FOOT_CONTACT
-from ..event_relay import EventRelay
-from ..health import Level, Report
-from ..tactile_names import BY_EVENT
-from .demand import Demand
+from ...nao.body_devices import FOOT_CONTACT
+from ...nao.touch_names import BY_EVENT
+from ...robot.event_relay import EventRelay
+from ...ros.health import Level, Report
+from ..base.demand import Demand
 
 log = logging.getLogger(__name__)
 

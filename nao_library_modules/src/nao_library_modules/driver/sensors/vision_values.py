@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Tuple
 
-from ..camera_facts import TOP, camera_number
+from ...nao.camera_facts import TOP, camera_number
 
 Pair = Tuple[float, float]
 

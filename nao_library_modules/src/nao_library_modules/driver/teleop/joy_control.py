@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from .walk_commands import Velocity
+from ..walk.walk_commands import Velocity
 
 UNUSED = -1
 """Index of an axis or button that the gamepad does not have."""
@@ -136,7 +137,8 @@ class JoyControl:
         return _at(self._buttons or (), index) == 1 and _at(before, index) != 1
 
     def _axis(self, index: int, scale: float) -> float:
-        return scale * max(-1.0, min(1.0, _at(self._axes_now, index)))
+        value = _at(self._axes_now, index)
+        return scale * max(-1.0, min(1.0, value)) if math.isfinite(value) else 0.0  # what is no number moves nothing
 
 
 def _at(values: Sequence[float], index: int) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from .walk_commands import Velocity
+from ..walk.walk_commands import Velocity
 
 STANDSTILL = Velocity(0.0, 0.0, 0.0)
 FIRST_HOLD = 0.7

@@ -15,8 +15,8 @@ from std_srvs.srv import Empty
 from nao_library_actions.msg import BodyPoseAction, BodyPoseGoal
 from nao_library_msgs.msg import JointAnglesWithSpeed
 
-from ..simple_action_client import SimpleActionClient
-from .walk_commands import Velocity
+from ...ros.simple_action_client import SimpleActionClient
+from ..walk.walk_commands import Velocity
 
 HEAD = ("HeadYaw", "HeadPitch")
 HEAD_SPEED = 0.2

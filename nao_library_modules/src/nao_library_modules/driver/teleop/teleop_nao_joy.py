@@ -10,14 +10,17 @@ from sensor_msgs.msg import Joy
 
 from naoqi.errors import NaoError
 
-from ..clock import WallClock
-from ..health import Level, Report
-from ..interrupt import Interrupt
+from ...base.clock import WallClock
+from ...base.field_checks import number_parameter
+from ...base.interrupt import Interrupt
+from ...base.limits import limit
+from ...ros.health import Level, Report
+from ..base.pacer import Pacer
 from .joy_control import JoyControl, JoySettings, Request
-from .pacer import Pacer
 from .teleop_clients import TeleopClients
 
 DEFAULT_RATE = 10.0
+RATE, TIMEOUT = "~motion_publish_rate", "~joy_timeout"
 LOSE_LIMIT = 2.0
 
 
@@ -42,8 +45,8 @@ class TeleopNaoJoy:
             NaoError: If a parameter is wrong.
         """
         self._control = JoyControl(read_settings())
-        rate = _number("~motion_publish_rate", rospy.get_param("~motion_publish_rate", DEFAULT_RATE), 0.1, 50.0)
-        self._timeout = _number("~joy_timeout", rospy.get_param("~joy_timeout", 0.0), 0.0, 3600.0)
+        rate = number_parameter(RATE, rospy.get_param(RATE, DEFAULT_RATE), limit("teleop rate"))
+        self._timeout = number_parameter(TIMEOUT, rospy.get_param(TIMEOUT, 0.0), limit("timeout"))
         self._wall = WallClock()
         self._lock = threading.Lock()  # guards the three below
         self._heard: float | None = None
@@ -136,12 +139,7 @@ def read_settings() -> JoySettings:
             if isinstance(value, bool) or not isinstance(value, int) or value < -1:
                 raise NaoError(f"{name} is {value!r}: the number of an axis or button from 0, -1 for none")
         else:
-            value = _number(name, value, 0.0, 1.0 if field.name.startswith("max_v") else 3.1416)
+            kind = "share" if field.name.startswith("max_v") else "head angle"
+            value = number_parameter(name, value, limit(kind))
         values[field.name] = value
     return JoySettings(**values)
-
-
-def _number(name: str, value: object, lowest: float, highest: float) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not lowest <= value <= highest:
-        raise NaoError(f"{name} is {value!r}: {lowest:g} to {highest:g}")
-    return float(value)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
 import rospy
-from actionlib import ActionServer
 
 from nao_library_actions.msg import (
     ExecFootstepsAction,
@@ -19,17 +17,22 @@ from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import ClipFootstep, ClipFootstepResponse, StepTargetService, StepTargetServiceResponse
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal, RobotLost
-from ..goal_crowd import GoalCrowd, Outcome
-from ..health import Report
-from ..interrupt import Interrupt
-from ..places import Place
-from ..ros_clock import RosClock
+from ...base.errors import BadGoal, RobotLost
+from ...base.field_checks import number_parameter, require_length, require_within
+from ...base.interrupt import Interrupt
+from ...base.limits import limit
+from ...base.places import Place
+from ...ros.action_server import ActionServer
+from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.health import Report
+from ...ros.ros_clock import RosClock
+from ..joints.joint_controller import JointController
 from .footsteps_clipping import LEFT, RIGHT
 from .footsteps_walk import FootstepWalk, Step
-from .joint_controller import JointController
+from .walk_commands import ANGLE, WAY
 
 START_STIFFNESS = "init_stiffness"
+FEEDBACK, FOOTSTEPS = limit("feedback rate"), limit("footsteps")
 COMPLAINT_PERIOD = 5.0
 SHUTDOWN_LIMIT = 4.0
 LEGS = {StepTarget.left: LEFT, StepTarget.right: RIGHT}
@@ -58,9 +61,9 @@ class NaoFootsteps:
             NaoError: If a parameter is wrong.
         """
         self._robot = robot
-        self._init_stiffness = float(rospy.get_param(f"~{START_STIFFNESS}", 0.0))
-        if not 0.0 <= self._init_stiffness <= 1.0:
-            raise NaoError(f"~{START_STIFFNESS} is {self._init_stiffness:g}: 0 to 1")
+        self._init_stiffness = number_parameter(
+            f"~{START_STIFFNESS}", rospy.get_param(f"~{START_STIFFNESS}", 0.0), limit("share")
+        )
         self._walk = FootstepWalk(robot, RosClock())
         self._crowd = GoalCrowd(self._claims, self._execute, with_feedback=True, robot=robot)
         name = "footsteps_execution"
@@ -84,8 +87,7 @@ class NaoFootsteps:
 
     def _claims(self, goal: ExecFootstepsGoal) -> frozenset[str]:
         """Check the goal before it ends another one."""
-        if not (math.isfinite(goal.feedback_frequency) and goal.feedback_frequency > 0.0):
-            raise BadGoal("feedback_frequency", goal.feedback_frequency, "above 0, in Hz")
+        require_within("feedback_frequency", goal.feedback_frequency, FEEDBACK)
         self._walk.prepared(read_steps(goal.footsteps))
         return frozenset({"the legs"})
 
@@ -146,9 +148,8 @@ def read_step(target: StepTarget, field: str = "") -> Step:
     if target.leg not in LEGS:
         raise BadGoal(f"{field}leg", target.leg, "0 (right) or 1 (left)")
     place = Place(target.pose.x, target.pose.y, target.pose.theta)
-    for name, value in zip(("x", "y", "theta"), place):
-        if not math.isfinite(value):
-            raise BadGoal(f"{field}pose.{name}", value, "a finite number")
+    for name, value, limit_ in zip(("x", "y", "theta"), place, (WAY, WAY, ANGLE)):
+        require_within(f"{field}pose.{name}", value, limit_)
     return Step(LEGS[target.leg], place)
 
 
@@ -156,8 +157,9 @@ def read_steps(targets: list[StepTarget]) -> list[Step]:
     """Steps from their messages.
 
     Raises:
-        BadGoal: With the first one that will not do.
+        BadGoal: With the first one that will not do, or if they are too many.
     """
+    require_length("footsteps", len(targets), FOOTSTEPS)
     return [read_step(target, f"footsteps[{index}].") for index, target in enumerate(targets)]
 
 

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from almath import Pose2D, Position2D, avoidFootCollision, clipFootWithEllipse
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal
-from ..places import Place
+from ...base.errors import BadGoal
+from ...base.places import Place
 
 LEFT, RIGHT = "LLeg", "RLeg"
 MIN_X, MAX_X = -0.04, 0.08

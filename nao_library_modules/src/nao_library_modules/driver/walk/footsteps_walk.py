@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 from naoqi.errors import NaoError
 
-from ..errors import BadGoal, Preempted
-from ..interrupt import Interrupt
-from ..joint_names import MOTION
-from ..places import Place
+from ...base.errors import BadGoal, Preempted
+from ...base.interrupt import Interrupt
+from ...base.places import Place
+from ...nao.joint_names import MOTION
+from ..joints.joint_controller import QUICK_LIMIT
 from .footsteps_clipping import check_legs, clip
-from .joint_controller import QUICK_LIMIT
 
 STEP_TIME = 0.5
 """s from step to step."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any, List, Union
 
 from naoqi.errors import NaoError
+
+from ...base.field_checks import number_parameter
+from ...base.limits import limit
 
 GaitConfig = List[List[Union[str, float]]]
 """What ALMotion takes: [["MaxStepX", 0.04], ...]."""
@@ -44,12 +46,8 @@ def read_share(name: str, value: Any) -> float:
     Raises:
         NaoError: If it is something else.
     """
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value <= 1.0:
-        raise NaoError(f"{name} is {value!r}: 0 to 1")
-    return float(value)
+    return number_parameter(name, value, limit("share"))
 
 
 def _number(name: str, key: str, value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise NaoError(f"{name}: {key} is {value!r}: a number")
-    return float(value)
+    return number_parameter(f"{name}: {key}", value, limit("setting"))

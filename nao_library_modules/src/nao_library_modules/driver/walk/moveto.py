@@ -11,11 +11,12 @@ from std_msgs.msg import Empty
 
 from naoqi.errors import NaoError
 
-from ..health import Report
-from ..places import Place
-from ..robot_frames import tf_prefix
+from ...base.places import Place
+from ...ros.health import Report
+from ...ros.robot_frames import tf_prefix
+from ..joints.planar_frames import PlanarFrames, read_place
 from .moveto_walk import Goal, MoveToWalk
-from .planar_frames import PlanarFrames, read_place
+from .walk_commands import require_way
 
 
 class NaoqiMoveTo:
@@ -61,4 +62,5 @@ class NaoqiMoveTo:
 
     def _way(self, goal: PoseStamped) -> Place:
         """The way from where the robot is now; a goal in its own frame was told where it was then."""
-        return self._frames.place_in(self._odom, goal).seen_from(self._frames.locate(self._base, self._odom))
+        place = self._frames.place_in(self._odom, goal)
+        return require_way("goal", place.seen_from(self._frames.locate(self._base, self._odom)))

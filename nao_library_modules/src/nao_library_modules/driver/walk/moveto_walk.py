@@ -10,9 +10,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..health import Level, Report
-from ..joint_names import MOTION
-from ..places import Place
+from ...base.places import Place
+from ...nao.joint_names import MOTION
+from ...ros.health import Level, Report
 
 log = logging.getLogger(__name__)
 

@@ -14,16 +14,19 @@ from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import CmdPoseService, CmdVelService, SetArmsEnabled, StepTargetService
 from naoqi.errors import NaoError
 
-from ..health import Report
-from ..joint_names import MOTION
-from ..ros_clock import RosClock
+from ...base.field_checks import number_parameter
+from ...base.limits import limit
+from ...nao.joint_names import MOTION
+from ...ros.health import Report
+from ...ros.ros_clock import RosClock
+from ...ros.ros_edge import node_file
+from ..base.services import offer
+from ..joints.joint_controller import QUICK_LIMIT, JointController
 from .gait_config import read_gait_config, read_share
-from .joint_controller import QUICK_LIMIT, JointController
-from .services import offer
 from .walk_commands import Velocity, read_step, read_target, read_velocity
 from .walk_inhibition import WalkInhibition
 from .walk_orders import Command, Order, Overtaken, Stop
-from .walk_report import WalkJournal
+from .walk_report import IS_ACTIVE, WalkJournal
 from .walker import Walker
 
 STEPS_IN_LINE = 50
@@ -65,13 +68,12 @@ class NaoWalker:
             NaoError: If a parameter is wrong.
         """
         self._robot = robot
-        timeout = rospy.get_param("~cmd_vel_timeout", 0.5)
-        if isinstance(timeout, bool) or not isinstance(timeout, (int, float)) or not 0.0 <= timeout < float("inf"):
-            raise NaoError(f"~cmd_vel_timeout is {timeout!r}: s, 0 or more")
+        timeout = number_parameter("~cmd_vel_timeout", rospy.get_param("~cmd_vel_timeout", 0.5), limit("timeout"))
         self._init_stiffness = read_share("~init_stiffness", rospy.get_param("~init_stiffness", 0.0))
         frequency = read_share("~step_frequency", rospy.get_param("~step_frequency", 0.5))
         gait = self._gait()
-        self._inhibition = WalkInhibition()
+        self._kept = node_file()
+        self._inhibition = WalkInhibition(self._kept)
         self._journal = WalkJournal()
         self._walker = Walker(robot, RosClock(), timeout)
         self._walker.frequency = frequency
@@ -91,7 +93,8 @@ class NaoWalker:
         return {"walk": self._report}
 
     def close(self) -> None:
-        """Stop the walk and wait until the robot stands."""
+        """Stop the walk and wait until the robot stands; holds on walking end with the node."""
+        self._kept.forget()
         self._robot.connection.remove_listener(self._connection_changed)
         self._walker.close(CLOSE_LIMIT)
 
@@ -125,8 +128,6 @@ class NaoWalker:
             rospy.logdebug("%s: %s", topic, error)
         elif error is not None:
             self._journal.failed(topic, error)
-        else:
-            self._journal.succeeded()
 
     def _velocity(self, name: str, twist: Twist) -> Velocity:
         velocity, clamped = read_velocity(twist)
@@ -145,7 +146,9 @@ class NaoWalker:
             raise NaoError(f"refused from {caller}: walking is inhibited by {', '.join(owners)}")
         source = f"{name} from {caller}"
         self._journal.commanded(source, rospy.get_time())
-        return self._walker.order(command, source, **options)
+        order = self._walker.order(command, source, **options)
+        order.answer.add_done_callback(lambda answer: answer.exception() or self._journal.succeeded(name))
+        return order
 
     # --- services -------------------------------------------------------------------------------------------------
 
@@ -227,9 +230,10 @@ class NaoWalker:
         active = None
         if self._robot.connection.state == "connected":
             try:
-                active = self._robot.proxy(MOTION).call_async("moveIsActive").result(timeout=QUICK_LIMIT)
+                active = self._robot.proxy(MOTION).call_async(IS_ACTIVE).result(timeout=QUICK_LIMIT)
+                self._journal.succeeded(IS_ACTIVE)
             except NaoError as error:
-                self._journal.failed("moveIsActive", error)
+                self._journal.failed(IS_ACTIVE, error)
         return self._journal.report(
             rospy.get_time(), self._walker.doing, active, self._inhibition.owners, self._walker.watchdog_stops
         )

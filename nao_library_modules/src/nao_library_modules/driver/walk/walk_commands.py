@@ -6,8 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ..errors import BadGoal
+from ...base.errors import BadGoal
+from ...base.field_checks import require_within
+from ...base.limits import limit
+from ...base.places import Place
 
+WAY, ANGLE = limit("way"), limit("angle")
 STANDSTILL = 1e-3
 """A velocity below this (fraction of the top speed) in all directions is none."""
 LEGS = {0: "RLeg", 1: "LLeg"}
@@ -81,7 +85,8 @@ def read_velocity(twist: Any) -> tuple[Velocity, str]:
         ("linear.y", twist.linear.y),
         ("angular.z", twist.angular.z),
     ):
-        _check_finite(name, value, "-1 to 1")
+        if not math.isfinite(value):
+            raise BadGoal(name, value, "-1 to 1")
         if abs(value) > 1.0:
             clamped.append(f"{name} is {value:g}, taken as {math.copysign(1.0, value):g}")
         values.append(max(-1.0, min(1.0, value)))
@@ -92,7 +97,7 @@ def read_target(pose: Any) -> Target:
     """The target of a geometry_msgs/Pose2D.
 
     Raises:
-        BadGoal: If a part is not a finite number.
+        BadGoal: If a part is out of its bounds.
     """
     return Target(*_pose(pose))
 
@@ -101,19 +106,25 @@ def read_step(step: Any) -> Step:
     """The step of a nao_library_msgs/StepTarget.
 
     Raises:
-        BadGoal: If it names no leg, or a part is not a finite number.
+        BadGoal: If it names no leg, or a part is out of its bounds.
     """
     if step.leg not in LEGS:
         raise BadGoal("leg", step.leg, "0 (right) or 1 (left)")
     return Step(LEGS[step.leg], *_pose(step.pose))
 
 
+def require_way(field: str, way: Place) -> Place:
+    """A way that a robot can be sent, seen from where it is.
+
+    Raises:
+        BadGoal: If it is too far.
+    """
+    if not way.distance <= WAY.highest:
+        raise BadGoal(field, f"{way.distance:g} m away", f"up to {WAY.highest:g} m from the robot")
+    return way
+
+
 def _pose(pose: Any) -> tuple[float, float, float]:
-    for name, unit in (("x", "m"), ("y", "m"), ("theta", "rad")):
-        _check_finite(f"pose.{name}", getattr(pose, name), f"a finite number, in {unit}")
+    for name, limit_ in (("x", WAY), ("y", WAY), ("theta", ANGLE)):
+        require_within(f"pose.{name}", getattr(pose, name), limit_)
     return float(pose.x), float(pose.y), float(pose.theta)
-
-
-def _check_finite(name: str, value: float, allowed: str) -> None:
-    if not math.isfinite(value):
-        raise BadGoal(name, value, allowed)

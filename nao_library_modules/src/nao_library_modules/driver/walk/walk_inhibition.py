@@ -7,6 +7,8 @@ from collections import Counter
 
 from naoqi.errors import NaoError
 
+from ...base.kept import Kept
+
 
 class NotInhibited(NaoError):
     """Somebody lets walking go that nobody inhibits."""
@@ -19,14 +21,17 @@ class NotInhibited(NaoError):
 class WalkInhibition:
     """Holds on walking, by who put them on. Every method may be called from any thread.
 
+    Args:
+        kept: Where they are kept for the time after the death of this node.
+
     Whoever inhibits walking means the others: a node that follows a path keeps a joystick from interfering, and
     walks itself.
     """
 
-    def __init__(self) -> None:
-        """Begin with none."""
+    def __init__(self, kept: Kept) -> None:
         self._lock = threading.Lock()
-        self._holds: Counter[str] = Counter()
+        self._kept = kept
+        self._holds: Counter[str] = Counter(kept.load() or {})
 
     def inhibit(self, owner: str) -> int:
         """Put a hold on walking.
@@ -39,7 +44,7 @@ class WalkInhibition:
         """
         with self._lock:
             self._holds[owner] += 1
-            return sum(self._holds.values())
+            return self._keep()
 
     def let_go(self, owner: str) -> int:
         """Take a hold off: one of the node's own if it has any, else the first that was put on.
@@ -62,7 +67,12 @@ class WalkInhibition:
             self._holds[held] -= 1
             if not self._holds[held]:
                 del self._holds[held]
-            return sum(self._holds.values())
+            return self._keep()
+
+    def _keep(self) -> int:
+        """Keep what there is; its number."""
+        self._kept.save(self._holds)
+        return sum(self._holds.values())
 
     @property
     def owners(self) -> list[str]:

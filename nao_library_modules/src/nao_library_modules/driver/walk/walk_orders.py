@@ -9,7 +9,10 @@ from typing import Union
 
 from naoqi.errors import NaoError
 
+from ...base.limits import limit
 from .walk_commands import Step, Target, Velocity
+
+MOST = int(limit("footsteps").highest)
 
 
 class Stop:
@@ -101,11 +104,16 @@ class OrderBox:
         self._orders: list[Order] = []
 
     def put(self, order: Order) -> None:
-        """Add an order; those that it replaces end."""
+        """Add an order; those that it replaces end. A step that is one too many fails, a stop never does."""
         replaced: list[Order] = []
         with self._lock:
+            if len(self._orders) >= MOST:
+                if isinstance(order.command, Step):
+                    order.fail(WalkEnded(order.command, f"{len(self._orders)} orders wait already, {MOST} at most"))
+                    return
+                replaced.append(self._orders.pop(0))
             if not isinstance(order.command, Step):
-                replaced = [waiting for waiting in self._orders if not isinstance(waiting.command, Stop)]
+                replaced += [waiting for waiting in self._orders if not isinstance(waiting.command, Stop)]
                 self._orders = [waiting for waiting in self._orders if isinstance(waiting.command, Stop)]
             self._orders.append(order)
         for old in replaced:

@@ -7,10 +7,13 @@ import threading
 import time
 from collections.abc import Sequence
 
-from ..health import Level, Report
+from ...ros.health import Level, Report
 
 log = logging.getLogger(__name__)
 
+IS_ACTIVE = "moveIsActive"
+QUESTIONS = (IS_ACTIVE,)
+"""Methods that the report asks: their answers say nothing about commands."""
 COMPLAINT_PERIOD = 5.0
 """s of real time from one complaint to the next about the same thing."""
 
@@ -26,7 +29,7 @@ class WalkJournal:
         self._commanded_at = 0.0
         self._failures = 0
         self._last_failure = ""
-        self._failing = False
+        self._failing = ""  # what failed last, and has not succeeded since
 
     def commanded(self, source: str, now: float) -> None:
         """A command was taken.
@@ -38,21 +41,26 @@ class WalkJournal:
         with self._lock:
             self._command, self._commanded_at = source, now
 
-    def succeeded(self) -> None:
-        """The robot carried a command out."""
+    def succeeded(self, name: str) -> None:
+        """The robot carried a command out, or answered.
+
+        Args:
+            name: Topic, service or method; a command ends what is told of any failure, a method of its own.
+        """
         with self._lock:
-            self._failing = False
+            if name not in QUESTIONS or self._failing == name:
+                self._failing = ""
 
     def failed(self, name: str, error: BaseException) -> None:
         """A command failed or was refused; the log tells it, but not all the time.
 
         Args:
-            name: Topic or service.
+            name: Topic, service or method.
             error: Why.
         """
         with self._lock:
             self._failures += 1
-            self._failing = True
+            self._failing = name
             self._last_failure = f"{name}: {error}"
         if self._is_due(f"{name} failed"):
             log.error("%s: %s", name, error)

@@ -11,13 +11,13 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
-from ..clock import WallClock
-from ..errors import Preempted
-from ..interrupt import Interrupt
-from ..joint_names import MOTION
-from ..robot_task import run_task
+from ...base.clock import WallClock
+from ...base.errors import Preempted
+from ...base.interrupt import Interrupt
+from ...nao.joint_names import MOTION
+from ...robot.robot_task import run_task
+from ..joints.joint_controller import QUICK_LIMIT
 from .gait_config import GaitConfig
-from .joint_controller import QUICK_LIMIT
 from .walk_commands import Step, Target, Velocity
 from .walk_orders import Command, Order, OrderBox, Overtaken, Stop, WalkEnded
 from .walk_pace import WalkPace

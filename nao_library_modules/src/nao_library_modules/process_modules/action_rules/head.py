@@ -8,9 +8,9 @@ from typing import Any
 from ..designators.designator import Designator, action
 from ..designators.patterns import Mismatch, anything, one_of, text
 from ..designators.rules import Command, command, rule
-from ..failures import DesignatorError
-from ..settings import numbers_of_nao
-from ..space import Point3
+from ..language.failures import DesignatorError
+from ..language.settings import numbers_of_nao
+from ..language.space import Point3
 from .values import BOTH, a_position, points_of
 
 MANIPULATION = "manipulation"

@@ -6,12 +6,13 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from ...places import Place
+from ...base.limits import limit
+from ...base.places import Place
 from ..designators.designator import Designator, action, motion
 from ..designators.patterns import Mismatch, Pattern, one_of
-from ..failures import DesignatorError
-from ..settings import numbers_of_nao
-from ..space import Point3, Position
+from ..language.failures import DesignatorError
+from ..language.settings import numbers_of_nao
+from ..language.space import Point3, Position
 
 ODOM, TORSO = "odom", "torso"
 SIDE = one_of("left", "right")
@@ -81,13 +82,14 @@ def _finite(values: Sequence[Any]) -> list[float]:
     """The values as numbers.
 
     Raises:
-        Mismatch: One is none, or not finite.
+        Mismatch: One is none, or out of the bounds of places.
     """
     try:
         found = [float(value) for value in values]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise Mismatch from None
-    if not all(map(math.isfinite, found)):
+    lowest, highest, _ = limit("place")
+    if not all(lowest <= value <= highest for value in found):  # also for what is not finite
         raise Mismatch
     return found
 

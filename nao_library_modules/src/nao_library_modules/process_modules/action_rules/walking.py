@@ -8,7 +8,7 @@ from typing import Any
 from ..designators.designator import Designator, action
 from ..designators.patterns import Mismatch, anything, one_of
 from ..designators.rules import Command, command, rule
-from ..failures import DesignatorError
+from ..language.failures import DesignatorError
 from .values import BOTH, a_place
 
 NAVIGATION = "navigation"

@@ -10,21 +10,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..places import Place, wrapped
-from .control import Branch, Step, do, pursue, subtask
-from .designators.designator import Designator, action, an, current_desig, equate, location, object_
-from .designators.locations import next_different_location_solution
-from .designators.objects import BELIEFS, KnownObject
-from .failures import (
+from ...base.places import Place, wrapped
+from ..designators.designator import Designator, action, an, current_desig, equate, location, object_
+from ..designators.locations import next_different_location_solution
+from ..designators.objects import BELIEFS, KnownObject
+from ..language.control import Branch, Step, do, pursue, subtask
+from ..language.failures import (
     AmbiguousPerception,
     NavigationHighLevelFailure,
     NavigationLowLevelFailure,
     PerceptionObjectNotFound,
     PlanError,
 )
-from .flow import wait_until
-from .fluents import AnyFluent
-from .handling import do_retry, with_failure_handling, with_retry_counters
+from ..language.flow import wait_until
+from ..language.fluents import AnyFluent
+from ..language.handling import do_retry, with_failure_handling, with_retry_counters
 from .registry import perform
 
 QUANTIFIERS = ("a", "all", "the", "currently-visible")

@@ -15,14 +15,14 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from ..clock import WallClock
-from .control import Step, do, subtask, top_level
-from .designators.designator import Designator
-from .designators.rules import Command
-from .failures import PlanFailure, ProcessModuleNotRunning, ProcessModuleRunning, TaskEvaporatedFailure
-from .flow import here, retry_after_suspension, uninterrupted, wait_until
-from .fluents import Fluent
-from .tasks import Task
+from ...base.clock import WallClock
+from ..designators.designator import Designator
+from ..designators.rules import Command
+from ..language.control import Step, do, subtask, top_level
+from ..language.failures import PlanFailure, ProcessModuleNotRunning, ProcessModuleRunning, TaskEvaporatedFailure
+from ..language.flow import here, retry_after_suspension, uninterrupted, wait_until
+from ..language.fluents import Fluent
+from ..language.tasks import Task
 
 log = logging.getLogger(__name__)
 

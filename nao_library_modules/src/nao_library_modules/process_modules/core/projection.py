@@ -14,9 +14,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..own_stack import OwnStack
-from .failures import PlanFailure
-from .trace import Record, Trace
+from ...processes.own_stack import OwnStack
+from ..language.failures import PlanFailure
+from ..language.trace import Record, Trace
 
 LIMIT = 600.0
 """s of wall time that a projected plan may take."""

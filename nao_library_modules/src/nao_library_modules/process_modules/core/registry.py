@@ -12,10 +12,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Union
 
-from .control import Step, subtask
-from .designators.designator import Designator, current_desig
-from .designators.rules import Command
-from .failures import (
+from ...base.suggestion import of_those
+from ..designators.designator import Designator, current_desig
+from ..designators.rules import Command
+from ..language.control import Step, subtask
+from ..language.failures import (
     DesignatorError,
     GoalNotAchieved,
     NoMatchingProcessModule,
@@ -24,9 +25,9 @@ from .failures import (
     ProcessModuleRunning,
     UnknownProcessModule,
 )
-from .flow import wait_until
-from .fluents import Fluent
-from .goals import Occasion, holds
+from ..language.flow import wait_until
+from ..language.fluents import Fluent
+from ..language.goals import Occasion, holds
 from .process_module import ModuleState, ProcessModule, Request, execute_on
 
 log = logging.getLogger(__name__)
@@ -64,7 +65,7 @@ def get_process_module(name: Named) -> ProcessModule:
         found = _modules.get(_aliases.get(name, name))
         known = sorted({*_modules, *_aliases})
     if found is None:
-        raise UnknownProcessModule(f"no process module {name!r}: there are {', '.join(known) or 'none'}")
+        raise UnknownProcessModule(f"no process module {name!r}{of_those(name, known)}")
     return found
 
 

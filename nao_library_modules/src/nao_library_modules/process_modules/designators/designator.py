@@ -19,12 +19,19 @@ from typing import Any, Iterable, Mapping, Union
 
 import yaml
 
-from ..failures import DesignatorError, PlanError
-from ..telling import told
+from ...base.limits import limit
+from ...base.yaml_values import Budget, load_within
+from ..language.failures import DesignatorError, PlanError
+from ..language.telling import told
 from .lisp import read_lisp
 
 KINDS = ("action", "motion", "location", "object")
 QUANTIFIERS = ("a", "the", "all")
+LONGEST, MOST_VALUES, DEEPEST = (
+    int(limit(f"designator {what}").highest) for what in ("characters", "values", "levels")
+)
+BITS = 64
+"""Of whole numbers in texts: others are no numbers of a robot, and no float is as large."""
 Description = Union[Mapping[str, Any], Iterable[Any], str]
 
 
@@ -162,7 +169,7 @@ class Designator:
 
     def _has(self, place: int) -> bool:
         if self._solutions is None:
-            solutions = iter(self._resolve(self) if self._resolve is not None else _by_rules(self))
+            solutions = iter(self._resolve(self) if self._resolve is not None else _Usual.solutions(self))
             self._solutions = itertools.islice(solutions, len(self._found), None)
         while len(self._found) <= place:
             try:
@@ -217,14 +224,47 @@ def designator(description: Description, kind: str = "") -> Designator:
     name a kind, `{location: {...}}` or `{type: location, ...}`, are designators as well.
 
     Raises:
-        PlanError: It is none of these.
+        PlanError: It is none of these, or text of more than is read.
     """
-    if isinstance(description, str) and description.lstrip().startswith("("):
-        return _of_lisp(read_lisp(description), kind)
+    if isinstance(description, str):
+        require_short(len(description))
+        if description.lstrip().startswith("("):
+            return _of_lisp(read_lisp(description, MOST_VALUES, DEEPEST), kind)
     content = _mapping(description)
     if not kind and content.get("type") in KINDS:
         kind = content.pop("type")
     return Designator(kind or action, {key: _nested(value) for key, value in content.items()})
+
+
+def text_budget() -> Budget:
+    """What the texts of one designator may stand for together."""
+    return Budget(MOST_VALUES, DEEPEST)
+
+
+def require_short(characters: int) -> None:
+    """See that the texts of a designator are not too long, all together.
+
+    Raises:
+        PlanError: They are.
+    """
+    if characters > LONGEST:
+        raise PlanError(f"designator: the text has {characters} characters: at most {LONGEST} are read")
+
+
+def read_yaml(text: str, budget: Budget) -> Any:
+    """The value of a text.
+
+    Args:
+        text: YAML.
+        budget: How much it may stand for.
+
+    Raises:
+        PlanError: It is no YAML, or stands for too much.
+    """
+    try:
+        return load_within(text, budget)
+    except yaml.YAMLError as error:
+        raise PlanError(f"designator: {told(text)} is no YAML that is read here: {error}") from error
 
 
 def _of_lisp(form: Mapping[str, Any], kind: str) -> Designator:
@@ -236,7 +276,7 @@ def _of_lisp(form: Mapping[str, Any], kind: str) -> Designator:
 def _lisp_value(value: Any) -> Any:
     if isinstance(value, list):
         return [_lisp_value(each) for each in value]
-    return _of_lisp(value, "") if isinstance(value, Mapping) else value
+    return _of_lisp(value, "") if isinstance(value, Mapping) else _plain(value)
 
 
 def plain_key(key: str) -> str:
@@ -247,16 +287,14 @@ def plain_key(key: str) -> str:
 def _mapping(description: Description) -> dict[str, Any]:
     content: Any = description
     if isinstance(description, str):
-        try:
-            content = yaml.safe_load(description)
-        except yaml.YAMLError as error:
-            raise PlanError(f"designator: {description!r} is no YAML: {error}") from error
+        content = read_yaml(description, text_budget())
     try:
         content = dict(content)
     except (TypeError, ValueError):
         content = None
     if not content or not all(isinstance(key, str) for key in content):
-        raise PlanError(f"designator: {description!r} has no keys and values, as {{type: action, name: to open}} has")
+        there = told(description)
+        raise PlanError(f"designator: {there} has no keys and values, as {{type: action, name: to open}} has")
     return content
 
 
@@ -271,6 +309,17 @@ def _nested(value: Any) -> Any:
         return {key: _nested(inner) for key, inner in value.items()}
     if isinstance(value, list):
         return [_nested(inner) for inner in value]
+    return _plain(value)
+
+
+def _plain(value: Any) -> Any:
+    """A value that is no list and no mapping.
+
+    Raises:
+        PlanError: It is a whole number that is larger than any that is meant.
+    """
+    if isinstance(value, int) and value.bit_length() > BITS:
+        raise PlanError(f"designator: a whole number has {value.bit_length()} bits: at most {BITS} are read")
     return value
 
 
@@ -334,10 +383,15 @@ def _newest(desig: Designator) -> Designator:
     return desig
 
 
-def _by_rules(desig: Designator) -> Iterable[Any]:
-    from .rules import RULES  # rules are about designators
+class _Usual:
+    """How designators are resolved that have no way of their own."""
 
-    return RULES.solutions(desig)
+    solutions: Callable[[Designator], Iterable[Any]]
+
+
+def resolve_by(solutions: Callable[[Designator], Iterable[Any]]) -> None:
+    """Have designators resolved that have no way of their own: `rules`, which are about designators, do so."""
+    _Usual.solutions = staticmethod(solutions)
 
 
 def _shown(value: Any) -> str:

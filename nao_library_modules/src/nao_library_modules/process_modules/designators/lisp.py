@@ -10,44 +10,55 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from ..failures import PlanError
+from ..language.failures import PlanError
+from ..language.telling import told
 
 TOKEN = re.compile(r'\s*(?:(?P<bracket>[()])|"(?P<text>(?:[^"\\]|\\.)*)"|(?P<word>[^\s()"]+))')
 NUMBER, FRACTION = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"), re.compile(r"[.eE]")
+LONGEST_NUMBER = 40
+"""Characters."""
 QUANTIFIERS = {"a": "a", "an": "a", "the": "the", "all": "all"}
 
 
-def read_lisp(text: str) -> dict[str, Any]:
+def read_lisp(text: str, values: int, levels: int) -> dict[str, Any]:
     """Keys and values of a designator: the kind under `type` with its pairs, or as one key with a mapping.
+
+    Args:
+        text: It.
+        values: The most words, numbers and brackets that it may have.
+        levels: The most brackets in each other.
 
     Returns:
         `{"quantifier": "a", "kind": "action", "pairs": {...}}`; quantifier and kind are empty where there are none.
 
     Raises:
-        PlanError: Brackets are missing or too many, or it has another form.
+        PlanError: Brackets are missing or too many, it has another form, or there is too much of it.
     """
-    forms = _read(text)
+    forms = _read(text, values, levels)
     if len(forms) != 1 or not isinstance(forms[0], list):
-        raise PlanError(f"designator: {text!r} is not one form in brackets")
+        raise PlanError(f"designator: {told(text)} is not one form in brackets")
     return _designator(forms[0], text)
 
 
-def _read(text: str) -> list[Any]:
+def _read(text: str, values: int, levels: int) -> list[Any]:
     """Nested lists of words; numbers are numbers, what was in quotes is a `_Quoted`."""
     stack: list[list[Any]] = [[]]
     opened: list[int] = []
     position = 0
     end = len(text.rstrip())
     while position < end:
+        values -= 1
+        if values < 0 or len(opened) > levels:
+            raise PlanError(f"designator: {told(text)} has {'too many values' if values < 0 else 'too many levels'}")
         match = TOKEN.match(text, position)
         if match is None:
-            raise PlanError(f"designator: {text!r} has an open quotation mark at {position + 1}")
+            raise PlanError(f"designator: {told(text)} has an open quotation mark at {position + 1}")
         if match["bracket"] == "(":
             opened.append(match.start("bracket") + 1)
             stack.append([])
         elif match["bracket"] == ")":
             if not opened:
-                raise PlanError(f"designator: {text!r} has a bracket too many at {match.start('bracket') + 1}")
+                raise PlanError(f"designator: {told(text)} has a bracket too many at {match.start('bracket') + 1}")
             opened.pop()
             form = stack.pop()
             stack[-1].append(form)
@@ -59,7 +70,7 @@ def _read(text: str) -> list[Any]:
             stack[-1].append(_Quoted(re.sub(r"\\(.)", r"\1", match["text"])))
         position = match.end()
     if opened:
-        raise PlanError(f"designator: {text!r}: the bracket at {opened[-1]} is not closed")
+        raise PlanError(f"designator: {told(text)}: the bracket at {opened[-1]} is not closed")
     return stack[0]
 
 
@@ -69,6 +80,8 @@ class _Quoted(str):
 
 def _value(word: str) -> Any:
     if NUMBER.fullmatch(word):
+        if len(word) > LONGEST_NUMBER:
+            raise PlanError(f"designator: the number {told(word)} has {len(word)} characters: {LONGEST_NUMBER} at most")
         return float(word) if FRACTION.search(word) else int(word)
     return {"t": True, "nil": False}.get(word.lower(), word)
 
@@ -90,7 +103,7 @@ def _pairs(forms: list[Any], text: str) -> dict[str, Any]:
         elif isinstance(entry, list) and len(entry) >= 2 and isinstance(entry[0], str):
             key, values = entry[0], entry[1:]
         else:
-            raise PlanError(f"designator: {text!r}: {_shown(entry)} is no key with a value")
+            raise PlanError(f"designator: {told(text)}: {_shown(entry)} is no key with a value")
         pairs[key.lower()] = _meant(values, text)
     return pairs
 

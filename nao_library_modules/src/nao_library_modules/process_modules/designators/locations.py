@@ -19,12 +19,14 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Callable, Iterable
 
-from ...places import Place, wrapped
-from ..failures import DesignatorError
-from ..settings import numbers_of_nao
-from ..space import Point3
+from ...base.places import Place, wrapped
+from ..language.failures import DesignatorError
+from ..language.settings import numbers_of_nao
+from ..language.space import Point3
+from ..language.telling import told
 from .designator import Designator, location
 from .objects import BELIEFS, KnownObject
+from .patterns import Mismatch, number
 from .rules import rule
 
 MOST_TRIES = 200
@@ -125,8 +127,8 @@ def pose_of_description(desig: Designator) -> Iterator[Candidate]:
         return
     try:
         x, y, yaw = map(float, [*pose, 0.0][:3])
-    except (TypeError, ValueError):
-        raise DesignatorError(desig, f"its pose is {pose!r}, not [x, y, yaw] in m and rad") from None
+    except (TypeError, ValueError, OverflowError):
+        raise DesignatorError(desig, f"its pose is {told(pose)}, not [x, y, yaw] in m and rad") from None
     yield Candidate(Place(x, y, yaw), str(desig.get("frame", "odom")))
 
 
@@ -136,7 +138,11 @@ def around_object(desig: Designator) -> Iterator[Candidate]:
     if thing is None:
         return
     distance = desig.get("distance", 0.1)
-    yield from _ring(thing, [float(distance) + numbers_of_nao().robot_radius])
+    try:
+        away = number().take(distance)
+    except Mismatch:
+        raise DesignatorError(desig, f"its distance is {told(distance)}, not a number in m") from None
+    yield from _ring(thing, [away + numbers_of_nao().robot_radius])
 
 
 def to_see(desig: Designator) -> Iterator[Candidate]:

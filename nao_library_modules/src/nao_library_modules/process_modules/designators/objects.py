@@ -14,8 +14,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ..failures import AmbiguousPerception, DesignatorError
-from ..space import Point3
+from ..language.failures import AmbiguousPerception, DesignatorError
+from ..language.space import Point3
 from .designator import Designator, object_
 from .patterns import plain
 from .rules import rule

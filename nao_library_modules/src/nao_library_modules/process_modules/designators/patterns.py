@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
+from ...base.limits import limit
 from .designator import Designator
+
+SETTING = limit("setting")
 
 
 class Mismatch(Exception):  # noqa: N818  caught by the matcher
@@ -52,16 +54,12 @@ def text() -> Pattern:
     return Pattern("a text", take)
 
 
-def number(lowest: float = -math.inf, highest: float = math.inf, unit: str = "") -> Pattern:
-    """A finite number in a range."""
-    ends = ""
-    if math.isfinite(lowest) or math.isfinite(highest):
-        ends = f" from {lowest:g} to {highest:g}"
+def number(lowest: float = SETTING.lowest, highest: float = SETTING.highest, unit: str = "") -> Pattern:
+    """A number in a range."""
+    ends = "" if (lowest, highest) == SETTING[:2] else f" from {lowest:g} to {highest:g}"
 
     def take(value: Any) -> float:
-        if not isinstance(value, Real) or isinstance(value, bool) or not math.isfinite(value):
-            raise Mismatch
-        if not lowest <= float(value) <= highest:
+        if not isinstance(value, Real) or isinstance(value, bool) or not lowest <= value <= highest:
             raise Mismatch
         return float(value)
 
@@ -69,16 +67,16 @@ def number(lowest: float = -math.inf, highest: float = math.inf, unit: str = "")
 
 
 def numbers(count: int, unit: str = "") -> Pattern:
-    """So many finite numbers; also as a mapping of x, y and z."""
+    """So many numbers; also as a mapping of x, y and z."""
 
     def take(value: Any) -> tuple[float, ...]:
         if isinstance(value, Mapping):
             value = [value[axis] for axis in "xyz" if axis in value]
         try:
             listed = tuple(float(each) for each in value)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise Mismatch from None
-        if len(listed) != count or not all(map(math.isfinite, listed)):
+        if len(listed) != count or not all(SETTING.lowest <= each <= SETTING.highest for each in listed):
             raise Mismatch
         return listed
 

@@ -17,9 +17,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..failures import DesignatorError, PlanError
-from ..telling import told
-from .designator import KINDS, Designator, plain_key
+from ..language.failures import DesignatorError, PlanError
+from ..language.telling import told
+from .designator import KINDS, Designator, plain_key, resolve_by
 from .patterns import Mismatch, Pattern, as_pattern
 
 MOST_TOLD = 4
@@ -107,7 +107,7 @@ class Rule:
             try:
                 values[key] = pattern.take(desig[key])
             except Mismatch:
-                raise Mismatch(f"{key} is {desig[key]!r}, not {pattern.wanted}") from None
+                raise Mismatch(f"{key} is {told(desig[key])}, not {pattern.wanted}") from None
         return values
 
     def keys_that_fit(self, desig: Designator) -> int:
@@ -172,6 +172,7 @@ class Rules:
 
 RULES = Rules()
 """Those of this package, and what users add."""
+resolve_by(RULES.solutions)
 
 
 def rule(

@@ -16,7 +16,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Callable, Union
 
-from ..clock import WallClock
+from ...base.clock import WallClock
+from ...base.suggestion import of_those
 from .failures import CompositeFailure, PlanError, PlanFailure
 from .flow import Flow, here, set_here, uninterrupted, wait_until
 from .tasks import Task, TaskState, TaskTree, current_task, failed, failure_of
@@ -76,7 +77,7 @@ def top_level(
     Args:
         body: The plan.
         name: Of its root task.
-        clock: Whose time it has, see `nao_library_modules.clock`; the computer's if there is none.
+        clock: Whose time it has, see `nao_library_modules.base.clock`; the computer's if there is none.
         observers: Called with each task of the tree whenever it has changed.
 
     Returns:
@@ -308,7 +309,7 @@ def _predecessors(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]
     for chain in order:
         for name in chain:
             if name not in before:
-                raise PlanError(f"partial_order: no branch {name!r}: there are {', '.join(branches)}")
+                raise PlanError(f"partial_order: no branch {name!r}{of_those(name, branches)}")
         for first, second in zip(chain, chain[1:]):
             before[second].add(first)
     open_names = dict(before)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from ..interrupt import Interrupt
+from ...base.interrupt import Interrupt
 from .failures import PlanError
 from .fluents import AnyFluent
 

@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, NoReturn, Tuple, Type, Union
 
+from ...base.suggestion import of_those
 from .control import Branch, Step, subtask
 from .failures import PlanError, PlanFailure
 from .tasks import Task, current_task
@@ -156,4 +157,4 @@ def _counter(name: str) -> list[int]:
             return counters[name]
         known += counters
         task = task.parent
-    raise PlanError(f"no retry counter {name!r}: there are {', '.join(known) or 'none'}; see with_retry_counters")
+    raise PlanError(f"no retry counter {name!r}{of_those(name, known)}; see with_retry_counters")

@@ -6,6 +6,8 @@ import functools
 import logging
 import threading
 from collections.abc import Callable
+from concurrent import futures
+from concurrent.futures import Future
 from typing import Any
 
 from naoqi.errors import NaoError
@@ -39,21 +41,19 @@ class StartedPlan:
 
     def __init__(self, name: str, run: Callable[[Callable[[Task], None]], Any]) -> None:
         self.name = name
-        self._over = threading.Event()
+        self._answer: Future = Future()
         self._lock = threading.Lock()
         self._root: Task | None = None
         self._cancelled = False
-        self._value: Any = None
-        self._error: BaseException | None = None
         threading.Thread(target=self._run, args=(run,), name=f"plan {name}", daemon=True).start()
 
     def done(self) -> bool:
         """Whether it is over."""
-        return self._over.is_set()
+        return self._answer.done()
 
     def wait(self, timeout: float | None = None) -> bool:
         """Wait for its end, at most so many s of this computer; whether it is over."""
-        return self._over.wait(timeout)
+        return bool(futures.wait([self._answer], timeout).done)
 
     def result(self, timeout: float | None = None) -> Any:
         """Wait for its end, at most so many s of this computer; what it answered.
@@ -64,9 +64,7 @@ class StartedPlan:
         """
         if not self.wait(timeout):
             raise NaoError(f"the plan {self.name} is not over after {timeout:g} s; it goes on")
-        if self._error is not None:
-            raise self._error
-        return self._value
+        return self._answer.result()
 
     def cancel(self) -> None:
         """End it; `wait` tells when it has come to that."""
@@ -85,14 +83,13 @@ class StartedPlan:
 
     def _run(self, run: Callable[[Callable[[Task], None]], Any]) -> None:
         try:
-            self._value = run(self._see)
-        except PlanFailure as failure:
-            self._error = failure
-        except BaseException as error:  # a mistake in the plan: nobody may ever ask for the result
-            log.exception("the plan %s ended by an unexpected error", self.name)
-            self._error = error
-        finally:
-            self._over.set()
+            value = run(self._see)
+        except BaseException as error:
+            if not isinstance(error, PlanFailure):  # a mistake in the plan: nobody may ever ask for the result
+                log.exception("the plan %s ended by an unexpected error", self.name)
+            self._answer.set_exception(error)
+        else:
+            self._answer.set_result(value)
 
 
 def def_top_level_plan(function: Callable[..., Any]) -> Callable[..., Any]:

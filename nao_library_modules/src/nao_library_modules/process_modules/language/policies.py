@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Tuple, Type, Union
 
+from ...base.suggestion import of_those
 from .control import Branch, Step, do, pursue, subtask
 from .failures import PlanTimedOut, PolicyCheckConditionMet, PolicyInitFailed, PolicyNotFound
 from .flow import sleep, uninterrupted
@@ -70,7 +71,7 @@ def named_policy(name: str) -> Callable[..., Policy]:
         PolicyNotFound: There is none.
     """
     if name not in _named:
-        raise PolicyNotFound(f"no policy {name!r}: there are {', '.join(sorted(_named)) or 'none'}", policy=name)
+        raise PolicyNotFound(f"no policy {name!r}{of_those(name, sorted(_named))}", policy=name)
     return _named[name]
 
 

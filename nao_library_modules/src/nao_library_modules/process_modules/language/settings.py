@@ -12,7 +12,10 @@ import yaml
 
 from naoqi.errors import NaoError
 
-FILE = Path(__file__).resolve().parents[3] / "config" / "process_modules.yaml"
+from ...base.paths import config_file
+from ...base.suggestion import did_you_mean
+
+FILE = config_file("process_modules.yaml")
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,7 @@ def load_settings(file: Path | str = FILE) -> Settings:
     unknown = [key for key in content if key not in names]
     missing = [name for name in names if name not in content]
     if unknown or missing:
-        told = [f"unknown {', '.join(map(str, unknown))}"] * bool(unknown)
+        told = [f"unknown {key!r}{did_you_mean(str(key), names)}" for key in unknown]
         told += [f"missing {', '.join(missing)}"] * bool(missing)
         raise NaoError(f"{path.name}: {'; '.join(told)} (keys are {', '.join(names)})")
     return Settings(**{name: _tuples(content[name]) for name in names})

@@ -15,6 +15,7 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from ...base.suggestion import of_those
 from .failures import PlanError, PlanFailure, TaskEvaporatedFailure
 from .flow import Evaporated, Flow, here, set_here
 from .fluents import Fluent
@@ -117,8 +118,8 @@ class Task:
         """
         found = [task for task in self if task.name == name]
         if not found:
-            names = ", ".join(dict.fromkeys(task.name for task in self))
-            raise PlanError(f"no task {name!r} in {self.path}: there are {names}")
+            names = dict.fromkeys(task.name for task in self)
+            raise PlanError(f"no task {name!r} in {self.path}{of_those(name, names)}")
         return found[-1]
 
     def __repr__(self) -> str:
@@ -307,7 +308,7 @@ class TaskTree:
     Args:
         name: Of the plan.
         body: What it does.
-        clock: With `now()` and `wait(duration, interrupt)`, see `nao_library_modules.clock`.
+        clock: With `now()` and `wait(duration, interrupt)`, see `nao_library_modules.base.clock`.
     """
 
     def __init__(self, name: str, body: Callable[[], Any], clock: Any) -> None:

@@ -6,12 +6,14 @@ import re
 from typing import Any
 
 DIGITS = 3
+SHORTENED = 8
+"""How much longer a number is, at most, before its digits are left out: the rest of a long text is not looked at."""
 LONG_NUMBER = re.compile(r"-?\d+\.\d{4,}(?:e-?\d+)?")
 
 
 def told(value: Any, longest: int = 160) -> str:
     """A value as Python prints it, with short numbers, cut when it is long."""
-    return cut(short_numbers(repr(value)), longest)
+    return cut(short_numbers(repr(value)[: SHORTENED * longest]), longest)
 
 
 def short_numbers(text: str) -> str:

@@ -12,6 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from naoqi.errors import NaoError
 
+from ...base.whole_file import WholeFile
 from .trace import Record, Trace
 
 PAPER, GRID, INK, FAINT = (255, 255, 255), (228, 228, 232), (50, 50, 56), (130, 130, 138)
@@ -63,10 +64,11 @@ def save(trace: Trace, path: Path) -> None:
 
     Raises:
         NaoError: It has no task.
-        OSError: The file cannot be written.
+        FileTrouble: The file cannot be written.
     """
     # A few colours are enough, and a third of the size.
-    draw(trace).quantize(64, dither=Image.Dither.NONE).save(path, optimize=True)
+    with WholeFile(path) as file:
+        draw(trace).quantize(64, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
 
 
 def main(argv: list[str] | None = None) -> int:

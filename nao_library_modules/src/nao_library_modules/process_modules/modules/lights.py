@@ -9,8 +9,8 @@ import rospy
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_msgs.msg import LedFunction
 
-from ..failures import LightsLowLevelFailure
-from ..robot_link import RobotLink
+from ..language.failures import LightsLowLevelFailure
+from ..robot.robot_link import RobotLink
 from .robot_module import RobotModule
 
 ACTION = "NaoLights"

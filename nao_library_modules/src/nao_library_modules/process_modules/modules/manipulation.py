@@ -9,8 +9,9 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
 
+from ...base.suggestion import of_those
 from ..designators.rules import Command
-from ..failures import (
+from ..language.failures import (
     GripperClosedCompletely,
     GripperGoalNotReached,
     LowLevelFailure,
@@ -20,8 +21,8 @@ from ..failures import (
     PtuGoalNotReached,
     PtuGoalUnreachable,
 )
-from ..robot_link import TORSO, RobotLink
-from ..space import Point3, head_angles
+from ..language.space import Point3, head_angles
+from ..robot.robot_link import TORSO, RobotLink
 from .robot_module import RobotModule
 
 ACTION = "joint_trajectory"
@@ -253,7 +254,7 @@ class Manipulation(RobotModule):
         now = self.robot.angles()
         unknown = [name for name in goal if name not in now]
         if unknown:
-            raise PlanError(f"no joint {', '.join(unknown)}: there are {', '.join(now)}")
+            raise PlanError(f"no joint {', '.join(unknown)}{of_those(unknown[0], now)}")
         way = max(abs(angle - now[name]) for name, angle in goal.items())
         return max(way / speed, self.robot.settings.shortest_motion)
 

@@ -8,10 +8,10 @@ from typing import Any
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
-from ...places import Place, wrapped, yaw_of_quaternion
-from ..failures import NavigationGoalNotReached, NavigationPoseUnreachable
-from ..fluents import Fluent
-from ..robot_link import RobotLink
+from ...base.places import Place, wrapped, yaw_of_quaternion
+from ..language.failures import NavigationGoalNotReached, NavigationPoseUnreachable
+from ..language.fluents import Fluent
+from ..robot.robot_link import RobotLink
 from .robot_module import RobotModule
 
 ACTION = "walk_target"

@@ -6,10 +6,11 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from ...base.suggestion import of_those
+from ..core.process_module import AsynchronousProcessModule
 from ..designators.rules import Command
-from ..failures import PlanError
-from ..process_module import AsynchronousProcessModule
-from ..robot_link import RobotLink
+from ..language.failures import PlanError
+from ..robot.robot_link import RobotLink
 
 
 class RobotModule(AsynchronousProcessModule):
@@ -39,8 +40,8 @@ class RobotModule(AsynchronousProcessModule):
         """
         function = self.commands.get(command.name)
         if function is None:
-            known = ", ".join(sorted(self.commands))
-            raise PlanError(f"the process module {self.name} knows no {command.name!r}: it knows {known}")
+            known = of_those(command.name, sorted(self.commands))
+            raise PlanError(f"the process module {self.name} knows no command {command.name!r}{known}")
         try:
             inspect.signature(function).bind(**command.arguments)
         except TypeError as error:

@@ -7,8 +7,8 @@ from std_msgs.msg import String
 
 from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
 
-from ..failures import SpeechLowLevelFailure
-from ..robot_link import RobotLink
+from ..language.failures import SpeechLowLevelFailure
+from ..robot.robot_link import RobotLink
 from .robot_module import RobotModule
 
 TOPIC = "speech"

@@ -8,9 +8,10 @@ from typing import Any
 from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
 from nao_library_msgs.msg import VisionFunction
 
-from ..failures import PerceptionLowLevelFailure, PerceptionObjectNotFound
-from ..robot_link import RobotLink
-from ..space import Point3
+from ...base.suggestion import of_those
+from ..language.failures import PerceptionLowLevelFailure, PerceptionObjectNotFound
+from ..language.space import Point3
+from ..robot.robot_link import RobotLink
 from .robot_module import RobotModule
 
 ACTION = "NaoVision"
@@ -77,7 +78,7 @@ class Vision(RobotModule):
             PerceptionLowLevelFailure: Looking failed.
         """
         if type not in DETECTORS:
-            raise PerceptionLowLevelFailure(f"nobody detects {type!r}: there are detectors for {', '.join(DETECTORS)}")
+            raise PerceptionLowLevelFailure(f"there is no detector for {type!r}{of_those(type, DETECTORS)}")
         function = VisionFunction(function=DETECTORS[type], str_param=name)
         if search:
             kind = "face" if type == "person" else type

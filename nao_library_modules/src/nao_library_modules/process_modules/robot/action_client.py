@@ -13,11 +13,12 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from ..goal_watch import GoalWatch, server_connection
-from .control import Step, subtask
-from .failures import ActionlibActionTimedOut, LowLevelFailure
-from .flow import retry_after_suspension, uninterrupted, wait_until
-from .fluents import Fluent
+from ...base.suggestion import of_those
+from ...ros.goal_watch import GoalWatch, server_connection
+from ..language.control import Step, subtask
+from ..language.failures import ActionlibActionTimedOut, LowLevelFailure
+from ..language.flow import retry_after_suspension, uninterrupted, wait_until
+from ..language.fluents import Fluent
 
 log = logging.getLogger(__name__)
 
@@ -194,7 +195,7 @@ def get_simple_action_client(name: str) -> PlanActionClient:
     """
     with _lock:
         if name not in _clients:
-            raise KeyError(f"no action client {name!r}: there are {', '.join(_clients) or 'none'}")
+            raise KeyError(f"no action client {name!r}{of_those(name, _clients)}")
         return _clients[name]
 
 

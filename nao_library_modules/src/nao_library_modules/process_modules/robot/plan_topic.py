@@ -9,8 +9,8 @@ import rospy
 
 from nao_library_msgs.msg import PlanTask, PlanTree
 
-from .tasks import Task
-from .trace import Record, trace_of
+from ..language.tasks import Task
+from ..language.trace import Record, trace_of
 
 TOPIC = "plan_tree"
 SHORTEST = 0.1

@@ -10,16 +10,16 @@ import rospy
 import tf2_ros
 from sensor_msgs.msg import JointState
 
-from ..places import Place, yaw_of_quaternion
-from ..robot_frames import tf_prefix
-from ..ros_clock import RosClock
+from ...base.places import Place, yaw_of_quaternion
+from ...ros.robot_frames import tf_prefix
+from ...ros.ros_clock import RosClock
+from ..language.failures import LowLevelFailure
+from ..language.flow import wait_until
+from ..language.fluents import Fluent
+from ..language.settings import Settings, load_settings
+from ..language.space import Point3, turned
 from .action_client import PlanActionClient
 from .chains import Chain
-from .failures import LowLevelFailure
-from .flow import wait_until
-from .fluents import Fluent
-from .settings import Settings, load_settings
-from .space import Point3, turned
 from .told_topic import ToldTopic
 
 STATE_LIMIT = 5.0

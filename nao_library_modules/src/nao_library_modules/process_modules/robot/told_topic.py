@@ -7,7 +7,7 @@ from typing import Any, Callable
 import rosgraph
 import rospy
 
-from .flow import sleep
+from ..language.flow import sleep
 
 PERIOD = 0.02
 OTHERS_LIMIT = 2.0

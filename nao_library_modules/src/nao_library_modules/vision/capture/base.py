@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from .interrupt import Interrupt
-from .vision_cameras import camera_name
-from .vision_files import VisionFiles
-from .vision_taken import Taken
-from .vision_threads import VisionThreads
+from ...base.interrupt import Interrupt
+from .cameras import camera_name
+from .files import VisionFiles
+from .jobs import VisionThreads
+from .taken import Taken
 
 
 class VisionBase:
@@ -28,6 +28,7 @@ class VisionBase:
     robot: Any  # Robot
     interrupt: Interrupt
     clock: Any  # WallClock or RosClock
+    kept: Any  # Kept, of NaoBasic
     call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts
     call_now: Callable[..., Any]  # of NaoBasic: a call that it does not
     after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic

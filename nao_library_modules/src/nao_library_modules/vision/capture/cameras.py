@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 
-from . import camera_facts
-from .camera_facts import CAMERA_NAMES, RESOLUTIONS
-from .errors import BadGoal
-from .suggestion import did_you_mean
+from ...base.errors import BadGoal
+from ...base.suggestion import did_you_mean
+from ...nao import camera_facts
+from ...nao.camera_facts import CAMERA_NAMES, RESOLUTIONS
 
 VIDEO = "ALVideoDevice"
 """NAOqi's module for the cameras."""

@@ -9,21 +9,21 @@ import re
 from pathlib import Path
 from typing import Any, Dict, Protocol, Tuple
 
-from .errors import BadGoal
-from .field_checks import CONTROL, require_known, require_number, require_text
-from .vision_cameras import camera_name
-from .vision_files import VisionFiles
-from .vision_pictures import LARGEST, PICTURE_TYPES
-from .vision_threads import MOST_THREADS, VisionThreads, taken, too_many, unknown
-from .vision_video import CODECS, VIDEO_TYPES, codec_name, known_codecs
+from ...base.errors import BadGoal
+from ...base.field_checks import CONTROL, require_known, require_number, require_text, require_within, require_zero_or
+from ...base.limits import limit
+from .cameras import camera_name
+from .files import VisionFiles
+from .jobs import MOST_THREADS, VisionThreads, taken, too_many, unknown
+from .pictures import PICTURE_TYPES
+from .video import CODECS, VIDEO_TYPES, codec_name, known_codecs
 
-LONGEST_WAIT = 3600.0
+TIMEOUT, FRAMES, PIXELS, PICTURES = limit("timeout"), limit("frame rate"), limit("pixels"), limit("pictures")
+LONGEST_WAIT = TIMEOUT.highest
 """s of ROS time that any wait may take."""
 DEFAULT_TIMEOUT = 10.0
 """s to wait for a frame, or for something to be seen, where a message leaves it to us."""
-HIGHEST_RATE = 1000.0
 LONGEST_ID = 64
-MOST_PICTURES = 10000
 TOPIC = re.compile(r"[~/]?[A-Za-z]\w*(/\w+)*")
 
 Plan = Dict[str, Tuple[str, bool]]
@@ -63,12 +63,12 @@ def require_topic(field: str, topic: str) -> None:
 def require_size(width: int, height: int) -> None:
     """A size in pixels."""
     for field, value in (("width", width), ("height", height)):
-        require_number(field, value, 0, LARGEST, f"1..{LARGEST} pixels, or 0")
+        require_within(field, value, PIXELS, f"1..{PIXELS[1]} pixels, or 0")
 
 
 def require_timeout(timeout: float) -> None:
     """How long to wait, s; 0 for the default."""
-    require_number("timeout", timeout, 0.0, LONGEST_WAIT, f"up to {LONGEST_WAIT:g} s, or 0: {DEFAULT_TIMEOUT:g} s")
+    require_within("timeout", timeout, TIMEOUT, f"up to {LONGEST_WAIT:g} s, or 0: {DEFAULT_TIMEOUT:g} s")
 
 
 def require_source(self: HasThreads, camera: str, topic: str) -> None:
@@ -144,7 +144,7 @@ def check_new_stream(
     """A name, where frames come from and go to, a rate and a size."""
     require_source(self, camera, topic)
     require_topic("topic_out", topic_out)
-    require_number("rate", rate, 0.0, HIGHEST_RATE, "frames a second, or 0: all")
+    require_zero_or("rate", rate, FRAMES, ": all")
     require_size(width, height)
     _plan_new(self, id, "stream", runs, context)
     target = self.topics.resolved(topic_out_of(id, topic_out))
@@ -172,7 +172,7 @@ def check_new_recording(
     require_source(self, camera, topic)
     kind = self.files.file_type(str_param, file_type, VIDEO_TYPES)
     require_codec(codec, kind)
-    require_number("rate", rate, 0.0, HIGHEST_RATE, "frames a second, or 0: all")
+    require_zero_or("rate", rate, FRAMES, ": all")
     require_size(width, height)
     _plan_new(self, id, "recording", runs, context)
     if str_param.strip():
@@ -243,8 +243,8 @@ def check_pictures(
 ) -> None:  # fmt: skip
     """As takePicture, how many, and how long from one to the next."""
     _check_shot(self, camera, topic, quality, width, height, timeout)
-    require_number("count", count, 0, MOST_PICTURES, f"1..{MOST_PICTURES}, or 0: 1")
-    require_number("interval", interval, 0.0, LONGEST_WAIT, f"0..{LONGEST_WAIT:g} s")
+    require_within("count", count, PICTURES, f"1..{PICTURES[1]}, or 0: 1")
+    require_within("interval", interval, TIMEOUT)
     kind = self.files.file_type(str_param, file_type, PICTURE_TYPES)
     if str_param.strip():
         path = self.files.path(str_param, kind)

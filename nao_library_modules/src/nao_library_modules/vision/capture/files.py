@@ -2,42 +2,20 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import BinaryIO
 
-from naoqi.errors import NaoError
-
-from .errors import BadGoal
-from .field_checks import CONTROL, LONGEST_NAME
-from .suggestion import did_you_mean
+from ...base.errors import BadGoal
+from ...base.field_checks import CONTROL, LONGEST_NAME
+from ...base.suggestion import did_you_mean
+from ...base.whole_file import WholeFile, tidy
 
 DEFAULT_RECORD_DIR = "~/.ros/nao_recordings"
 """As that of the simulator: beside a simulated robot on the same computer, its files and these are in one place."""
 SYNONYMS = {"jpeg": "jpg", "tif": "tiff"}
-
-
-class FileTrouble(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A file cannot be written.
-
-    Attributes:
-        path: The file.
-    """
-
-    def __init__(self, path: Path, error: OSError) -> None:
-        """Compose the text.
-
-        Args:
-            path: The file.
-            error: What the system says.
-        """
-        problem = "the disk is full" if error.errno in (errno.ENOSPC, errno.EDQUOT) else error.strerror or str(error)
-        super().__init__(f"{path} cannot be written: {problem}")
-        self.path = path
 
 
 class VisionFiles:
@@ -48,7 +26,7 @@ class VisionFiles:
     """
 
     def __init__(self, folder: str) -> None:
-        """Make nothing yet.
+        """Make nothing yet; what killed servers have left is tidied up.
 
         Args:
             folder: "~" stands for the home of the user; relative to the working directory, which is ROS_HOME for a
@@ -57,6 +35,7 @@ class VisionFiles:
         self.folder = Path(folder).expanduser().absolute()
         self._lock = threading.Lock()
         self._open: set[Path] = set()  # what a recording of this server writes: nobody may replace it
+        tidy(self.folder)
 
     def file_type(self, name: str, file_type: str, known: Sequence[str]) -> str:
         """Kind of a file: as its field says, as its name ends, or the first of those known.
@@ -120,44 +99,29 @@ class VisionFiles:
         stamp = time.strftime("%Y-%m-%d_%H-%M-%S", time.localtime(now))
         return self.folder.resolve() / f"{prefix}_{stamp}.{int(now * 1000) % 1000:03d}.{file_type}"
 
-    def create(self, path: Path, overwrite: bool = False, numbered: bool = False) -> tuple[BinaryIO, Path]:
-        """Open a file that is to be written.
+    def create(self, path: Path, overwrite: bool = False, numbered: bool = False) -> WholeFile:
+        """A file that is to be written; `done` has to be told of its end.
 
         Args:
             path: Which.
             overwrite: Whether one that is there is replaced.
             numbered: Whether one that is there lets this one become name-2, name-3, ...
 
-        Returns:
-            The file, and its path.
-
         Raises:
             BadGoal: If it is there and is neither to be replaced nor to be numbered.
             FileTrouble: If it cannot be written.
         """
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with self._lock:
-                file, path = self._opened(path, overwrite, numbered)
-                self._open.add(path)
-        except OSError as error:
-            raise FileTrouble(path, error) from error
-        return file, path
-
-    def _opened(self, path: Path, overwrite: bool, numbered: bool) -> tuple[BinaryIO, Path]:
-        if overwrite and path not in self._open:
-            return path.open("wb"), path
-        free, number = path, 1
-        while True:
-            try:
-                return free.open("xb"), free
-            except FileExistsError:
+        with self._lock:
+            free, number = path, 1
+            while free in self._open or (free.exists() and not overwrite):
                 if not numbered:
-                    raise BadGoal(
-                        "str_param", path.name, "another name, or overwrite", problem=f"{path} is there already"
-                    ) from None
+                    problem = f"{path} is there already"
+                    raise BadGoal("str_param", path.name, "another name, or overwrite", problem=problem)
                 number += 1
                 free = path.with_name(f"{path.stem}-{number}{path.suffix}")
+            file = WholeFile(free, numbered)
+            self._open.add(free)
+        return file
 
     def done(self, path: Path) -> None:
         """Note that a file is complete: it may be replaced from now on."""
@@ -165,23 +129,15 @@ class VisionFiles:
             self._open.discard(path)
 
     def write(self, path: Path, data: bytes, overwrite: bool = False, numbered: bool = False) -> Path:
-        """Write a whole file; one that cannot be written whole is not left behind.
-
-        Takes what `create` takes, and the bytes.
-
-        Returns:
-            Its path.
-        """
-        file, path = self.create(path, overwrite, numbered)
+        """Write a whole file; takes what `create` takes, and the bytes. Answers its path."""
+        file = self.create(path, overwrite, numbered)
+        wanted = file.path
         try:
             with file:
                 file.write(data)
-        except OSError as error:
-            path.unlink()
-            raise FileTrouble(path, error) from error
         finally:
-            self.done(path)
-        return path
+            self.done(wanted)
+        return file.path
 
 
 def _kind(text: str) -> str:

@@ -11,10 +11,10 @@ from typing import Any
 from nao_library_msgs.msg import VisionThread
 from naoqi.errors import NaoError
 
-from .errors import BadGoal
-from .vision_pictures import BadPicture
-from .vision_queue import Frame, FrameQueue, frame_of
-from .vision_times import RateLimit, RateMeter
+from ...base.errors import BadGoal
+from .pictures import BadPicture
+from .queue import Frame, FrameQueue, frame_of
+from .times import RateLimit, RateMeter
 
 log = logging.getLogger(__name__)
 
@@ -98,6 +98,11 @@ class FrameThread(ABC):
         Raises:
             NaoError: If that fails.
         """
+
+    @property
+    @abstractmethod
+    def settings(self) -> dict[str, Any]:
+        """What it was made with, in words of JSON: arguments of its class."""
 
     @abstractmethod
     def _fill(self, report: VisionThread) -> None:

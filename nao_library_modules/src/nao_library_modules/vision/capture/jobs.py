@@ -7,10 +7,10 @@ import threading
 import time
 from typing import Union
 
-from .errors import BadGoal
-from .suggestion import did_you_mean
-from .vision_recorder import Recording
-from .vision_stream import Stream
+from ...base.errors import BadGoal
+from ...base.suggestion import did_you_mean
+from .recorder import Recording
+from .stream import Stream
 
 log = logging.getLogger(__name__)
 

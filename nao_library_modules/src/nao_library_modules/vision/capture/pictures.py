@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from typing import Any
 
 import cv2
 import numpy as np
+from PIL import Image, ImageOps, UnidentifiedImageError
 
 from naoqi.errors import NaoError
 
+from ...base.limits import limit
+
 DEFAULT_QUALITY = 95
+DECODED = ("JPEG", "PNG", "WEBP")
+"""Kinds of compressed messages."""
 PICTURE_TYPES = ("png", "jpg", "bmp", "tiff", "webp")
-LARGEST = 8192
-"""Pixels of a side; no camera has more."""
+LARGEST, MOST_PIXELS = int(limit("pixels").highest), 2**25
+"""Pixels of a side, and of all; no camera has more."""
+LARGEST_COMPRESSED = 2**26
+"""Bytes of a compressed picture."""
 
 Picture = np.ndarray
 """(height, width, 3) uint8, blue, green, red; or (height, width) uint16 where a camera is grey and that fine."""
@@ -83,6 +91,16 @@ def encoding_of(message: Any) -> str:
     return message.format.split(";")[-1].replace("compressed", " ").split()[0] if message.format.strip() else "jpeg"
 
 
+def size_rows() -> list[tuple[str, int, str, str]]:
+    """The limits as rows of a table: what, limit, unit, where it counts."""
+    where = "pictures of camera topics"
+    return [
+        ("width, height", LARGEST, "pixels", where),
+        ("width x height", MOST_PIXELS, "pixels", where),
+        ("compressed picture", LARGEST_COMPRESSED, "bytes", where),
+    ]
+
+
 def picture_of(message: Any) -> Picture:
     """The picture of a camera's message.
 
@@ -97,8 +115,7 @@ def picture_of(message: Any) -> Picture:
     if message.encoding not in ENCODINGS:
         raise BadPicture(message.encoding, f"known are {', '.join(ENCODINGS)}")
     width, height, step = message.width, message.height, message.step
-    if not (0 < width <= LARGEST and 0 < height <= LARGEST):
-        raise BadPicture(message.encoding, f"it is {width}x{height} pixels; up to {LARGEST} a side are allowed")
+    _check_size(message.encoding, width, height)
     size, layers, convert = ENCODINGS[message.encoding]
     step = step or width * size
     if step < width * size or len(message.data) < step * height:
@@ -116,14 +133,38 @@ def picture_of(message: Any) -> Picture:
 
 
 def _decompressed(message: Any) -> Picture:
-    data = np.frombuffer(message.data, np.uint8)
+    """The picture of a compressed message.
+
+    Pillow decodes, and only `DECODED`, after a look at the header: OpenCV 4.11, the last one for NumPy 1, has decoders
+    for much more, among them that of JPEG 2000 with a hole (CVE-2025-53644), and fills broken pictures with what it
+    decoded before.
+    """
+    content = bytes(message.data)
+    if len(content) > LARGEST_COMPRESSED:
+        problem = f"it has {len(content)} bytes; up to {LARGEST_COMPRESSED} are allowed"
+        raise BadPicture(encoding_of(message), problem)
     try:
-        picture = cv2.imdecode(data, cv2.IMREAD_COLOR) if len(data) else None
-    except cv2.error as error:
-        raise BadPicture(encoding_of(message), str(error)) from error
-    if picture is None:
-        raise BadPicture(encoding_of(message), f"its {len(data)} bytes are no compressed picture")
-    return picture
+        with Image.open(io.BytesIO(content), formats=DECODED) as image:
+            _check_size(encoding_of(message), *image.size)
+            if image.format == "WEBP" and image.is_animated:
+                raise ValueError("it is WebP that moves")
+            ImageOps.exif_transpose(image, in_place=True)
+            if image.mode.startswith("I"):  # grey of 16 bits
+                grey = (np.asarray(image).astype(np.uint32) >> 8).astype(np.uint8)
+                return cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR)
+            return np.ascontiguousarray(np.asarray(image.convert("RGB"))[:, :, ::-1])
+    except BadPicture:
+        raise
+    except Exception as error:  # formats have errors of their own for broken files, a SyntaxError among them
+        reason = f"none of {', '.join(DECODED)}" if isinstance(error, UnidentifiedImageError) else error
+        problem = f"its {len(content)} bytes are no compressed picture: {reason}"
+        raise BadPicture(encoding_of(message), problem) from error
+
+
+def _check_size(encoding: str, width: int, height: int) -> None:
+    if not (0 < width <= LARGEST and 0 < height <= LARGEST and width * height <= MOST_PIXELS):
+        allowed = f"up to {LARGEST} a side and {MOST_PIXELS} of all are allowed"
+        raise BadPicture(encoding, f"it is {width}x{height} pixels; {allowed}")
 
 
 def visible(picture: Picture) -> Picture:
@@ -151,11 +192,16 @@ def wanted_size(size: tuple[int, int], width: int, height: int) -> tuple[int, in
 
 
 def scaled(picture: Picture, width: int, height: int) -> Picture:
-    """A picture in another size, as `wanted_size` has it."""
+    """A picture in another size, as `wanted_size` has it.
+
+    Raises:
+        BadPicture: It would be too large: a narrow one may be so in proportion.
+    """
     size = (picture.shape[1], picture.shape[0])
     wanted = wanted_size(size, width, height)
     if wanted == size:
         return picture
+    _check_size("bgr8", *wanted)
     shrinks = wanted[0] * wanted[1] < size[0] * size[1]
     return cv2.resize(picture, wanted, interpolation=cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR)
 

@@ -6,9 +6,11 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Any
 
-MOST_FRAMES = 30
+from ...base.limits import limit
+
+MOST_FRAMES = int(limit("waiting pictures").highest)
 """That wait; of more the oldest go."""
-MOST_BYTES = 16 << 20
+MOST_BYTES = int(limit("bytes of waiting pictures").highest)
 """Of pictures that wait; two always may."""
 
 

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from genpy import Time
 
 from nao_library_msgs.msg import RecordedVideo, VisionThread
 
-from .vision_files import FileTrouble, VisionFiles
-from .vision_pictures import picture_of, scaled, visible
-from .vision_queue import Frame
-from .vision_thread import FrameThread
-from .vision_video import VideoFile
+from ...base.whole_file import WholeFile
+from .files import VisionFiles
+from .job import FrameThread
+from .pictures import picture_of, scaled, visible
+from .queue import Frame
+from .video import VideoFile
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,15 @@ class Recording(FrameThread):
     whole = True
 
     def __init__(
-        self, ident: str, topic: str, rate: float, topics: Any, clock: Any, files: VisionFiles, wish: VideoWish
+        self,
+        ident: str,
+        topic: str,
+        rate: float,
+        topics: Any,
+        clock: Any,
+        files: VisionFiles,
+        wish: VideoWish,
+        again: bool = False,
     ) -> None:
         """Make it ready.
 
@@ -57,14 +66,20 @@ class Recording(FrameThread):
             clock: ROS time.
             files: Folder for the file.
             wish: What it is to be.
+            again: Whether it has been started before, by a node that has died: its file stays.
         """
         super().__init__(ident, topic, rate, topics, clock)
         self._files = files
         self._wish = wish
-        self._path: Path | None = None
-        self._file: BinaryIO | None = None
+        self._file: WholeFile | None = None
         self._video: VideoFile | None = None
-        self._starts = 0
+        self._again = again
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """As FrameThread has it."""
+        common = {"ident": self.ident, "topic": self.topic, "rate": self._rate}
+        return {**common, "wish": {**asdict(self._wish), "path": self._wish.path and str(self._wish.path)}}
 
     @property
     def video(self) -> RecordedVideo:
@@ -90,44 +105,35 @@ class Recording(FrameThread):
         return message
 
     def _begin(self) -> None:
-        self._starts += 1
+        again, self._again = self._again, True
         self._video = None
         wish = self._wish
         path = wish.path or self._files.named_by_time(self.ident, wish.file_type)
         # Only the first start was asked about: what it wrote must not be replaced by the second.
-        again = self._starts > 1
-        self._file, self._path = self._files.create(
-            path, wish.overwrite and not again, numbered=again or wish.path is None
-        )
+        self._file = self._files.create(path, wish.overwrite and not again, numbered=again or wish.path is None)
+        self._wanted = self._file.path
 
     def _handle(self, frame: Frame) -> tuple[int, int] | None:
         picture = visible(scaled(picture_of(frame.message), self._wish.width, self._wish.height))
-        try:
-            if self._video is None:
-                height, width = picture.shape[:2]
-                self._video = VideoFile(self._file, self._wish.file_type, self._wish.codec, width, height)
-            written = self._video.write(picture, frame.stamp)
-        except OSError as error:
-            raise FileTrouble(self._path, error) from error
+        if self._video is None:
+            height, width = picture.shape[:2]
+            self._video = VideoFile(self._file, self._wish.file_type, self._wish.codec, width, height)
+        written = self._video.write(picture, frame.stamp)
         return (self._video.width, self._video.height) if written else None
 
     def _end(self) -> None:
-        file, self._file = self._file, None
-        if file is None:
+        file = self._file
+        if file is None or file.closed:
             return
         try:
             if self._video is not None:
                 self._video.close()
             else:
-                file.close()
-                self._path.unlink()  # no frame came: an empty file is no video
-        except OSError as error:
-            raise FileTrouble(self._path, error) from error
+                file.discard()  # no frame came: an empty file is no video
         finally:
             if self._video is not None and not self._video.frames:
-                self._video = None
-                self._path.unlink(missing_ok=True)  # the disk was full before there was anything to be seen
-            self._files.done(self._path)
+                self._video = None  # the disk was full before there was anything to be seen
+            self._files.done(self._wanted)
 
     def _fill(self, report: VisionThread) -> None:
-        report.path = str(self._path or self._wish.path or "")
+        report.path = str(self._file.path if self._file is not None else self._wish.path or "")

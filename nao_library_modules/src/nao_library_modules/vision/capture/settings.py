@@ -15,11 +15,11 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .errors import BadGoal
-from .field_checks import require_number
-from .function_chain import checked_by
-from .vision_base import VisionBase
-from .vision_cameras import (
+from ...base.errors import BadGoal
+from ...base.field_checks import require_number
+from ...functions.chain import checked_by
+from .base import VisionBase
+from .cameras import (
     CAMERAS,
     FRAME_RATES,
     OPTICAL_FRAMES,

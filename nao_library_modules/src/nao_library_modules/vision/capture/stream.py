@@ -8,10 +8,10 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 from nao_library_msgs.msg import VisionThread
 
-from .vision_camera_info import COMPRESSED, info_topic, scaled_info
-from .vision_pictures import encoded, encoding_of, is_compressed, picture_of, scaled, visible, wanted_size
-from .vision_queue import Frame
-from .vision_thread import FrameThread
+from .camera_info import COMPRESSED, info_topic, scaled_info
+from .job import FrameThread
+from .pictures import encoded, encoding_of, is_compressed, picture_of, scaled, visible, wanted_size
+from .queue import Frame
 
 
 class Stream(FrameThread):
@@ -49,6 +49,13 @@ class Stream(FrameThread):
         self._infos: Any = None
         self._info_subscription: Any = None
         self._info: Any = None  # the latest one; set by the thread that receives it
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """As FrameThread has it."""
+        width, height = self._wanted
+        common = {"ident": self.ident, "topic": self.topic, "rate": self._rate}
+        return {**common, "topic_out": self.topic_out, "width": width, "height": height}
 
     def _begin(self) -> None:
         self._publisher = self._topics.publisher(self.topic_out, CompressedImage if self._compress else Image)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
-from .errors import BadGoal
-from .function_chain import checked_by
-from .vision_base import VisionBase
-from .vision_checks import (
+from naoqi.errors import NaoError
+
+from ...base.errors import BadGoal
+from ...functions.chain import checked_by
+from .base import VisionBase
+from .checks import (
     check_delete,
     check_list,
     check_new_recording,
@@ -22,10 +25,10 @@ from .vision_checks import (
     check_unsubscribe,
     topic_out_of,
 )
-from .vision_recorder import Recording, VideoWish
-from .vision_stream import Stream
-from .vision_threads import AnyThread
-from .vision_video import VIDEO_TYPES, codec_name
+from .jobs import AnyThread
+from .recorder import Recording, VideoWish
+from .stream import Stream
+from .video import VIDEO_TYPES, codec_name
 
 log = logging.getLogger(__name__)
 
@@ -67,6 +70,7 @@ class StreamingFunctions(VisionBase):
         if source == target:  # the active camera may be another one than at the check
             raise BadGoal("topic_out", topic_out, "another topic", problem="frames come from there")
         self.threads.add(Stream(id.strip(), source, rate, self.topics, self.clock, target, width, height))
+        self._keep()
         return [target]
 
     @checked_by(check_unsubscribe)
@@ -112,6 +116,7 @@ class StreamingFunctions(VisionBase):
         wish = VideoWish(path, kind, codec_name(codec, kind), width, height, overwrite)
         source = self.source(camera, topic)
         self.threads.add(Recording(id.strip(), source, rate, self.topics, self.clock, self.files, wish))
+        self._keep()
 
     @checked_by(check_stop_recording)
     def stop_recording(self, id: str) -> list[Any]:
@@ -126,6 +131,7 @@ class StreamingFunctions(VisionBase):
         """Start a stream or recording, also once more: a recording then makes a further file. Answers where it goes."""
         thread = self.threads.get(id.strip())
         thread.start()
+        self._keep()
         report = thread.report()
         return [report.path or report.topic_out]
 
@@ -141,6 +147,7 @@ class StreamingFunctions(VisionBase):
         if thread.runs:
             self._stop(thread)
         self.threads.remove(thread.ident)
+        self._keep()
 
     @checked_by(check_list)
     def list_threads(self, id: str) -> list[str]:
@@ -152,5 +159,30 @@ class StreamingFunctions(VisionBase):
 
     def _stop(self, thread: AnyThread) -> None:
         thread.stop()
+        self._keep()
         if isinstance(thread, Recording):
             self.taken.recordings.append(thread.video)
+
+    # After the death of the node
+
+    def make_again(self) -> None:
+        """Make the streams and recordings that the node had before it died; those that ran go on, in a further file."""
+        for told in self.kept.load() or ():
+            try:
+                thread = self._thread(**told["settings"])
+                self.threads.add(thread)
+                if told["runs"]:
+                    thread.start()
+                    log.info("%s %r goes on", thread.kind, thread.ident)
+            except (NaoError, KeyError, TypeError) as error:
+                log.warning("a stream or recording is not there again: %s: %s", told, error)
+
+    def _thread(self, wish: dict[str, Any] | None = None, **settings: Any) -> AnyThread:
+        settings.update(topics=self.topics, clock=self.clock)
+        if wish is None:
+            return Stream(**settings)
+        path = wish["path"] and Path(wish["path"])
+        return Recording(files=self.files, wish=VideoWish(**{**wish, "path": path}), again=True, **settings)
+
+    def _keep(self) -> None:
+        self.kept.save([{"settings": each.settings, "runs": each.runs} for each in self.threads.known.values()])

@@ -10,13 +10,13 @@ from typing import Any
 from nao_library_msgs.msg import PictureFile
 from naoqi.errors import NaoError
 
-from .function_chain import checked_by
-from .interrupt import Interrupt
-from .vision_base import VisionBase
-from .vision_cameras import camera_name
-from .vision_checks import DEFAULT_TIMEOUT, check_picture, check_pictures, numbered
-from .vision_pictures import PICTURE_TYPES, encoded, encoding_of, picture_of, scaled
-from .vision_queue import Frame, frame_of
+from ...base.interrupt import Interrupt
+from ...functions.chain import checked_by
+from .base import VisionBase
+from .cameras import camera_name
+from .checks import DEFAULT_TIMEOUT, check_picture, check_pictures, numbered
+from .pictures import PICTURE_TYPES, encoded, encoding_of, picture_of, scaled
+from .queue import Frame, frame_of
 
 TAKING = "taking pictures"
 """Status in the feedback."""

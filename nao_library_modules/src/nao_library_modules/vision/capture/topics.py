@@ -12,8 +12,8 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 from naoqi.errors import NaoError
 
-from .errors import BadGoal
-from .vision_camera_info import COMPRESSED
+from ...base.errors import BadGoal
+from .camera_info import COMPRESSED
 
 BUFFER = 1 << 24
 """Bytes to read at once: a smaller buffer than a picture makes rospy read it in many pieces, and late."""

@@ -6,19 +6,17 @@ import logging
 from array import array
 from dataclasses import dataclass
 from fractions import Fraction
-from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import av
 import numpy as np
 
 from naoqi.errors import NaoError
 
-from .vision_fragments import keep_what_is_whole
-from .vision_pictures import fitted
-from .vision_times import VideoTimes
+from ...base.whole_file import FileTrouble, WholeFile
+from .pictures import fitted
+from .times import VideoTimes
 
-log = logging.getLogger(__name__)
 # What the encoders have to say of themselves is no matter of the node's log.
 logging.getLogger("libav").setLevel(logging.ERROR)
 
@@ -59,7 +57,10 @@ PREFERRED = {"mp4": ("h264", "mpeg4"), "avi": ("mjpeg",)}
 TICKS = {"mp4": 60000, "avi": 120}
 """Times a second at which a frame can stand."""
 # Each part of an mp4 file is complete in itself, so that what a lost process wrote can be played.
-CONTAINER_OPTIONS = {"mp4": {"movflags": "frag_keyframe+empty_moov+default_base_moof"}, "avi": {}}
+CONTAINER_OPTIONS = {
+    "mp4": {"movflags": "frag_keyframe+empty_moov+default_base_moof", "flush_packets": "1"},
+    "avi": {"flush_packets": "1"},
+}
 KEY_FRAMES = 30
 """Every so many frames one stands for itself."""
 
@@ -90,25 +91,6 @@ def _has(encoder: str) -> bool:
     return True
 
 
-class _Output:
-    """A file for PyAV, which tells only that a write failed: the error itself is kept here."""
-
-    def __init__(self, file: BinaryIO) -> None:
-        self.error: OSError | None = None
-        self.seek, self.tell = file.seek, file.tell
-        self._file = file
-
-    def write(self, data: bytes) -> int:
-        """Write, as files do; nothing more after an error, or there would be a hole."""
-        if self.error is not None:
-            raise self.error
-        try:
-            return self._file.write(data)
-        except OSError as error:
-            self.error = error
-            raise
-
-
 class VideoFile:
     """A video that is being written. Used by one thread.
 
@@ -121,7 +103,7 @@ class VideoFile:
         duration: s from the first frame to the end of the last one.
     """
 
-    def __init__(self, file: BinaryIO, file_type: str, codec: str, width: int, height: int) -> None:
+    def __init__(self, file: WholeFile, file_type: str, codec: str, width: int, height: int) -> None:
         """Begin.
 
         Args:
@@ -133,7 +115,6 @@ class VideoFile:
 
         Raises:
             VideoTrouble: If there can be no such video.
-            OSError: Of the file.
         """
         self.width, self.height = max(2, width - width % 2), max(2, height - height % 2)
         self.frames = self.dropped = 0
@@ -143,11 +124,11 @@ class VideoFile:
         self._times = VideoTimes(1.0 / self._ticks)
         self._kind = file_type
         self._file = file
-        self._output = _Output(file)
+        self._muxed = self._whole = 0  # frames that were passed on, and those that can be played
         self._held: Any = None  # the latest packet: only the next one tells how long its frame lasts
         kind = CODECS[codec]
         try:
-            self._container = av.open(self._output, "w", format=file_type, options=CONTAINER_OPTIONS[file_type])
+            self._container = av.open(file, "w", format=file_type, options=CONTAINER_OPTIONS[file_type])
             rate = self._ticks if file_type == "avi" else 30
             stream = self._container.add_stream(kind.encoder, rate=rate, options=dict(kind.options))
             stream.width, stream.height, stream.pix_fmt = self.width, self.height, kind.pixels
@@ -158,8 +139,7 @@ class VideoFile:
             if kind.bits:
                 context.bit_rate = max(400_000, int(kind.bits * 30 * self.width * self.height))
         except (av.error.FFmpegError, ValueError) as error:
-            self._close_quietly()
-            raise self._trouble(error) from error
+            raise _trouble(error) from error
         self._stream: Any = stream
 
     @property
@@ -184,7 +164,7 @@ class VideoFile:
 
         Raises:
             VideoTrouble: If it cannot be compressed.
-            OSError: Of the file.
+            FileTrouble: Of the file.
         """
         time = self._times.place(stamp)
         if time is None:
@@ -209,49 +189,44 @@ class VideoFile:
 
         Raises:
             VideoTrouble: If its end cannot be written.
-            OSError: Of the file.
+            FileTrouble: Of the file.
         """
         try:
             try:
                 if self.frames:
                     self._encode(None)
                     self._held.duration = max(1, round(self._period * self._ticks))
-                    self._container.mux(self._held)
+                    self._mux(self._held)
             finally:
                 self._container.close()
-            self._file.close()  # which may write what was kept back
-        except (av.error.FFmpegError, OSError) as error:
-            self._close_quietly()
-            self._keep_what_can_be_played()
-            raise self._trouble(error) from error
+            self._file.close()
+        except (av.error.FFmpegError, FileTrouble) as error:
+            self.frames = self._whole
+            del self._places[self.frames :]
+            if isinstance(error, FileTrouble):
+                raise
+            raise _trouble(error) from error
         finally:
-            self._close_quietly()
-
-    def _keep_what_can_be_played(self) -> None:
-        try:
-            self.frames = keep_what_is_whole(Path(self._file.name), self._kind)
-        except OSError as error:
-            log.warning("%s stays as it is: %s", self._file.name, error)
-            return
-        del self._places[self.frames :]
+            if not self.frames:
+                self._file.discard()
 
     def _encode(self, frame: Any) -> None:
         try:
             for packet in self._stream.encode(frame):
                 if self._held is not None:
-                    self._container.mux(self._held)
+                    self._mux(self._held)
                 self._held = packet
-        except (av.error.FFmpegError, OSError) as error:
-            raise self._trouble(error) from error
+        except av.error.FFmpegError as error:
+            raise _trouble(error) from error
 
-    def _trouble(self, error: Exception) -> Exception:
-        kept = self._output.error
-        if kept is not None:
-            return OSError(kept.errno, kept.strerror)
-        return error if type(error) is OSError else VideoTrouble(f"the video cannot be written: {error}")
+    def _mux(self, packet: Any) -> None:
+        """Pass a packet on; what is complete with it goes to the file."""
+        self._container.mux(packet)
+        self._muxed += 1
+        if self._file.flush():
+            # A part of an mp4 file ends when the next one begins.
+            self._whole = self._muxed - (self._kind == "mp4")
 
-    def _close_quietly(self) -> None:
-        try:
-            self._file.close()
-        except OSError:  # the one that was raised before says why
-            log.debug("a file could not be closed")
+
+def _trouble(error: Exception) -> VideoTrouble:
+    return VideoTrouble(f"the video cannot be written: {error}")

@@ -10,13 +10,12 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .camera_facts import RESOLUTIONS
-from .extractor_use import Events
-from .image_clock import ImageClock
-from .memory_functions import MEMORY
-from .vision_checks import DEFAULT_TIMEOUT
-from .vision_detect_cameras import ROBOT, TORSO, CameraAccess
-from .vision_detect_events import (
+from ...functions.memory_functions import MEMORY
+from ...nao.camera_facts import RESOLUTIONS
+from ...server.extractor_use import Event, Events
+from ..capture.checks import DEFAULT_TIMEOUT
+from .cameras import ROBOT, TORSO, CameraAccess
+from .events import (
     BALL,
     CODE,
     FACE,
@@ -31,8 +30,8 @@ from .vision_detect_events import (
     landmark_look,
     movement_look,
 )
-from .vision_detect_space import DEFAULT_SIZES, Sighting, located, same_clock
-from .vision_results import Seen, seen_messages
+from .results import Seen, seen_messages
+from .space import DEFAULT_SIZES, Sighting, located
 
 log = logging.getLogger(__name__)
 
@@ -117,9 +116,11 @@ class Watch:
             Preempted: Or whatever reason the interrupt has.
             NaoError: If the robot cannot be asked.
         """
-        for _, value in self._events.until(end):
-            sightings = self._base.placed(self._wanted, self._camera, value)
+        for event in self._events.until(end):
+            sightings = self._base.placed(self._wanted, self._camera, event)
             if sightings:
+                first, seen = self._base.happened[0], sightings[0].time
+                self._base.happened = (first or seen, seen)
                 yield sightings
 
 
@@ -134,7 +135,8 @@ class DetectionBase(CameraAccess):
     seen: Seen
     frame_prefix: str
     tell: Callable[..., None]  # of NaoVision: feedback
-    _clocks: dict[str, ImageClock] | None = None
+    remark: Callable[[str], None]  # of NaoBasic
+    happened: tuple[float, float]  # of NaoBasic: times of the first and the last picture in which something counts
 
     @contextmanager
     def watching(self, wanted: Wanted) -> Iterator[Watch]:
@@ -150,25 +152,26 @@ class DetectionBase(CameraAccess):
         return [sighting.label for sighting in sightings]
 
     def tell_seen(self, status: str, sightings: Sequence[Sighting] = ()) -> None:
-        """Publish what is seen now."""
-        self.tell(status, seen_messages(sightings, self.frame_prefix))
+        """Publish what is seen now, or was in the picture of these sightings."""
+        stamp = sightings[0].time if sightings else None
+        self.tell(status, seen_messages(sightings, self.frame_prefix), stamp=stamp)
 
-    def placed(self, wanted: Wanted, camera: int, value: Any) -> list[Sighting]:
+    def placed(self, wanted: Wanted, camera: int, event: Event) -> list[Sighting]:
         """What counts of an event, and where it is.
 
         Args:
             wanted: What counts.
             camera: Index of the camera that the extractor looks through; what others see does not count.
-            value: Of the event.
+            event: Of the extractor.
         """
         try:
-            look = self._look(wanted.kind, camera, value)
+            look = self._look(wanted.kind, camera, event.value)
         except ValueError as error:
             log.warning("%s", error)
             return []
         if look.camera != camera or look.in_robot is None or look.in_torso is None:
             return []
-        lens, time = self.lens(camera), self._time(wanted.kind, look.time)
+        lens, time = self.lens(camera), self._time(look, event)
         size = wanted.size or DEFAULT_SIZES.get(wanted.kind, 0.0)
         found = []
         for sight in filter(None, map(wanted.picks, look.sights)):
@@ -200,16 +203,11 @@ class DetectionBase(CameraAccess):
         sights = code_sights(value, *_size(resolution), self.lens(camera))
         return Look(None, camera, self.camera_pose(camera, TORSO), self.camera_pose(camera, ROBOT), sights)
 
-    def _time(self, kind: str, robot_time: float | None) -> float:
-        """ROS time of a picture, s."""
-        now = self.clock.now()
-        if robot_time is None:
-            return now
-        if same_clock(robot_time, now):
-            return robot_time
-        if self._clocks is None:
-            self._clocks = {name: ImageClock() for name in DETECTORS}
-        return self._clocks[kind].take(robot_time, now)
+    def _time(self, look: Look, event: Event) -> float:
+        """ROS time of a picture, s; of one whose time is not told that at which its event was raised."""
+        if look.time is None:
+            return self.event_time(event)
+        return self.robot_clock.ros_time(self.call, look.time)
 
 
 def timeout_of(timeout: float) -> float:

@@ -7,11 +7,11 @@ from contextlib import contextmanager
 
 from naoqi.errors import NaoError, UnknownMethod
 
-from .camera_facts import CAMERA_NAMES
-from .extractor_use import ExtractorUse
-from .motion_facts import MOTION
-from .vision_cameras import CAMERAS, VIDEO
-from .vision_detect_events import Lens, Pose, Region, Sight
+from ...motion.facts import MOTION
+from ...nao.camera_facts import CAMERA_NAMES
+from ...server.extractor_use import ExtractorUse
+from ..capture.cameras import CAMERAS, VIDEO
+from .events import Lens, Pose, Region, Sight
 
 TORSO, ROBOT = 0, 2
 """NAOqi's FRAME_TORSO and FRAME_ROBOT."""

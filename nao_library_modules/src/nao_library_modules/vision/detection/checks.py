@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from .errors import BadGoal
-from .field_checks import require_number, require_text
-from .vision_cameras import CAMERAS, camera_name
-from .vision_checks import LONGEST_WAIT
-from .vision_detect_events import BALL, CODE, FACE, LANDMARK
+from ...base.errors import BadGoal
+from ...base.field_checks import require_text, require_within
+from ...base.limits import limit
+from ...base.suggestion import did_you_mean
+from ..capture.cameras import CAMERAS, camera_name
+from ..capture.checks import LONGEST_WAIT
+from .events import BALL, CODE, FACE, LANDMARK
 
-MOST_LOOKS = 1000
-LARGEST = 100.0
-"""m."""
+TIMEOUT, SHARE, SIZE, LOOKS = limit("timeout"), limit("share"), limit("size"), limit("looks")
 LONGEST_NAME = 100
 LOOKED_FOR = (BALL, FACE, LANDMARK, CODE)
 """What lookFor looks for."""
@@ -30,18 +30,18 @@ def camera_index(camera: str) -> int | None:
 def require_look(camera: str, timeout: float, confidence: float) -> None:
     """A camera, a wait, a least confidence."""
     camera_index(camera)
-    require_number("timeout", timeout, 0.0, LONGEST_WAIT, f"up to {LONGEST_WAIT:g} s, or 0 for the default")
-    require_number("confidence", confidence, 0.0, 1.0)
+    require_within("timeout", timeout, TIMEOUT, f"up to {LONGEST_WAIT:g} s, or 0 for the default")
+    require_within("confidence", confidence, SHARE)
 
 
 def require_size(size: float) -> None:
     """A real size, m."""
-    require_number("size", size, 0.0, LARGEST, f"up to {LARGEST:g} m, or 0 for the default")
+    require_within("size", size, SIZE, f"up to {SIZE[1]:g} m, or 0 for the default")
 
 
 def require_looks(count: int) -> None:
     """How many pictures are to count."""
-    require_number("count", count, 0, MOST_LOOKS, f"up to {MOST_LOOKS} looks, or 0 for one")
+    require_within("count", count, LOOKS, f"up to {LOOKS[1]} looks, or 0 for one")
 
 
 def require_mark(number: str) -> str:
@@ -73,7 +73,8 @@ def wanted_thing(text: str) -> tuple[str, str]:
     name = name.strip()
     if kind not in LOOKED_FOR:
         allowed = f"{', '.join(LOOKED_FOR)}; a name, a number or a text may follow: {FACE} NAME"
-        raise BadGoal("str_param", text, allowed)
+        problem = f"{kind!r} is nothing to look for{did_you_mean(kind, LOOKED_FOR)}"
+        raise BadGoal("str_param", text, allowed, problem=problem)
     if kind == BALL and name:
         raise BadGoal("str_param", text, BALL, problem="balls have no names")
     return kind, require_mark(name) if kind == LANDMARK else name
@@ -101,7 +102,7 @@ def check_movement(self: Any, camera: str, timeout: float, confidence: float, co
     """Looks at what moves."""
     require_look(camera, timeout, confidence)
     require_looks(count)
-    require_number("sensitivity", sensitivity, 0.0, 1.0)
+    require_within("sensitivity", sensitivity, SHARE)
 
 
 def check_learning(self: Any, str_param: str, camera: str, timeout: float) -> None:
@@ -122,8 +123,8 @@ def check_tracking(
     require_look(camera, timeout, confidence)
     require_size(size)
     until = f"up to {LONGEST_WAIT:g} s, or 0: until the goal is preempted"
-    require_number("duration", duration, 0.0, LONGEST_WAIT, until)
-    require_number("speed", speed, 0.0, 1.0, "0..1 of the top speed, or 0 for a moderate one")
+    require_within("duration", duration, TIMEOUT, until)
+    require_within("speed", speed, SHARE, "0..1 of the top speed, or 0 for a moderate one")
 
 
 def check_search(

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Tuple
 
-from .camera_facts import camera_number
+from ...nao.camera_facts import camera_number
 
 BALL, FACE, LANDMARK, CODE, MOVEMENT = "ball", "face", "landmark", "code", "movement"
 

@@ -8,12 +8,12 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .function_chain import checked_by
-from .suggestion import did_you_mean
-from .vision_detect import DetectionFunctions
-from .vision_detect_base import DETECTORS, Wanted, timeout_of
-from .vision_detect_checks import camera_index, check_detection, check_learning, check_name, require_name
-from .vision_detect_events import FACE
+from ...base.suggestion import did_you_mean
+from ...functions.chain import checked_by
+from .base import DETECTORS, Wanted, timeout_of
+from .checks import camera_index, check_detection, check_learning, check_name, require_name
+from .events import FACE
+from .things import DetectionFunctions
 
 FACES = DETECTORS[FACE].module
 

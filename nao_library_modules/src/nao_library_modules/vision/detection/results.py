@@ -11,8 +11,8 @@ from std_msgs.msg import Header
 
 from nao_library_msgs.msg import SeenObject
 
-from .vision_cameras import CAMERAS, OPTICAL_FRAMES
-from .vision_detect_space import Sighting
+from ..capture.cameras import CAMERAS, OPTICAL_FRAMES
+from .space import Sighting
 
 BASE = "base_footprint"
 """Frame of the robot on the floor between its feet, as its description and nao_joint_states name it."""

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from statistics import median
 from typing import List, Tuple
 
-from .audio_in_events import turned
-from .vision_detect_events import BALL, CODE, FACE, LANDMARK, Lens, Pose, Region, Sight
+from ...audio_in.events import turned
+from .events import BALL, CODE, FACE, LANDMARK, Lens, Pose, Region, Sight
 
 Vector = Tuple[float, float, float]
 
@@ -122,20 +122,6 @@ def moved(point: Vector, pose: Pose) -> Vector:
     """A point of a frame, in the frame that its pose is in; m."""
     x, y, z = turned(point, pose[3:])
     return x + pose[0], y + pose[1], z + pose[2]
-
-
-def same_clock(robot_time: float, now: float) -> bool:
-    """Whether the robot's clock goes with ROS time, as in simulated time and where clocks are synchronised.
-
-    Args:
-        robot_time: Of a picture, s.
-        now: ROS time, s.
-    """
-    return abs(now - robot_time) <= CLOCKS_AGREE
-
-
-CLOCKS_AGREE = 5.0
-"""s between a picture's time and ours; more is another clock. In simulated time ours may also be a little late."""
 
 
 NEAR = 0.3

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .function_chain import checked_by
-from .vision_detect_base import DETECTORS, DetectionBase, Wanted, timeout_of
-from .vision_detect_cameras import InUse
-from .vision_detect_checks import camera_index, check_detection, check_landmarks, check_movement, require_mark
-from .vision_detect_events import BALL, CODE, LANDMARK, MOVEMENT
-from .vision_detect_space import merged
+from ...functions.chain import checked_by
+from .base import DETECTORS, DetectionBase, Wanted, timeout_of
+from .cameras import InUse
+from .checks import camera_index, check_detection, check_landmarks, check_movement, require_mark
+from .events import BALL, CODE, LANDMARK, MOVEMENT
+from .space import merged
 
 TYPED: frozenset[str] = frozenset()
 """Functions here whose answers stay out of memList: none, the names of what was seen are for both."""
@@ -87,5 +87,7 @@ class DetectionFunctions(DetectionBase):
                 self.tell_seen("looking", sightings)
                 if len(pictures) >= max(count, 1):
                     break
+        if not pictures:
+            self.remark(f"no {wanted.kind} seen within {timeout_of(timeout):g} s")
         # Nobody can tell which movement of one picture is which of the next.
         return self.note(merged(pictures[-1:] if wanted.kind == MOVEMENT else pictures))

@@ -6,13 +6,13 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from .function_chain import checked_by
-from .vision_detect_base import Wanted, Watch, timeout_of
-from .vision_detect_checks import camera_index, check_search, check_tracking, wanted_thing
-from .vision_detect_events import BALL, FACE
-from .vision_detect_space import Sighting, merged
-from .vision_track_head import HeadUse, Neck
-from .vision_track_plan import MIDDLE, off_axis, search_angles, the_one
+from ...functions.chain import checked_by
+from .base import Wanted, Watch, timeout_of
+from .checks import camera_index, check_search, check_tracking, wanted_thing
+from .events import BALL, FACE
+from .space import Sighting, merged
+from .track_head import HeadUse, Neck
+from .track_plan import MIDDLE, off_axis, search_angles, the_one
 
 LOST = 0.7
 """s without being seen after which it is lost: single pictures may show nothing."""

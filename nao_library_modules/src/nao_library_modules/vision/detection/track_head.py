@@ -9,11 +9,11 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from .motion_facts import MOTION, JointLimits
-from .motion_gaze import HEAD
-from .vision_detect_base import DetectionBase
-from .vision_detect_space import Sighting
-from .vision_track_plan import STILL, Angles, aim, fraction, off_axis, travel_time, within
+from ...motion.facts import MOTION, JointLimits
+from ...motion.look_at import HEAD
+from .base import DetectionBase
+from .space import Sighting
+from .track_plan import STILL, Angles, aim, fraction, off_axis, travel_time, within
 
 log = logging.getLogger(__name__)
 

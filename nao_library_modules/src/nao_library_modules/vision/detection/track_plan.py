@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 from itertools import cycle
 from typing import Tuple
 
-from .camera_facts import CAMERA_NAMES
-from .gaze import load_head, look_at
-from .motion_facts import JointLimits
-from .vision_detect_events import BALL, FACE
-from .vision_detect_space import Sighting
+from ...motion.facts import JointLimits
+from ...motion.gaze import load_head, look_at
+from ...nao.camera_facts import CAMERA_NAMES
+from .events import BALL, FACE
+from .space import Sighting
 
 Angles = Tuple[float, float]
 """HeadYaw and HeadPitch, rad."""

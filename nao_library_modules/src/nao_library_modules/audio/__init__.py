@@ -1,0 +1,1 @@
+"""What speech, sounds and hearing share."""

@@ -1,0 +1,168 @@
+"""Speech as the robot speaks it: words told while this server has something said, and when it was to be heard."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from ..functions.memory_functions import MEMORY
+from ..robot.event_relay import EventRelay
+from ..robot.robot_clock import RobotClock
+from ..server.simulated_keys import SimulatedKey, checked_span
+
+log = logging.getLogger(__name__)
+
+WORD, SENTENCE = "ALTextToSpeech/CurrentWord", "ALTextToSpeech/CurrentSentence"
+STARTED = "ALTextToSpeech/TextStarted"
+ENDS = ("ALTextToSpeech/TextDone", "ALTextToSpeech/TextInterrupted")
+TIMES = "NaoSimulation/SpeechTimes"
+"""A key of simulated robots: [onset, end] of the text that was spoken last, s of the robot."""
+ANSWER_LIMIT = 0.5
+"""s that the end of a text waits for its last events and their times: they may come after the answer of the call."""
+
+
+class SpokenWords:
+    """Tells words while something is said, and when a text was to be heard.
+
+    A simulated robot knows when the first and the last sound of a text were. Of any other, the times of the events
+    TextStarted and TextDone or TextInterrupted count.
+
+    Events come from threads of libqi, the rest from the thread that executes goals. The lock is held while a word is
+    told, so that none is told after `stop`.
+    """
+
+    def __init__(
+        self, robot: Any, clock: Any, robot_clock: RobotClock, call: Callable[..., Any], tell: Callable[..., None]
+    ) -> None:
+        """Begin without subscriptions.
+
+        Args:
+            robot: Robot.
+            clock: ROS time.
+            robot_clock: Turns times of the robot into ROS time.
+            call: `call` of the module: proxy, method, arguments.
+            tell: Called with each word, the sentence that it belongs to, and its ROS time, s; it must not block.
+        """
+        self._robot = robot
+        self._clock = clock
+        self._robot_clock = robot_clock
+        self._call = call
+        self._exact = SimulatedKey(robot, TIMES)
+        self._events = EventRelay(lambda: robot.proxy(MEMORY), self._take)
+        self._tell = tell
+        self._lock = threading.Lock()
+        self._answered = threading.Condition(self._lock)
+        self._texts: set[object] = set()  # under way
+        self._sentence = ""
+        self._asked = 0  # events whose times the robot has not told yet
+        self._started = self._ended = 0.0  # the last text, ROS time, s
+
+    def begin(self) -> object:
+        """Something is said from now on; what is returned tells `end` what."""
+        try:
+            events = (SENTENCE, WORD) if self._exact.known(self._call) else (SENTENCE, WORD, STARTED, *ENDS)
+            self._robot_clock.compare(self._call)
+        except NaoError as error:
+            log.debug("times of speech are not known: %s", error)
+            events = (SENTENCE, WORD)
+        for event in events:
+            try:
+                self._events.subscribe(event)
+            except NaoError as error:
+                log.debug("%s is not watched: %s", event, error)  # it is said all the same
+        text = object()
+        with self._lock:
+            self._texts.add(text)
+        return text
+
+    def end(self, text: object) -> None:
+        """It is said; when nothing else is, no more words are told."""
+        with self._lock:
+            self._texts.discard(text)
+
+    @contextmanager
+    def told(self) -> Iterator[None]:
+        """Tell words while the block runs."""
+        text, begun = self.begin(), self._clock.now()
+        try:
+            yield
+            self._await_times(begun)
+        finally:
+            self.end(text)
+
+    def span(self, began: float) -> tuple[float, float]:
+        """ROS times, s, of the first and the last sound of a text that was said just now; 0 where they are not known.
+
+        Args:
+            began: ROS time at which it was asked for, s.
+
+        Raises:
+            NaoError: The robot cannot be asked.
+        """
+        if self._exact.known(self._call):
+            return self._exact.span(self._call, self._robot_clock, began)
+        with self._lock:
+            return checked_span([self._started, self._ended], began)
+
+    def stop(self) -> None:
+        """Tell no more of what has begun."""
+        with self._lock:
+            self._texts.clear()
+
+    def renew(self) -> None:
+        """Subscribe again: the robot behind a new connection knows nothing of it."""
+        self._events.renew()
+
+    def close(self) -> None:
+        """Unsubscribe."""
+        self.stop()
+        self._events.close()
+
+    # In threads of libqi
+
+    def _take(self, event: str, value: Any) -> None:
+        if event == SENTENCE:
+            with self._lock:
+                self._sentence = str(value or "").strip()
+            return
+        text = str(value or "").strip()
+        with self._lock:
+            sentence, wanted = self._sentence, bool(self._texts)
+        if not wanted or not value or (event == WORD and not text):
+            return
+        arrived = self._clock.now()
+        call = self._robot.proxy(MEMORY).call_async("getTimestamp", event)
+        with self._lock:
+            self._asked += 1
+        call.add_done_callback(lambda answer: self._dated(answer, event, value, sentence, arrived))
+
+    def _dated(self, answer: Any, event: str, value: Any, sentence: str, arrived: float) -> None:
+        """An event whose time the robot has told, or could not tell."""
+        when = arrived
+        try:
+            last, seconds, microseconds = answer.result(timeout=0)
+            if last == value:
+                when = self._robot_clock.mapped(seconds + 1e-6 * microseconds, arrived)
+        except (NaoError, ValueError, TypeError) as error:
+            log.debug("the time of %s is not known: %s", event, error)
+        with self._lock:
+            self._asked -= 1
+            self._answered.notify_all()
+            if event == STARTED:
+                self._started = when
+            elif event in ENDS:
+                self._ended = when
+            elif self._texts:
+                self._tell(str(value).strip(), sentence, when)
+
+    # In the thread that executes goals
+
+    def _await_times(self, begun: float) -> None:
+        told = not set(ENDS).intersection(self._events.names)  # nothing will tell the end
+        with self._lock:
+            self._answered.wait_for(lambda: not self._asked and (told or self._ended > begun), ANSWER_LIMIT)

@@ -1,0 +1,1 @@
+"""What everything here stands on and what knows nothing of the robot: errors, limits, places, cancellation, files."""

@@ -1,0 +1,24 @@
+"""Names of a package whose modules are loaded when they are asked for first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from typing import Any
+
+
+def door(package: str, names: Mapping[str, str]) -> Callable[[str], Any]:
+    """The `__getattr__` of a package.
+
+    Args:
+        package: Its `__name__`.
+        names: Name -> the module that has it, relative to the package; "module:other" where it is called so there.
+    """
+
+    def get(name: str) -> Any:
+        if name not in names:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        module, _, there = names[name].partition(":")
+        return getattr(import_module(f".{module}", package), there or name)
+
+    return get

@@ -1,0 +1,43 @@
+"""Modules that others import by a name that they had before."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
+
+
+class Former(MetaPathFinder, Loader):
+    """Finds a module by its former name: it is the same module then, with the same classes.
+
+    Args:
+        modules: Former full name -> full name.
+    """
+
+    def __init__(self, modules: Mapping[str, str]) -> None:
+        self._modules = modules
+        self._specs: dict[str, ModuleSpec | None] = {}
+
+    @classmethod
+    def install(cls, package: str, modules: Mapping[str, str]) -> None:
+        """Have former names of modules of a package found; both names are relative to it."""
+        sys.meta_path.append(cls({f"{package}.{old}": f"{package}.{new}" for old, new in modules.items()}))
+
+    def find_spec(self, name: str, _path: Sequence[str] | None, _target: ModuleType | None = None) -> ModuleSpec | None:
+        """The specification of a module that had this name."""
+        return ModuleSpec(name, self) if name in self._modules else None
+
+    def create_module(self, spec: ModuleSpec) -> Any:
+        """The module as it is called now."""
+        module = import_module(self._modules[spec.name])
+        self._specs[spec.name] = module.__spec__
+        return module
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Give the module back its specification, in whose place the import system has put the former one."""
+        assert module.__spec__ is not None
+        module.__spec__ = self._specs.pop(module.__spec__.name)

@@ -1,0 +1,50 @@
+"""Bounds of the numbers that come in from outside, by kind, as `config/limits.json` declares them. Pure."""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from .paths import config_file
+
+FILE = "limits.json"
+
+
+class Limit(NamedTuple):
+    """Bounds of one kind of number, both included; neither is infinite."""
+
+    lowest: float
+    highest: float
+    unit: str
+
+
+def limit(kind: str) -> Limit:
+    """The bounds of a kind of number.
+
+    Raises:
+        KeyError: There is no such kind.
+    """
+    declared = _declared()[kind]
+    return Limit(declared["lowest"], declared["highest"], declared["unit"])
+
+
+class Row(NamedTuple):
+    """A line of the table of bounds: a kind of number, its bounds, and where they hold, in words."""
+
+    kind: str
+    lowest: float
+    highest: float
+    unit: str
+    where: str
+
+
+def table() -> list[Row]:
+    """All kinds, in the order of the file."""
+    return [Row(kind, **declared) for kind, declared in _declared().items()]
+
+
+@lru_cache(maxsize=None)
+def _declared() -> dict[str, dict[str, Any]]:
+    content = json.loads(config_file(FILE).read_text(encoding="utf-8"))
+    return {kind: declared for kind, declared in content.items() if not kind.startswith("_")}

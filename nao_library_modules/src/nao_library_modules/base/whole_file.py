@@ -1,0 +1,314 @@
+"""The one way to write a file: others see of it only what is whole, and never over another one by mistake. No ROS."""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import io
+import itertools
+import logging
+import os
+import shutil
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from naoqi.errors import NaoError
+
+log = logging.getLogger(__name__)
+
+DRAFT, PART = ".draft", ".part"
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+class NoPlaceForFile(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """A file cannot be written where it is wanted.
+
+    Attributes:
+        path: The file.
+    """
+
+    def __init__(self, path: Path, problem: str) -> None:
+        """Compose the text."""
+        super().__init__(f"{path} {problem}")
+        self.path = path
+
+
+class FileIsThere(NoPlaceForFile):
+    """A file is not replaced unless that is asked for."""
+
+    def __init__(self, path: Path) -> None:
+        """Compose the text."""
+        super().__init__(path, "is there already: another name, or --overwrite")
+
+
+class FileTrouble(NoPlaceForFile):
+    """A file cannot be written; the text names it, and the room that is left where there is too little."""
+
+    def __init__(self, path: Path, error: OSError) -> None:
+        """Compose the text of what the system says."""
+        reason = error.strerror or str(error)
+        if error.errno in FULL:
+            with suppress(OSError):
+                reason += f", {shutil.disk_usage(path.parent).free / 1e6:.1f} MB free in {path.parent}"
+        super().__init__(path, f"cannot be written: {reason}")
+
+
+def require_new(path: Path | str, overwrite: bool = False) -> Path:
+    """Absolute path of a file that a program is about to write.
+
+    Raises:
+        FileIsThere: There is such a file, and it is not to be replaced.
+        NoPlaceForFile: There is no folder for it.
+    """
+    absolute = Path(path).expanduser().absolute()
+    if absolute.exists() and not overwrite:
+        raise FileIsThere(absolute)
+    if not absolute.parent.is_dir():
+        raise NoPlaceForFile(absolute, f"has no place: there is no folder {absolute.parent}")
+    return absolute
+
+
+class WholeFile(io.RawIOBase):
+    """A file that others see only as far as it is whole. For one thread at a time.
+
+    What is written waits in memory until `flush`, which puts all of it on the disk or nothing. With the first flush the
+    file gets its name. Where there is a file of that name, it is called name.part1.end until it is closed, and takes
+    the place of the former one only then. One that is closed without a flush before is not seen until it is complete.
+
+    Attributes:
+        path: Its name at present, or the one that it will have.
+
+    Args:
+        path: Where; folders on the way are made.
+        numbered: Whether, where there is a file of that name, it becomes name-2.end, name-3.end, ... and replaces none.
+
+    Raises:
+        FileTrouble: There can be no such file.
+    """
+
+    def __init__(self, path: Path, numbered: bool = False) -> None:
+        """Begin; nobody sees it yet."""
+        super().__init__()
+        self.path = self._target = path
+        self._numbered = numbered
+        self._waiting: list[tuple[int, bytes]] = []
+        self._place = self._end = self._length = 0
+        self._trouble: FileTrouble | None = None
+        with self._telling():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            draft = path.parent / f".{uuid.uuid4().hex}{DRAFT}"
+            self._file = draft.open("xb", buffering=0)  # whose rights are those of the umask
+            self._draft: Path | None = draft
+            with suppress(OSError):  # not every file system knows locks
+                fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+    def writable(self) -> bool:
+        """True."""
+        return True
+
+    def seekable(self) -> bool:
+        """True."""
+        return True
+
+    def tell(self) -> int:
+        """Place of the next write."""
+        return self._place
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """As files have it."""
+        self._place = offset + {io.SEEK_SET: 0, io.SEEK_CUR: self._place, io.SEEK_END: self._end}[whence]
+        return self._place
+
+    def write(self, content: Any) -> int:
+        """Have bytes wait for the next flush."""
+        kept = bytes(content)
+        self._waiting.append((self._place, kept))
+        self._place += len(kept)
+        self._end = max(self._end, self._place)
+        return len(kept)
+
+    def flush(self) -> bool:
+        """Put on the disk what waits, all of it or nothing; whether there was something.
+
+        Raises:
+            FileTrouble: It cannot be written, nor can what comes behind it: there would be a hole.
+        """
+        if not self._waiting:
+            return False
+        with self._telling():
+            self._put()
+            if self._draft is not None:
+                self._show()
+        return True
+
+    def close(self) -> None:
+        """Put on the disk what waits, and replace a former file of that name.
+
+        Raises:
+            FileTrouble: It is not complete. What is on the disk of it stays, and so does the former file.
+        """
+        if self.closed:
+            return
+        try:
+            with self._telling():
+                self._put()
+                if self._draft is not None and self._numbered:
+                    self._show()
+                elif not self._numbered:
+                    os.replace(self._draft or self.path, self._target)
+                    self._draft, self.path = None, self._target
+        finally:
+            self._let_go()
+
+    def discard(self) -> None:
+        """Write nothing any more, and remove what there is of it; a former file stays."""
+        if not self.closed:
+            if self._draft is None:
+                self.path.unlink(missing_ok=True)
+            self._let_go()
+
+    def __exit__(self, kind: Any, *_: Any) -> None:
+        """Close it, or discard it when something went wrong."""
+        (self.close if kind is None else self.discard)()
+
+    def __del__(self) -> None:
+        """What nobody has closed is not complete: it stays as that of a killed process does."""
+
+    @contextmanager
+    def _telling(self) -> Iterator[None]:
+        if self._trouble is not None:
+            self._waiting.clear()
+            raise self._trouble
+        try:
+            yield
+        except OSError as error:
+            self._trouble = FileTrouble(self.path, error)
+            raise self._trouble from error
+
+    def _put(self) -> None:
+        waiting, self._waiting = self._waiting, []
+        try:
+            for place, content in waiting:
+                view = memoryview(content)
+                while view:
+                    written = os.pwrite(self._file.fileno(), view, place)
+                    view, place = view[written:], place + written
+        except OSError:
+            os.ftruncate(self._file.fileno(), self._length)
+            raise
+        self._length = self._end
+
+    def _show(self) -> None:
+        """Give the draft the first name that is free."""
+        self.path = _first_free(self._draft, self._target, *(("-", 2) if self._numbered else (PART, 1)))
+        self._draft = None
+
+    def _let_go(self) -> None:
+        self._waiting.clear()
+        self._file.close()
+        if self._draft is not None:
+            self._draft.unlink(missing_ok=True)
+        super().close()
+
+
+def write_whole(path: Path, content: str | bytes, numbered: bool = False) -> Path:
+    """Write a file; one that is there already is replaced, and who reads it meanwhile gets the former one.
+
+    Args:
+        path: The file; its folder is made if it is not there.
+        content: A text is written as UTF-8.
+        numbered: See `WholeFile`.
+
+    Returns:
+        Its path.
+
+    Raises:
+        FileTrouble: It cannot be written; nothing has changed.
+        UnicodeEncodeError: If the text has halves of characters.
+    """
+    data = content.encode() if isinstance(content, str) else content
+    with WholeFile(path, numbered) as file:
+        file.write(data)
+    return file.path
+
+
+def move_whole(path: Path, target: Path, overwrite: bool = False) -> Path:
+    """Move a file, also to another disk. Until it is whole at its new place it is at the former one.
+
+    Args:
+        path: Where it is.
+        target: Where it is to be.
+        overwrite: Whether it replaces one that is there; else it becomes name-2.end, name-3.end, ... beside that one.
+
+    Returns:
+        Where it is now.
+
+    Raises:
+        FileTrouble: It cannot be moved; nothing has changed.
+    """
+    draft = target.parent / f".{os.getpid()}{DRAFT}"
+    try:
+        if target.exists() and target.samefile(path):
+            return target
+        draft.unlink(missing_ok=True)  # of a process that was killed, and had the same number
+        try:
+            os.link(path, draft)
+        except OSError:  # another disk, another owner, a file system without links
+            shutil.copy2(path, draft)
+        if overwrite:
+            os.replace(draft, target)
+        else:
+            target = _first_free(draft, target)
+    except OSError as error:
+        draft.unlink(missing_ok=True)
+        raise FileTrouble(target, error) from error
+    with suppress(OSError):  # of somebody else: it stays there as well
+        path.unlink()
+    return target
+
+
+def written(path: Path, wanted: Path) -> str:
+    """What is told of a file that was written: where it is, and why not where it was wanted."""
+    return f"written: {path}" if path == wanted else f"written: {path}, for {wanted.name} came meanwhile"
+
+
+def tidy(folder: Path) -> None:
+    """Remove drafts that killed processes have left in a folder, and name their recordings that replace nothing."""
+    for path in folder.rglob(f"*{DRAFT}"):
+        if _nobody_writes(path):
+            path.unlink(missing_ok=True)
+    for path in folder.rglob(f"*{PART}[0-9]*"):
+        if _nobody_writes(path):
+            log.warning("%s is a recording that was not ended; what was to be replaced by it is still there", path)
+
+
+def give_name(draft: Path, name: Path) -> bool:
+    """Give a file another name unless there is a file of that name; whether it got it."""
+    try:
+        os.link(draft, name)
+        draft.unlink()
+    except FileExistsError:
+        return False
+    except OSError:  # not every file system knows links
+        if name.exists():
+            return False
+        os.replace(draft, name)
+    return True
+
+
+def _first_free(draft: Path, target: Path, mark: str = "-", first: int = 2) -> Path:
+    """Give a file the first name that is free: that of the target, or one with a number; which it is."""
+    others = (target.with_name(f"{target.stem}{mark}{number}{target.suffix}") for number in itertools.count(first))
+    return next(name for name in itertools.chain([target], others) if give_name(draft, name))
+
+
+def _nobody_writes(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True

@@ -1,0 +1,1 @@
+"""The language of behaviour files: model, reader, writer, checks."""

@@ -1,0 +1,182 @@
+"""The servers that steps may use: their actions, their functions, and what can be checked of a goal without a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Optional
+
+from naoqi.errors import NaoError
+
+from ...base.errors import BadGoal, FunctionFailed, UnknownFunction
+from ...base.suggestion import did_you_mean
+from ...functions.chain import COMMON, fields_taken
+from ...functions.goal_checks import GoalCheck, GoalProblem, check_goals
+from ...functions.known_robot import KnownRobot
+from ...functions.offline_module import offline_module
+from ...functions.server_types import ACTIONS, ServerType, described_type, server_type
+
+if TYPE_CHECKING:
+    from nao_library_msgs.srv import DescribeFunctionsResponse
+
+OWN = "NaoBehavior"
+NAMES = tuple(name for name in ACTIONS if name != OWN)
+"""Servers of this package that steps may use."""
+
+Describe = Callable[[str, Optional[Sequence[str]]], "DescribeFunctionsResponse"]
+"""Has a server describe functions, by their names, all of them (no names) or none (None: only itself); raises
+NotDescribed if no server of that name runs."""
+
+
+class NotDescribed(NaoError):  # noqa: N818  it says what became of the question
+    """A server did not tell what its functions are."""
+
+
+Running = Callable[[], Iterable[str]]
+"""Names of the servers that run."""
+
+
+def nobody_describes(_server: str, _functions: Sequence[str] | None) -> DescribeFunctionsResponse:
+    """A `Describe` for where no servers are."""
+    raise NotDescribed("no server was asked")
+
+
+class FunctionTables:
+    """What the servers can do: functions, and checks that need no robot.
+
+    The servers of this package are read from their code, each when it is asked for the first time. A server of another
+    name, and a function that one of these does not have, is asked of the server that runs. Any thread may ask; two that
+    come at the same time do the same work.
+
+    Args:
+        describe: Has a server that runs describe its functions.
+        running: Tells which servers run.
+    """
+
+    def __init__(self, describe: Describe = nobody_describes, running: Running = tuple) -> None:
+        self._describe = describe
+        self._running = running
+        self._modules: dict[str, Any] = {}
+        self._others: dict[str, ServerType] = {}
+
+    def server(self, name: str, field: str = "step") -> ServerType:
+        """The types of a server that steps may use.
+
+        Args:
+            name: Its relative name.
+            field: What names it, for the error.
+
+        Raises:
+            BadGoal: If there is none of that name.
+        """
+        if name in NAMES:
+            return server_type(name)
+        if name == OWN:
+            problem = "a behavior that sends goals to NaoBehavior would end itself: use 'behavior: NAME'"
+            raise BadGoal(field, name, f"the servers are {', '.join(NAMES)}", problem)
+        if name not in self._others:
+            try:
+                self._others[name] = described_type(name, self._describe(name, None))
+            except NotDescribed:
+                names = list(dict.fromkeys([*NAMES, *(each for each in self._running() if each != OWN)]))
+                problem = f"there is no server {name!r}{did_you_mean(name, names)}"
+                raise BadGoal(field, name, f"the servers are {', '.join(names)}", problem) from None
+        return self._others[name]
+
+    def fields(self, server: ServerType, function: str) -> list[str]:
+        """Fields that a function of a server takes, with those that all functions have; empty: there is none such."""
+        known = self._functions(server)
+        if function in known:
+            taken = fields_taken(known[function], server.function.__slots__)
+        else:
+            described = self._described(server, [function])
+            if not described:
+                return []
+            taken = [argument.name for argument in described[function].arguments]
+        return [*taken, *(name for name in COMMON if name in server.function.__slots__)]
+
+    def check(self, server: ServerType, messages: Sequence[Any]) -> tuple[list[FunctionFailed], list[int]]:
+        """Check a goal as far as that is possible without any robot and without what goals before it have done.
+
+        Args:
+            server: That it is for.
+            messages: Its function messages.
+
+        Returns:
+            What is wrong with it, whichever robot it is for; and the places, counted from 1, of the functions whose
+            checks only the server can finish.
+        """
+        if server.ours:
+            chain = self._module(server).chain
+            failures = chain.failures(messages, stand_in=lambda _: _Elsewhere())
+        else:
+            # Nothing of it is known here: all its functions are asked of the server that runs.
+            names = [message.function for message in messages]
+            failures = [FunctionFailed(i, name, UnknownFunction(name, [])) for i, name in enumerate(names, start=1)]
+        failures = [self._checked_there(server, failed) for failed in failures]
+        unfinished = [failed.position for failed in failures if isinstance(failed.cause, _AtTheServer)]
+        return [failed for failed in failures if failed.position not in unfinished], unfinished
+
+    def check_goals(self, name: str, goals: Sequence[Any]) -> GoalCheck:
+        """Check goals as their server would for a robot that is as all of its family are.
+
+        Args:
+            name: Of the server.
+            goals: In the order in which they would be sent.
+        """
+        server = self.server(name)
+        if not server.ours:
+            unchecked = [
+                GoalProblem(number, index, message.function, "", "only its server can check it")
+                for number, goal in enumerate(goals)
+                for index, message in enumerate(getattr(goal, goal.__slots__[0]))
+            ]
+            return GoalCheck((), unchecked)
+        found = check_goals(self._module(server), goals, elsewhere=True)
+        unknown = {each.function for each in found.problems} - set(self._functions(server))
+        there = self._described(server, sorted(unknown)) if unknown else {}
+        return GoalCheck(
+            [each for each in found.problems if each.function not in there],
+            [*found.unchecked, *(each for each in found.problems if each.function in there)],
+        )
+
+    def _checked_there(self, server: ServerType, failed: FunctionFailed) -> FunctionFailed:
+        """A failure as it is; one of a function that only the server that runs has, as its to check."""
+        if not isinstance(failed.cause, UnknownFunction):
+            return failed
+        if self._described(server, [failed.function]):
+            return FunctionFailed(failed.position, failed.function, _AtTheServer(failed.function))
+        known = self._described(server, [])
+        if known:
+            cause: Exception = UnknownFunction(failed.function, known, server.name)
+        elif server.ours:
+            return failed
+        else:
+            there = "it has to be there before the behavior"
+            cause = BadGoal("step", server.name, there, f"{server.name} does not run")
+        return FunctionFailed(failed.position, failed.function, cause)
+
+    def _described(self, server: ServerType, functions: Sequence[str]) -> Mapping[str, Any]:
+        """Functions of a server that runs by name, as FunctionDescription; none if it does not."""
+        try:
+            return {each.name: each for each in self._describe(server.name, functions).functions}
+        except NotDescribed:
+            return {}
+
+    def _functions(self, server: ServerType) -> Mapping[str, Callable[..., Any]]:
+        return self._module(server).function_table if server.ours else {}
+
+    def _module(self, server: ServerType) -> Any:
+        if server.name not in self._modules:
+            self._modules[server.name] = offline_module(server.module, KnownRobot())[0]
+        return self._modules[server.name]
+
+
+class _AtTheServer(Exception):  # noqa: N818  a signal: the rest of a check can only be done by the server
+    """A check asks for something that is only known where the server runs."""
+
+
+class _Elsewhere:
+    """Stands for the server in its checks: it knows nothing."""
+
+    def __getattr__(self, name: str) -> Any:
+        raise _AtTheServer(name)

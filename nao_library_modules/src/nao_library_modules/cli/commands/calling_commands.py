@@ -1,0 +1,85 @@
+"""`nao call`: any functions of a server."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import click
+
+from ..chain_text import NEXT, TypedFunction, build_message, read_chain
+from ..dry_run import tell_dry_run
+from ..goals import carry_out, message_class
+from ..settings import Settings, SignedCommand, settings_of
+
+
+def _complete_server(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
+    from ..completion import servers
+
+    return servers(context, start)
+
+
+def _complete_chain(context: click.Context, parameter: click.Parameter, start: str) -> list[str]:
+    from ..completion import chain
+
+    return chain(context, start, context.params.get("server") or "", context.params.get(parameter.name) or ())
+
+
+class _CallCommand(SignedCommand):
+    words = NEXT
+
+    def instead_of(self, option: str, known: Sequence[str]) -> list[str]:
+        """As every command has it; what is no option may be meant for a field."""
+        return super().instead_of(option, known) or [f"{option.lstrip('-')}:=VALUE"]
+
+
+@click.command(cls=_CallCommand, name="call")
+@click.argument("server", shell_complete=_complete_server)
+@click.argument("chain", nargs=-1, required=True, shell_complete=_complete_chain, metavar="FUNCTION [field:=value]...")
+@click.option("--dry-run", is_flag=True, help="Only have the server check it: nothing is done, what runs goes on.")
+@click.pass_context
+def call_command(context: click.Context, server: str, chain: tuple[str, ...], dry_run: bool) -> None:
+    """Call functions of SERVER as one goal.
+
+    Several have a comma or --then between them. Lists are values with commas between them; `nao help FUNCTION` tells
+    the fields.
+
+    nao call NaoLights setIntensity lights:=Brain0,Brain1 i_values:=0.5 time:=2 , off lights:=Brain0
+    """
+    settings = settings_of(context)
+    typed = read_chain(chain)
+    told = settings.stack.describe(server, functions=[function.name for function in typed])
+    _require_not_elsewhere(settings, server, told.unknown)
+    kind = message_class(told.message)
+    common = [argument.name for argument in told.common]
+    taken = {each.name: [*(argument.name for argument in each.arguments), *common] for each in told.functions}
+    functions = [build_message(function, kind, taken.get(function.name, ())) for function in typed]
+    _tell_of_unread(typed, taken)
+    if dry_run:
+        tell_dry_run(settings, server, functions)
+    else:
+        carry_out(settings, server, functions)
+
+
+def _tell_of_unread(typed: Sequence[TypedFunction], taken: Mapping[str, Sequence[str]]) -> None:
+    """Warn of fields that a function does not read: what was meant by them is not done."""
+    for function in typed:
+        reads = taken.get(function.name, function.fields)
+        unread = [field for field in function.fields if field not in reads]
+        if unread:
+            click.echo(f"{function.name} does not read {', '.join(unread)}; it reads {', '.join(reads)}", err=True)
+
+
+def _require_not_elsewhere(settings: Settings, server: str, unknown: Sequence[str]) -> None:
+    """See that no function that a server does not know is one of another; of what nobody knows, the server tells.
+
+    Raises:
+        click.UsageError: It is; the text names the servers that have it.
+    """
+    from ..offline import described_by_code
+
+    for name in unknown:
+        others = [other for other, told in described_by_code(functions=[name], names=True) if not told.unknown]
+        if others:
+            own = settings.stack.server(server).rpartition("/")[2]
+            have = "has" if len(others) == 1 else "have"
+            raise click.UsageError(f"{own} has no function {name}; {', '.join(others)} {have}")

@@ -1,0 +1,50 @@
+"""Checks a behaviour in this process, where no server for behaviours runs; those of its goals are asked if they do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path, PurePath
+from typing import Any
+
+import click
+
+from nao_library_msgs.srv import DescribeFunctionsResponse, ListBehaviorsResponse
+
+from ..base.paths import config_file
+from ..behaviors import BehaviorStore, read
+from ..behaviors.language.checking import outlook_facts
+from ..behaviors.language.servers import FunctionTables, NotDescribed
+from ..behaviors.run.running import info_message
+from ..behaviors.server import PARAMETERS, SHIPPED
+from .dry_run import ask
+from .stack import Stack
+
+
+def check_offline(stack: Stack, request: Any) -> Any:
+    """What `NaoBehavior/list` would answer; behaviours of the user are those in the usual folder.
+
+    Args:
+        stack: What is there.
+        request: ListBehaviorsRequest with a name or a text.
+    """
+    store = BehaviorStore(Path(PARAMETERS["behavior_dir"]).expanduser(), config_file(SHIPPED))
+    name = PurePath(request.file).stem if request.text else request.name
+    load = (lambda: read(request.text, name, request.file)) if request.text else (lambda: store.load(name))
+    tables = FunctionTables(partial(_describe, stack), partial(_running, stack))
+    facts = outlook_facts(name, load, store.load, tables, request.parameters, partial(ask, stack))
+    return ListBehaviorsResponse([info_message(facts, shipped=False)])
+
+
+def _describe(stack: Stack, server: str, functions: Sequence[str] | None) -> DescribeFunctionsResponse:
+    try:
+        return stack.describe(server, functions or (), brief=functions is None, names=not functions)
+    except click.ClickException as error:
+        raise NotDescribed(error.message) from None
+
+
+def _running(stack: Stack) -> list[str]:
+    try:
+        return stack.servers()
+    except click.ClickException:
+        return []

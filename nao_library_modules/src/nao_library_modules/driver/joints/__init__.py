@@ -1,0 +1,1 @@
+"""Joints, their states and odometry, and what moves them."""

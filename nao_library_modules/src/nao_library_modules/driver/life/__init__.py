@@ -1,0 +1,1 @@
+"""Behaviours, autonomous life and lights."""

@@ -1,0 +1,1 @@
+"""Keys of the robot's memory as topics."""

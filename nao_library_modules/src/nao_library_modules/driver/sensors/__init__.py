@@ -1,0 +1,1 @@
+"""Touch, sonars, feet, diagnostics and what the robot sees."""

@@ -1,0 +1,1 @@
+"""Driving by keyboard and joystick."""

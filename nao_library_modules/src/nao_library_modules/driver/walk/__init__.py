@@ -1,0 +1,1 @@
+"""Walking by velocities, targets and footsteps."""

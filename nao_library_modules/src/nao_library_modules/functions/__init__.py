@@ -1,0 +1,1 @@
+"""Chains of functions: binding to parameters, checks, running, and what describes them."""

@@ -1,0 +1,1 @@
+"""Facts of the robot: its joints, lights, sensors, cameras and poses."""

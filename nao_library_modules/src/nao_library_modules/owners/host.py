@@ -1,0 +1,89 @@
+"""The watch of owners as part of a node that sets nothing going itself."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import defaultdict, deque
+from functools import partial
+from typing import Any
+
+import rospy
+from actionlib_msgs.msg import GoalID
+from std_srvs.srv import Empty
+
+from naoqi.errors import NaoError
+
+from .line import GOAL, SERVICE
+from .stops import Stops
+from .watch import OwnerWatch
+
+log = logging.getLogger(__name__)
+
+QUEUE = 20
+"""Cancelled goals of an action that a server is told of which is found late."""
+
+
+class GoalEnds(rospy.SubscribeListener):
+    """Cancels goals of others. Any thread.
+
+    ROS API:
+        Publishes `ACTION/cancel` (actionlib_msgs/GoalID) of the actions whose clients have died.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lock = threading.Lock()
+        self._publishers: dict[str, rospy.Publisher] = {}
+        self._cancelled: dict[str, deque[str]] = defaultdict(partial(deque, maxlen=QUEUE))
+
+    def cancel(self, topic: str, goal: str) -> None:
+        """Cancel a goal; a server that is not connected yet hears of it when it is."""
+        with self._lock:
+            self._cancelled[topic].append(goal)
+            publisher = self._publishers.get(topic)
+            if publisher is None:
+                publisher = rospy.Publisher(topic, GoalID, subscriber_listener=self, queue_size=QUEUE)
+                self._publishers[topic] = publisher
+                return
+        publisher.publish(GoalID(id=goal))
+
+    def peer_subscribe(self, topic_name: str, _publish: Any, peer_publish: Any) -> None:
+        """Somebody takes cancellations from now on; called by rospy."""
+        for goal in tuple(self._cancelled[topic_name]):
+            peer_publish(GoalID(id=goal))
+
+
+def call_for(service: str, node: str) -> None:
+    """Call a service without arguments in the name of a node that has died.
+
+    Raises:
+        NaoError: Nobody offers it, or it failed.
+    """
+    try:
+        rospy.ServiceProxy(service, Empty, headers={"callerid": node})()
+    except (rospy.ServiceException, rospy.ROSException) as error:
+        raise NaoError(f"{service} failed: {error}") from error
+
+
+def _call_beside(service: str, node: str) -> None:
+    """Call it without waiting: to stop a walk takes a second, and the next thing is to be stopped meanwhile."""
+
+    def call() -> None:
+        try:
+            call_for(service, node)
+        except NaoError as error:
+            log.error("what %s has left may go on: %s", node, error)
+
+    threading.Thread(target=call, name=service, daemon=True).start()
+
+
+def watch_owners(robot: Any) -> None:
+    """Stop what processes leave going that die, until this node ends.
+
+    Args:
+        robot: Its proxies and connection.
+    """
+    stops = Stops(robot, {GOAL: GoalEnds().cancel, SERVICE: _call_beside})
+    watch = OwnerWatch(robot.address, stops.stop)
+    rospy.on_shutdown(watch.close)

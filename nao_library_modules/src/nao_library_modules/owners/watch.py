@@ -1,0 +1,194 @@
+"""The other end of the lines: an owner that dies loses what it has set going, which is stopped at once. No ROS.
+
+One watch at a time has the place; others wait for its end and take over. So any process may be one that sets nothing
+going itself.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import selectors
+import socket
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from naoqi.worker import Worker
+
+from .line import Dialling, peer_of, place
+
+log = logging.getLogger(__name__)
+
+LONGEST = 65536
+"""Bytes of one line of text at most."""
+RETRY = 0.1
+"""s until the next attempt to take a place that is held by somebody who does not answer."""
+
+
+@dataclass(frozen=True)
+class Owned:
+    """Something that goes on.
+
+    Attributes:
+        owner: Name of the process.
+        what: Name of it.
+        cure: What stops it: JSON of module, method, arguments.
+        since: When it began, s of the monotonic clock, which all processes share.
+        until: s of the monotonic clock at which it is over by itself.
+    """
+
+    owner: str
+    what: str
+    cure: str
+    since: float
+    until: float = float("inf")
+
+
+@dataclass
+class _Line:
+    """One owner that is alive."""
+
+    name: str = "a program"
+    held: dict[int, Owned] = field(default_factory=dict)
+    rest: bytes = b""
+
+
+class Book:
+    """Who owns what. Plain state; one thread.
+
+    Args:
+        clock: s, monotonic.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._lines: dict[Any, _Line] = {}
+
+    def hear(self, owner: Any, data: bytes) -> None:
+        """An owner says something.
+
+        Raises:
+            ValueError: It is nothing that an owner says.
+        """
+        line = self._lines.setdefault(owner, _Line())
+        *texts, line.rest = (line.rest + data).split(b"\n")
+        if len(line.rest) > LONGEST:
+            raise ValueError("a line without an end")
+        for text in texts:
+            self._note(line, json.loads(text))
+
+    def _note(self, line: _Line, told: Any) -> None:
+        if not isinstance(told, dict):
+            raise ValueError(f"{told!r} is no message of an owner")
+        if "owner" in told:
+            line.name = str(told["owner"])
+            log.debug("%s may own something", line.name)
+        elif "release" in told:
+            line.held.pop(told["release"], None)
+        else:
+            seconds = float(told["seconds"])
+            cure, since = json.dumps(told["cure"]), float(told["since"])
+            until = since + seconds if seconds else float("inf")
+            line.held[int(told["hold"])] = Owned(line.name, str(told["what"]), cure, since, until)
+
+    def lose(self, owner: Any) -> list[Owned]:
+        """An owner has gone: what has to be stopped, in the order in which it began.
+
+        What somebody else has begun to own since goes on: the walk of another is none of the dead one's.
+        """
+        line = self._lines.pop(owner, None)
+        if line is None:
+            return []
+        now = self._clock()
+        others = [each for other in self._lines.values() for each in other.held.values()]
+        lost = [
+            each
+            for each in line.held.values()
+            if each.until > now and not any(other.cure == each.cure and other.since > each.since for other in others)
+        ]
+        return list({each.cure: each for each in sorted(lost, key=lambda each: each.since)}.values())
+
+
+class OwnerWatch:
+    """Listens to the owners of a robot, or waits until whoever does has gone.
+
+    Args:
+        address: `ip:port` of the robot.
+        stop: Called with each thing that has lost its owner, in a thread of its own.
+    """
+
+    def __init__(self, address: str, stop: Callable[[Owned], None]) -> None:
+        self._place = place(address)
+        self._dialling = Dialling(address)
+        self._stop = stop
+        self._worker = Worker("things without an owner")
+        self._closed = threading.Event()
+        self._wake, self._woken = socket.socketpair()
+        self._thread = threading.Thread(target=self._run, name="watch of owners", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Leave it to others."""
+        self._closed.set()
+        self._wake.close()
+        self._thread.join(1.0)
+        self._worker.close()
+
+    def _run(self) -> None:
+        while not self._closed.is_set():
+            listener = socket.socket(socket.AF_UNIX)
+            try:
+                listener.bind(self._place)
+                listener.listen()
+            except OSError:
+                listener.close()
+                self._await_other()
+                continue
+            with listener:
+                self._serve(listener)
+
+    def _await_other(self) -> None:
+        """Wait until the watch that has the place has gone: as an owner that owns nothing."""
+        line = self._dialling.line()
+        if line is None:
+            self._closed.wait(RETRY)
+            return
+        with line, selectors.DefaultSelector() as news:
+            news.register(line, selectors.EVENT_READ)
+            news.register(self._woken, selectors.EVENT_READ)
+            news.select()
+
+    def _serve(self, listener: socket.socket) -> None:
+        book = Book()
+        with selectors.DefaultSelector() as news:
+            news.register(listener, selectors.EVENT_READ)
+            news.register(self._woken, selectors.EVENT_READ)
+            while not self._closed.is_set():
+                for key, _ in news.select():
+                    if key.fileobj is listener:
+                        line, _ = listener.accept()
+                        if peer_of(line)[1] == os.getuid():
+                            news.register(line, selectors.EVENT_READ)
+                        else:
+                            line.close()
+                    elif key.fileobj is not self._woken and not self._hear(book, key.fileobj):
+                        news.unregister(key.fileobj)
+                        key.fileobj.close()
+                        for owned in book.lose(key.fileobj):
+                            self._worker.submit(partial(self._stop, owned))
+
+    def _hear(self, book: Book, line: Any) -> bool:
+        """Take in what an owner says; whether it lives on."""
+        try:
+            data = line.recv(LONGEST)
+            if data:
+                book.hear(line, data)
+            return bool(data)
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            log.warning("an owner says what nobody understands: %r", error)
+            return False

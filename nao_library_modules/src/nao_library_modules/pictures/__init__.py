@@ -1,0 +1,1 @@
+"""Drawings and records of what robots did, and what the demonstration shows."""

@@ -1,0 +1,1 @@
+"""Process modules and their registry, perception, projection."""

@@ -1,0 +1,1 @@
+"""The plan language: fluents, tasks, control structures, failures, goals, and traces of what ran."""

@@ -1,0 +1,1 @@
+"""The robot as process modules reach it: its actions and topics."""

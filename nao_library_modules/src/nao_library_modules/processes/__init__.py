@@ -1,0 +1,1 @@
+"""Programs that this one starts, watches and ends, and its own end."""

@@ -1,0 +1,148 @@
+"""When something happened, from the robot's clock to ROS time. No ROS."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+CLOCKS_AGREE = 5.0
+"""s between the robot's clock and simulated ROS time; more, and it is another clock. Ours may be a little late."""
+SAMPLES = 12
+"""Looks at the robot's clock that are compared at once: together longer than a tick of a simulated one."""
+FRESH = 60.0
+"""s for which a comparison holds; clocks that nobody keeps together drift by a few milliseconds in that time."""
+JUMP = 0.03
+"""s by which a clock must be off what is known of it to be compared anew at once: one that was set, that of a simulated
+robot that began anew, or whose computer is too slow for it."""
+KEY = "nao_library/Clock"
+"""A key of ALMemory that is written to learn the robot's time from its timestamp."""
+
+
+def same_clock(robot_time: float, now: float) -> bool:
+    """Whether a time of the robot is one of simulated ROS time.
+
+    Args:
+        robot_time: s, not long ago.
+        now: ROS time, s.
+    """
+    return abs(now - robot_time) <= CLOCKS_AGREE
+
+
+def _mapped(time: float, latest: float) -> float:
+    """A time that was worked out, s: none after `latest`, and none below 0, where simulated time begins."""
+    return max(0.0, min(time, latest))
+
+
+class RobotClock:
+    """Maps timestamps of the robot's ALMemory to ROS time. Any thread.
+
+    A simulated robot whose clock is the simulated ROS time has nothing to map. With any other robot the clocks are
+    compared when a time is asked for: a key is written several times, and was written between call and answer each
+    time; that tells how the clocks go together, to half of the quickest write. A simulated robot's clock goes in ticks,
+    which shows as times that contradict each other: then the write soonest after a tick counts. What is behind another
+    connection is compared anew.
+    """
+
+    def __init__(self, robot: Any, clock: Any) -> None:
+        """Compare nothing yet.
+
+        Args:
+            robot: Robot, whose memory is asked.
+            clock: ROS time.
+        """
+        self._robot = robot
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._offset: tuple[float, float, int] | None = None  # s; when it was found, and in which connection
+
+    def event_time(self, call: Callable[..., Any], event: str, value: Any, arrived: float) -> float:
+        """ROS time at which an event was raised, s, as far as the robot knows it; otherwise that of its arrival.
+
+        Args:
+            call: `call` of a module: proxy, method, arguments.
+            event: Its name.
+            value: What it said; where it has been raised again since, its own time is lost.
+            arrived: ROS time of its arrival, s.
+
+        Raises:
+            NaoError: The robot cannot be asked.
+        """
+        last, seconds, microseconds = call(self._robot.proxy("ALMemory"), "getTimestamp", event)
+        if last != value:
+            return arrived
+        robot_time = seconds + 1e-6 * microseconds
+        if self._is_ours(robot_time):  # exact, while the time of arrival may be late
+            return robot_time
+        return min(self.ros_time(call, robot_time), arrived)
+
+    def ros_time(self, call: Callable[..., Any], robot_time: float) -> float:
+        """ROS time of a time on the robot, s; later than now only where now is late: /clock is on its way, too.
+
+        Args:
+            call: As `event_time` takes it.
+            robot_time: s, as ALMemory and the camera stamp.
+
+        Raises:
+            NaoError: The robot cannot be asked.
+        """
+        if self._is_ours(robot_time):
+            return robot_time
+        now = self._clock.now()
+        return _mapped(robot_time + self._offset_at(call, now), now)
+
+    def _is_ours(self, robot_time: float) -> bool:
+        """Whether a time of the robot is simulated ROS time already."""
+        return self._clock.simulated and same_clock(robot_time, self._clock.now())
+
+    def compare(self, call: Callable[..., Any]) -> None:
+        """Have `mapped` know the robot's clock, where ROS time is not simulated.
+
+        Args:
+            call: As `event_time` takes it.
+
+        Raises:
+            NaoError: The robot cannot be asked.
+        """
+        if not self._clock.simulated:
+            self._offset_at(call, self._clock.now())
+
+    def mapped(self, robot_time: float, arrived: float) -> float:
+        """As `ros_time`, without asking the robot: for threads that must not wait.
+
+        Args:
+            robot_time: s.
+            arrived: ROS time, s, at which it was told here; the answer where the clocks have not been compared.
+        """
+        if self._is_ours(robot_time):
+            return robot_time
+        with self._lock:
+            known = self._offset
+        if known is None or known[2] != self._robot.connection.generation:
+            return arrived
+        return _mapped(robot_time + known[0], arrived)
+
+    def _offset_at(self, call: Callable[..., Any], now: float) -> float:
+        generation = self._robot.connection.generation
+        with self._lock:
+            known = self._offset
+        if known is not None and 0.0 <= now - known[1] <= FRESH and known[2] == generation:
+            least, most = self._look(call)
+            if least - JUMP <= known[0] <= most + JUMP:
+                return known[0]
+        looks = [self._look(call) for _ in range(SAMPLES)]
+        least, most = max(low for low, _ in looks), min(high for _, high in looks)
+        offset = (least + most) / 2.0 if least <= most else most
+        with self._lock:
+            self._offset = (offset, now, generation)
+        return offset
+
+    def _look(self, call: Callable[..., Any]) -> tuple[float, float]:
+        """ROS time less the robot's, s, at least and at most."""
+        memory = self._robot.proxy("ALMemory")
+        before = self._clock.now()
+        call(memory, "insertData", KEY, before)
+        after = self._clock.now()
+        _, seconds, microseconds = call(memory, "getTimestamp", KEY)
+        stamp = seconds + 1e-6 * microseconds
+        return before - stamp, after - stamp

@@ -1,0 +1,1 @@
+"""NaoBasic, and what the action servers share."""

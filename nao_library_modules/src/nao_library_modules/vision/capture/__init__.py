@@ -1,0 +1,1 @@
+"""Pictures, streams and recordings of cameras."""

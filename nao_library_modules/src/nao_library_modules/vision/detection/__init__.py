@@ -1,0 +1,1 @@
+"""What NaoVision sees: objects, landmarks, faces; and following them."""
