@@ -386,8 +386,9 @@ def sample(count, seed):
     python = SCRATCH / "venv" / "bin" / "python"
     if not python.exists():
         subprocess.run([sys.executable, "-m", "venv", str(SCRATCH / "venv")], check=True)
-    wanted = str(ROOT / "setup" / "requirements-faults.txt")
-    subprocess.run([str(python), "-m", "pip", "install", "--quiet", "-r", wanted], check=True)
+    wanted = str(ROOT / "setup" / "requirements-faults.lock")
+    install = [str(python), "-m", "pip", "install", "--quiet", "--require-hashes", "--no-deps", "-r", wanted]
+    subprocess.run(install, check=True)
     subprocess.run([str(python), str(HERE / "sample.py"), "--count", str(count), "--seed", str(seed)], check=True)
 
 

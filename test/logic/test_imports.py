@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterator
 
 import pytest
+from graphlib import TopologicalSorter
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = {name: ROOT / name / "src" for name in ("nao_library_modules", "nao_sim_bridge")}
@@ -39,38 +41,31 @@ class Layer:
     nested: tuple[str, ...] = ()
 
 
+ROOMS = tuple(
+    """
+    base nao processes owners robot functions ros server
+    lights audio audio_out audio_in motion vision.capture vision.detection vision tactile pictures
+    driver.base driver.joints driver.walk driver.path_follower driver.camera driver.audio driver.memory driver.sensors
+    driver.life driver.teleop driver
+    process_modules.language process_modules.designators process_modules.core process_modules.robot
+    process_modules.modules process_modules.action_rules process_modules
+    behaviors.language behaviors.run behaviors cli cli.commands
+    """.split()
+)
+"""Folders of nao_library_modules from the ground up: each imports only what stands before it."""
+MOST_FILES = 25
+"""In one folder: a reader sees at a glance what is there."""
+LIBRARY = "nao_library_modules/src/nao_library_modules"
+# Clients reach the robot through topics and actions only, and share helpers and errors with the servers.
+CLIENTS = ("process_modules", "behaviors")
+OF_CLIENTS = frozenset({"errors", "definitions", "ros", "library", *CLIENTS})
+
 LAYERS = (
     Layer("naoqi", "nao_library_modules/src/naoqi", frozenset({"qi", "sdk", "errors"})),
     Layer("sdk", "nao_library_modules/src", frozenset(), ("naoqi", "nao_library_modules")),
-    Layer(
-        "modules",
-        "nao_library_modules/src/nao_library_modules",
-        frozenset({"naoqi", "errors", "definitions", "ros"}),
-        ("behaviors", "command_line", "driver", "process_modules"),
-    ),
-    Layer(
-        "driver",
-        "nao_library_modules/src/nao_library_modules/driver",
-        frozenset({"naoqi", "errors", "definitions", "ros", "modules", "sdk"}),
-    ),
-    # Clients: they reach the robot through topics and actions only, and share helpers and the errors with the modules.
-    Layer(
-        "process_modules",
-        "nao_library_modules/src/nao_library_modules/process_modules",
-        frozenset({"errors", "definitions", "ros", "modules"}),
-    ),
-    # A module that is a client of the others as well: it runs plans.
-    Layer(
-        "behaviors",
-        "nao_library_modules/src/nao_library_modules/behaviors",
-        frozenset({"errors", "definitions", "ros", "modules", "process_modules"}),
-    ),
-    # A client of everything, which the rest of the library knows nothing of.
-    Layer(
-        "command_line",
-        "nao_library_modules/src/nao_library_modules/command_line",
-        frozenset({"naoqi", "errors", "definitions", "ros", "modules"}),
-    ),
+    Layer("library", LIBRARY, frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}), (*CLIENTS, "cli")),
+    *(Layer(name, f"{LIBRARY}/{name}", OF_CLIENTS) for name in CLIENTS),
+    Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi"}),
     Layer("sim", "nao_sim_bridge/src/nao_sim_bridge/sim", frozenset({"pybullet", "sim paths"})),
     Layer("services", "nao_sim_bridge/src/nao_sim_bridge/services", frozenset({"sim", "qi", "sim paths"})),
     Layer(
@@ -83,7 +78,7 @@ LAYERS = (
 # Files and folders of the server layer that ROS may be in; the others run without.
 ROS_SIDE = set(
     "ros_node.py ros_side.py ros_sounds.py ros_things.py testing ros_robot.py ros_hand.py ros_film.py ros_health.py "
-    "ros_success.py".split()
+    "ros_success.py ros_diagnostics.py".split()
 )
 
 
@@ -122,9 +117,50 @@ def layer_of(module: str) -> str | None:
         own = {"sim": "sim", "services": "services", "paths": "sim paths", "record_dir": "sim paths"}
         return own.get(part, "server")
     if root == "nao_library_modules":
-        part = inner[0] if inner else ""
-        return part if part in ("behaviors", "command_line", "driver", "process_modules") else "modules"
+        return inner[0] if inner[:1] and inner[0] in (*CLIENTS, "cli") else "library"
     return root if root in ("naoqi", "qi", "pybullet") else None
+
+
+def room_of(module: str) -> str:
+    """The room of a module of nao_library_modules; empty for the package itself."""
+    inner = module.split(".")[1:]
+    return next((room for n in (2, 1) for room in [".".join(inner[:n])] if room in ROOMS), "")
+
+
+def library_imports() -> dict[str, set[str]]:
+    """Module of nao_library_modules -> those of it that it imports, in functions and for types as well."""
+    source = SOURCES["nao_library_modules"]
+    paths = {
+        ".".join(path.relative_to(source).with_suffix("").parts).removesuffix(".__init__"): path
+        for path in (source / "nao_library_modules").rglob("*.py")
+    }
+    found: dict[str, set[str]] = {}
+    for name, path in paths.items():
+        names = [other if other in paths else other.rpartition(".")[0] for other in imported(path)]
+        found[name] = {other for other in names if other in paths and other != name}
+    return found
+
+
+def test_a_room_of_the_library_imports_only_what_stands_below_it():
+    rank = {room: number for number, room in enumerate(ROOMS)}
+    imports = library_imports()
+    assert {room_of(name) for name in imports} == {*ROOMS, ""}
+    wrong = [
+        f"{name} imports {other}"
+        for name, others in imports.items()
+        for other in others
+        if room_of(name) and rank[room_of(other)] > rank[room_of(name)]
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_no_module_of_the_library_imports_itself_by_way_of_others():
+    assert tuple(TopologicalSorter(library_imports()).static_order())  # raises CycleError, with the circle
+
+
+def test_no_folder_of_the_library_is_crowded():
+    folders = Counter(path.parent for path in (ROOT / LIBRARY).rglob("*.py"))
+    assert max(folders.values()) <= MOST_FILES, folders.most_common(1)
 
 
 @pytest.mark.parametrize("layer", LAYERS, ids=lambda layer: layer.name)
@@ -165,8 +201,7 @@ def test_modules_are_told_apart_and_relative_imports_followed(monkeypatch, tmp_p
     known = {
         "nao_sim_bridge.sim.runner": "sim",
         "nao_sim_bridge.server.SimulatorServer": "server",
-        "nao_library_modules.driver": "driver",
-        "nao_library_modules.lights.NaoLights": "modules",
+        "nao_library_modules.lights.NaoLights": "library",
         "geometry_msgs.msg.Pose": "ros",
         "nao_library_msgs.msg.LedFunction": "definitions",
         "motion": "sdk",

@@ -1,11 +1,13 @@
-"""README.md and docs/*.md: the tables that are made from the code are up to date, and the printed programs run."""
+"""README.md and docs/*.md: the tables that are made from the code are up to date, and their blocks can be read."""
 
 from __future__ import annotations
 
 import ast
 import re
 
+import pytest
 import readme_tables
+from samples import PAGES, samples
 
 
 def test_the_documents_say_what_the_code_says():
@@ -29,12 +31,17 @@ def test_every_promise_of_the_documents_has_a_place_and_a_test():
             assert not name or name.rpartition(".")[2] in place.read_text(encoding="utf-8"), (number, name)
 
 
-def test_the_printed_client_is_the_example_and_every_program_compiles():
-    programs = re.findall(r"```python\n(.*?)```", readme_tables.DOCUMENTS[0].read_text(encoding="utf-8"), re.DOTALL)
-    assert len(programs) >= 2
-    for program in programs:
-        compile(program, "README.md", "exec")
+def test_the_printed_client_is_the_example():
+    program = next(sample for sample in samples("README.md") if sample.kind == "python")
     example = ast.parse(readme_tables.CLIENT.read_text(encoding="utf-8"))
     assert ast.get_docstring(example)
     del example.body[0]
-    assert ast.dump(ast.parse(programs[0])) == ast.dump(example)
+    assert ast.dump(ast.parse(program.text)) == ast.dump(example)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_block_of_a_page_can_be_read_and_its_comment_as_well(page):
+    for sample in samples(page):
+        if sample.kind == "python":
+            compile(sample.program, sample.name, "exec")
+        assert all((readme_tables.ROOT / file).exists() for file in sample.files), sample.name

@@ -25,17 +25,19 @@ class AudioIn(RobotTestCase):
     def listen(self, **fields):
         """Send a goal, and come back when the robot hears for it."""
         run = self.send(f("listen", **fields))
-        recognition = self.robot.module("ALSpeechRecognition")
-        wait_until(recognition.getSubscribersInfo, 20.0, "a subscriber of the recognition")
-        self.robot.advance(0.6)  # its bip is not heard, and it has to learn how loud the background is
+        wait_until(lambda: any(told.status == "listening" for _, told in run.feedback), 60.0, "feedback: listening")
         return run
 
     def test_listening_ends_with_the_word_that_was_said(self):
         run = self.listen(vocabulary=["hello", "goodbye"], timeout=60.0)
-        send(self.voice, NaoAudioOutGoal([AudioOutFunction(function="say", str_param="hello")])).wait()
+        spoken = send(self.voice, NaoAudioOutGoal([AudioOutFunction(function="say", str_param="hello")]))
+        spoken.wait()
         self.ends(run, GoalStatus.SUCCEEDED)
         self.assertEqual((run.result.words, run.result.memList), (["hello"], []))
         self.assertGreater(run.result.confidences[0], 0.3)
+        (said,) = spoken.result.results
+        self.assertAlmostEqual(run.result.onsets[0].to_sec(), said.onset.to_sec(), delta=0.06)
+        self.assertAlmostEqual(run.result.ends[0].to_sec(), said.offset.to_sec(), delta=0.06)
 
     def test_a_cancel_ends_the_listening_and_its_subscription(self):
         run = self.listen(vocabulary=["hello"], timeout=1000.0)

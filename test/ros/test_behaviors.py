@@ -251,7 +251,7 @@ class Behaviors(unittest.TestCase):
 
     def test_a_recording_that_is_preempted_keeps_what_came(self):
         run = send(self.client, NaoBehaviorGoal([b("recordBehavior", "cut", duration=600.0, overwrite=True)]))
-        run.wait_for_function(0)
+        wait_until(lambda: any(f.state == "recording" for _, f in run.feedback), 10.0, "the recording")
         send(self.lights, NaoLedGoal([LedFunction(function="off", lights=[EYES])])).wait(10.0)
         wait_until(lambda: any(f.state == "recorded" for _, f in run.feedback), 10.0, "the goal in the recording")
         run.cancel()
@@ -269,10 +269,6 @@ class Behaviors(unittest.TestCase):
 
     # --- examples -----------------------------------------------------------------------------------------------------
 
-    def sees_a_goal(self, news):
-        send(self.lights, NaoLedGoal([LedFunction(function="off", lights=[EYES])])).wait(10.0)
-        return any(m.feedback.state == "recorded" for m in news)
-
     def test_the_examples_run_and_record(self):
         running = start("run_behavior.py", "three", "colour=red")
         told, _ = running.communicate(timeout=60)
@@ -281,10 +277,9 @@ class Behaviors(unittest.TestCase):
         self.assertIn("three: succeeded", told)
 
         with News().messages("NaoBehavior/feedback", NaoBehaviorActionFeedback) as news:
-            recording = start("record_behavior.py", "watched", "--seconds", "2")
-            wait_until(lambda: any(m.feedback.function == "recordBehavior" for m in news), 30.0, "the recording")
-            # It begins a moment after it was told that the function does: so a goal is sent until one is recorded.
-            wait_until(lambda: self.sees_a_goal(news), 10.0, "a goal that is recorded")
+            recording = start("record_behavior.py", "watched", "--seconds", "2", "--overwrite")
+            wait_until(lambda: any(m.feedback.state == "recording" for m in news), 30.0, "the recording")
+            send(self.lights, NaoLedGoal([LedFunction(function="off", lights=[EYES])])).wait(10.0)
         told, _ = recording.communicate(timeout=60)
         self.assertIn("recording for 2 s", told)
         self.assertEqual(recording.returncode, 0, told)
@@ -299,7 +294,7 @@ class Behaviors(unittest.TestCase):
             b("copyBehavior", "two", new_name="three_of_it", overwrite=True),
         )
         rospy.wait_for_service("NaoBehavior/list", 10.0)
-        listed = {info.name: info for info in rospy.ServiceProxy("NaoBehavior/list", ListBehaviors)("").behaviors}
+        listed = {info.name: info for info in rospy.ServiceProxy("NaoBehavior/list", ListBehaviors)(name="").behaviors}
         self.assertLessEqual({"two", "three_of_it", "boxes"}, set(listed))
         self.assertNotIn("one", listed)
         self.assertEqual([p.name for p in listed["two"].parameters], ["angle"])

@@ -7,18 +7,55 @@ import sys
 from pathlib import Path
 
 import rospkg
+import rospy
+from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 from rospy import Duration
 
-from nao_library_actions.msg import NaoLedAction
-from nao_library_msgs.msg import LedFunction
-from nao_sim_bridge.testing import RobotTestCase, wait_until
+from nao_library_actions.msg import NaoBehaviorAction, NaoBehaviorGoal, NaoLedAction
+from nao_library_msgs.msg import BehaviorFunction, LedFunction
+from nao_library_msgs.srv import DescribeFunctions, DescribeFunctionsRequest
+from nao_sim_bridge.testing import RobotTestCase, send, wait_until
 
 MODULE = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples" / "add_a_module.py"
 
 
 def f(function, text="", **fields):
     return LedFunction(function=function, str_param=text, **fields)
+
+
+FUNCTION = MODULE.with_name("add_a_function.py")
+
+
+class OwnFunction(RobotTestCase):
+    server = ("NaoLights", NaoLedAction)
+
+    def test_a_server_of_ones_own_takes_the_place_of_ours_and_ours_comes_back_afterwards(self):
+        own = subprocess.Popen([sys.executable, str(FUNCTION), "--pport", os.environ["NAO_PORT"]])
+        self.addCleanup(own.kill)
+        wait_until(lambda: self.knows_blink() is True, 60.0, "the server with one function more")
+        ran = self.behave("{NaoLights.blink: {lights: [FaceLeds], times: [0.1, 0.1]}}").wait()
+        self.assertEqual((ran.state, ran.text), (GoalStatus.SUCCEEDED, ""))
+        refused = self.behave("{NaoLights.blink: {lights: [Eyes], times: [-1]}}").wait()
+        self.assertIn("field times", refused.text)
+        own.terminate()
+        own.wait()
+        wait_until(lambda: self.knows_blink() is False, 60.0, "the server of the launch file")
+        self.succeed(f("on", lights=["Eyes"]))
+
+    def behave(self, step):
+        goal = NaoBehaviorGoal([BehaviorFunction(function="runBehavior", text=f"help: x\ndo: [{step}]")])
+        client = SimpleActionClient("NaoBehavior", NaoBehaviorAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(20)))
+        return send(client, goal)
+
+    def knows_blink(self):
+        """Whether the server that runs has the function; None while there is none."""
+        try:
+            service = rospy.ServiceProxy("NaoLights/describe", DescribeFunctions)
+            return not service(DescribeFunctionsRequest(functions=["blink"])).unknown
+        except rospy.ServiceException:
+            return None
 
 
 class OwnModule(RobotTestCase):

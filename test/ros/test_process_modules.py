@@ -1,6 +1,8 @@
 """Plans on the simulated robot: what they do is measured on the robot, and when they end it stands."""
 
 import math
+import subprocess
+import sys
 import threading
 import unittest
 
@@ -12,19 +14,23 @@ from examples_fixture import start
 from news import News
 from std_msgs.msg import String
 
-from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorGoal
-from nao_library_modules.places import Place
+from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorActionFeedback, PerformDesignatorGoal
+from nao_library_modules.base.places import Place
 from nao_library_modules.process_modules import action_rules  # noqa: F401
-from nao_library_modules.process_modules.control import do, par, pursue, seq, top_level
+from nao_library_modules.process_modules.core.registry import get_process_module, perform, with_process_modules_running
 from nao_library_modules.process_modules.designators.designator import action, an, designator
-from nao_library_modules.process_modules.failures import (
+from nao_library_modules.process_modules.language.control import do, par, pursue, seq, top_level
+from nao_library_modules.process_modules.language.failures import (
     GripperClosedCompletely,
     ManipulationPoseUnreachable,
     NavigationGoalNotReached,
     TaskEvaporatedFailure,
     fail,
 )
-from nao_library_modules.process_modules.flow import wait_until as wait_in_plan
+from nao_library_modules.process_modules.language.flow import wait_until as wait_in_plan
+from nao_library_modules.process_modules.language.tasks import TaskState
+from nao_library_modules.process_modules.language.trace import trace_of
+from nao_library_modules.process_modules.language.waiting import wait_for
 from nao_library_modules.process_modules.low_level import (
     close_gripper,
     go_stable,
@@ -36,14 +42,20 @@ from nao_library_modules.process_modules.low_level import (
     this_robot,
     walk_to,
 )
-from nao_library_modules.process_modules.plan_topic import PlanTopic
-from nao_library_modules.process_modules.registry import get_process_module, perform, with_process_modules_running
-from nao_library_modules.process_modules.tasks import TaskState
-from nao_library_modules.process_modules.trace import trace_of
-from nao_library_modules.process_modules.waiting import wait_for
+from nao_library_modules.process_modules.robot.plan_topic import PlanTopic
 from nao_library_msgs.msg import PlanTree
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
+PLAN = """
+import rospy
+from nao_library_modules.process_modules.language.control import do
+from nao_library_modules.process_modules.designators.designator import action, an
+from nao_library_modules.process_modules.plan_runner import run_and_tell
+from nao_library_modules.process_modules.core.registry import perform
+
+rospy.init_node("mortal_plan")
+run_and_tell(do(perform, an(action, type="going", target=[2.0, 0.0])))
+"""
 SENSOR = "Device/SubDeviceList/{}/Position/Sensor/Value"
 FRAME_TORSO = 0
 STANDING = 0.28
@@ -173,10 +185,17 @@ class ProcessModules(unittest.TestCase):
         self.addCleanup(server.kill)
         client = actionlib.SimpleActionClient("perform_designator", PerformDesignatorAction)
         self.assertTrue(client.wait_for_server(rospy.Duration(60)))
+        states = []
+        feedback = rospy.Subscriber(
+            "perform_designator/feedback",
+            PerformDesignatorActionFeedback,
+            lambda told: states.append(told.feedback.state),
+        )
+        wait_until(lambda: feedback.get_num_connections(), 20.0, "feedback")
         run = send(client, PerformDesignatorGoal("(an action (type opening) (gripper left))", "", [])).wait(30.0)
         self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
         self.assertGreater(float(run.result.result), 0.9)
-        self.assertEqual(run.feedback[-1][1].state, "succeeded")
+        wait_until(lambda: "succeeded" in states, 20.0, "the last feedback, which a client may drop after the result")
         self.assertGreater(self.angle("LHand"), 0.9)
         pairs = [KeyValue("type", "reaching"), KeyValue("side", "left"), KeyValue("target", "[0.6, 0.13, 0.08]")]
         run = send(client, PerformDesignatorGoal("", "action", pairs)).wait(30.0)
@@ -192,6 +211,29 @@ class ProcessModules(unittest.TestCase):
         topic.publish("{type: saying, text: Here I am.}")
         memory, keys = self.robot.module("ALMemory"), ["ALTextToSpeech/CurrentSentence"]
         wait_until(lambda: memory.getListData(keys) == ["Here I am."], 20.0, "the sentence on the robot")
+
+    def assert_stands_when_killed(self, program):
+        wait_until(self.motion.moveIsActive, 60.0, "the walk")
+        self.robot.advance(1.0)
+        program.kill()
+        wait_until(lambda: not self.motion.moveIsActive(), 20.0, "standstill")
+        self.assertLess(self.robot.true_pose().position.x, 1.0)
+        self.assert_stands()
+
+    def test_the_walk_of_a_killed_server_of_designators_ends(self):
+        server = start("../nodes/process_modules")
+        self.addCleanup(server.communicate)
+        self.addCleanup(server.kill)
+        client = actionlib.SimpleActionClient("perform_designator", PerformDesignatorAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(60)))
+        client.send_goal(PerformDesignatorGoal("{type: going, target: [2, 0]}", "", []))
+        self.assert_stands_when_killed(server)
+
+    def test_the_walk_of_a_killed_plan_ends(self):
+        plan = subprocess.Popen([sys.executable, "-c", PLAN])
+        self.addCleanup(plan.wait)
+        self.addCleanup(plan.kill)
+        self.assert_stands_when_killed(plan)
 
     # --- ends ---------------------------------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from sensor_msgs.msg import Range
 
 from nao_library_actions.msg import BlinkAction, BlinkGoal, RunBehaviorAction, RunBehaviorGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import ConnectionState, FloatStamped, TactileTouch
 from nao_library_msgs.srv import GetMemory
 from nao_sim_bridge.testing import send, wait_until

@@ -5,9 +5,9 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_actions.msg import NaoLedAction
-from nao_library_msgs.msg import LedFunction
-from nao_sim_bridge.testing import RobotTestCase
+from nao_library_actions.msg import NaoLedAction, NaoTactileAction, NaoTactileGoal
+from nao_library_msgs.msg import LedFunction, TactileFunction
+from nao_sim_bridge.testing import RobotTestCase, send, wait_until
 
 
 class ExampleSuite(RobotTestCase):
@@ -21,6 +21,13 @@ class ExampleSuite(RobotTestCase):
         self.robot.wait_for_leds({"Face/Led/Red/Left/0Deg": 1.0, "Face/Led/Green/Left/0Deg": 0.0})
         self.ends(run, GoalStatus.SUCCEEDED)
         self.assertEqual(self.robot.led("Face/Led/Green/Left/0Deg"), 1.0)
+
+    def test_a_touch_of_the_head_is_waited_for(self):
+        tactile = self.robot.action_client("NaoTactile", NaoTactileAction)
+        run = send(tactile, NaoTactileGoal([TactileFunction(function="waitForTouch", sensors=["head"], timeout=60.0)]))
+        wait_until(lambda: any(told.status == "waiting" for _, told in run.feedback), 20.0, "the robot waits")
+        self.robot.press(["Head/Touch/Front"])
+        self.assertEqual(run.wait().result.touched, ["front head"])
 
     def test_it_still_stands_after_a_push(self):
         self.robot.module("ALMotion").wakeUp()

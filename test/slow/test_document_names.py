@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from nao_library_modules.own_stack import free_port
+from nao_library_modules.processes.own_stack import free_port
 
 pytestmark = pytest.mark.alone
 CLIENT = """

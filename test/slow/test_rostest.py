@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from nao_library_modules.own_stack import free_port
+from nao_library_modules.processes.own_stack import free_port
 
 FOLDER = Path(__file__).parents[1] / "rostest"
 ROSTEST = (sys.executable, "-c", "import rostest; rostest.rostestmain()")

@@ -7,13 +7,13 @@ import sys
 
 import pytest
 
-from nao_library_modules.own_stack import free_port
+from nao_library_modules.processes.own_stack import free_port
 
 pytestmark = pytest.mark.alone
 SERVER = """
 import rospy
 from actionlib.msg import TestAction
-from nao_library_modules.action_server import PromptActionServer
+from nao_library_modules.ros.action_server import PromptActionServer
 rospy.init_node("server")
 server = PromptActionServer("short", TestAction, lambda goal: server.set_succeeded(), auto_start=False)
 server.start()

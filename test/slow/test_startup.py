@@ -12,10 +12,12 @@ from pathlib import Path
 
 import pytest
 import rospkg
+from waits import hold
 
 import nao_library_actions
 import nao_library_msgs
-from nao_library_modules.own_stack import free_port
+from nao_library_modules.processes.closing import EXIT_LIMIT
+from nao_library_modules.processes.own_stack import free_port
 
 pytestmark = pytest.mark.alone  # it starts a stack of its own, and measures how long that takes
 # The stack starts 28 programs. All servers are to be ready in at most this many times what as many programs take that
@@ -28,6 +30,14 @@ from nao_library_actions.msg import NaoLedAction
 from nao_sim_bridge.testing import SimulatedRobot
 rospy.init_node("startup_client")
 SimulatedRobot().action_client("NaoLights", NaoLedAction)
+"""
+HANGING = """
+import threading
+from nao_library_modules.ros.node import run_module
+def module(*_, **__):
+    print("being made", flush=True)
+    threading.Event().wait()
+run_module(module, "hanging", "", [])
 """
 
 
@@ -57,6 +67,22 @@ def bare_start():
     for program in [subprocess.Popen([sys.executable, "-c", BARE]) for _ in range(PROGRAMS)]:
         program.wait(30.0)
     return time.monotonic() - began
+
+
+def test_a_node_whose_module_is_still_being_made_ends_when_it_is_told_to_also_where_the_master_hangs(tmp_path):
+    port = free_port()
+    environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_LOG_DIR": str(tmp_path)}
+    with subprocess.Popen(["rosmaster", "--core", "-p", str(port)], env=environment) as master:
+        node = subprocess.Popen([sys.executable, "-c", HANGING], env=environment, stdout=subprocess.PIPE, text=True)
+        try:
+            assert node.stdout.readline() == "being made\n"
+            hold(master.pid)
+            node.send_signal(signal.SIGINT)
+            node.wait(2 * EXIT_LIMIT)
+        finally:
+            node.kill()
+            master.kill()
+            node.communicate()
 
 
 def test_no_program_compiles_what_is_compiled():

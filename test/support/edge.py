@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from nao_library_modules.clock import WallClock
+from nao_library_modules.base.clock import WallClock
 from naoqi.errors import NaoError
 
 
@@ -56,6 +56,7 @@ class Edge:
         events: (name, value) of what went to `memory_events`.
         frames: Frame of /tf -> Place, for `locate`.
         services, subscribers, descriptions: By name, the callbacks.
+        parameters: Of the node, by name.
     """
 
     namespace = "/robot1/"
@@ -69,6 +70,7 @@ class Edge:
         self.services = {}
         self.subscribers = {}
         self.descriptions = {}
+        self.parameters = {}
 
     def locate(self, frame):
         if frame not in self.frames:
@@ -83,6 +85,9 @@ class Edge:
 
     def action_server(self, name, action, execute, on_preempt):
         return ActionServer(action, execute, on_preempt)
+
+    def seconds(self, name, default):
+        return self.parameters.get(name, default)
 
     def event_sink(self):
         return lambda name, value: self.events.append((name, value))
@@ -99,6 +104,9 @@ class Edge:
 
     def serve_description(self, name, answer):
         self.descriptions[name] = answer
+
+    def kept(self):
+        return SimpleNamespace(load=lambda: None, save=lambda value: None, forget=lambda: None)
 
     def on_shutdown(self, action):
         self.shutdown_actions.append(action)

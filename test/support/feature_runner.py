@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-import os
-import re
-import signal
-import subprocess
 import threading
-import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 from feature_table import ALL, Feature
-
-PORT = "9559"
-"""The port of the robot in the commands, as it is without arguments."""
+from programs import Ended, Program, at_port, shell
 
 
 @dataclass(frozen=True)
@@ -25,25 +18,20 @@ class Outcome:
 
     Attributes:
         feature: The row.
-        status: Exit status; None if it did not end in time.
-        output: What it printed, errors as well.
-        seconds: How long it took, s of wall time.
+        ended: Status, output and time.
     """
 
     feature: Feature
-    status: int | None
-    output: str
-    seconds: float
+    ended: Ended
 
     @property
     def refused(self) -> bool:
         """Whether it failed; `rosservice` ends with status 0 also when a service has said no."""
-        return self.status != 0 or "success: False" in self.output
+        return self.ended.status != 0 or "success: False" in self.ended.output
 
     def __str__(self) -> str:
         """Command, output and status, as people read them."""
-        ended = "did not end" if self.status is None else f"status {self.status}"
-        return f"$ {self.feature.command}\n{self.output.rstrip()}\n[{ended} after {self.seconds:.1f} s]"
+        return f"$ {self.feature.command}\n{self.ended}"
 
 
 def run(feature: Feature, folder: Path, environment: Mapping[str, str], port: int, limit: float) -> Outcome:
@@ -56,35 +44,7 @@ def run(feature: Feature, folder: Path, environment: Mapping[str, str], port: in
         port: Where the robot is, instead of the usual port.
         limit: Longest time, s of wall time; it is killed then with all that it has started.
     """
-    began = time.monotonic()
-    output = folder / f"output-{threading.get_ident()}.txt"
-    with output.open("wb") as sink:
-        shell = subprocess.Popen(
-            ["bash", "-c", re.sub(rf"\b{PORT}\b", str(port), feature.command)],
-            cwd=folder,
-            env=dict(environment),
-            stdin=subprocess.DEVNULL,
-            stdout=sink,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-        )
-        try:
-            status = shell.wait(limit)
-        except subprocess.TimeoutExpired:
-            status = None
-        finally:
-            _end_group(shell.pid)
-            shell.wait()
-    text = output.read_text(encoding="utf-8", errors="replace")
-    return Outcome(feature, status, text, time.monotonic() - began)
-
-
-def _end_group(leader: int) -> None:
-    """Kill what a shell has left in the background."""
-    try:
-        os.killpg(leader, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
+    return Outcome(feature, Program(shell(at_port(feature.command, port)), folder, environment).end(limit))
 
 
 def run_all(rows: Sequence[Feature], run_one: Callable[[Feature], Outcome], at_once: int) -> list[Outcome]:

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from edge import Edge
 from simulator import PATIENCE
 
-from nao_library_modules.robot import Robot
+from nao_library_modules.robot.robot import Robot
 
 
 class WatchedRobot(Robot):
@@ -71,6 +71,11 @@ class Goal:
     def active(self):
         return self._thread.is_alive()
 
+    def refused(self, limit):
+        """Whether it is over within `limit` s of the computer, without time that passes."""
+        self._thread.join(limit)
+        return not self.active
+
     def finish(self):
         """Let time pass until the goal is over, and no longer."""
         self._finishing = True
@@ -108,8 +113,9 @@ class ModuleGoals:
         options: More arguments of the class.
     """
 
-    def __init__(self, kind, goal, simulator, **options):
-        self.edge = Edge(SimpleNamespace(now=simulator.lockstep.time, wait=simulator.lockstep.wait))
+    def __init__(self, kind, goal, simulator, parameters=None, **options):
+        self.edge = Edge(SimpleNamespace(now=simulator.lockstep.time, wait=simulator.lockstep.wait, simulated=True))
+        self.edge.parameters.update(parameters or {})
         self._simulator = simulator
         self._goal = goal
         robot = WatchedRobot(*simulator.address, simulator.lockstep)

@@ -7,8 +7,9 @@ import threading
 from actionlib_msgs.msg import GoalStatus
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.interrupt import Interrupt
-from nao_library_modules.process_modules.action_client import ActionEnd
+from nao_library_modules.base.interrupt import Interrupt
+from nao_library_modules.functions.check_service import CHECK, check_request, read_response
+from nao_library_modules.process_modules.robot.action_client import ActionEnd
 from naoqi.errors import NaoError
 
 STATES = {"succeeded": GoalStatus.SUCCEEDED, "aborted": GoalStatus.ABORTED, "preempted": GoalStatus.PREEMPTED}
@@ -17,8 +18,10 @@ STATES = {"succeeded": GoalStatus.SUCCEEDED, "aborted": GoalStatus.ABORTED, "pre
 class PlanClient:
     """Stands for PlanActionClient: `work(goal, interrupt, on_feedback)` answers the ActionEnd of a goal."""
 
-    def __init__(self, work):
+    def __init__(self, work, check=None):
         self._work = work
+        if check is not None:
+            self.check = check
 
     def wait_for_server(self):
         """It is there."""
@@ -64,4 +67,7 @@ def client_of(goals, simulator):
             simulator.lockstep.goal_is_over()
         return ActionEnd(STATES[server.end], server.text, server.result)
 
-    return PlanClient(work)
+    def check(asked):
+        return read_response(goals.edge.services[goals.module.chain.server + CHECK](check_request(asked)))
+
+    return PlanClient(work, check)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import rospy
 
-from nao_library_modules.own_stack import OwnStack, can_connect, free_port
+from nao_library_modules.processes.own_stack import OwnStack, can_connect, free_port
 from nao_sim_bridge.testing import SimulatedRobot, StackNotReady, wait_until
 
 SPEED = 2

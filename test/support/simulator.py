@@ -38,7 +38,7 @@ class Simulator:
 
     def __init__(self, record_dir, **options):
         self._interval = sys.getswitchinterval()
-        options = {"scene": Scene(posture="Stand"), "port": 0, "paused": True, **options}
+        options = {"scene": Scene(posture="Stand"), "port": 0, "paused": True, "allow_private_streams": True, **options}
         self.server = SimulatorServer(ServerOptions(record_dir=record_dir, **options))
         self.server.start()
         self.session = connected(self.port)

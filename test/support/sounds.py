@@ -42,6 +42,11 @@ def read(robot, name):
     return soundfile.read(str(robot.server.files.folder / name), always_2d=True)
 
 
+def sound_of(path):
+    """A file of our own as a Sound."""
+    return Sound(*soundfile.read(str(path), dtype="float32", always_2d=True))
+
+
 def played(robot, begin, end=None):
     """(frames, 2) of what the loudspeakers played between two simulated times, s; up to now without the second."""
     speakers = robot.server.simulation.sound.loudspeakers

@@ -46,3 +46,14 @@ def in_a_room(*sounds, pause=1.1, noise=ROOM, seed=1):
 def blocks(stream):
     """(time in s, samples) of each whole block."""
     return [(i / RATE, stream[i : i + BLOCK]) for i in range(0, len(stream) - BLOCK + 1, BLOCK)]
+
+
+def audible(speech):
+    """When the first and the last sound of speech are, s: within 30 dB of the loudest, with gaps of up to 0.12 s."""
+    step = RATE // 200
+    parts = speech[: len(speech) // step * step].reshape(-1, step)
+    power = np.mean(parts**2, axis=1)
+    loud = np.flatnonzero(power > 1e-3 * np.convolve(power, np.full(4, 0.25), "same").max())
+    groups = np.split(loud, np.flatnonzero(np.diff(loud) > round(0.12 * RATE / step)) + 1)
+    (main,) = (group for group in groups if power.argmax() in group)
+    return main[0] * step / RATE, (main[-1] + 1) * step / RATE

@@ -45,7 +45,7 @@ class Stack:
         """Start a ROS master of our own, unless it runs already; this process becomes a node of it."""
         if self._ros:
             return
-        from nao_library_modules.own_stack import free_port  # not above: rows that need no ROS run without it
+        from nao_library_modules.processes.own_stack import free_port  # not above: rows that need no ROS run without it
 
         port = free_port()
         os.environ.update(ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1")

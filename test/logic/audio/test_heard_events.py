@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nao_library_modules.audio_in_events import Bearing, begun_sounds, located_sound, recognised, turned
+from nao_library_modules.audio_in.events import Bearing, begun_sounds, located_sound, recognised, turned
 
 LEVEL = [0.0] * 6
 
@@ -46,7 +46,8 @@ def test_only_the_begin_of_a_sound_counts():
     two = [[12, 0, 0.8, 5], [90, 1, 0.4, 9]]
     rows = [([[12, 1, 0.8, 5]], [0.8]), ([[12, 0, 0.8, 5]], []), (two, [0.4]), ([12, 1, 0.7, 5], [0.7]), ([], [])]
     for value, confidences in rows:
-        assert begun_sounds(value) == confidences
+        assert [sound.confidence for sound in begun_sounds(value)] == confidences
+    assert [sound.time for sound in begun_sounds([[90, 1, 0.4, 9000000], [3, 1, 0.2]])] == [9.0, 0.0]
     with pytest.raises(ValueError, match="no sounds that were detected"):
         begun_sounds([[1]])
 

@@ -7,8 +7,18 @@ import json
 import numpy as np
 import pytest
 
-from nao_library_modules.dialogue_record import DOES, HEARS, PERSON, ROBOT, SAYS, DialogueRecordError, Turn, load, save
-from nao_library_modules.sound_picture import spectrogram
+from nao_library_modules.pictures.dialogue_record import (
+    DOES,
+    HEARS,
+    PERSON,
+    ROBOT,
+    SAYS,
+    DialogueRecordError,
+    Turn,
+    load,
+    save,
+)
+from nao_library_modules.pictures.sound_picture import spectrogram
 
 RATE = 16000
 TURNS = [

@@ -10,15 +10,15 @@ import pytest
 from actionlib_msgs.msg import GoalStatus
 from set_clock import SetClock
 
+from nao_library_modules.base.clock import WallClock
+from nao_library_modules.base.interrupt import Interrupt
 from nao_library_modules.behaviors import bind, read
-from nao_library_modules.behaviors.errors import NoSuchBehavior
-from nao_library_modules.behaviors.execution import Execution
-from nao_library_modules.behaviors.servers import FunctionTables
-from nao_library_modules.clock import WallClock
-from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.behaviors.language.errors import NoSuchBehavior
+from nao_library_modules.behaviors.language.servers import FunctionTables
+from nao_library_modules.behaviors.run.execution import Execution
 from nao_library_modules.process_modules import Fluent, wait_until
-from nao_library_modules.process_modules.action_client import ActionEnd
-from nao_library_modules.process_modules.failures import ActionlibActionTimedOut
+from nao_library_modules.process_modules.language.failures import ActionlibActionTimedOut
+from nao_library_modules.process_modules.robot.action_client import ActionEnd
 from nao_library_msgs.msg import FunctionResult
 
 LIMIT = 10.0

@@ -6,10 +6,13 @@ from dataclasses import replace
 
 import pytest
 
+from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.behaviors import BehaviorError, check, read
-from nao_library_modules.behaviors.outlook import outlook_of, waits_of
-from nao_library_modules.behaviors.program import Goal, InOrder, Pause, servers_in, walk
-from nao_library_modules.errors import BadGoal
+from nao_library_modules.behaviors.language.outlook import outlook_of, waits_of
+from nao_library_modules.behaviors.language.program import Goal, InOrder, Pause, servers_in, walk
+from nao_library_modules.behaviors.language.servers import FunctionTables, NotDescribed
+from nao_library_msgs.msg import ArgumentDescription, FunctionDescription
+from nao_library_msgs.srv import DescribeFunctionsResponse
 
 BOW = """
 help: Bows.
@@ -55,7 +58,7 @@ def test_boxes_are_unfolded_with_their_own_values_and_rounds_have_numbers(progra
     "step, told",
     [
         ("{NaoLight.on: {}}", "did you mean 'NaoLights'"), ("{NaoBehavior.runBehavior: {}}", "would end itself"),
-        ("{NaoLights.on: {light: []}}", "did you mean 'lights'"), ("{NaoLights.on: {time: -1}}", "0 s or more"),
+        ("{NaoLights.on: {light: []}}", "did you mean 'lights'"), ("{NaoLights.on: {time: -1}}", "0..86400 s"),
         ("{NaoLights.onn: {}}", "did you mean 'on'"), ("{NaoLights.on: {on_error: mabye}}", "on_error"),
         ("{nao_audio_out.say: {}}", "the text to say"),
         ("{chain: {NaoLights: [{function: listLEDs}, {function: onn}]}}", "function 2 (onn)"),
@@ -125,3 +128,39 @@ def test_steps_and_boxes_are_told_with_their_paths(program, tables, texts):
     # A box is known by what it is and not by its text.
     told, other = replace(made.parts[0], what="the inner"), replace(made.parts[0], what="behavior of a kind", box="")
     assert outlook_of(InOrder((), "test", "", "test", nodes=(told, other)), tables).boxes == ("inner", "innermost")
+
+
+def others(server, functions):
+    """Servers that run: one that is none of ours, and one of ours with a function more."""
+    if server not in ("NaoMood", "NaoLights"):
+        raise NotDescribed("it does not run")
+    blink = FunctionDescription(name="blink", arguments=[ArgumentDescription(name="lights")])
+    types = {"action": "nao_library_actions/NaoLed", "message": "nao_library_msgs/LedFunction"}
+    asked = [] if functions is None or functions not in ([], ["blink"]) else [blink]
+    return DescribeFunctionsResponse(**types, functions=asked)
+
+
+def test_servers_and_functions_of_ones_own_may_be_used_where_they_run(library):
+    running = FunctionTables(others)
+    for name in ("NaoMood", "NaoLights"):
+        made = check(
+            read(f"help: x\ndo: [{{{name}.blink: {{lights: [FaceLeds], time: 1}}}}]", "t"), library, None, running
+        )
+        (goal,) = goals(made)
+        assert (goal.server, goal.goal.functions[0].lights) == (name, ["FaceLeds"])
+        assert outlook_of(made, running).unchecked == (f"1 {name}.blink: lights [FaceLeds]",)
+
+
+@pytest.mark.parametrize(
+    "step, told",
+    [
+        ("{NaoMood.blnk: {}}", "unknown function 'blnk': did you mean 'blink'"),
+        ("{NaoMood.blink: {light: []}}", "did you mean 'lights'"),
+        ("{NaoLights.blnk: {}}", "unknown function 'blnk'"),
+        ("{NaoSmell.blink: {}}", "there is no server 'NaoSmell'"),
+    ],
+)
+def test_what_those_do_not_have_is_refused(step, told, library):
+    with pytest.raises(BehaviorError) as caught:
+        check(read(f"help: x\ndo: [{step}]\n", "test"), library, None, FunctionTables(others))
+    assert told in str(caught.value)

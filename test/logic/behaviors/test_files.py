@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import pytest
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoLedGoal, NaoMotionGoal
+from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.base.paths import config_file
 from nao_library_modules.behaviors import (
     BehaviorError,
     BehaviorStore,
@@ -19,9 +22,9 @@ from nao_library_modules.behaviors import (
     problems_of,
     read,
 )
-from nao_library_modules.behaviors.expressions import BadExpression, escaped, names_in, substitute
-from nao_library_modules.behaviors.messages import fields_of, message_of
-from nao_library_modules.behaviors.model import (
+from nao_library_modules.behaviors.language.expressions import BadExpression, escaped, names_in, substitute
+from nao_library_modules.behaviors.language.messages import fields_of, message_of
+from nao_library_modules.behaviors.language.model import (
     Barrier,
     Box,
     Functions,
@@ -31,14 +34,12 @@ from nao_library_modules.behaviors.model import (
     Timeline,
     Wait,
 )
-from nao_library_modules.behaviors.program import Goal, walk
-from nao_library_modules.behaviors.recording import Recording
-from nao_library_modules.behaviors.servers import NAMES
-from nao_library_modules.behaviors.times import At
-from nao_library_modules.behaviors.writer import text_of
-from nao_library_modules.behaviors.yaml_text import dump, load
-from nao_library_modules.errors import BadGoal
-from nao_library_modules.paths import config_file
+from nao_library_modules.behaviors.language.program import Goal, walk
+from nao_library_modules.behaviors.language.servers import NAMES
+from nao_library_modules.behaviors.language.times import At
+from nao_library_modules.behaviors.language.writer import text_of
+from nao_library_modules.behaviors.language.yaml_text import dump, load
+from nao_library_modules.behaviors.run.recording import Recording
 from nao_library_msgs.msg import LedFunction, MotionFunction
 
 GUIDE = (Path(__file__).parents[3] / "docs" / "behaviors.md").read_text(encoding="utf-8")
@@ -96,9 +97,10 @@ def test_everything_that_a_file_may_hold_is_read():
 
 
 HEADS = [
-    ("", "no mapping"), ("- a", "no mapping"), ("help: a\nhelp: b", "'help' comes twice"), ("help: [a", "no YAML"),
-    ("help: x\nsteps: []", "unknown key 'steps'"), ("do: [{wait: 1}]", "help: a line is needed"),
-    ("help: x", "do: a list of steps"), ("help: x\ndo: []", "at least one"),
+    ("", "line 1: it is no mapping"), ("- a", "no mapping"), ("help: a\nhelp: b", "'help' comes twice"),
+    ("help: [a", "no YAML"),
+    ("help: x\nsteps: []", "unknown key 'steps'"), ("do: [{wait: 1}]", "help (line 1): a line is needed"),
+    ("help: x", "do (line 1): a list of steps"), ("help: x\ndo: []", "at least one"),
     ("help: x\ntags: a\ndo: [{wait: 1}]", "tags"),
 ]  # fmt: skip
 PARAMETERS = [
@@ -174,6 +176,7 @@ def test_values_take_the_place_of_expressions(value, expected):
         ("${m}", "there is no parameter 'm'"), ("${txt}", "did you mean 'text'"), ("${n", "its } is missing"),
         ("${n +}", "cannot be read"), ("${n ** 9999999}", "cannot be read"), ("${n(3)}", "cannot be read"),
         ("${n / 0}", "divides by zero"), ("${1e308 * 1e308}", "too large"), ("${text + 1}", "'hi' is no number"),
+        ("${1e999}", "too large"), ("${-1e999}", "too large"),
         ("${flag + 1}", "no number"), ("${" + "1+" * 150 + "1}", "characters"),
     ],
 )  # fmt: skip
@@ -204,6 +207,9 @@ def test_fields_become_what_they_are_in_the_message():
     assert message.time == genpy.Duration(1, 300000000)
     assert message.trajectory.points[0].time_from_start == genpy.Duration(0, 700000000)
     assert message_of(MotionFunction, load(dump(fields_of(message)), "test")) == message
+    assert message_of(MotionFunction, {"angles": [0.5, "90deg"]}).angles == [0.5, pytest.approx(math.pi / 2)]
+    with pytest.raises(BadGoal, match=r"angles\[0\]: '9deeg' is not allowed: a number"):
+        message_of(MotionFunction, {"angles": ["9deeg"]})
     with pytest.raises(BadGoal, match=r"trajectory\.points\[0\]\.position"):
         message_of(MotionFunction, {"trajectory": {"points": [{"position": [1]}]}})
 
@@ -292,8 +298,8 @@ def test_names_change_and_users_of_a_box_are_known(store):
 def test_a_goal_becomes_a_behaviour_that_sends_it(server, goal):
     (node,) = goals_in(from_goal(server, goal))
     assert (node.server, node.goal) == (server, goal)
-    with pytest.raises(BadGoal, match="there is no server"):
-        from_goal("NaoSmell", RED)
+    with pytest.raises(BadGoal, match="would end itself"):
+        from_goal("NaoBehavior", RED)
 
 
 def test_recorded_goals_come_again_at_their_times_and_are_cut_short_again():

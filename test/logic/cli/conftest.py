@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 from types import SimpleNamespace
 
 import actionlib
@@ -10,9 +12,10 @@ from actionlib import CommState
 from actionlib_msgs.msg import GoalStatus
 from click.testing import CliRunner
 
-from nao_library_modules.command_line import goals
-from nao_library_modules.command_line.app import nao
-from nao_library_modules.describe_offline import offline_servers
+from nao_library_modules.cli import goals
+from nao_library_modules.cli.app import nao
+from nao_library_modules.cli.errors import StackMissing
+from nao_library_modules.functions.describe_offline import offline_servers
 from nao_library_msgs.msg import FunctionResult
 
 DESCRIBE = "/describe"
@@ -26,12 +29,16 @@ class FakeGraph:
     def __init__(self, spaces, more):
         self.servers = {space + found.name: found for space in spaces for found in offline_servers()}
         self.more, self.calls, self.connected = dict(more), [], True
+        self.parameters, self.dead = {}, set()
 
     def services(self):
         return [name + DESCRIBE for name in self.servers] + list(self.more)
 
     def subscribed(self):
         return {f"{name}/goal": ["/node"] for name in self.servers}
+
+    def parameter(self, name, default=None):
+        return self.parameters.get(name, default)
 
     def alive(self, service):
         return True
@@ -40,6 +47,8 @@ class FakeGraph:
         self.calls.append((service, request))
         if service in self.more:
             return self.more[service](request)
+        if service[: -len(DESCRIBE)] in self.dead:
+            raise StackMissing(f"{service} does not answer: connection refused")
         answer = self.servers[service[: -len(DESCRIBE)]].service.answer(request)
         answer.connected = self.connected
         return answer
@@ -51,7 +60,7 @@ def graph(monkeypatch):
 
     def make(*spaces, services=()):
         fake = FakeGraph(spaces or ("/",), services)
-        monkeypatch.setattr("nao_library_modules.command_line.stack.Graph", lambda limit: fake)
+        monkeypatch.setattr("nao_library_modules.cli.stack.Graph", lambda limit: fake)
         return fake
 
     monkeypatch.delenv("ROS_NAMESPACE", raising=False)
@@ -61,8 +70,42 @@ def graph(monkeypatch):
 
 @pytest.fixture
 def sent(monkeypatch):
-    """Goals as they are sent: server and function messages. They end as `end` says, with what `fill` puts in."""
-    noted = SimpleNamespace(goals=[], end=(GoalStatus.SUCCEEDED, ""), fill=lambda result: None)
+    """Goals as they are sent: server and function messages. They end as `end` says, with what `fill` puts in.
+
+    Those with a function of `lasting` go on until they are cancelled; with `interrupted` there is Ctrl-C meanwhile.
+    """
+    noted = SimpleNamespace(
+        goals=[], end=(GoalStatus.SUCCEEDED, ""), fill=lambda result: None, lasting=(), interrupted=False
+    )
+
+    class Handle:
+        def __init__(self, result, on_change, lasts):
+            self._result, self._on_change, self._end = result, on_change, None
+            self.comm_state_machine = SimpleNamespace(mutex=threading.RLock())
+            if lasts:
+                on_change(self)
+            else:
+                self._over(noted.end)
+
+        def _over(self, end):
+            noted.fill(self._result)
+            self._end = end
+            self._on_change(self)
+
+        def cancel(self):
+            self._over((GoalStatus.PREEMPTED, "preempted"))
+
+        def get_comm_state(self):
+            return CommState.ACTIVE if self._end is None else CommState.DONE
+
+        def get_terminal_state(self):
+            return self._end[0]
+
+        def get_goal_status_text(self):
+            return self._end[1]
+
+        def get_result(self):
+            return self._result
 
     class Client:
         def __init__(self, name, action):
@@ -76,14 +119,10 @@ def sent(monkeypatch):
             noted.goals.append((self._name, functions))
             if hasattr(self._result, "results"):
                 self._result.results = [FunctionResult(function=each.function) for each in functions]
-            noted.fill(self._result)
-            handle = SimpleNamespace(
-                get_comm_state=lambda: CommState.DONE,
-                get_terminal_state=lambda: noted.end[0],
-                get_goal_status_text=lambda: noted.end[1],
-                get_result=lambda: self._result,
-            )
-            on_change(handle)
+            lasts = any(each.function in noted.lasting for each in functions)
+            handle = Handle(self._result, on_change, lasts)
+            if lasts and noted.interrupted:
+                signal.raise_signal(signal.SIGINT)
             return handle
 
     monkeypatch.setattr(actionlib, "ActionClient", Client)

@@ -10,9 +10,9 @@ from edge import Edge
 from genpy import Duration
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_modules import nao_basic
-from nao_library_modules.first_contact import require_patience
-from nao_library_modules.nao_basic import NaoBasic
+from nao_library_modules.ros.first_contact import require_patience
+from nao_library_modules.server import nao_basic
+from nao_library_modules.server.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
 from nao_library_msgs.srv import DescribeFunctionsRequest
 from naoqi.errors import NaoError, RobotUnreachable
@@ -165,5 +165,5 @@ def test_a_launch_file_is_started_at_once_or_when_asked_for_and_stopped_with_the
 def test_a_patience_is_a_time():
     assert [require_patience(value) for value in (0, 12.5)] == [0, 12.5]
     for value in (-1.0, float("inf"), float("nan"), True, "30"):
-        with pytest.raises(NaoError, match="0 s or more"):
+        with pytest.raises(NaoError, match="0 to 86400 s"):
             require_patience(value)

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.errors import BadGoal, FunctionFailed, UnknownFunction
-from nao_library_modules.function_chain import FunctionChain, checked_by, seconds
+from nao_library_modules.base.errors import BadGoal, FunctionFailed, UnknownFunction
+from nao_library_modules.functions.chain import FunctionChain, checked_by, seconds
 
 
 class Message:
@@ -51,13 +51,40 @@ def test_an_unknown_function_names_its_place_and_the_closest_names_or_all():
     with pytest.raises(UnknownFunction) as caught:
         chain.look_up("setColour")
     assert str(caught.value) == f"{problem}; `nao list NaoLights --all` tells all"
-    with pytest.raises(UnknownFunction, match="unknown function 'zzz'; known are move, on, setColor"):
+    with pytest.raises(UnknownFunction, match="unknown function 'zzz'; `nao list NaoLights --all` tells all"):
         chain.look_up("zzz")
+    with pytest.raises(UnknownFunction, match="unknown function 'zzz'; known are move, on, setColor"):
+        FunctionChain(table).look_up("zzz")
+
+
+def test_lists_and_chains_have_a_bound():
+    chain = FunctionChain({"move": lambda names: None})
+    with pytest.raises(FunctionFailed, match=r"function 2 \(move\): field names: 1001 are too many: at most 1000"):
+        chain.read([Message(), Message(names=["ab"] * 1001)])
+    with pytest.raises(FunctionFailed, match="field names: 300001 are too many: at most 300000"):
+        chain.read([Message(names=[0.5] * 300_001)])
+    with pytest.raises(FunctionFailed, match="field str_param: 1000001 characters are too many: at most 1000000"):
+        chain.read([Message(str_param="a" * 1_000_001)])
+    with pytest.raises(BadGoal, match="field functions: 1001 are too many: at most 1000"):
+        chain.read([Message()] * 1001)
+    assert len(chain.read([Message()] * 1000)) == 1000
+
+
+def test_a_text_where_a_list_belongs_is_told_of_as_it_was_meant():
+    def check(names):
+        for name in names:
+            if name != "LArm":
+                raise BadGoal("names", name, "LArm", problem=f"unknown {name!r}")
+
+    chain = FunctionChain({"move": checked_by(check)(lambda names: None)})
+    for names, text in ((list("LArm"), r"it is a text, and a list is needed: \['LArm'\]"), (["Arm"], "unknown 'Arm'")):
+        with pytest.raises(FunctionFailed, match=rf"function 1 \(move\): field names: {text}"):
+            chain.read([Message(names=names)])
 
 
 def test_a_wait_must_be_a_finite_time_and_a_chain_is_not_empty():
     for time in (-0.5, float("nan"), float("inf")):
-        with pytest.raises(FunctionFailed, match=r"function 1 \(move\): field time: .* 0 s or more"):
+        with pytest.raises(FunctionFailed, match=r"function 1 \(move\): field time: .* 0\.\.86400 s"):
             arguments(lambda: None, time=time)
     with pytest.raises(BadGoal, match="the chain is empty"):
         FunctionChain({}).read([])
@@ -84,7 +111,7 @@ def test_a_check_sees_the_fields_it_names_of_its_module_or_of_what_stands_in_for
     assert (caught.value.position, caught.value.cause.field) == (3, "speed")
     (binding,) = chain.bind([Message(speed=0.75)])
     context = {}
-    binding.run_check(Message(speed=0.75), context, SimpleNamespace(limit=1.0))
+    binding.run_check(Message(speed=0.75), context, lambda _: SimpleNamespace(limit=1.0))
     assert context == {"checked": 0.75}
     with pytest.raises(BadGoal):
         binding.run_check(Message(speed=0.75), context)

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.health import GoalCounter, Level, connection_report, launch_report
-from nao_library_modules.supervisor import State, Status
+from nao_library_modules.processes.supervisor import State, Status
+from nao_library_modules.ros.health import GoalCounter, Level, connection_report, launch_report
 
 
 @pytest.mark.parametrize(

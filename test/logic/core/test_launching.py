@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from nao_library_modules.launcher import (
+from nao_library_modules.processes.launcher import (  # fmt: skip
     BadLaunchPath,
     declared_arguments,
     find_launch_file,
     launch_arguments,
     launch_supervisor,
-)  # fmt: skip
-from nao_library_modules.node import launch_path, robot_address, robot_parser
-from nao_library_modules.supervisor import State
+)
+from nao_library_modules.processes.supervisor import State
+from nao_library_modules.ros.node import launch_path, robot_address, robot_parser
 from naoqi.errors import NaoError
 
 PATH = ("nao_library", "nao.launch")
@@ -21,7 +21,9 @@ PATH = ("nao_library", "nao.launch")
 # Nodes
 
 
-def test_the_address_of_the_robot_comes_from_the_command_line_then_from_parameters():
+def test_the_address_of_the_robot_comes_from_the_command_line_then_parameters_then_the_environment(monkeypatch):
+    for variable in ("NAO_IP", "NAO_PORT"):
+        monkeypatch.delenv(variable, raising=False)
     parameters = {"~pip": "10.0.0.7", "~pport": 9560}
     for arguments, given, address in (
         ([], {}, ("127.0.0.1", 9559)),
@@ -29,6 +31,13 @@ def test_the_address_of_the_robot_comes_from_the_command_line_then_from_paramete
         (["--pip", "nao.local", "--pport", "9561"], parameters, ("nao.local", 9561)),
     ):
         assert robot_address(robot_parser("A node.").parse_args(arguments), given.get) == address
+    monkeypatch.setenv("NAO_IP", "10.0.0.8")
+    monkeypatch.setenv("NAO_PORT", "9562")
+    for given, address in (({}, ("10.0.0.8", 9562)), (parameters, ("10.0.0.7", 9560))):
+        assert robot_address(robot_parser("A node.").parse_args([]), given.get) == address
+    monkeypatch.setenv("NAO_PORT", "nine")
+    with pytest.raises(NaoError, match="'nine' is no port"):
+        robot_address(robot_parser("A node.").parse_args([]), {}.get)
     for port in (0, -1, 65536, "9559", True, 9559.0):
         with pytest.raises(NaoError, match=r"is no port: 1\.\.65535"):
             robot_address(robot_parser("A node.").parse_args([]), {"~pport": port}.get)

@@ -6,7 +6,7 @@ import pytest
 from genpy import Duration
 
 from nao_library_actions import msg as actions
-from nao_library_modules import new_functions as new
+from nao_library_modules.server import new_functions as new
 from nao_library_msgs.msg import AudioOutFunction, LedFunction, MotionFunction
 
 

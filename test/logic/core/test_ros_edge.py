@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+import queue
+from contextlib import nullcontext
 
 import pytest
 import rospy
 import tf2_ros
+from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import TransformStamped
 
-from nao_library_modules import robot_frames, ros_edge
+from nao_library_modules.ros import diagnostics, robot_frames, ros_edge
+from nao_library_modules.ros.action_server import publish_status
+from nao_library_modules.ros.health import Level, Report
 from naoqi.errors import NaoError
 
 
@@ -32,6 +37,39 @@ def test_events_are_published_with_name_value_and_type(monkeypatch):
     assert [event.type for event in published] == [*types, "list"]
     event = published[5]
     assert (event.name, event.value, event.header.stamp.to_sec()) == ("FrontTactilTouched", '[1.0, "x"]', 5.0)
+
+
+def test_a_report_that_fails_is_told_of_and_the_others_are_published_all_the_same(monkeypatch):
+    published, shut_down = queue.Queue(), [rospy.ROSException("publish() to a closed topic")]
+
+    class Updater:
+        def __init__(self):
+            self.tasks = {}
+            self.setHardwareID, self.add = lambda _: None, self.tasks.__setitem__
+
+        def force_update(self):
+            if shut_down:
+                raise shut_down.pop()
+            statuses = {name: task(DiagnosticStatusWrapper()) for name, task in self.tasks.items()}
+            published.put({name: (status.level, status.message) for name, status in statuses.items()})
+
+    monkeypatch.setattr(diagnostics, "Updater", Updater)
+    monkeypatch.setattr(diagnostics, "PERIOD", 0.001)
+    reports = {"broken": lambda: {}["battery"], "well": lambda: Report(Level.OK, "runs")}
+    publisher = diagnostics.DiagnosticsPublisher("127.0.0.1:9559", reports)
+    expected = {"broken": (2, "there is no report: KeyError('battery')"), "well": (0, "runs")}
+    assert published.get(timeout=10.0) == published.get(timeout=10.0) == expected
+    publisher.close()
+
+
+@pytest.mark.parametrize("ended", [True, False])
+def test_the_status_of_goals_that_comes_when_the_topics_are_closed_is_no_error(monkeypatch, ended):
+    def publish():
+        raise rospy.ROSException("publish() to a closed topic")
+
+    monkeypatch.setattr(rospy, "is_shutdown", lambda: ended)
+    with nullcontext() if ended else pytest.raises(rospy.ROSException):
+        publish_status(publish)
 
 
 # Frames

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import logging
 import os
+import subprocess
 import sys
+import threading
 
 import pytest
 
-from nao_library_modules.process_tree import descendants, identify
-from nao_library_modules.supervisor import State, Supervisor, Timing
+from nao_library_modules.processes.process_tree import descendants, identify
+from nao_library_modules.processes.supervisor import State, Supervisor, Timing
 
 LIMIT = 15.0
 QUICK = Timing(first_delay=0.01, longest_delay=0.04, interrupt=LIMIT, terminate=0.2, kill=LIMIT)
@@ -104,3 +106,16 @@ def test_stopping_during_the_delay_does_not_start_it_again(supervise, pipe):
     pipe.line()
     supervisor.stop()
     assert (supervisor.status.state, supervisor.status.restarts) == (State.STOPPED, 0)
+
+
+def test_it_ends_when_the_process_that_supervises_it_is_killed(pipe):
+    program = SAY + "say(os.getpid()); " + FOREVER
+    owner = (
+        "import sys, threading; from nao_library_modules.processes.supervisor import Supervisor; "
+        "Supervisor([sys.executable, '-c', *sys.argv[1:]], 'the program').start(); threading.Event().wait()"
+    )
+    supervising = subprocess.Popen([sys.executable, "-c", owner, program, pipe.path])
+    pid = int(pipe.line())
+    supervising.kill()
+    supervising.wait(LIMIT)
+    assert any(identify(pid) is None or threading.Event().wait(0.05) for _ in range(300)), f"process {pid} goes on"

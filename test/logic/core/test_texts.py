@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
+import os
 
 import numpy as np
 import pytest
 
-from nao_library_modules.answers import json_of, text_of, values_of
-from nao_library_modules.errors import LONGEST, BadGoal, FunctionFailed
-from nao_library_modules.suggestion import closest, did_you_mean
-from nao_library_modules.whole_file import write_whole
+from nao_library_modules.base.answers import json_of, text_of, values_of
+from nao_library_modules.base.errors import LONGEST, BadGoal, FunctionFailed
+from nao_library_modules.base.suggestion import closest, did_you_mean
+from nao_library_modules.base.whole_file import FileTrouble, write_whole
 
 KNOWN = ["setIntensity", "setColor", "getColor", "LeftFaceLeds", "LeftFaceLed1"]
 
@@ -60,15 +61,25 @@ def test_the_closest_name_comes_first():
     assert did_you_mean("LeftFaceLed", ["LeftFaceLeds"]) == ": did you mean 'LeftFaceLeds'?"
 
 
+@pytest.mark.parametrize("mask", [0o022, 0o077])
+def test_who_may_read_a_file_is_up_to_the_umask(tmp_path, mask):
+    former = os.umask(mask)
+    try:
+        file = write_whole(tmp_path / "photo.jpg", b"")
+    finally:
+        os.umask(former)
+    assert file.stat().st_mode & 0o777 == 0o666 & ~mask
+
+
 def test_files_are_written_as_a_whole_or_stay_as_they_were(tmp_path):
     file = tmp_path / "new" / "notes.yaml"
     write_whole(file, "größer: 1, a much longer text than the next\n")
-    assert file.read_text(encoding="utf-8").startswith("größer: 1") and file.stat().st_mode & 0o777 == 0o644
+    assert file.read_text(encoding="utf-8").startswith("größer: 1")
     write_whole(file, "short\n")
     with pytest.raises(UnicodeEncodeError):
         write_whole(file, "half a character: \ud800")
     assert file.read_text() == "short\n" and list(file.parent.iterdir()) == [file]
     (tmp_path / "folder.yaml").mkdir()
-    with pytest.raises(OSError, match=r"folder\.yaml"):
+    with pytest.raises(FileTrouble, match=r"folder\.yaml cannot be written: Is a directory"):
         write_whole(tmp_path / "folder.yaml", "text")
     assert not list(tmp_path.glob(".*"))

@@ -8,10 +8,10 @@ import pytest
 import rospy
 from rospy import rostime
 
-from nao_library_modules.clock import WallClock
-from nao_library_modules.errors import Preempted, RobotLost
-from nao_library_modules.interrupt import Interrupt
-from nao_library_modules.ros_clock import RosClock
+from nao_library_modules.base.clock import WallClock
+from nao_library_modules.base.errors import Preempted, RobotLost
+from nao_library_modules.base.interrupt import Interrupt
+from nao_library_modules.ros.ros_clock import RosClock
 
 LIMIT = 15.0
 LOST = "10.0.0.7:9559", "no answer"

@@ -9,19 +9,19 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.driver import body_reports as reports
-from nao_library_modules.driver.blinking import Blinks
-from nao_library_modules.driver.body_reports import BATTERY_FLAGS, Thresholds, battery_report, network_reports
-from nao_library_modules.driver.foot_pressure import keys_of, read_foot
-from nao_library_modules.driver.joint_sensors import JointSensors
-from nao_library_modules.driver.motors import read_motors, torque_per_ampere
-from nao_library_modules.driver.robot_facts import KEYS, facts_of, info_fields
-from nao_library_modules.driver.sonars import range_of
-from nao_library_modules.errors import BadGoal
-from nao_library_modules.health import Level
-from nao_library_modules.joint_trajectory import H25_BODY
-from nao_library_modules.paths import config_file
-from nao_library_modules.pose_tables import BadPose, Pose, UnknownPose, built_in, library, pose_table
+from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.base.paths import config_file
+from nao_library_modules.driver.base.robot_facts import KEYS, facts_of, info_fields
+from nao_library_modules.driver.joints.joint_sensors import JointSensors
+from nao_library_modules.driver.joints.motors import read_motors, torque_per_ampere
+from nao_library_modules.driver.life.blinking import Blinks
+from nao_library_modules.driver.sensors import body_reports as reports
+from nao_library_modules.driver.sensors.body_reports import BATTERY_FLAGS, Thresholds, battery_report, network_reports
+from nao_library_modules.driver.sensors.foot_pressure import keys_of, read_foot
+from nao_library_modules.driver.sensors.sonars import range_of
+from nao_library_modules.functions.joint_trajectory import H25_BODY
+from nao_library_modules.nao.pose_tables import BadPose, Pose, UnknownPose, built_in, library, pose_table
+from nao_library_modules.ros.health import Level
 from nao_library_msgs.msg import RobotInfo
 from naoqi.errors import NaoError
 

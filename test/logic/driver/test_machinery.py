@@ -6,13 +6,13 @@ import threading
 
 import pytest
 
-from nao_library_modules.clock import WallClock
-from nao_library_modules.driver import reconfigure
-from nao_library_modules.driver.pacer import Pacer
-from nao_library_modules.driver.reconfigure import Field
-from nao_library_modules.errors import BadGoal, Preempted, RobotLost
-from nao_library_modules.goal_crowd import GoalCrowd, Outcome
-from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.base.clock import WallClock
+from nao_library_modules.base.errors import BadGoal, Preempted, RobotLost
+from nao_library_modules.base.interrupt import Interrupt
+from nao_library_modules.driver.base import reconfigure
+from nao_library_modules.driver.base.pacer import Pacer
+from nao_library_modules.driver.base.reconfigure import Field
+from nao_library_modules.ros.goal_crowd import FULL, GoalCrowd, Outcome
 from naoqi.errors import NaoError
 
 PATIENCE = 10.0
@@ -124,6 +124,15 @@ def test_goals_that_will_not_do_abort_with_their_text_and_feedback_goes_to_its_g
     assert "division by zero" in send(GoalCrowd(frozenset, lambda *_: 1 / 0), "HeadYaw").wait()[2]
     handle = send(GoalCrowd(frozenset, execute, with_feedback=True), "HeadYaw")
     assert handle.wait()[0] == "succeeded" and handle.feedback == ["half of HeadYaw"]
+
+
+def test_goals_that_are_too_many_are_aborted_with_what_is_allowed(crowd, work):
+    goals = [send(crowd, f"joint {n}") for n in range(100)]
+    assert send(crowd, "HeadYaw").wait() == ("aborted", None, FULL) and "100 goals" in FULL
+    work.begun("joint 0").set()
+    goals[0].wait()
+    crowd.close(PATIENCE)
+    assert all(goal.wait()[0] == "canceled" for goal in goals[1:])
 
 
 class PassingClock:

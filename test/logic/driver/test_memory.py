@@ -9,11 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosgraph.names import is_legal_name
 
-from nao_library_modules.driver.memory_key import WatchedKey
-from nao_library_modules.driver.memory_names import is_pattern, matches, matching, topic_of, topics_of
-from nao_library_modules.driver.memory_rules import Rule, Rules, read_rules
-from nao_library_modules.driver.memory_values import converted, kind_of, parse_value, type_of
-from nao_library_modules.errors import BadGoal
+from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.driver.memory.memory_key import WatchedKey
+from nao_library_modules.driver.memory.memory_names import is_pattern, matches, matching, topic_of, topics_of
+from nao_library_modules.driver.memory.memory_rules import Rule, Rules, read_rules
+from nao_library_modules.driver.memory.memory_values import converted, kind_of, parse_value, type_of
+from nao_library_modules.functions.memory_functions import parse_assignment, parse_pairs
 from naoqi.errors import NaoError
 
 KNOWN = ["Battery/Charge", "Battery/Current", "Head/Front", "Head/Rear"]
@@ -68,7 +69,11 @@ def test_rules_are_read_from_a_parameter_and_what_is_wrong_is_told():
     for entries, words in ((7, "~keys is 7"), (["b", {"key": "a", "hz": 2}], r"~keys\[1\]")):
         with pytest.raises(NaoError, match=words):
             read_rules(entries, "~keys")
-    wrong = {Rule(" "): "pattern: it is empty", Rule("a", -1.0): "0 to 100 Hz", Rule("a", kind="double"): "one of bool"}
+    wrong = {
+        Rule(" "): "pattern: it is empty",
+        Rule("a", -1.0): "0.001..100 Hz",
+        Rule("a", kind="double"): "one of bool",
+    }
     for rule, words in wrong.items():
         with pytest.raises(BadGoal, match=words):
             rule.check()
@@ -101,6 +106,10 @@ def test_values_widen_and_lose_nothing_and_what_is_no_json_is_text():
         assert result == message and type(result) is type(message)
     values = {"[1, 2]": [1, 2], "hello there": "hello there", '"3"': "3"}
     assert {text: parse_value(text) for text in values} == values
+    for text in ("[" * 100_000, "[" * 100_000 + "]" * 100_000, "1" * 5000):  # no value of a robot
+        assert parse_value(text) == text and parse_assignment(f"key={text}") == ("key", text)
+        with pytest.raises(BadGoal, match="JSON"):
+            parse_pairs(text)
 
 
 @pytest.fixture

@@ -7,22 +7,22 @@ import math
 import pytest
 from std_msgs.msg import Header
 
-from nao_library_modules.driver import microphone_blocks as blocks
-from nao_library_modules.driver import vision_values as vision
-from nao_library_modules.driver.audio_directions import read_direction
-from nao_library_modules.driver.audio_requests import file_on_robot, read_recording, read_volume
-from nao_library_modules.driver.microphone_blocks import BlockClock, channel_map, read_samples
-from nao_library_modules.driver.speech_recognition import read_heard
-from nao_library_modules.driver.speech_settings import (
+from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.driver.audio import microphone_blocks as blocks
+from nao_library_modules.driver.audio.audio_directions import read_direction
+from nao_library_modules.driver.audio.audio_requests import file_on_robot, read_recording, read_volume
+from nao_library_modules.driver.audio.microphone_blocks import BlockClock, channel_map, read_samples
+from nao_library_modules.driver.audio.speech_recognition import read_heard
+from nao_library_modules.driver.audio.speech_settings import (
     from_config,
     given_parameters,
     join_vocabulary,
     percent,
     split_vocabulary,
 )
-from nao_library_modules.driver.vision_messages import to_face, to_landmarks, to_movement
-from nao_library_modules.driver.vision_values import Face, Landmark, MovementReader, Shape, View
-from nao_library_modules.errors import BadGoal
+from nao_library_modules.driver.sensors import vision_values as vision
+from nao_library_modules.driver.sensors.vision_messages import to_face, to_landmarks, to_movement
+from nao_library_modules.driver.sensors.vision_values import Face, Landmark, MovementReader, Shape, View
 from nao_library_msgs.msg import FaceDetected
 from naoqi.errors import NaoError
 

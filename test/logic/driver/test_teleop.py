@@ -10,11 +10,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.driver import joy_control, teleop_nao_joy
-from nao_library_modules.driver.joy_control import JoyControl, JoySettings
-from nao_library_modules.driver.keyboard_control import FIRST_HOLD, REPEAT_HOLD, KeyboardControl, Kind, Request
-from nao_library_modules.driver.terminal_keys import TerminalKeys, decode
-from nao_library_modules.driver.walk_commands import Velocity
+from nao_library_modules.driver.teleop import joy_control, teleop_nao_joy
+from nao_library_modules.driver.teleop.joy_control import JoyControl, JoySettings
+from nao_library_modules.driver.teleop.keyboard_control import FIRST_HOLD, REPEAT_HOLD, KeyboardControl, Kind, Request
+from nao_library_modules.driver.teleop.terminal_keys import TerminalKeys, decode
+from nao_library_modules.driver.walk.walk_commands import Velocity
 from naoqi.errors import NaoError
 
 ENABLE, INIT, CROUCH, HEAD = 8, 0, 9, 5

@@ -13,27 +13,28 @@ from hypothesis import strategies as st
 from rospy import Time
 
 from almath import Pose2D, areTwoBoxesInCollision, computeBox
-from nao_library_modules.driver import state_messages as messages
-from nao_library_modules.driver import walk_commands as commands
-from nao_library_modules.driver.feet import LEG_JOINTS, footprint, sole
-from nao_library_modules.driver.footsteps import read_step, read_steps, step_target
-from nao_library_modules.driver.footsteps_clipping import LEFT_BOX, RIGHT_BOX, check_legs, clip
-from nao_library_modules.driver.footsteps_walk import Step
-from nao_library_modules.driver.gait_config import read_gait_config, read_share
-from nao_library_modules.driver.joint_sensors import Reading
-from nao_library_modules.driver.odometry_offset import OdometryOffset
-from nao_library_modules.driver.odometry_services import read_transform
-from nao_library_modules.driver.rotation import from_roll_pitch_yaw, product, rotate, yaw_of
-from nao_library_modules.driver.slope import SlopeEstimator
-from nao_library_modules.driver.walk_commands import Target, Velocity
-from nao_library_modules.driver.walk_inhibition import NotInhibited, WalkInhibition
-from nao_library_modules.driver.walk_orders import Order, OrderBox, Stop, WalkEnded
-from nao_library_modules.driver.walk_pace import PACE, REFRESH, WalkPace
-from nao_library_modules.driver.walk_report import WalkJournal
-from nao_library_modules.driver.walk_watchdog import WalkWatchdog
-from nao_library_modules.errors import BadGoal
-from nao_library_modules.health import Level
-from nao_library_modules.places import Place
+from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.base.kept import Kept
+from nao_library_modules.base.places import Place
+from nao_library_modules.driver.base.rotation import from_roll_pitch_yaw, product, rotate, yaw_of
+from nao_library_modules.driver.joints import state_messages as messages
+from nao_library_modules.driver.joints.feet import LEG_JOINTS, footprint, sole
+from nao_library_modules.driver.joints.joint_sensors import Reading
+from nao_library_modules.driver.joints.odometry_offset import OdometryOffset
+from nao_library_modules.driver.joints.odometry_services import read_transform
+from nao_library_modules.driver.joints.slope import SlopeEstimator
+from nao_library_modules.driver.walk import walk_commands as commands
+from nao_library_modules.driver.walk.footsteps import read_step, read_steps, step_target
+from nao_library_modules.driver.walk.footsteps_clipping import LEFT_BOX, RIGHT_BOX, check_legs, clip
+from nao_library_modules.driver.walk.footsteps_walk import Step
+from nao_library_modules.driver.walk.gait_config import read_gait_config, read_share
+from nao_library_modules.driver.walk.walk_commands import Target, Velocity
+from nao_library_modules.driver.walk.walk_inhibition import NotInhibited, WalkInhibition
+from nao_library_modules.driver.walk.walk_orders import Order, OrderBox, Stop, WalkEnded
+from nao_library_modules.driver.walk.walk_pace import PACE, REFRESH, WalkPace
+from nao_library_modules.driver.walk.walk_report import WalkJournal
+from nao_library_modules.driver.walk.walk_watchdog import WalkWatchdog
+from nao_library_modules.ros.health import Level
 from nao_library_msgs.msg import StepTarget
 from naoqi.errors import NaoError
 
@@ -101,6 +102,19 @@ def test_a_stop_is_never_left_out_and_leaves_steps_out_which_queue_up():
     refused("source 5 came after it", orders[4].answer.result, 0, error=WalkEnded)
 
 
+def test_steps_that_wait_have_a_bound_and_a_stop_comes_through_all_the_same():
+    box, step = OrderBox(), commands.Step("LLeg", 0.02, 0.1, 0.0)
+    orders = [Order(step, "") for _ in range(1001)]
+    for order in orders:
+        box.put(order)
+    refused("1000 orders wait already, 1000 at most", orders[-1].answer.result, 0, error=WalkEnded)
+    assert not orders[-2].answer.done()
+    stops = [Order(Stop(), "") for _ in range(1002)]
+    for order in stops:
+        box.put(order)
+    assert list(iter(box.take, None)) == stops[2:] and stops[1].answer.done() and not stops[2].answer.done()
+
+
 def sent_times(velocity, period, count):
     """At which of many equal commands, one each period, the robot is told."""
     pace, times = WalkPace(), []
@@ -126,11 +140,13 @@ def test_commands_keep_a_distance_and_lasting_ones_are_repeated_once_a_second():
     assert pace.is_news(FORWARD, 11.4)
 
 
-def test_inhibition_is_counted_and_means_the_others():
-    inhibition = WalkInhibition()
+def test_inhibition_is_counted_and_means_the_others(tmp_path):
+    kept = Kept(tmp_path / "nao_walker.json", "run")
+    inhibition = WalkInhibition(kept)
     assert [inhibition.inhibit(name) for name in ("/path", "/path", "/me")] == [1, 2, 3]
     assert inhibition.against("/joystick") == ["/path", "/me"] and inhibition.against("/path") == ["/me"]
     assert (inhibition.let_go("/path"), inhibition.let_go("/path")) == (2, 1)
+    assert WalkInhibition(kept).owners == ["/me"]  # of a node that was killed and started again
     assert inhibition.let_go("/rosservice_2") == 0  # whoever has no hold takes off the first
     with pytest.raises(NotInhibited):
         inhibition.let_go("/path")
@@ -141,8 +157,13 @@ def test_the_report_tells_who_inhibits_and_of_failures_until_a_command_succeeds(
     journal.failed("cmd_pose", ValueError("fallen"))
     report = journal.report(0.0, "nothing", None, [], 0)
     assert (report.level, report.message) == (Level.WARN, "unknown; cmd_pose: fallen")
-    journal.succeeded()
+    journal.succeeded("moveIsActive")  # an answer to a question of the report
+    assert journal.report(0.0, "nothing", False, [], 0).level == Level.WARN
+    journal.succeeded("cmd_vel_srv")
     assert journal.report(10.5, "walks at (0.5, 0, 0)", True, [], 2).level == Level.OK
+    journal.failed("moveIsActive", ValueError("lost"))
+    journal.succeeded("moveIsActive")
+    assert journal.report(0.0, "nothing", False, [], 0).level == Level.OK
     assert journal.report(0.0, "nothing", False, ["/path", "/me"], 0).message == "stands, inhibited by /path, /me"
 
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
-from nao_library_modules import light_goals
-from nao_library_modules.colours import from_integer, named_colours, parse_colour, read_colours, to_integer
-from nao_library_modules.errors import BadGoal
-from nao_library_modules.light_names import LightNames, UnknownLight, colour_part
-from nao_library_modules.light_state import light_intensity, mean_colour, mean_intensity, memory_keys
+from nao_library_modules.base.colours import from_integer, named_colours, parse_colour, read_colours, to_integer
+from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.lights import goals as light_goals
+from nao_library_modules.lights.state import light_intensity, mean_colour, mean_intensity, memory_keys
+from nao_library_modules.nao.light_names import LightNames, UnknownLight, colour_part
 
+ROOT = Path(__file__).resolve().parents[3]
 TWO = ["LeftFaceLeds", "RightFaceLeds"]
 RED, *_ = EYE = [f"Face/Led/{part}/Left/0Deg/Actuator/Value" for part in ("Red", "Green", "Blue")]
 BRAIN = "Head/Led/Front/Right/0/Actuator/Value"
@@ -23,10 +25,7 @@ def refused(text, function, *arguments):
         function(*arguments)
 
 
-def test_times_rise_and_colours_are_in_one_field_only():
-    light_goals.require_times([0.1, 0.2, 5.0])
-    for times in ([], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [NAN]):
-        refused("field times", light_goals.require_times, times)
+def test_colours_are_in_one_field_only():
     refused("field i_values: there is a colour in str_param already", light_goals.colours, TWO, [0, 1, 0], "green")
     light_goals.require_angle(360)
     refused(r"field angle: .* 0\.\.360 deg", light_goals.require_angle, 361)
@@ -42,6 +41,8 @@ def test_colours_as_text_and_as_integers(tmp_path):
         refused("'#RRGGBB', '0xRRGGBB' or one of white, red", parse_colour, text)
     refused("unknown colour 'grean': did you mean 'green'", parse_colour, "grean")
     assert to_integer(from_integer(0x123456)) == 0x123456
+    documented = (ROOT / "docs/functions.md").read_text(encoding="utf-8")
+    assert [name for name in named_colours() if f"`{name}`" not in documented] == []
     assert set("white red green blue yellow magenta cyan".split()) <= set(named_colours())
     (tmp_path / "colours.json").write_text(json.dumps({"odd": [0, 0, 2]}))
     with pytest.raises(ValueError, match="odd"):
@@ -62,6 +63,24 @@ def test_groups_lights_and_leds_are_used_alike():
     assert names.with_group("Mine", ["Eyes", "Brain0"]).groups["Mine"] == ("Eye", "Brain0")
     assert not names.knows("Mine"), "a new group is a new dictionary"
     assert [colour_part(device) for device in (*EYE, BRAIN)] == ["Red", "Green", "Blue", ""]
+
+
+def test_plain_words_mean_the_robots_groups_and_its_own_names_come_before():
+    listed = {"Eye": EYE, "Brain0": [BRAIN]}
+    names = LightNames.from_listings(listed, {"FaceLeds": ["Eye"], "EarLeds": ["Brain0"]})
+    assert names.expand(["Eyes", "Ears", "FaceLeds"]) == ["Eye", "Brain0"]
+    assert names.is_coloured("Eyes") and not names.is_coloured("Ears")
+    assert [names.of_robot(name) for name in ("Eyes", "Ears", "Eye", "Chest")] == [
+        "FaceLeds",
+        "EarLeds",
+        "Eye",
+        "Chest",
+    ]
+    assert not names.knows("Chest"), "this robot has no such group"
+    with pytest.raises(UnknownLight, match="unknown light 'eyes': did you mean 'Eyes'"):
+        names.expand(["eyes"])
+    own = names.with_group("Eyes", ["Brain0"])
+    assert own.expand(["Eyes"]) == ["Brain0"] and own.of_robot("Eyes") == "Eyes"
 
 
 # Values

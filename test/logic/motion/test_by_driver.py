@@ -6,16 +6,17 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.joint_trajectory import KeyFrames
-from nao_library_modules.motion_by_driver import RobotByDriver
-from nao_library_modules.places import Place
+from nao_library_modules.base.places import Place
+from nao_library_modules.functions.joint_trajectory import KeyFrames
+from nao_library_modules.motion.by_driver import RobotByDriver
+from nao_library_modules.owners.line import OwnerLine
 
 FRAMES = KeyFrames(("HeadYaw", "HeadPitch"), (0.5, 1.25), ((0.1, 0.2), (0.0, -0.1)), ((0.3, 0.0), (-0.2, 0.1)))
 YAW = ["HeadYaw"]
 
 
 class Calls:
-    """Keeps what is called; `there` says whether it is."""
+    """Keeps what is called, and answers with a call that goes on; `there` says whether it is."""
 
     def __init__(self, there=True):
         self.calls, self._there = [], there
@@ -23,8 +24,16 @@ class Calls:
     def there(self):
         return self._there
 
+    def walk_cure(self):
+        return ["service", "/stop_walk_srv", "/NaoMotion"]
+
     def __getattr__(self, name):
-        return lambda *arguments: self.calls.append((name, *arguments)) or name
+        return lambda *arguments: self.calls.append((name, *arguments)) or Call()
+
+
+class Call:
+    def add_done_callback(self, callback):
+        pass
 
 
 @pytest.fixture
@@ -33,7 +42,7 @@ def robot():
 
 
 def call(robot, driver, method, *arguments, module="ALMotion"):
-    proxies = RobotByDriver(SimpleNamespace(proxy=lambda name: robot), driver)
+    proxies = RobotByDriver(SimpleNamespace(proxy=lambda name: robot, owners=OwnerLine("nobody:0")), driver)
     return proxies.proxy(module).call_async(method, *arguments)
 
 
@@ -84,3 +93,15 @@ def test_a_stop_is_told_to_the_robot_whatever_the_driver_does(robot):
     driver = Driver()
     call(robot, driver, "stopMove")
     assert driver.calls == ["leave_walk"] and robot.calls == [("call_async", "stopMove")]
+
+
+def test_a_walk_by_the_driver_is_taken_back_from_it_when_this_process_dies(robot):
+    told = []
+    owners = SimpleNamespace(sending=lambda *call: told.append(call))
+    motion = RobotByDriver(SimpleNamespace(proxy=lambda name: robot, owners=owners), Calls()).proxy("ALMotion")
+    motion.call_async("moveTo", 0.1, 0.2, 0.3)
+    motion.call_async("angleInterpolationWithSpeed", YAW, [0.1], 0.2)
+    assert told == [
+        ("ALMotion", "moveTo", (0.1, 0.2, 0.3), ["service", "/stop_walk_srv", "/NaoMotion"]),
+        ("ALMotion", "angleInterpolationWithSpeed", (YAW, [0.1], 0.2), None),
+    ]

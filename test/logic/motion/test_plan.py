@@ -6,12 +6,13 @@ import math
 
 import pytest
 
-from nao_library_modules.errors import BadGoal, NotFit
-from nao_library_modules.motion_facts import JointLimits, JointState, MotionFacts, one_each
-from nao_library_modules.motion_gait import GaitRange, read_gait, walk_time
-from nao_library_modules.motion_health import Health
-from nao_library_modules.motion_plan import MotionPlan, require_fraction, require_rising
-from nao_library_modules.places import Place
+from nao_library_modules.base.errors import BadGoal, NotFit
+from nao_library_modules.base.field_checks import require_rising
+from nao_library_modules.base.places import Place
+from nao_library_modules.motion.facts import JointLimits, JointState, MotionFacts, one_each
+from nao_library_modules.motion.gait import GaitRange, read_gait, walk_time
+from nao_library_modules.motion.health import Health
+from nao_library_modules.motion.plan import DURATION, MotionPlan, require_fraction
 
 HEAD = ["HeadYaw", "HeadPitch"]
 LIMITS = {"HeadYaw": (-2.0, 2.0, 8.0), "HeadPitch": (-0.7, 0.5, 7.0), "LShoulderRoll": (-0.3, 1.3, 7.0),
@@ -41,8 +42,16 @@ def test_chains_and_joints_expand_in_order_and_one_value_is_for_all():
 
 
 def test_targets_are_within_the_limits_as_the_robot_rounds_them():
-    text = r"LShoulderRoll cannot go to 1.5000: -0.3000 to 1.3000"
+    text = r"LShoulderRoll cannot go to 1.5000 rad: -0.3000 to 1.3000 rad"
     refused(text, make().targets, {"LShoulderRoll": 1.5}, relative=False)
+    refused(
+        "HeadYaw cannot go to 45.0000 rad: .* rad; 45 degrees are 0.7854 rad",
+        make().targets,
+        {"HeadYaw": 45.0},
+        False,
+    )
+    text = r"3.4907 rad: -2.0000 to 2.0000 rad; in degrees -114.6 to 114.6"
+    refused(text, make().targets, {"HeadYaw": math.radians(200.0)}, relative=False)
     make().targets({"LShoulderRoll": 1.3 + 5e-8, "HeadYaw": -2.0}, relative=False)
     plan = make(HeadYaw=0.5)
     plan.move(plan.targets({"HeadYaw": 1.0}, relative=True), 0.0)
@@ -82,10 +91,10 @@ def test_durations_add_up_for_each_function_and_touched_joints_come_once():
 
 
 def test_times_rise_from_above_0_and_a_fraction_of_0_is_the_default():
-    for times in ([], [0.0], [1.0, 1.0], [2.0, 1.0], [math.inf]):
-        refused("times", require_rising, times)
+    for times in ([], [0.0], [1.0, 1.0], [2.0, 1.0], [math.inf], [1.0, math.nan], [1.0, 1e6]):
+        refused("times", require_rising, "times", times, DURATION)
     assert (require_fraction("speed", 0.0, 0.3), require_fraction("speed", 1.0, 0.3)) == (0.3, 1.0)
-    for value in (-0.1, 1.1, math.nan):
+    for value in (-0.1, 1.1, math.nan, 1e-320):
         refused("speed", require_fraction, "speed", value, 0.3)
 
 

@@ -142,6 +142,9 @@ def test_the_class_name_and_trace_of_a_python_service_are_set_apart():
     assert (error.kind, error.text) == ("ValueError", "joint Tail\nis unknown")
     assert "/x.py(3): fade" in error.trace
     assert str(error) == "ALLeds.fade failed: joint Tail\nis unknown"
+    error = error_of("ALLeds::fade\n\tno light Tail")
+    assert (error.text, str(error)) == ("ALLeds::fade\n\tno light Tail", "ALLeds.fade failed: no light Tail")
+    assert str(error_of("ALLeds::fadeRGB no light")) == "ALLeds.fade failed: ALLeds::fadeRGB no light"
 
 
 def test_an_argument_that_libqi_refuses_is_named():

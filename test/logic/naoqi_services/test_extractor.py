@@ -9,7 +9,7 @@ import pytest
 
 from nao_sim_bridge.services import live_keys
 from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.services.extractor import Extractor, Subscription
+from nao_sim_bridge.services.extractor import MOST, Extractor, Subscription
 from nao_sim_bridge.services.led_names import LedNames
 from nao_sim_bridge.services.memory_store import EVENT, MemoryStore
 from nao_sim_bridge.services.time_zone import TimeZone
@@ -39,6 +39,23 @@ def done():
 def extractor(memory, done):
     start, stop = (lambda word=word: done.append(word) for word in ("start", "stop"))
     return Extractor("ALTest", memory, start, stop, ["Heard", "Seen"], ["Key"], Subscription(170, 0.25), done.append)
+
+
+def test_who_has_gone_is_subscribed_no_longer(extractor, done):
+    extractor.subscribe("gone")
+    extractor.client_gone("nobody")
+    assert "stop" not in done
+    extractor.client_gone("gone")
+    assert done[-1] == "stop" and extractor.getSubscribersInfo() == []
+
+
+def test_of_too_many_names_the_one_that_came_first_is_taken_off(extractor, caplog):
+    for number in range(MOST + 1):
+        extractor.subscribe(f"client {number}")
+    extractor.subscribe("client 1")  # which is subscribed already
+    names = [name for name, *_ in extractor.getSubscribersInfo()]
+    assert names == [f"client {number}" for number in range(1, MOST + 1)]
+    assert "ALTest: more than 100 are subscribed, 'client 0' is taken off" in caplog.text
 
 
 def test_it_works_from_the_first_subscriber_to_the_last_and_is_told_of_every_change(extractor, done):

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
+from nao_sim_bridge.services import memory_room
 from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.services.memory_store import KEY_ADDED, KEY_REMOVED, MemoryStore
+from nao_sim_bridge.services.memory import ALMemory
+from nao_sim_bridge.services.memory_store import KEY_ADDED, KEY_REMOVED, MOST_WAITING, SIGNAL, MemoryStore
 from nao_sim_bridge.sim.errors import UnknownName
+from nao_sim_bridge.sim.sizes import MemorySizes
 
 
 class Clock:
@@ -34,6 +39,87 @@ def heard():
 
 def subscribe(store, heard, name="Happened", module="Listener", message="", kind="Event"):
     store.subscribe(name, module, lambda *call: heard.append((module, *call)), message, kind)
+
+
+def kilobytes(count):
+    return b"x" * 1000 * count
+
+
+@pytest.fixture
+def small(clock, monkeypatch):
+    monkeypatch.setattr(memory_room, "load_sizes", lambda: SimpleNamespace(memory=MemorySizes(100_000, 20)))
+    return MemoryStore(clock)
+
+
+def test_clients_fill_the_memory_up_to_a_bound_and_what_they_remove_makes_room(small):
+    small.insert("A", kilobytes(50), by_client=True)
+    for _ in range(40):
+        small.raise_event("B", [kilobytes(10), 1.5], by_client=True)
+    assert 3 <= len(small.history("B")) < 5, "the history of the key goes first"
+    with pytest.raises(NaoqiError, match="this is .* more: 100000 at most"):
+        small.insert("C", kilobytes(60), by_client=True)
+    assert small.names() == ["A", "B"] and small.get("A") == kilobytes(50) and len(small.history("B")) >= 3
+    for key in ("A", "B"):
+        small.remove(key)
+    for _ in range(100):  # none of it is left behind
+        small.insert("C", kilobytes(60), by_client=True)
+        small.raise_event("D", kilobytes(30), by_client=True)
+        small.remove("D")
+    assert len(small.history("C")) == 1
+
+
+def test_what_the_robot_writes_is_free_and_takes_the_place_of_what_clients_wrote(small):
+    small.raise_event("E", kilobytes(90), by_client=True)
+    for _ in range(32):
+        small.raise_event("E", kilobytes(90))
+    small.insert("F", kilobytes(90), by_client=True)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda store, n: store.insert(f"key {n}", n, by_client=True),
+        lambda store, n: store.declare_event(f"event {n}", by_client=True),
+        lambda store, n: store.subscribe("Happened", f"module {n}", print, by_client=True),
+        lambda store, n: store.hold(f"signal {n}"),
+    ],
+    ids=range(4),
+)
+def test_keys_and_subscriptions_of_clients_have_a_bound(small, make):
+    small.declare_event("Happened")
+    for n in range(20):
+        make(small, n)
+        make(small, n)
+    with pytest.raises(NaoqiError, match="clients have 20 keys and subscriptions: 20 at most"):
+        make(small, 20)
+    small.declare_event("of the robot")
+    for n in range(20):
+        small.forget_module(f"module {n}")
+    for name in small.names():
+        small.remove(name)
+    small.release("signal 0", SIGNAL)
+    make(small, 21)
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        lambda memory, n: memory.insertData(f"key {n}", kilobytes(60)),
+        lambda memory, n: memory.insertListData([[f"key {n}", kilobytes(60)]]),
+        lambda memory, n: memory.raiseEvent(f"key {n}", kilobytes(60)),
+        lambda memory, n: memory.raiseMicroEvent(f"key {n}", kilobytes(60)),
+        lambda memory, n: memory.declareEvent(f"key {n}", "x" * 60_000),
+        lambda memory, n: memory.setDescription("old", "x" * 60_000 * (n + 1)),
+        lambda memory, n: memory.subscribeToEvent("old", f"module {n}", "x" * 60_000, "method"),
+    ],
+    ids=range(7),
+)
+def test_whatever_clients_write_counts(small, write):
+    small.declare_event("old")
+    memory = ALMemory(small, None)
+    write(memory, 0)
+    with pytest.raises(NaoqiError, match="100000 at most"):
+        write(memory, 1)
 
 
 def test_data_is_read_in_the_order_asked_for_with_its_time_and_removed_with_its_description(store, clock):
@@ -132,3 +218,26 @@ def test_who_wants_to_know_is_told_of_keys_that_come_and_go_and_of_subscribers(s
     store.insert("key", 2)
     store.remove("key")
     assert [entry[1:3] for entry in heard] == [(KEY_ADDED, "key"), (KEY_REMOVED, "key")]
+
+
+def test_who_waits_for_a_change_gets_the_next_value_and_who_gives_up_leaves_nothing(store):
+    store.insert("Waited", 1)
+    kept, left = store.next_change("Waited"), store.next_change("Waited")
+    left.request_kill()
+    store.insert("Waited", 2)
+    assert kept.result(0) == 2 and left.killed
+    assert store._changes == {}
+
+
+def test_a_change_of_what_is_only_ever_read_is_refused(store):
+    store.add_live({"Sensor": lambda: 1.0})
+    with pytest.raises(NaoqiError, match="Sensor is measured when it is read and never written; read it with getData"):
+        store.next_change("Sensor")
+
+
+def test_of_too_many_that_wait_for_changes_the_oldest_is_given_up(store):
+    store.insert("Waited", 1)
+    waiting = [store.next_change("Waited") for _ in range(MOST_WAITING + 1)]
+    assert [change.finished for change in waiting] == [True] + [False] * MOST_WAITING
+    with pytest.raises(NaoqiError, match=f"more than {MOST_WAITING} calls wait for changes"):
+        waiting[0].result(0)

@@ -6,9 +6,14 @@ import struct
 
 import pytest
 
+from nao_sim_bridge.services.dcm_arguments import timed_points
 from nao_sim_bridge.services.errors import NaoqiError
 from nao_sim_bridge.services.motion.arguments import joint_indices, joint_names, key_frames
+from nao_sim_bridge.services.motion.bezier_arguments import bezier_key_points
+from nao_sim_bridge.services.motion.cartesian_arguments import paths_of, pose_of_position
+from nao_sim_bridge.services.motion.footsteps import _placed as placed
 from nao_sim_bridge.services.motion.move_config import gait_list, gait_of, gait_of_feet
+from nao_sim_bridge.services.motion.walking import _destination as destination
 from nao_sim_bridge.sim.errors import BadValue, UnknownName
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.walk.gait import FeetGait
@@ -72,6 +77,30 @@ def test_key_frames_come_in_many_shapes():
 def test_impossible_key_frames_name_what_is_allowed(count, values, times, message):
     with pytest.raises(BadValue, match=message):
         key_frames(count, values, times, "angleLists")
+
+
+HALF = [0.0] * 50_001
+POSES = [[0.0] * 6] * 10_001
+
+
+@pytest.mark.parametrize(
+    "call, field, told",
+    [
+        (lambda: key_frames(2, [HALF, HALF], 1.0, "angleLists"), "angleLists", "100002 key frames"),
+        (lambda: key_frames(1, HALF * 2, 1.0, "angleLists"), "angleLists", "100002 key frames"),
+        (lambda: bezier_key_points(2, [HALF, HALF], [HALF, HALF]), "controlPoints", "100002 key frames"),
+        (lambda: paths_of([POSES, POSES], 1.0, 2, pose_of_position), "paths", "20002 poses"),
+        (lambda: paths_of(POSES * 2, 1.0, 1, pose_of_position), "paths", "20002 poses"),
+        (lambda: placed(["LLeg"] * 1001, [[0.0, 0.1, 0.0]] * 1001), "footSteps", "1001 steps"),
+        (lambda: destination([[[0.1, 0.0, 0.0]] * 10_001]), "controlPoint", "10001 places"),
+        (lambda: timed_points([[0.0, 0]] * 10_001, "commands[2]"), r"commands\[2\]", "10001 commands"),
+    ],
+    ids=range(8),
+)
+def test_lists_that_take_too_long_in_a_tick_are_refused_with_what_is_allowed(call, field, told):
+    most = told.replace("2 ", "0 ").replace("1 ", "0 ")
+    with pytest.raises(BadValue, match=f"{field} is '{told}', allowed is {most} at most"):
+        call()
 
 
 def test_the_lists_name_all_that_can_be_set_and_can_be_asked_for_also_in_single_precision():

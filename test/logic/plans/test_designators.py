@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 
 import pytest
+from diagnostic_msgs.msg import KeyValue
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.places import Place
+from nao_library_actions.msg import PerformDesignatorGoal
+from nao_library_modules.base.places import Place
 from nao_library_modules.process_modules import action_rules  # noqa: F401  the rules of the library
 from nao_library_modules.process_modules.action_rules.values import a_place, a_point, a_position
+from nao_library_modules.process_modules.designator_server import read
 from nao_library_modules.process_modules.designators.locations import (
     Candidate,
     Verdict,
@@ -18,20 +21,16 @@ from nao_library_modules.process_modules.designators.locations import (
     register_location_validation_function,
 )
 from nao_library_modules.process_modules.designators.objects import object_pose
-from nao_library_modules.process_modules.designators.patterns import (
-    Mismatch,
-    number,
-    numbers,
-    one_of,
-)
+from nao_library_modules.process_modules.designators.patterns import Mismatch, number, numbers, one_of
 from nao_library_modules.process_modules.designators.rules import Rules
-from nao_library_modules.process_modules.failures import (
+from nao_library_modules.process_modules.language.failures import (
     AmbiguousPerception,
     DesignatorError,
     PerceptionObjectNotFound,
 )
-from nao_library_modules.process_modules.settings import numbers_of_nao
+from nao_library_modules.process_modules.language.settings import numbers_of_nao
 
+HUGE = 10**400
 RADIUS = numbers_of_nao().robot_radius
 
 
@@ -96,6 +95,45 @@ def test_what_has_no_keys_is_an_error(given):
         p.designator(given)
     with pytest.raises(p.PlanError, match="of kind 'thing': action, motion, location, object"):
         p.a("thing")
+
+
+BOMB = "{a: &a [0,0,0,0,0,0,0,0,0,0], b: &b [*a,*a,*a,*a,*a,*a,*a,*a,*a,*a], c: [*b,*b,*b,*b,*b,*b,*b,*b,*b,*b]}"
+MERGES = "{a: &a {k: 1}, b: &b {<<: [*a,*a,*a,*a,*a,*a,*a,*a,*a,*a]}, c: &c {<<: [%s]}, d: {<<: [%s]}}" % (
+    ",".join(["*b"] * 10),
+    ",".join(["*c"] * 10),
+)
+
+
+@pytest.mark.parametrize(
+    "text, told",
+    [
+        (BOMB, "more than 1000 values"),
+        (MERGES, "more than 1000 values"),
+        ("{type: looking, at: &a [*a]}", "more than 40 levels deep"),
+        ("{type: " + "[" * 50 + "]" * 50 + "}", "more than 40 levels deep"),
+        ("[" * 50_000, "more than 100 brackets"),
+        ("(type looking at " + "(" * 50_000 + ")" * 49_000, "too many levels"),
+        ("(type looking at (" + "1 " * 2000 + "))", "too many values"),
+        ("{type: looking, text: " + "a" * 100_000 + "}", "has 100023 characters: at most 100000"),
+        ("{type: looking, day: 2024-99-99}", "is no YAML"),
+        ("{type: looking, speed: 1" + "0" * 400 + "}", "has 1329 bits: at most 64"),
+        ("{type: looking, speed: 1" + "0" * 5000 + "}", "designator: "),
+        ("(type looking speed 1" + "0" * 400 + ")", "has 401 characters: 40 at most"),
+    ],
+    ids=range(12),
+)
+def test_text_that_stands_for_too_much_is_an_error(text, told):
+    with pytest.raises(p.PlanError, match=told) as caught:
+        p.designator(text)
+    assert len(str(caught.value)) < 1000
+
+
+def test_keys_and_values_of_a_goal_may_stand_for_no_more_than_one_text():
+    many = "[" + "1," * 99 + "1]"
+    with pytest.raises(p.PlanError, match="more than 1000 values"):
+        read(PerformDesignatorGoal(pairs=[KeyValue(f"key{i}", many) for i in range(12)]))
+    with pytest.raises(p.PlanError, match="at most 100000 are read"):
+        read(PerformDesignatorGoal(pairs=[KeyValue(f"key{i}", "a" * 10_000) for i in range(11)]))
 
 
 @pytest.fixture
@@ -163,8 +201,9 @@ def test_rules_go_by_priority_then_by_what_they_say_then_by_age():
 @pytest.mark.parametrize(
     "pattern, good, bad",
     [
-        (number(0.0, 1.0, "rad"), 0.5, [True, -0.1, 1.1, math.nan]), (numbers(2), (1, 2), [(1, 2, 3), 4]),
-        (a_point(), [1, 2, 3], ["near", [1, 2], [1, 2, math.nan], [1, None, 3], [1, 2, 3, "odom", 5], 7]),
+        (number(0.0, 1.0, "rad"), 0.5, [True, -0.1, 1.1, math.nan, HUGE]),
+        (numbers(2), (1, 2), [(1, 2, 3), 4, (1, HUGE)]),
+        (a_point(), [1, 2, 3], ["near", [1, 2], [1, 2, math.nan], [1, None, 3], [1, 2, HUGE], [1, 2, 3, "odom", 5], 7]),
         (a_position(), [2, 3], [["a", "b"], [1, math.inf], [1], "door", [1, 2, "c"]]),
         (a_place(), [1, 2], [["a", 2], [1, math.nan], [1, 2, 3, 4], {"x": "a", "y": 2}, [1, "odom"], {"x": 1}, "door"]),
     ],

@@ -6,10 +6,10 @@ import pytest
 from plan_tools import fails, forever
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.places import Place
-from nao_library_modules.process_modules import action_rules, perception  # noqa: F401  the rules of the library
+from nao_library_modules.base.places import Place
+from nao_library_modules.process_modules.core import perception  # noqa: F401  the rules of the library
 from nao_library_modules.process_modules.designators.locations import Candidate, register_location_generator
-from nao_library_modules.process_modules.failures import (
+from nao_library_modules.process_modules.language.failures import (
     GoalNotAchieved,
     NavigationGoalNotReached,
     NavigationHighLevelFailure,

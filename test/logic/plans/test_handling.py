@@ -6,7 +6,7 @@ import pytest
 from plan_tools import fails, forever
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.process_modules.failures import (
+from nao_library_modules.process_modules.language.failures import (
     LowLevelFailure,
     NavigationGoalNotReached,
     NavigationHighLevelFailure,
@@ -107,7 +107,7 @@ def test_a_counter_can_be_reset_and_an_unknown_one_is_an_error():
         p.do_retry("walk")
 
     assert handle(Stumbling(3), {p.PlanFailure: again}, walk=1) == "there"
-    fails(p.PlanError, "no retry counter 'wakl': there are walk", handled(Stumbling(1), counted("wakl"), walk=1))
+    fails(p.PlanError, "no retry counter 'wakl': did you mean 'walk'", handled(Stumbling(1), counted("wakl"), walk=1))
 
 
 def limited(limit, body):
@@ -150,4 +150,8 @@ def test_policies_have_names_and_several_watch_one_body(stays):
     both = lambda: p.with_named_policies([("timeout", [0.01]), ("timeout", [1000.0])], forever)  # noqa: E731
     fails(PlanTimedOut, "policy 'at most 0.01 s'", both)
     assert p.top_level(lambda: p.with_policies([p.timeout_policy(1000.0)] * 2, lambda: "there")) == "there"
-    fails(PolicyNotFound, "no policy 'untold': there are timeout, until told", lambda: p.named_policy("untold"))
+    fails(
+        PolicyNotFound,
+        "no policy 'untold': did you mean 'until told'.*; there are timeout, until told",
+        lambda: p.named_policy("untold"),
+    )

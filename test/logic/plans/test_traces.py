@@ -14,14 +14,14 @@ from fake_goals import FakeActionClient, FakeGoal
 from plan_tools import fails
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.goal_watch import GoalWatch
-from nao_library_modules.process_modules.action_client import PlanActionClient
-from nao_library_modules.process_modules.chains import Chain
-from nao_library_modules.process_modules.failures import ActionlibActionTimedOut
-from nao_library_modules.process_modules.projection import compare
-from nao_library_modules.process_modules.settings import load_settings
-from nao_library_modules.process_modules.space import head_angles
-from nao_library_modules.process_modules.trace_picture import COLORS, draw, main
+from nao_library_modules.process_modules.core.projection import compare
+from nao_library_modules.process_modules.language.failures import ActionlibActionTimedOut
+from nao_library_modules.process_modules.language.settings import load_settings
+from nao_library_modules.process_modules.language.space import head_angles
+from nao_library_modules.process_modules.language.trace_picture import COLORS, draw, main
+from nao_library_modules.process_modules.robot.action_client import PlanActionClient
+from nao_library_modules.process_modules.robot.chains import Chain
+from nao_library_modules.ros.goal_watch import GoalWatch
 from nao_sim_bridge.paths import urdf_file
 from naoqi.errors import NaoError
 
@@ -76,7 +76,7 @@ def test_the_camera_looks_at_the_point(point):
 def test_numbers_that_are_wrong_are_told(tmp_path):
     file = tmp_path / "numbers.yaml"
     file.write_text("gripper: {open: 1.0}\nhands: 3")
-    with pytest.raises(NaoError, match="numbers.yaml: .*unknown hands; missing gripper_t"):
+    with pytest.raises(NaoError, match="numbers.yaml: .*unknown 'hands': did you mean 'head'.; missing gripper_t"):
         load_settings(file)
 
 

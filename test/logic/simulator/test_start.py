@@ -4,25 +4,51 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections import namedtuple
 from pathlib import Path
+from types import SimpleNamespace
+from xml.etree import ElementTree
 
 import pytest
 import rospy
 from std_srvs.srv import SetBool, SetBoolRequest
 
+from nao_library_msgs.srv import TakePictureRequest
 from nao_sim_bridge.cli import parse, server_options
-from nao_sim_bridge.record_dir import ClientFiles, NoSuchFile, OutsideRecordDir, UnusableName, inside, unused
+from nao_sim_bridge.record_dir import (
+    ClientFiles,
+    NoSuchFile,
+    OutsideRecordDir,
+    UnusableName,
+    inside,
+    unused,
+    world_of_client,
+)
+from nao_sim_bridge.ros_robot import RosRobot
 from nao_sim_bridge.ros_success import success_service
 from nao_sim_bridge.server import ServerOptions
 from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.places import MOST_ROBOTS
 from nao_sim_bridge.sim.simulation import Scene
 from nao_sim_bridge.sim.tasks import Task
 from nao_sim_bridge.task_success import success_of
 
+LAUNCH = Path(__file__).parents[3] / "launch" / "launch"
+
 
 def options(*arguments):
     return server_options(parse("nao_sim", arguments))
+
+
+def test_the_launch_file_starts_the_nodes_of_as_many_robots_as_there_can_be():
+    (include,) = (
+        each
+        for each in ElementTree.parse(LAUNCH / "nao_sim.launch").iter("include")
+        if "nao_robots" in each.get("file")
+    )
+    (text,) = re.fullmatch(r"\$\(eval 1 < int\(arg\('robots'\)\) <= (\d+)\)", include.get("if")).groups()
+    assert int(text) == MOST_ROBOTS
 
 
 def test_the_defaults_are_a_robot_on_the_loopback_in_real_time():
@@ -30,6 +56,7 @@ def test_the_defaults_are_a_robot_on_the_loopback_in_real_time():
     assert default == ServerOptions(Scene("empty", "V6", "Crouch", 0), "127.0.0.1", 9559, 1.0, False, False)
     assert default.record_dir == Path("~/.ros/nao_recordings") and default.renderer == "auto"
     assert (default.sound_file, default.sound_card, default.robots, default.places) == ("", False, 1, ())
+    assert not default.allow_private_streams
 
 
 def test_every_option_reaches_the_server():
@@ -39,8 +66,9 @@ def test_every_option_reaches_the_server():
     far_from_ideal = dict(friction=0.4, payload=0.5, sensor_noise=1.0, sensor_delay=0.03)
     expected = Scene("my.yaml", "V5", "Stand", 7, charger=True, **far_from_ideal)
     assert chosen == ServerOptions(expected, "0.0.0.0", 0, 2.5, True, True, Path("my/files"))
-    chosen = options("--sound-file", "all.wav", "--sound-card", "--renderer", "builtin")
+    chosen = options("--sound-file", "all.wav", "--sound-card", "--renderer", "builtin", "--allow-private-streams")
     assert (chosen.sound_file, chosen.sound_card, chosen.renderer) == ("all.wav", True, "builtin")
+    assert chosen.allow_private_streams
     chosen = options("--robots", "3", "--places=-1,0,0; 1,0,180; 0,1,-90")
     assert chosen.robots == 3 and [place.x for place in chosen.places] == [-1.0, 1.0, 0.0]
     assert options("--places", "").places == () and options("--friction", "world").scene == options().scene
@@ -127,6 +155,14 @@ def test_only_files_of_the_recordings_are_written_to(files, tmp_path):
         assert (tmp_path / name).exists()
 
 
+def test_a_picture_without_a_name_replaces_none(files):
+    robot = SimpleNamespace(_server=SimpleNamespace(files=files, picture=lambda view, *size: view.encode()))
+    take = lambda **fields: Path(RosRobot.on_picture(robot, TakePictureRequest(**fields)).path)  # noqa: E731
+    assert [take(view=view).name for view in ("front", "back")] == ["picture.png", "picture-2.png"]
+    assert (files.folder / "picture.png").read_bytes() == b"front"
+    assert take(view="side", file="picture.png").read_bytes() == b"side"
+
+
 def test_what_modules_have_made_can_be_forgotten_and_nothing_else(files, tmp_path):
     for name in ("made/a.wav", "day/two.wav", "both.wav"):
         files.to_write(name).touch()
@@ -164,3 +200,23 @@ def test_the_answer_of_a_service_is_filled_by_name(monkeypatch):
     offered, handle = services["~go"]
     assert offered is SetBool and handle(SetBoolRequest(True)) == kind(success=True, message="")
     assert handle(SetBoolRequest(False)) == kind(success=False, message=str(wrong))
+
+
+def test_a_client_has_worlds_by_name_from_its_folder_and_from_where_the_first_one_is(tmp_path):
+    mine, first = tmp_path / "mine" / "a.yaml", tmp_path / "worlds" / "first.yaml"
+    beside, elsewhere = first.with_name("second.yml"), tmp_path / "secret.yaml"
+    for path in (mine, first, beside, elsewhere):
+        path.parent.mkdir(exist_ok=True)
+        path.touch()
+    (mine.parent / "link.yaml").symlink_to(elsewhere)
+    files = ClientFiles(mine.parent)
+    for name, world in (
+        ("", ""), ("lab", "lab"), (str(first), str(first)), ("a.yaml", str(mine)), (str(mine), str(mine)),
+        ("second.yml", str(beside)), (str(beside), str(beside)),
+    ):  # fmt: skip
+        assert world_of_client(name, files, str(first)) == world
+    for name in (str(elsewhere), "../secret.yaml", "link.yaml", "/etc/passwd.yaml", "a\0.yaml", "/a\0.yaml"):
+        with pytest.raises(NoSuchFile, match="no world file .* in .*mine or .*worlds"):
+            world_of_client(name, files, str(first))
+    with pytest.raises(NoSuchFile):
+        world_of_client(str(beside), files, "lab")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from camera_topics import CAMERA, OUT, HandClock, Topics, numbered_image
 
-from nao_library_modules.vision_files import VisionFiles
-from nao_library_modules.vision_recorder import Recording, VideoWish
-from nao_library_modules.vision_stream import Stream
+from nao_library_modules.vision.capture.files import VisionFiles
+from nao_library_modules.vision.capture.recorder import Recording, VideoWish
+from nao_library_modules.vision.capture.stream import Stream
 
 
 @pytest.fixture

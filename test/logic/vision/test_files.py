@@ -6,8 +6,9 @@ import re
 
 import pytest
 
-from nao_library_modules.errors import BadGoal
-from nao_library_modules.vision_files import FileTrouble, VisionFiles
+from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.base.whole_file import FileTrouble
+from nao_library_modules.vision.capture.files import VisionFiles
 
 KINDS = ("png", "jpg", "tiff")
 
@@ -60,9 +61,10 @@ def test_what_is_there_stays_unless_it_may_be_replaced(files):
     assert path.read_bytes() == b"three"
     assert [files.write(path, b"", numbered=True).name for _ in range(2)] == ["a-2.png", "a-3.png"]
     video = files.path("a", "mp4")
-    file, _ = files.create(video)
+    file = files.create(video)
     refused("a recording is writing", files.require_free, video, True)
     refused("is there already", files.create, video, True)
+    assert files.create(video, numbered=True).path.name == "a-2.mp4"
     file.close()
     files.done(video)
     files.require_free(video, True)

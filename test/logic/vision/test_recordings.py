@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import errno
+import re
 import threading
 
 import pytest
 from camera_topics import CAMERA, numbered_image, read_video, wait_for
+from disks import room
 
-from nao_library_modules import vision_recorder
+from nao_library_modules.base.errors import BadGoal
 
 LIMIT = 15.0
 
@@ -58,25 +59,30 @@ def test_each_start_makes_a_file(recording, send, files):
 
 def test_without_a_frame_there_is_no_file(recording, files):
     one = recording()
-    assert (files.folder / "walk.mp4").exists()  # nobody else takes the name meanwhile
+    with pytest.raises(BadGoal, match="a recording is writing .*walk.mp4"):
+        files.require_free(files.folder / "walk.mp4", True)
     one.stop()
     assert list(files.folder.iterdir()) == []
     assert (one.video.path, one.video.frames) == ("", 0)
     assert one.video.error == f"no frame came from {CAMERA}: there is no file"
 
 
-def test_a_full_disk_ends_a_recording_and_nothing_else(recording, stream, send, monkeypatch):
-    def full(*_):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    other, one = stream(), recording()
-    send(5)
-    wait_for(lambda: one.report().frames == 5)
-    monkeypatch.setattr(vision_recorder.VideoFile, "write", full)
-    send(4)
-    wait_for(lambda: one.report().state == "failed")
+def test_a_full_disk_ends_a_recording_and_nothing_else_and_with_room_there_are_others(recording, stream, send, files):
+    (files.folder / "walk.mp4").write_bytes(b"old")
+    other, one = stream(), recording(overwrite=True)
+    with room(3000):
+        for count in range(10, 80, 10):
+            send(10)
+            wait_for(lambda: other.report().frames == count and one.report().frames in (count, 61))  # noqa: B023
+        wait_for(lambda: one.report().state == "failed")
     other.stop()
     one.stop()
-    assert (other.report().frames, one.report().state, one.video.frames) == (9, "failed", 5)
-    assert one.video.error.endswith("walk.mp4 cannot be written: the disk is full")
-    assert read_video(one.video.path) == list(range(5))
+    assert (other.report().frames, one.video.frames) == (70, 30)
+    assert re.search(r"walk.part1.mp4 cannot be written: File too large, \d+\.\d MB free in", one.video.error)
+    assert one.video.path == str(files.folder / "walk.part1.mp4")
+    assert read_video(one.video.path) == list(range(30))
+    assert (files.folder / "walk.mp4").read_bytes() == b"old"
+    again = recording(overwrite=True)
+    send(3)
+    again.stop()
+    assert (again.video.error, read_video(files.folder / "walk.mp4")) == ("", [70, 71, 72])

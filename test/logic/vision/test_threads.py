@@ -7,10 +7,10 @@ import threading
 import pytest
 from camera_topics import CAMERA, OUT, numbers_of, wait_for
 
-from nao_library_modules import vision_queue
-from nao_library_modules.errors import BadGoal
-from nao_library_modules.vision_stream import Stream
-from nao_library_modules.vision_threads import MOST_THREADS, VisionThreads
+from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.vision.capture import queue as vision_queue
+from nao_library_modules.vision.capture.jobs import MOST_THREADS, VisionThreads
+from nao_library_modules.vision.capture.stream import Stream
 
 FRAME = 64 * 48 * 3
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from camera_topics import number_of, numbered
 
-from nao_library_modules.vision_video import VideoFile, codec_name, known_codecs
+from nao_library_modules.base.whole_file import WholeFile
+from nao_library_modules.vision.capture.video import VideoFile, codec_name, known_codecs
 
 UNEVEN = [100.0, 100.033, 100.066, 100.5, 100.533, 102.0, 102.1, 102.2]
 EVERY = [(kind, codec) for kind in ("mp4", "avi") for codec in known_codecs(kind)]
@@ -23,7 +24,7 @@ def path(tmp_path):
 
 
 def write(path, stamps, kind="mp4", codec="h264", size=(64, 48)):
-    video = VideoFile(path.open("xb"), kind, codec, *size)
+    video = VideoFile(WholeFile(path), kind, codec, *size)
     for number, stamp in enumerate(stamps):
         video.write(numbered(number) if size == (64, 48) else grey(9, size), stamp)
     video.close()
@@ -55,7 +56,7 @@ def test_frames_that_come_twice_are_left_out_and_counted(path):
 
 
 def test_a_camera_that_changes_its_size_is_made_to_fit(path):
-    video = VideoFile(path.open("xb"), "mp4", "h264", 64, 48)
+    video = VideoFile(WholeFile(path), "mp4", "h264", 64, 48)
     for number, size in enumerate([(64, 48), (128, 96), (32, 24), (64, 64)]):
         video.write(grey(50 + 50 * number, size), number / 10.0)
     video.close()

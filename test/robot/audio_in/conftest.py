@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 from nao_library_actions.msg import NaoAudioInGoal
-from nao_library_modules.audio_in import NaoAudioInput
+from nao_library_modules.audio_in.server import NaoAudioInput
 
 EXTRACTORS = ("ALSpeechRecognition", "ALSoundDetection", "ALSoundLocalization")
 
 
 @pytest.fixture
-def ears(goals_to):
-    return goals_to(NaoAudioInput, NaoAudioInGoal)
+def ears(goals_to, robot):
+    return goals_to(NaoAudioInput, NaoAudioInGoal, robot_home=str(robot.server.files.folder))
 
 
 @pytest.fixture

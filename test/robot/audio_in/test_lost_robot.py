@@ -12,7 +12,7 @@ from simulator import PATIENCE, Simulator
 
 import naoqi
 from nao_library_actions.msg import NaoAudioInGoal
-from nao_library_modules.audio_in import NaoAudioInput
+from nao_library_modules.audio_in.server import NaoAudioInput
 from nao_library_msgs.msg import AudioInFunction as In
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene

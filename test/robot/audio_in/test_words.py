@@ -12,7 +12,8 @@ from spoken_words import RATE as SPEECH_RATE
 from spoken_words import spoken
 
 from nao_library_actions.msg import NaoAudioInGoal
-from nao_library_modules.audio_in import NaoAudioInput
+from nao_library_modules.audio_in.server import NaoAudioInput
+from nao_library_modules.base.kept import Kept
 from nao_sim_bridge.sim.sound.samples import Sound
 
 WORDS, STATUS = "WordRecognized", "ALSpeechRecognition/Status"
@@ -171,6 +172,35 @@ def test_the_end_of_the_server_ends_what_goals_have_left_and_so_does_the_next_of
     robot.ALSpeechRecognition.unsubscribe("another program")
 
 
+def test_what_goals_left_going_goes_on_in_the_next_server_when_theirs_died(robot, goals_to, restored, tmp_path):
+    def server():
+        return goals_to(
+            NaoAudioInput,
+            NaoAudioInGoal,
+            robot_home=str(robot.server.files.folder),
+            kept=Kept(tmp_path / "kept", "run"),
+        )
+
+    died = server()
+    died.succeed(
+        f("startRecording", str_param="left.wav", rate=48000),
+        f("startRecognition", vocabulary=YES_NO),
+        f("enableEnergyComputation"),
+        f("pause"),
+    )
+    robot.advance(0.5)
+    ears = server()
+    assert "the recognition is paused: resume comes first" in ears.refused(LISTEN)
+    robot.advance(1.0)
+    (file,) = ears.succeed(f("stopRecording"), f("resume"), f("disableEnergyComputation")).files
+    assert (file.path, file.rate) == ("left-2.wav", 48000) and file.duration == pytest.approx(1.0, abs=0.1)
+    robot.advance(says(robot, "yes") + 1.5)
+    robot.proxy("ALMemory").ping()
+    assert [value[0] for name, value in ears.edge.events if name == WORDS] == ["yes"]
+    ears.succeed(f("stopRecognition"))
+    restored()
+
+
 NAN, INF = math.nan, math.inf
 FILE, YES = {"str_param": "a.wav", "duration": 1.0}, {"vocabulary": YES_NO}
 TIMEOUT = ("timeout", [NAN, -1.0, INF, 1e7], "is not allowed: up to 3600 s")
@@ -180,12 +210,12 @@ PHRASES = [
     ("vocabulary", [["yes|no"]], "'|' in 'yes|no' cannot be said"),
     ("vocabulary", [["..."]], "nothing to say in '...'"),
     ("vocabulary", [["word " * 50]], "is too long"),
-    ("vocabulary", [["word"] * 1001], "1001 words and phrases are too many"),
+    ("vocabulary", [["word"] * 1001], "1001 are too many: at most 1000"),
 ]
 # Function, its fields, and for each of some fields: values that are refused, and the words of the text.
 REFUSED = [
     ("lisen", YES, [("timeout", [0.0], "did you mean 'listen'")]),
-    ("record", FILE, [("duration", [0.0, NAN, -1.0, 1e9], "is not allowed: above 0 to 3600 s")]),
+    ("record", FILE, [("duration", [0.0, NAN, -1.0, 1e9], "is not allowed: 0.001..3600 s")]),
     ("record", FILE, [("str_param", [""], "field str_param: it is empty"), ("str_param", ["a.mp3"], "ends in .wav, ")]),
     ("record", FILE, [("str_param", ["../a.wav", "/etc/a.wav"], "leads out of the folder")]),
     (
@@ -205,7 +235,11 @@ REFUSED = [
     ("getEnergy", {}, [("duration", [-1.0, NAN, 4000.0], "is not allowed: 0..3600 s")]),
     ("setSensitivity", {}, [("sensitivity", [0.0, 2.0, -0.1, NAN], "is not allowed: above 0 to 1")]),
     ("setSensitivity", {"sensitivity": 0.5}, [("str_param", ["smell"], "one of speech, detection, localization")]),
-    ("setParameter", {"str_param": "Sensitivity"}, [("values", [[], [1.0, 2.0], [NAN]], "is not allowed: one number")]),
+    (
+        "setParameter",
+        {"str_param": "Sensitivity"},
+        [("values", [[], [1.0, 2.0]], "is not allowed: one number"), ("values", [[NAN]], "nan is not allowed")],
+    ),
     ("getParameter", {}, [("str_param", ["", " "], "the name of a parameter")]),
     ("setFileAsInput", {}, [("str_param", ["a.txt"], "not a file of a known kind")]),
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import threading
+from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import numpy as np
@@ -11,7 +12,9 @@ import pytest
 import soundfile
 from sounds import RATE, frequency, loudness, played, tone, until, write
 
-from nao_sim_bridge.services.audio import sound_files, web_stream
+from nao_sim_bridge.services.audio.sound_files import SoundFiles
+from nao_sim_bridge.services.audio.web_stream import WebStreams
+from nao_sim_bridge.sim.sizes import LoadedSizes
 
 FULL = 0.5 / np.sqrt(2.0)
 EDGE = 0.02
@@ -100,13 +103,19 @@ def test_what_is_refused_names_what_is_allowed(robot, refused, player, monkeypat
     (folder / "text.wav").write_text("this is no sound")
     write(robot, "silent.wav", np.zeros((0, 1)))
     write(robot, "long.wav", tone(440.0, 3.0))
-    monkeypatch.setattr(sound_files, "LONGEST", 2.0)
+    reader = robot.server.sound_reader
+    sizes = replace(reader.sizes.sound, client_s=2.0)
+    monkeypatch.setattr(reader, "sizes", replace(reader.sizes, sound=sizes))
     rows = [
         ("playFile", ("missing.wav",), "ALAudioPlayer::playFile .*no file 'missing.wav'"),
         ("playFile", ("/etc/passwd",), "is not inside .*; give a relative name"),
-        ("playFile", ("text.wav",), "'text.wav' cannot be read as sound .*; allowed are wav, ogg, flac and mp3"),
-        ("playFile", ("silent.wav",), "'silent.wav' cannot be played: .*holds no sound"),
-        ("playFile", ("long.wav",), "'long.wav' is 3 s long, allowed are 2 s"),
+        (
+            "playFile",
+            ("text.wav",),
+            "'text.wav' cannot be read: it begins with b'this', which is none of WAV .*, FLAC, Ogg .* and MP3",
+        ),
+        ("playFile", ("silent.wav",), "'silent.wav' holds no sound"),
+        ("playFile", ("long.wav",), "'long.wav' is 3 s long, at most 2 s are allowed"),
         ("playFile", ("tone.wav", 1.5, 0.0), "volume is 1.5, allowed is 0 to 1"),
         ("playFile", ("tone.wav", 1.0, 2.0), "pan is 2.0, allowed is -1 to 1"),
         ("playFileFromPosition", ("tone.wav", 1.5), "position is 1.5, allowed is 0 to 1"),
@@ -145,8 +154,7 @@ class Site(BaseHTTPRequestHandler):
 
 
 @pytest.fixture
-def site(monkeypatch):
-    monkeypatch.setenv("no_proxy", "127.0.0.1")
+def site():
     server = ThreadingHTTPServer(("127.0.0.1", 0), Site)
     threading.Thread(target=server.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{server.server_port}"
@@ -155,19 +163,43 @@ def site(monkeypatch):
 
 
 def test_streams_are_fetched_whatever_their_name_and_files_by_their_address(robot, player, begin, site, tmp_path):
+    streams = WebStreams(SoundFiles(robot.server.files, robot.server.sound_reader), allow_private=True)
     song = write(robot, "my song.wav", tone(440.0, 1.0))
     for address in (f"{site}/radio", f"file://{song.parent}/my%20song.wav", "file:///home/nao/my%20song.wav"):
-        sound = web_stream.fetch_sound(address, robot.server.files)
+        sound = streams.fetch(address)
         assert sound.rate == RATE and sound.duration == pytest.approx(1.0, abs=0.1)
         assert frequency(sound.samples[12000:36000, 0]) == 440.0
     for address, words in (
         (f"file://{tmp_path}/outside.wav", "is not inside .*; give a relative name"),
         (f"{site}/missing", "nothing can be fetched from .*/missing: .*404"),
-        (f"{site}/page.html", ".*/page.html' cannot be read as sound"),
+        (f"{site}/page.html", ".*/page.html' cannot be read"),
     ):
         with pytest.raises((RuntimeError, ValueError), match=words):
-            web_stream.fetch_sound(address, robot.server.files)
+            streams.fetch(address)
     begun = robot.now.time
     until(robot, begin("playWebStream", f"{site}/radio", 0.5, 0.0))
     assert loudness(played(robot, robot.now.time - 0.7, robot.now.time - 0.2)) == pytest.approx(0.5 * FULL, rel=0.02)
     assert robot.now.time - begun >= 0.95
+
+
+def test_what_is_loaded_has_a_budget_and_the_refusal_names_what_is_there_and_what_makes_room(
+    robot, player, monkeypatch
+):
+    reader = robot.server.sound_reader
+    monkeypatch.setattr(reader, "sizes", replace(reader.sizes, loaded_sounds=LoadedSizes(500_000)))
+    write(robot, "long.wav", tone(440.0, 2.0))
+    player.loadFile("tone.wav")
+    words = (
+        r"no room for 'long.wav' \(0.4 MB\): 0.5 MB are allowed for all sounds, 1 are loaded or play "
+        r"\('tone.wav' 0.2 MB\); unloadFile, unloadAllFiles, unloadSoundSet and stopAll make room"
+    )
+    for method in ("loadFile", "playFile"):
+        with pytest.raises(RuntimeError, match=words):
+            getattr(player, method)("long.wav")
+    with pytest.raises(RuntimeError, match="no room for 'sound set nao_library'"):
+        player.loadSoundSet("nao_library")
+    player.unloadAllFiles()
+    number = player.loadFile("long.wav")
+    with pytest.raises(RuntimeError, match="no room for 'long.wav'"):
+        player.setPitch(number, 1.5)  # kept beside the sound as it was
+    assert player.getLoadedFilesIds() == [str(number)]

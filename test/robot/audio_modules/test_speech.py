@@ -160,7 +160,7 @@ def test_a_voice_preference_is_a_file(robot, tts):
     tts.loadVoicePreference("mine")
     assert (tts.getVoice(), tts.getVolume(), tts.getParameter("speed")) == ("rms", 0.5, 120.0)
     path.write_text(json.dumps({"volume": 0.9, "parameters": {"sped": 120}}))
-    with pytest.raises(RuntimeError, match="parameter is 'sped', allowed is one of pitchShift"):
+    with pytest.raises(RuntimeError, match="parameter is 'sped': did you mean 'speed'\\? allowed is one of pitchShift"):
         tts.loadVoicePreference("mine")
     assert tts.getVolume() == 0.5
 
@@ -172,7 +172,7 @@ def test_errors_name_what_is_wrong_and_what_is_allowed(tts, refused):
         ("setLanguageDefaultVoice", ("French", "rms"), "Voice is 'rms', allowed is a voice of French: naofrf"),
         ("setParameter", ("speed", 20.0), "speed is 20.0, allowed is 50 to 400"),
         ("setParameter", ("pitchShift", 0.5), r"pitchShift is 0.5, allowed is 0 \(off\) or 1 to 4"),
-        ("getParameter", ("sped",), "parameter is 'sped', allowed is one of"),
+        ("getParameter", ("sped",), "parameter is 'sped': did you mean 'speed'\\? allowed is one of"),
         ("setVolume", (1.5,), "volume is 1.5, allowed is 0 to 1"),
         ("sayToFile", ("text", "one.mp3"), r"pFileName is 'one.mp3', allowed is a name that ends in .wav or .raw"),
         ("loadVoicePreference", ("none",), "no file 'ALTextToSpeech_Voice_none.json'"),

@@ -10,7 +10,7 @@ from genpy import Duration
 from goal_functions import audio_out as f
 from sounds import played, tone, write
 
-from nao_library_modules.memory_functions import MemoryFunctions
+from nao_library_modules.functions.memory_functions import MemoryFunctions
 from nao_library_msgs.msg import AudioOutFunction
 
 NAN = math.nan
@@ -55,6 +55,7 @@ EVERY = [
     (f("say", "Yes."), []),
     (f("animatedSay", "Yes."), []),
     (f("sayToFile", "Yes.", file_name="yes.wav"), None),
+    (f("sayToFile", "No.", file_name="yes.wav", overwrite=True), None),
     (f("sayToFileAndPlay", "Yes."), []),
     (f("playFile", BIP), []),
     (f("playFileFromPosition", BIP, position=0.05), []),
@@ -116,7 +117,7 @@ def test_every_function_is_carried_out_and_answers(robot, audio):
     (folder / "mine.json").write_text(
         json.dumps({"animations": {"mine/Lift": {"length": 2.0, "joints": {"LHand": lift}}}})
     )
-    known = set(audio.refused(f("?")).partition("known are ")[2].split(", "))
+    known = set(audio.module.function_table)
     assert {each.function for each, _ in EVERY} == known - set(MemoryFunctions().memory_functions()) - {"playWebStream"}
     result = audio.succeed(*(each for each, _ in EVERY))
     assert [done.function for done in result.results] == [each.function for each, _ in EVERY]
@@ -125,6 +126,14 @@ def test_every_function_is_carried_out_and_answers(robot, audio):
     answers = {done.function: list(done.values) for done in result.results}
     assert {"naoenu", "rms"} <= set(answers["getAvailableVoices"]) and "bip" in answers["getSoundSetFileNames"]
     assert float(answers["getFileLength"][0]) > 0.05 and SET in answers["getInstalledSoundSetsList"]
+
+
+def test_a_file_is_not_replaced_unasked(audio):
+    write = f("sayToFile", "Yes.", file_name="kept.wav")
+    for chain in ([write, write], [write]):  # the second of a chain, or of two goals
+        text = audio.refused(*chain)
+        assert f"function {len(chain)} (sayToFile): field file_name: kept.wav is there already" in text
+        assert text.endswith("another name, or overwrite")
 
 
 def test_what_is_set_goes_back_after_the_wait_also_when_that_is_cancelled(robot, audio):
@@ -158,7 +167,7 @@ def test_what_is_set_goes_back_after_the_wait_also_when_that_is_cancelled(robot,
 HI, WAV = {"str_param": "Hi"}, {"str_param": "a.wav"}
 EMPTY = ("str_param", ["", " \n\t"], "field str_param: it is empty")
 LEVEL = ("volume", [1.5, -0.1, NAN], "is not allowed: 0..1")
-LASTS = ("duration", [-1, NAN, 3601], "is not allowed: 0..3600 s")
+LASTS = ("duration", [-1, NAN, 3601], "3600 s")
 OUT = ("str_param", ["/etc/a.wav", "/home/nao/../a.wav", "../a.wav"], "leads out of the folder for sounds")
 KIND = ("str_param", ["sounds", "a.txt"], "is not a file of a known kind")
 SINE = {"frequency": 440, "duration": 1}
@@ -190,7 +199,7 @@ REFUSED = [
     ("playFile", {**WAV, "background": True}, [("duration", [1], "0 for a sound in the background")]),
     ("playFileFromPosition", WAV, [EMPTY, LEVEL, LASTS, ("position", [-1, NAN], "field position")]),
     ("playSine", SINE, [("frequency", [0, 440.5, NAN, 1e6], "is not allowed: a whole number 20..20000 (Hz)"), LEVEL]),
-    ("playSine", SINE, [("duration", [0, -1, NAN], "more than 0 to 3600 s"), ("pan", [0.5], "-1 (left), 0 or 1")]),
+    ("playSine", SINE, [("duration", [0, -1, NAN], "0.001..3600 s"), ("pan", [0.5], "-1 (left), 0 or 1")]),
     ("playWebStream", {}, [("str_param", ["file:///a", "ftp://x/y"], "begins with http:// or https://")]),
     *((name, {}, [NONE_LOADED, UNLOADED]) for name in ("play", "pause", "unloadFile", "goTo", "setPitch")),
     ("goTo", {"sound_id": 7}, [("position", [NAN, -1], "field position")]),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import pytest
 import rospy
 import yaml
@@ -20,11 +18,12 @@ from nao_library_actions.msg import (
     NaoLedGoal,
     NaoMotionGoal,
 )
-from nao_library_modules.audio_out import NaoAudioOutput
+from nao_library_modules.audio_out.server import NaoAudioOutput
+from nao_library_modules.behaviors.language.servers import FunctionTables
 from nao_library_modules.behaviors.server import NaoBehavior
-from nao_library_modules.behaviors.servers import FunctionTables
-from nao_library_modules.motion import NaoMotion
+from nao_library_modules.motion.server import NaoMotion
 from nao_library_msgs.msg import LedFunction
+from nao_library_msgs.srv import ListBehaviorsRequest
 
 TABLES = FunctionTables()
 BRAIN, RED = "Device/SubDeviceList/Head/Led/Front/Right/1/Actuator/Value", "Device/SubDeviceList/Face/Led/Red/Left/0Deg"
@@ -197,10 +196,11 @@ def test_a_chain_may_use_what_it_stores(behaviors):
     assert result.results[3].values == ["outer"], "it still uses the old name"
     names = set(behaviors.module.store.names())
     assert {"again", "outer"} <= names and not {"moved", "inner"} & names
-    wrong = "help: x\ndo: [{NaoLights.on: {lights: [NoSuchLight]}, on_error: retry 1}]"
-    goal = behaviors.play(f("storeBehavior", "wrong", text=wrong), f("runBehavior", "wrong"))
-    assert (goal.state, goal.result.steps[0].attempts) == ("aborted", 2)
-    assert "function 2 (runBehavior): step 1 (NaoLights.on): " in goal.text
+    fails = "help: x\ndo:\n- {wait: 0}\n- {NaoLights.getData: {str_param: No/Such/Key}, on_error: retry 1}"
+    goal = behaviors.play(f("storeBehavior", "fails", text=fails), f("runBehavior", "fails"))
+    step = goal.result.steps[1]
+    assert (goal.state, step.attempts, step.line) == ("aborted", 2, 4) and step.file.endswith("/fails.yaml")
+    assert f"function 2 (runBehavior): {step.file}:4: step 2 (NaoLights.getData): " in goal.text
 
 
 def test_a_recording_goes_on_until_it_is_stopped_and_plays_the_same_again(behaviors, to_lights, robot):
@@ -229,13 +229,32 @@ def test_a_recording_that_is_preempted_or_that_the_node_ends_keeps_what_came(beh
     to_lights(GREEN, 1)
     goal.cancel()
     told = [(each.what, each.state) for each in goal.feedback if each.behavior]
-    assert goal.state == "preempted" and told == [("NaoLights.setColor", "recorded")]
+    assert goal.state == "preempted"
+    assert told == [("recordBehavior", "recording"), ("NaoLights.setColor", "recorded")]
     assert "setColor" in behaviors.module.store.text("taken") and behaviors.module.recording is None
+    (result,) = goal.result.results
+    assert list(result.values) == ["taken", "1", f"written: {behaviors.module.store.path('taken')}"]
     behaviors.succeed(f("recordBehavior", "other"))
     to_lights(GREEN, 2)
     behaviors.succeed(f("storeBehavior", "last", server="NaoLights"))
     behaviors.module.shut_down()
     assert all("setColor" in behaviors.module.store.text(name) for name in ("other", "last"))
+
+
+def test_what_is_written_is_told_and_a_recording_whose_name_is_taken_meanwhile_gets_another_one(behaviors, to_lights):
+    store = behaviors.module.store
+    behaviors.succeed(f("recordBehavior", "taken"))
+    to_lights(GREEN, 1)
+    store.save("taken", LONG)
+    goal = behaviors.play(f("stopRecording"))
+    assert goal.text == f"written: {store.path('taken-2')}, for taken.yaml came meanwhile"
+    assert list(goal.result.memList) == ["taken-2", "1"] and store.text("taken") == LONG
+    for function in (
+        f("storeBehavior", "kept", text=LONG),
+        f("copyBehavior", "taken", new_name="kept", overwrite=True),
+        f("renameBehavior", "taken", new_name="kept", overwrite=True),
+    ):
+        assert behaviors.play(function).text == f"written: {store.path('kept')}"
 
 
 def test_behaviours_are_listed_described_and_checked(behaviors):
@@ -246,7 +265,7 @@ def test_behaviours_are_listed_described_and_checked(behaviors):
     assert (n.name, n.type, n.default, n.unit) == ("n", "number", "1", "times")
     assert shown["hello"].shipped and behaviors.succeed(f("describeBehavior", "lights")).memList == [TEXTS["lights"]]
     behaviors.module.store.save("broken", "help: x\ndo: [{wat: 1}]")
-    listed = lambda name: behaviors.edge.services["NaoBehavior/list"](SimpleNamespace(name=name)).behaviors  # noqa: E731
+    listed = lambda name: behaviors.edge.services["NaoBehavior/list"](ListBehaviorsRequest(name=name)).behaviors  # noqa: E731
     problems = {info.name: info.problem for info in listed("") if not info.steps}
     assert "did you mean 'wait'" in problems["broken"] and problems["lights"] == ""
     assert list(listed("lights")[0].steps)[0] == "1 repeat 1 times"
@@ -258,5 +277,5 @@ def test_behaviours_are_listed_described_and_checked(behaviors):
     assert [len(each.values) for each in result.results] == [0, 1, 1]
     step = "1#1.1 NaoLights.setIntensity: lights [Brain1], i_values [0.25]"
     lights, wrong, _ = result.behaviors
-    assert (lights.problem, list(lights.steps), list(lights.unchecked)) == ("", ["1 repeat 1 times", step], [step])
+    assert (lights.problem, list(lights.steps), list(lights.unchecked)) == ("", ["1 repeat 1 times", step], [])
     assert wrong.problem and not wrong.steps

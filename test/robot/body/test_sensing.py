@@ -135,7 +135,8 @@ def touch(one, sensors, duration, limit=3.0):
     task, seen = one.simulation.hands.touch(sensors, duration), []
     while not task.finished and len(seen) < limit * 120:
         seen.append(one.simulation.tick())
-    assert task.result(0) is None and not task.killed
+    felt = [snapshot.time for snapshot in seen if sensors[0] in snapshot.touched]
+    assert task.result(0) == felt[0] and not task.killed
     return seen
 
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from disks import room
 
 import vision_definitions as vd
 
@@ -151,6 +152,19 @@ def test_raw_pictures_go_to_a_file(robot, video):
     assert path.stat().st_size == 2 * 160 * 120 and np.frombuffer(path.read_bytes(), np.uint8).std() > 5
 
 
+def test_raw_pictures_that_had_no_room_are_told_of_at_the_end_and_the_next_ones_go_to_a_file(robot, video):
+    handle = video.subscribeCamera("looker", TOP, vd.kQQVGA, GREY, 30)
+    with room(30000):
+        video.recordVideo(handle, "raw.bin", 100, 1)
+        robot.advance(0.2)
+        with pytest.raises(RuntimeError, match="raw.bin cannot be written: File too large, .* MB free in"):
+            video.stopVideo(handle)
+    assert (robot.server.files.folder / "raw.bin").stat().st_size == 160 * 120
+    assert video.recordVideo(handle, "raw.bin", 2, 1) is True
+    robot.advance(0.2)
+    assert (robot.server.files.folder / "raw.bin").stat().st_size == 2 * 160 * 120
+
+
 NOBODY = "'nobody_0' is not subscribed; subscribed is 'looker_0'"
 REFUSED = [
     *(("getImageRemote", ("nobody_0",), NOBODY), ("releaseImage", ("nobody_0",), NOBODY)),
@@ -174,6 +188,6 @@ def test_what_is_refused_names_what_is_allowed_and_changes_nothing(robot, video)
     video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15)
     proxy = robot.proxy("ALVideoDevice")
     for method, arguments, text in REFUSED:
-        with pytest.raises(RuntimeError, match=f"ALVideoDevice::{method} .*{text}"):
+        with pytest.raises(RuntimeError, match=rf"ALVideoDevice\.{method} failed: .*{text}"):
             getattr(proxy, method)(*arguments)
     assert video.getSubscribers() == ["looker_0"] and video.getParameter(TOP, 1) == 32

@@ -10,9 +10,9 @@ from genpy import Duration
 from goal_functions import led_with_text as f
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_modules.errors import BadGoal, Preempted, UnknownFunction
-from nao_library_modules.nao_basic import NaoBasic
-from naoqi.errors import RobotUnreachable
+from nao_library_modules.base.errors import BadGoal, Preempted, UnknownFunction
+from nao_library_modules.server.nao_basic import NaoBasic
+from naoqi.errors import NaoError, RobotUnreachable
 
 BRAIN0 = "Head/Led/Front/Right/1"
 
@@ -285,6 +285,15 @@ def test_a_table_is_declared_replaced_and_changed_at_any_time_and_keeps_the_memo
     assert "unknown function 'sum'" in goals.refused(f("sum"))
 
 
+def test_a_table_takes_callables_only_and_names_the_entry_that_is_none(goals_to):
+    table = goals_to(Declared, NaoLedGoal).module.function_table
+    with pytest.raises(NaoError, match=r"function_table\['green'\] is None: a function or method is needed"):
+        table["green"] = None
+    with pytest.raises(NaoError, match=r"function_table\['pair'\]"):
+        table |= {"pair": ()}
+    assert not {"green", "pair"} & set(table)
+
+
 def test_a_function_with_args_gets_the_other_fields_in_the_order_of_the_message(goals_to):
     goals = goals_to(Declared, NaoLedGoal)
     goals.module.function_table["list"] = lambda args: args[1:3]
@@ -313,3 +322,21 @@ def test_an_execute_cb_of_ones_own_runs_functions_and_is_preempted_and_refuses(r
     assert "field str_param: 'x'" in goals.refused(f("fail", "x"))
     with pytest.raises(BadGoal, match=r"too many positional arguments.*`args_of\(message\)` gives what"):
         goals.module.run("getData", ["Test/Key", [], []], 0)
+
+
+def test_results_and_feedback_tell_when_functions_began_ended_and_what_they_waited_for_happened(robot, goals):
+    def blink():
+        goals.module.happened = (began + 0.1, began + 0.4)
+
+    began = robot.advance(0.5)
+    goals.module.function_table["blink"] = blink
+    rest = f("say", "rest")
+    rest.time = Duration(1)
+    goal = goals.play(rest, f("blink"), f("say", "end"))
+    say, blink, end = goal.result.results
+    assert say.begin.to_sec() == pytest.approx(began, abs=0.05) and say.end - say.begin == say.elapsed
+    assert (blink.begin - say.end).to_sec() == pytest.approx(1.0, abs=0.05), "the wait belongs to none"
+    assert [time.to_sec() - began for time in (blink.onset, blink.offset)] == pytest.approx([0.1, 0.4], abs=1e-6)
+    assert not end.onset and not end.offset, "what the one before knew is not told again"
+    assert [each.stamp for each in goal.feedback] == sorted(each.stamp for each in goal.feedback)
+    assert abs((goal.feedback[-1].stamp - end.begin).to_sec()) < 0.05

@@ -25,7 +25,7 @@ def test_it_tells_all_functions_and_what_they_are_for(ask, lights, robot):
     assert [argument.name for argument in answer.common] == ["time", "on_error"]
     (on,) = [function for function in answer.functions if function.name == "on"]
     named = next(argument for argument in on.arguments if argument.name == "lights")
-    assert "FaceLeds" in named.choices, "lights are those of the robot"
+    assert {"FaceLeds", "Eyes"} <= set(named.choices), "lights are those of the robot, and plain words for them"
     answer = ask(without_functions=True)
     assert not answer.functions and answer.robot == f"127.0.0.1:{robot.port}"
 

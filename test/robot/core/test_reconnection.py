@@ -11,9 +11,9 @@ from simulator import PATIENCE, Simulator
 
 import naoqi
 from nao_library_actions.msg import NaoLedGoal, NaoMotionGoal, NaoTactileGoal
-from nao_library_modules.lights import NaoLights
-from nao_library_modules.motion import NaoMotion
-from nao_library_modules.tactile import NaoTactile
+from nao_library_modules.lights.server import NaoLights
+from nao_library_modules.motion.server import NaoMotion
+from nao_library_modules.tactile.server import NaoTactile
 from nao_library_msgs.msg import LedFunction, MotionFunction, TactileFunction
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene

@@ -8,28 +8,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.robot import Robot
+from nao_library_modules.robot.robot import Robot
 
 PATIENCE = 15.0
 
 
 @pytest.fixture
-def soon():
-    """Waits for what other threads bring about while simulated time stands still."""
-
-    def wait(condition, what="it"):
-        pause = threading.Event()
-        for _ in range(int(PATIENCE / 0.002)):
-            if condition():
-                return
-            pause.wait(0.002)
-        raise AssertionError(f"{what} did not come about")
-
-    return wait
-
-
-@pytest.fixture
-def until(robot, soon):
+def until(robot, eventually):
     """Lets simulated time pass, little by little and `limit` s at most, until something comes about."""
 
     def wait(condition, limit=10.0, step=0.05):
@@ -39,7 +24,7 @@ def until(robot, soon):
                 return
             robot.advance(step)
             pause.wait(0.004)
-        soon(condition, f"what should within {limit} s of simulated time")  # the threads of a loaded machine are late
+        eventually(condition, f"what should within {limit} s of simulated time")
 
     return wait
 

@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import pytest
 
-from nao_library_modules.driver import camera_stream, demand
-from nao_library_modules.driver.camera_stream import CameraStream
-from nao_library_modules.driver.camera_subscriber import StreamSettings
-from nao_library_modules.driver.camera_tuning import CameraTuning
-from nao_library_modules.driver.vision_detection import FACES, MOVEMENT, Detection
-from nao_library_modules.health import Level
-from nao_library_modules.robot import Robot
+from nao_library_modules.driver.base import demand
+from nao_library_modules.driver.camera import camera_stream
+from nao_library_modules.driver.camera.camera_stream import CameraStream
+from nao_library_modules.driver.camera.camera_subscriber import StreamSettings
+from nao_library_modules.driver.camera.camera_tuning import CameraTuning
+from nao_library_modules.driver.sensors.vision_detection import FACES, MOVEMENT, Detection
+from nao_library_modules.robot.robot import Robot
+from nao_library_modules.ros.health import Level
 from naoqi.errors import NaoError
 
 NAME = "ros_nao_camera_top"
@@ -51,7 +52,7 @@ def ours(video):
     return [handle for handle in video.getSubscribers() if handle.startswith(NAME)]
 
 
-def test_pictures_come_with_their_times_while_somebody_looks(stream, robot, video, seen, until, soon):
+def test_pictures_come_with_their_times_while_somebody_looks(stream, robot, video, seen, until, eventually):
     assert stream.report().message == "nobody looks" and not ours(video)
     stream.want(True)
     until(lambda: seen, step=1 / 60)
@@ -65,7 +66,7 @@ def test_pictures_come_with_their_times_while_somebody_looks(stream, robot, vide
     taken = [time for _, time in seen]
     assert taken == sorted(set(taken)) and all(time >= own for time, own in zip(taken, times))
     stream.want(False)
-    soon(lambda: not ours(video))
+    eventually(lambda: not ours(video))
 
 
 def test_without_a_robot_there_are_no_pictures_and_it_says_why(clock, closing):
@@ -171,7 +172,7 @@ def make(robot, driver_robot, closing):
     return make
 
 
-def test_events_come_while_a_detection_is_on_and_switching_twice_changes_nothing(make, robot, soon):
+def test_events_come_while_a_detection_is_on_and_switching_twice_changes_nothing(make, robot, eventually):
     def raised(value):
         robot.ALMemory.raiseEvent("FaceDetected", [value])
 
@@ -186,7 +187,7 @@ def test_events_come_while_a_detection_is_on_and_switching_twice_changes_nothing
         faces.enable()
     assert lookers() == ["ros_nao_vision"] and faces.report().message == "on" and prepared == [[]]
     raised("while")
-    soon(lambda: faces.seen)
+    eventually(lambda: faces.seen)
     for _ in range(2):
         faces.disable()
     raised("after")
@@ -197,16 +198,16 @@ def test_events_come_while_a_detection_is_on_and_switching_twice_changes_nothing
     assert lookers() == []
 
 
-def test_a_lost_robot_looks_again_once_and_without_one_it_is_not_switched_on(make, robot, driver_robot, soon):
+def test_a_lost_robot_looks_again_once_and_without_one_it_is_not_switched_on(make, robot, driver_robot, eventually):
     prepared = []
     faces = make(FACES, prepare=lambda: prepared.append(1))
     faces.enable()
     driver_robot.lose()
-    soon(lambda: faces.report().message == "on" and len(prepared) == 2)
-    soon(lambda: faces.seen or robot.ALMemory.raiseEvent("FaceDetected", ["warm"]))
+    eventually(lambda: faces.report().message == "on" and len(prepared) == 2)
+    eventually(lambda: faces.seen or robot.ALMemory.raiseEvent("FaceDetected", ["warm"]))
     count = len(faces.seen)
     robot.ALMemory.raiseEvent("FaceDetected", ["again"])
-    soon(lambda: ["again"] in faces.seen)
+    eventually(lambda: ["again"] in faces.seen)
     assert faces.seen[count:].count(["again"]) == 1
 
     def refuse():

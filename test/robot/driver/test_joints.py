@@ -8,20 +8,20 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.body_devices import SONARS as SONAR_KEYS
-from nao_library_modules.driver import demand
-from nao_library_modules.driver.blinking import Blinks, blink, fade
-from nao_library_modules.driver.joint_controller import JointController
-from nao_library_modules.driver.joint_sensors import JointSensors
-from nao_library_modules.driver.memory_access import MemoryAccess
-from nao_library_modules.driver.memory_rules import Rule
-from nao_library_modules.driver.memory_watch import MemoryWatch
-from nao_library_modules.driver.sonars import Sonars
-from nao_library_modules.driver.touch_sensors import BUMPER, FEET, HAND, HEAD, TouchSensors
-from nao_library_modules.errors import BadGoal, Preempted
-from nao_library_modules.goal_crowd import Replaced
-from nao_library_modules.interrupt import Interrupt
-from nao_library_modules.joint_trajectory import H25_BODY
+from nao_library_modules.base.errors import BadGoal, Preempted
+from nao_library_modules.base.interrupt import Interrupt
+from nao_library_modules.driver.base import demand
+from nao_library_modules.driver.joints.joint_controller import JointController
+from nao_library_modules.driver.joints.joint_sensors import JointSensors
+from nao_library_modules.driver.life.blinking import Blinks, blink, fade
+from nao_library_modules.driver.memory.memory_access import MemoryAccess
+from nao_library_modules.driver.memory.memory_rules import Rule
+from nao_library_modules.driver.memory.memory_watch import MemoryWatch
+from nao_library_modules.driver.sensors.sonars import Sonars
+from nao_library_modules.driver.sensors.touch_sensors import BUMPER, FEET, HAND, HEAD, TouchSensors
+from nao_library_modules.functions.joint_trajectory import H25_BODY
+from nao_library_modules.nao.body_devices import SONARS as SONAR_KEYS
+from nao_library_modules.ros.goal_crowd import Replaced
 from naoqi.errors import NaoError
 
 CHARGE = "Device/SubDeviceList/Battery/Charge/Sensor/Value"
@@ -141,7 +141,7 @@ def test_a_reading_is_what_the_robot_says_of_joints_inertial_unit_and_odometry(j
 
 
 def test_what_is_wanted_is_tried_again_until_it_works_and_started_anew_when_it_died(
-    driver_robot, closing, soon, monkeypatch
+    driver_robot, closing, eventually, monkeypatch
 ):
     monkeypatch.setattr(demand, "LOOK_PERIOD", 0.02)
     calls, failures, alive = [], [NaoError("not yet"), ValueError("a mistake"), NaoError("not yet")], [True]
@@ -156,12 +156,12 @@ def test_what_is_wanted_is_tried_again_until_it_works_and_started_anew_when_it_d
         made.start_now()
     assert not made.wanted and not made.running
     made.want(True)
-    soon(lambda: made.running)
+    eventually(lambda: made.running)
     assert calls == ["start"] * 4 and made.problem == ""
     made.restart()
-    soon(lambda: calls[4:] == ["stop", "start"] and made.running)
+    eventually(lambda: calls[4:] == ["stop", "start"] and made.running)
     alive[0] = False
-    soon(lambda: calls[6:8] == ["stop", "start"])
+    eventually(lambda: calls[6:8] == ["stop", "start"])
 
 
 def test_sonars_measure_only_while_somebody_listens_and_after_a_loss(robot, driver_robot, clock, until, closing):
@@ -232,7 +232,7 @@ def test_keys_are_found_by_name_and_pattern_and_written_as_they_are(robot, drive
     assert heard.get(timeout=robot.patience) == 1.5
 
 
-def test_data_is_published_at_its_rate_while_somebody_listens(watch, robot, topics, until, soon):
+def test_data_is_published_at_its_rate_while_somebody_listens(watch, robot, topics, until, eventually):
     watch.watch([Rule(CHARGE, 20.0), Rule("Device/SubDeviceList/*/Position/Sensor/Value", 10.0)])
     assert watch.watched(CHARGE) == {CHARGE: CHARGE} and topics[CHARGE].kind == "float"
     assert len(watch.watched("*/Position/Sensor/Value")) >= 25
@@ -253,7 +253,7 @@ def test_data_is_published_at_its_rate_while_somebody_listens(watch, robot, topi
 
 
 def test_events_are_published_as_they_stand_and_while_somebody_listens_also_after_a_loss(
-    watch, robot, driver_robot, topics, soon, until
+    watch, robot, driver_robot, topics, eventually, until
 ):
     robot.ALMemory.raiseEvent(FRONT, 0.0)
     watch.watch([Rule(FRONT), Rule(CHARGE, 20.0)])
@@ -265,15 +265,15 @@ def test_events_are_published_as_they_stand_and_while_somebody_listens_also_afte
     until(lambda: len(topics[CHARGE].messages) > count)
     told = len(topics[FRONT].messages)
     robot.ALMemory.raiseEvent(FRONT, 1.0)
-    soon(lambda: topics[FRONT].messages[told:] == [1.0])  # once
+    eventually(lambda: topics[FRONT].messages[told:] == [1.0])  # once
     topics[FRONT].tell(False)
     robot.ALMemory.raiseEvent(FRONT, 0.0)
     watch.unwatch("Nothing")
     topics[FRONT].tell(True)
-    soon(lambda: topics[FRONT].messages[told:] == [1.0, 0.0])
+    eventually(lambda: topics[FRONT].messages[told:] == [1.0, 0.0])
 
 
-def test_how_an_event_stands_is_asked_again_when_it_could_not_be_read(watch, robot, topics, soon, monkeypatch):
+def test_how_an_event_stands_is_asked_again_when_it_could_not_be_read(watch, robot, topics, eventually, monkeypatch):
     values, failures = MemoryAccess.values, [NaoError("no answer")]
 
     def sometimes(access, keys):
@@ -285,10 +285,10 @@ def test_how_an_event_stands_is_asked_again_when_it_could_not_be_read(watch, rob
     watch.watch([Rule(FRONT)])
     monkeypatch.setattr(MemoryAccess, "values", sometimes)
     topics[FRONT].tell(True)
-    soon(lambda: topics[FRONT].messages == [0.0])
+    eventually(lambda: topics[FRONT].messages == [0.0])
 
 
-def test_unwatching_closes_topics_and_too_many_keys_are_refused(robot, driver_robot, clock, topics, closing, soon):
+def test_unwatching_closes_topics_and_too_many_are_refused(robot, driver_robot, clock, topics, closing, eventually):
     watch = closing(MemoryWatch(driver_robot, clock, topics.make, 3))
     robot.ALMemory.insertListData([["Few/1", 1], ["Few/2", "two"]])
     watch.watch([Rule(CHARGE), Rule("Few/*")])
@@ -301,38 +301,39 @@ def test_unwatching_closes_topics_and_too_many_keys_are_refused(robot, driver_ro
     assert watch.watched() == {} and watch.report().message == "nothing is watched"
 
 
-def test_every_change_of_every_touch_sensor_is_told_once(robot, driver_robot, closing, soon, monkeypatch):
+def test_every_change_of_every_touch_sensor_is_told_once(robot, driver_robot, closing, eventually, monkeypatch):
     told, memory = [], robot.server.memory
     monkeypatch.setattr(demand, "LOOK_PERIOD", 0.02)
     robot.server.press(["Head/Touch/Front"])
     robot.advance(0.1)
     sensors = closing(TouchSensors(driver_robot, lambda s, now: told.append((s.place, s.number, now)), told.append))
-    soon(lambda: sensors.report().message == "touches are told")
+    eventually(lambda: sensors.report().message == "touches are told")
     assert set(told) == {(HEAD, 1, True), (FEET, 0, True)}  # how it is at the beginning
     told.clear()
     for pressed in (["LHand/Touch/Left", "RFoot/Bumper/Right"], []):
         robot.server.press(pressed)
         robot.advance(0.1)
     expected = [(HEAD, 1, False), (HAND, 4, True), (BUMPER, 0, True), (HAND, 4, False), (BUMPER, 0, False)]
-    soon(lambda: len(told) >= 5)
+    eventually(lambda: len(told) >= 5)
     assert sorted(told) == sorted(expected)
     told.clear()
     robot.ALMemory.raiseEvent("footContactChanged", False)  # while a foot touches the ground: it bounces
-    soon(lambda: told == [(FEET, 0, False)])
+    eventually(lambda: told == [(FEET, 0, False)])
     for _ in range(2):
         told.clear()
-        memory.on_next_change(FRONT, lambda _: memory.put_quietly(FRONT, 0.0))  # let go at once, the events swapped
+        # Let go at once, the events swapped.
+        memory.next_change(FRONT).add_done_callback(lambda _: memory.put_quietly(FRONT, 0.0))
         robot.ALMemory.raiseEvent(FRONT, 1.0)
-        soon(lambda: told == [(HEAD, 1, True), (HEAD, 1, False)])
+        eventually(lambda: told == [(HEAD, 1, True), (HEAD, 1, False)])
     assert sensors.report().values["footContactChanged"] == ""
     robot.ALMemory.raiseEvent("footContactChanged", True)
     robot.ALMemory.raiseEvent("ALChestButton/DoubleClickOccurred", None)
-    soon(lambda: 2 in told)
+    eventually(lambda: 2 in told)
     told.clear()
     robot.server.press(["LFoot/Bumper/Left"])
     driver_robot.lose()
     robot.advance(0.1)
-    soon(lambda: (BUMPER, 1, True) in told)
+    eventually(lambda: (BUMPER, 1, True) in told)
     assert sensors.report().values["LeftBumperPressed"] == "touched" and told == [(BUMPER, 1, True)]
 
 

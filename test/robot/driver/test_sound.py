@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nao_library_modules.driver import demand
-from nao_library_modules.driver.audio_directions import SoundDirections
-from nao_library_modules.driver.audio_player import AudioPlayer
-from nao_library_modules.driver.audio_requests import read_recording
-from nao_library_modules.driver.microphone import Microphone
-from nao_library_modules.driver.speech import LONGEST_QUEUE, Speech
-from nao_library_modules.driver.speech_recognition import Heard, Recognition, RecognitionInUse
-from nao_library_modules.driver.speech_settings import SpeechSettings
-from nao_library_modules.errors import Preempted
-from nao_library_modules.interrupt import Interrupt
+from nao_library_modules.base.errors import Preempted
+from nao_library_modules.base.interrupt import Interrupt
+from nao_library_modules.driver.audio.audio_directions import SoundDirections
+from nao_library_modules.driver.audio.audio_player import AudioPlayer
+from nao_library_modules.driver.audio.audio_requests import read_recording
+from nao_library_modules.driver.audio.microphone import Microphone
+from nao_library_modules.driver.audio.speech import LONGEST_QUEUE, Speech
+from nao_library_modules.driver.audio.speech_recognition import Heard, Recognition, RecognitionInUse
+from nao_library_modules.driver.audio.speech_settings import SpeechSettings
+from nao_library_modules.driver.base import demand
 from naoqi.errors import NaoError, RobotError
 
 LIMIT = 15.0
@@ -31,13 +31,13 @@ def _impatient(monkeypatch):
 
 
 def test_blocks_come_while_somebody_listens_with_samples_times_and_places(
-    driver_robot, clock, closing, robot, until, soon
+    driver_robot, clock, closing, robot, until, eventually
 ):
     blocks = []
     microphone = closing(Microphone(driver_robot, "ros_naoqi_microphone", clock, blocks.append))
     assert microphone.report().message == "nobody listens"
     microphone.want(True)
-    soon(lambda: microphone.report().message == "heard")
+    eventually(lambda: microphone.report().message == "heard")
     robot.post("ALAudioDevice", "playSine", 1000, 80, 0, 2.0)
     until(lambda: len(blocks) >= 6)
     assert {(block.rate, len(block.places), len(block.samples)) for block in blocks} == {(16000, 1, 2720)}
@@ -52,7 +52,7 @@ def test_blocks_come_while_somebody_listens_with_samples_times_and_places(
     until(lambda: blocks[-1].rate == 48000)
     assert (len(blocks[-1].places), len(blocks[-1].samples)) == (4, 4 * 8160)
     microphone.want(False)
-    soon(lambda: microphone.report().message == "nobody listens")
+    eventually(lambda: microphone.report().message == "nobody listens")
     robot.advance(0.5)
     count = len(blocks)
     robot.advance(1.0)
@@ -110,21 +110,21 @@ def test_an_interrupt_ends_what_is_played_and_completes_what_is_recorded(driver_
         play.result()
 
 
-def test_sounds_are_located_only_while_somebody_listens_and_once_after_a_loss(robot, driver_robot, closing, soon):
+def test_sounds_are_located_only_while_somebody_listens_and_once_after_a_loss(robot, driver_robot, closing, eventually):
     found, event = [], [[12, 500000], [0.5, -0.1, 0.9, 0.04], [0.0, 0.0, 0.1265, 0.0, 0.1, 0.2], [0.0] * 6]
     directions = closing(SoundDirections(driver_robot, "ros_nao_audio", 0.8, found.append))
     subscribers = robot.ALSoundLocalization.getSubscribersInfo
     robot.ALMemory.raiseEvent("ALSoundLocalization/SoundLocated", event)
     assert not subscribers() and directions.report().message == "nobody listens"
     directions.want(True)
-    soon(lambda: directions.report().message == "sounds are located")
+    eventually(lambda: directions.report().message == "sounds are located")
     assert [name for name, *_ in subscribers()] == ["ros_nao_audio"]
     driver_robot.lose()
-    soon(lambda: directions.report().message == "sounds are located")
+    eventually(lambda: directions.report().message == "sounds are located")
     robot.ALMemory.raiseEvent("ALSoundLocalization/SoundLocated", event)
-    soon(lambda: found)
+    eventually(lambda: found)
     directions.want(False)
-    soon(lambda: not subscribers())
+    eventually(lambda: not subscribers())
     robot.ALMemory.raiseEvent("ALSoundLocalization/SoundLocated", event)
     assert [each.azimuth for each in found] == [0.5]
 
@@ -175,7 +175,7 @@ def test_voice_language_and_volume_are_used_for_the_text_and_put_back(speech, ro
     assert during == [("English", "rms", 0.6), ("French", "naofrf", before[2])]
 
 
-def test_a_text_is_silenced_at_once_or_before_it_begins(speech, robot, settings, soon, until, begin):
+def test_a_text_is_silenced_at_once_or_before_it_begins(speech, robot, settings, eventually, until, begin):
     settings[0] = SpeechSettings(volume=0.6)
     before, started = voice(robot), []
     first, second, third = (
@@ -186,7 +186,7 @@ def test_a_text_is_silenced_at_once_or_before_it_begins(speech, robot, settings,
     now = robot.now.time
     for text in (second, first):
         speech.silence(text)
-    soon(first.ended.is_set)
+    eventually(first.ended.is_set)
     assert robot.now.time == now and isinstance(first.error, Preempted) and isinstance(second.error, Preempted)
     until(third.ended.is_set)
     assert third.error is None and len(started) == 2 and voice(robot) == before
@@ -234,7 +234,7 @@ def listeners(robot):
     return [name for name, *_ in robot.ALSpeechRecognition.getSubscribersInfo()]
 
 
-def test_it_listens_for_the_vocabulary_until_it_is_stopped(recognition, robot, settings, soon):
+def test_it_listens_for_the_vocabulary_until_it_is_stopped(recognition, robot, settings, eventually):
     beeps = robot.ALSpeechRecognition.getAudioExpression()
     for _ in range(2):
         recognition.start()
@@ -267,26 +267,26 @@ def test_it_does_not_take_the_vocabulary_from_others_but_from_a_killed_run(recog
     assert listeners(robot) == ["ros_nao_speech"]
 
 
-def test_words_are_passed_on_whoever_listens_and_once_after_a_loss(recognition, robot, driver_robot, heard, soon):
+def test_words_are_passed_on_whoever_listens_and_once_after_a_loss(recognition, robot, driver_robot, heard, eventually):
     def words():
         return [each for each in heard if each.words != ("warm up",)]
 
     def hears():
         """Whether events arrive by now."""
         count = len(heard)
-        soon(lambda: len(heard) > count or robot.ALMemory.raiseEvent("WordRecognized", ["warm up", 0.5]))
+        eventually(lambda: len(heard) > count or robot.ALMemory.raiseEvent("WordRecognized", ["warm up", 0.5]))
 
     hears()
     for value in (["", 0.0], ["yes", 0.7, "no", 0.1], ["<...> no <...>", 0.5]):
         robot.ALMemory.raiseEvent("WordRecognized", value)
-    soon(lambda: len(words()) == 2)
+    eventually(lambda: len(words()) == 2)
     assert sorted(words(), key=str) == [Heard(("no",), (0.5,)), Heard(("yes", "no"), (0.7, 0.1))]
     recognition.start()
     driver_robot.lose()
-    soon(lambda: listeners(robot) == ["ros_nao_speech"] and recognition.report().message == "listens")
+    eventually(lambda: listeners(robot) == ["ros_nao_speech"] and recognition.report().message == "listens")
     hears()
     robot.ALMemory.raiseEvent("WordRecognized", ["stop", 0.4])
-    soon(lambda: len(words()) == 3)
+    eventually(lambda: len(words()) == 3)
     hears()
     assert len(words()) == 3
     recognition.stop()

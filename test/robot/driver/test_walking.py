@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from nao_library_modules.driver.footsteps_walk import FootstepWalk
-from nao_library_modules.driver.footsteps_walk import Step as Footstep
-from nao_library_modules.driver.moveto_walk import Goal, MoveToWalk
-from nao_library_modules.driver.walk_commands import Step, Target, Velocity
-from nao_library_modules.driver.walk_orders import Overtaken, Stop, WalkEnded
-from nao_library_modules.driver.walker import Walker
-from nao_library_modules.errors import BadGoal
-from nao_library_modules.health import Level
-from nao_library_modules.interrupt import Interrupt
-from nao_library_modules.places import Place
+from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.base.interrupt import Interrupt
+from nao_library_modules.base.places import Place
+from nao_library_modules.driver.walk.footsteps_walk import FootstepWalk
+from nao_library_modules.driver.walk.footsteps_walk import Step as Footstep
+from nao_library_modules.driver.walk.moveto_walk import Goal, MoveToWalk
+from nao_library_modules.driver.walk.walk_commands import Step, Target, Velocity
+from nao_library_modules.driver.walk.walk_orders import Overtaken, Stop, WalkEnded
+from nao_library_modules.driver.walk.walker import Walker
+from nao_library_modules.ros.health import Level
 from naoqi.errors import NaoError
 
 LIMIT = 15.0
@@ -66,14 +66,14 @@ def test_velocities_go_to_the_robot_with_frequency_and_gait(walker, robot):
     assert walker.watchdog_stops == 0  # velocities of services last
 
 
-def test_a_walk_whose_commands_cease_is_stopped(walker, robot, until, soon, caplog):
+def test_a_walk_whose_commands_cease_is_stopped(walker, robot, until, eventually, caplog):
     for _ in range(3):
         done(steer(walker, FORWARD))  # the same again keeps the walk alive
         robot.advance(0.4)
     assert walking(robot) and walker.doing == "walking at (0.50, 0.00, 0.00) of the top speed"
     assert walker.watchdog_stops == 0
     robot.advance(0.15)
-    soon(lambda: walker.watchdog_stops == 1)
+    eventually(lambda: walker.watchdog_stops == 1)
     assert "no command on cmd_vel for 0.5 s" in caplog.text
     until(lambda: not walking(robot), limit=4.0)
     done(steer(walker, FORWARD))  # and walks again when told to
@@ -237,27 +237,27 @@ def goal(name, *way):
     return Goal(name, lambda: Place(*way))
 
 
-def test_a_goal_is_walked_to_and_a_new_one_takes_over_without_a_stop(moving, robot, until, soon):
+def test_a_goal_is_walked_to_and_a_new_one_takes_over_without_a_stop(moving, robot, until, eventually):
     assert moving.report().message == "no goal yet"
     moving.go(goal("door", 1.0, 0.5, 0.25))
-    soon(lambda: "walks to door: 1.00 m ahead, 0.50 m left" in moving.report().message)
+    eventually(lambda: "walks to door: 1.00 m ahead, 0.50 m left" in moving.report().message)
     robot.advance(1.0)
     start = place(robot)
     moving.go(goal("window", 0.05, 0.0, 0.0))
-    soon(lambda: "walks to window" in moving.report().message)
+    eventually(lambda: "walks to window" in moving.report().message)
     assert walking(robot)
     until(lambda: "window is reached" in moving.report().message)
     assert moving.report().level == Level.OK
     assert place(robot).seen_from(start).x == pytest.approx(0.05, abs=0.05)
 
 
-def test_a_walk_that_is_cancelled_or_stopped_by_others_is_told(moving, robot, until, soon):
+def test_a_walk_that_is_cancelled_or_stopped_by_others_is_told(moving, robot, until, eventually):
     for stop, words, level in (
         (moving.cancel, "was stopped", Level.OK),
         (lambda: robot.post("ALMotion", "stopMove"), "door was not reached", Level.WARN),
     ):
         moving.go(goal("door", 1.0, 0.0, 0.0))
-        soon(lambda: "walks to door" in moving.report().message)
+        eventually(lambda: "walks to door" in moving.report().message)
         robot.advance(0.5)
         stop()
         until(lambda words=words: words in moving.report().message)
@@ -265,5 +265,5 @@ def test_a_walk_that_is_cancelled_or_stopped_by_others_is_told(moving, robot, un
         until(lambda: not walking(robot))
     robot.ALMotion.setStiffnesses("Body", 0.0)
     moving.go(goal("window", 1.0, 0.0, 0.0))
-    soon(lambda: "window: " in moving.report().message and "stiff" in moving.report().message)
+    eventually(lambda: "window: " in moving.report().message and "stiff" in moving.report().message)
     assert moving.report().level == Level.ERROR

@@ -67,6 +67,31 @@ def test_without_a_robot_they_say_so(run):
         assert status == 1 and "NAOqi at 127.0.0.1:1" in output
 
 
+@pytest.mark.parametrize(
+    "name, arguments",
+    [
+        ("look_at_the_lab", ["--output"]),
+        ("place_things", ["--output"]),
+        ("plot_walk", ["--output"]),
+        ("plot_walk", ["--record"]),
+        ("plot_sound", ["any.wav", "--output"]),
+        ("naoqi_picture", []),
+    ],
+)
+def test_no_file_is_replaced_unasked(run, tmp_path, name, arguments):
+    kept = tmp_path / "kept"
+    kept.write_text("mine", encoding="utf-8")
+    status, output = run(name, *arguments, kept)
+    assert status == 1 and f"{kept} is there already: another name, or --overwrite" in output
+    assert kept.read_text(encoding="utf-8") == "mine"
+
+
+def test_a_demonstration_leaves_alone_what_an_earlier_one_left(run, tmp_path):
+    (tmp_path / "table.md").touch()
+    status, output = run("demo", "--output", tmp_path)
+    assert status == 1 and f"{tmp_path} is not empty: another folder, or --overwrite" in output
+
+
 def test_a_new_function_blinks_is_checked_and_leaves_the_lights_as_they_were(example, goals_to, robot):
     lights = goals_to(example("add_a_function").BlinkingLights, NaoLedGoal)
     robot.ALLeds.setIntensity("Brain0", 0.25)

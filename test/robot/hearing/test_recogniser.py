@@ -7,7 +7,7 @@ import signal
 
 import numpy as np
 import pytest
-from spoken_words import LEVEL, RATE, blocks, in_a_room, spoken
+from spoken_words import LEVEL, RATE, ROOM, audible, blocks, in_a_room, spoken
 
 from nao_sim_bridge.sim.hearing.bnf import parse_bnf
 from nao_sim_bridge.sim.hearing.contexts import Contexts
@@ -16,7 +16,7 @@ from nao_sim_bridge.sim.hearing.listening import Listening, Recognised
 from nao_sim_bridge.sim.hearing.recogniser import Recogniser, RecogniserRefused
 from nao_sim_bridge.sim.hearing.voice_activity import SpeechChange
 
-ROOM = Listening((vocabulary("v", ["yes", "good morning"]),))
+LISTENING = Listening((vocabulary("v", ["yes", "good morning"]),))
 
 
 def recognised(events):
@@ -51,6 +51,28 @@ def test_the_times_of_an_utterance_are_those_of_the_speech(heard):
     assert changes[1].time == pytest.approx(1.1 + loud[-1], abs=0.15)
 
 
+def test_a_phrase_has_the_times_of_its_first_and_last_sound(heard):
+    speech = spoken("stand up", "rms")
+    first, last = audible(speech)
+    for noise in (ROOM, LEVEL / 10.0):
+        (event,) = recognised(heard(in_a_room(speech, noise=noise), ["stand up", "red"]))
+        (best,) = event.hypotheses
+        assert best.onset == pytest.approx(1.1 + first, abs=0.03)
+        assert best.end == pytest.approx(1.1 + last, abs=0.03 if noise == ROOM else 0.13)  # its burst is lost in noise
+
+
+def test_a_word_right_at_the_begin_is_recognised_by_who_knows_the_background(ear):
+    ear.listen(LISTENING)
+    ear.finish(None)
+    ear.background(in_a_room(pause=1.5, noise=LEVEL / 10.0))
+    speech = in_a_room(spoken("good morning"), noise=LEVEL / 10.0)
+    first, _ = audible(spoken("good morning"))
+    stream = speech[round((1.1 + first - 0.02) * RATE) :]
+    events = [event for block in blocks(stream) for event in ear.hear(block)]
+    assert found(events) == [["good morning"]]
+    assert recognised(events)[0].hypotheses[0].onset == pytest.approx(0.02, abs=0.03)
+
+
 def test_several_hypotheses_come_best_first_and_one_phrase_has_one(heard):
     phrases = ["red", "bread", "read", "what is your name"]
     (utterance,) = recognised(heard(in_a_room(spoken("red")), phrases, hypotheses=3))
@@ -81,7 +103,7 @@ def recogniser():
     events = []
     made = Recogniser(events.append)
     made.events = events
-    made.listen(ROOM)
+    made.listen(LISTENING)
     yield made
     made.close()
 

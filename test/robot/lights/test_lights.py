@@ -63,6 +63,17 @@ def test_colours_by_value_by_name_and_each(robot, lights, eyes):
     assert result.memList == []
 
 
+def test_plain_words_for_lights_are_taken_wherever_a_group_is(robot, lights, eyes):
+    result = lights.succeed(f("setColor", lights=["LeftEye", "Chest"], i_values=[1, 0, 0, 0, 0, 1]))
+    assert eyes() == {(1, 0, 0), (1, 1, 1)} and [robot.led(CHEST.format(part)) for part in PARTS] == [0, 0, 1]
+    assert {"LeftFaceLed1", "ChestLedsBlue"} <= set(result.lights), "by the robot's names"
+    lights.succeed(f("setColor", lights=["Eyes"], str_param="green", revert=True))
+    assert eyes() == {(1, 0, 0), (1, 1, 1)}
+    result = lights.succeed(f("fade", lights=["Ears"], i_values=[0.5]), f("getIntensity", lights=["Ears", "RightEar"]))
+    assert result.results[1].values == ["0.5", "0.5"]
+    assert robot.led("Ears/Led/Left/72Deg") == 0.5
+
+
 def test_fades_take_their_time_all_lights_together(robot, lights, eyes):
     lights.succeed(f("off", lights=["AllLeds"]))
     goal = lights.send(f("fade", lights=["Brain0", "Brain1"], i_values=[0.2, 1.0], duration=1.0))
@@ -175,19 +186,22 @@ REFUSED = [
     (f("on"), "field lights: it is empty: at least one light or group"),
     (f("setIntensity", lights=["Brain0"]), "field i_values: 0 values for 1 light: allowed are 1"),
     (f("setIntensity", lights=["Brain0"], i_values=[1.1]), "field i_values: 1.1 is not allowed: each within 0..1"),
-    (f("fade", lights=["Brain0"], i_values=[1], duration=-1.0), "field duration: -1.0 is not allowed: 0 s or more"),
+    (f("fade", lights=["Brain0"], i_values=[1], duration=-1.0), "duration: -1.0 is not allowed: 0.001..86400 s, or 0"),
     (f("setColor", lights=["Brain0"], str_param="red"), "field lights: 'Brain0' has one colour only: a light with"),
     (f("setColor", lights=["FaceLeds"], str_param="grean"), "field str_param: unknown colour 'grean': did you mean"),
-    (f("setColor", lights=["FaceLeds"]), "field i_values: 0 values for the colours of 1 light: allowed are 3"),
-    (f("fadeListRGB", lights=["FaceLeds"], str_param="red"), "field times: it is empty"),
+    (f("setColor", lights=["FaceLeds"]), "field str_param: there is no colour: a name or '#RRGGBB' here"),
+    (f("fadeListRGB", lights=["FaceLeds"], str_param="red"), "s from the start, at least one"),
     (f("fadeListRGB", lights=["FaceLeds"], str_param="red", times=[1, 2]), "field str_param: 1 colour for 2 times"),
-    (f("randomEyes"), "field duration: 0.0 is not allowed: more than 0 s"),
-    (f("rotateEyes", str_param="red", duration=1.0), "field rotation_time: 0.0 is not allowed: more than 0 s"),
+    (f("randomEyes"), "field duration: 0.0 is not allowed: 0.001..86400 s"),
+    (f("rotateEyes", str_param="red", duration=1.0), "field rotation_time: 0.0 is not allowed: 0.001..86400 s"),
     (f("earLedsSetAngle", angle=400, duration=1.0), "field angle: 400 is not allowed: 0..360 deg"),
     (f("createGroup", lights=["Brain0"]), "field str_param: it is empty: the name of the new group"),
     (f("createGroup", str_param="Brain0", lights=["Brain1"]), "field str_param: 'Brain0' is a light"),
     (f("listGroup", str_param="FaceLedz"), "field lights: unknown light 'FaceLedz': did you mean 'FaceLeds'"),
-    (f("on", -1.0, lights=["Brain0"]), "field time: -1.0 is not allowed: 0 s or more"),
+    (f("on", -1.0, lights=["Brain0"]), "field time: -1.0 is not allowed: 0..86400 s"),
+    (f("on", 1e6, lights=["Brain0"]), "field time: 1000000.0 is not allowed: 0..86400 s"),
+    (f("fadeListRGB", lights=["FaceLeds"], str_param="red", times=[1.7e308]), "field times: [1.7e+308] is not allowed"),
+    (f("rotateEyes", str_param="red", duration=1.0, rotation_time=1e-320), "field rotation_time: "),
 ]  # fmt: skip
 
 

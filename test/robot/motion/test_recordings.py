@@ -3,7 +3,7 @@
 import pytest
 from goal_functions import motion as f
 
-from nao_library_modules.recorded_motion import RecordedMotion
+from nao_library_modules.motion.recorded_motion import RecordedMotion
 
 NEAR = 0.03
 WAVE = RecordedMotion(("RShoulderRoll",), (0.0, 1.0, 2.0), ((-0.5,), (-1.0,), (-0.6,)))
@@ -49,6 +49,33 @@ def test_joints_that_are_taught_by_hand_are_limp_meanwhile_and_stiff_again_where
     robot.advance(1.0)
     assert robot.ALMotion.getAngles("HeadYaw", True) == pytest.approx(told, abs=0.03), "it does not go on"
     assert store.names() == ["turn"]
+
+
+def test_a_motion_replaces_no_other_one_unasked(motion, store):
+    store.save("turn", WAVE)
+    short = {"duration": 0.1}
+    assert "there is a motion 'turn' already: " in motion.refused(record(**short))
+    assert "the chain makes a motion 'new' before" in motion.refused(record("new", **short), record("new", **short))
+    assert store.names() == ["turn"] and store.load("turn") == WAVE
+    goal = motion.play(record(overwrite=True, **short))
+    assert goal.text == f"written: {store.path('turn')}" and store.load("turn") != WAVE
+
+
+def test_a_recording_whose_name_is_taken_meanwhile_gets_another_one_however_it_ends(robot, motion, store):
+    for name, number, end in (("cut", 2, "cancel"), ("whole", 2, "finish"), ("cut", 3, "cancel")):
+        store.path(name).unlink(missing_ok=True)
+        goal = motion.send(record(name, duration=0.5))
+        robot.advance(0.2)
+        store.save(name, WAVE)
+        getattr(goal, end)()
+        path = store.folder / f"{name}-{number}.yaml"
+        told = f"written: {path}, for {name}.yaml came meanwhile"
+        assert store.load(name) == WAVE and store.load(path.stem).joints == ("HeadYaw", "HeadPitch")
+        (result,) = goal.result.results
+        assert f'"motion": "{path.stem}"' in result.values[0]
+        assert (goal.text if end == "finish" else result.values[1]) == told
+    goal = motion.play(f("renameMotion", str_param="whole", texts=["done"]))
+    assert goal.text == f"written: {store.path('done')}"
 
 
 def test_a_replay_goes_to_its_first_pose_and_stays_where_a_cancel_meets_it(stiff_robot, motion, store, angle):

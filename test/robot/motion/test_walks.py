@@ -7,7 +7,7 @@ import threading
 import pytest
 from goal_functions import motion as f
 
-from nao_library_modules.places import Place
+from nao_library_modules.base.places import Place
 
 CLOSE, CLOSE_TURN = 0.03, 0.1
 """m and rad: what odometry of the legs may be off after a short walk."""
@@ -205,8 +205,9 @@ def test_a_walk_that_a_goal_left_going_ends_with_the_node(robot, motion):
 
 
 REFUSED = [
-    (f("moveTo", values=[0.3, 0.0]), "field values: 2 numbers"),
-    (walk(0, 0, 90), "theta cannot be 90: -3.1417 to 3.1417 rad"),
+    (f("moveTo", values=[0.3, 0.0]), "3 numbers are needed: x, y (m), theta (rad); here are 2"),
+    (f("moveTo", values=[0.3, 0, 0, 1]), "3 numbers for each place are needed"),
+    (walk(0, 0, 90), "theta cannot be 90: -3.1417 to 3.1417 rad; 90 degrees are 1.5708 rad"),
     (f("moveTo", values=[1, 0, 0, 2, 0, 0], duration=5.0), "places on the way"),
     (walk(1, gait=["MaxStepx"], gait_values=[0.04]), "did you mean 'MaxStepX'"),
     (walk(1, gait=["StepHeight"], gait_values=[0.05]), "StepHeight cannot be 0.05: 0.005 to"),

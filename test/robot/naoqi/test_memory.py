@@ -1,5 +1,7 @@
 """ALMemory: data, events, and modules of clients that are called back."""
 
+import sys
+
 import pytest
 from simulator import PATIENCE
 
@@ -53,6 +55,16 @@ def test_waiting_for_a_change_blocks_nobody(robot, memory):
     assert memory.getData("Test/Change") == 1 and future.isRunning()
     memory.insertData("Test/Change", 2)
     assert robot.answer(future) == 2
+
+
+def test_a_wait_for_a_change_ends_when_it_is_cancelled_and_is_refused_for_a_sensor(robot, memory, refuses):
+    memory.insertData("Test/Change", 1)
+    future = robot.post("ALMemory", "getDataOnChange", "Test/Change", 0)
+    robot.handed_over("ALMemory")
+    future.cancel()
+    future.wait(int(1000 * PATIENCE))
+    assert future.isCanceled()
+    refuses("ALMemory", f"getDataOnChange('{SENSOR}', 0) -> is measured when it is read")
 
 
 def test_what_is_wrong_is_told_and_writes_nothing(memory, refuses):
@@ -128,3 +140,16 @@ def test_signals_of_a_service_become_events(robot, memory, listener):
     assert [values.get(timeout=PATIENCE) for values in heard] == [3, [4, 5]]
     with pytest.raises(RuntimeError, match="ALMemory::addMapping service 'Listener' has no signal 'tuched'"):
         memory.addMapping("Listener", "tuched", "Test/Touched")
+
+
+def test_an_event_keeps_nothing_of_its_values_and_of_those_who_asked_for_it(robot, memory):
+    told, values = robot.heard("Test/Kept"), [f"value {n}" for n in range(2 * HISTORY_LENGTH)]
+    references = lambda: [sys.getrefcount(value) for value in values[:HISTORY_LENGTH]]  # noqa: E731
+    before, blocks = references(), sys.getallocatedblocks()
+    for _ in range(1000):
+        memory.subscriber("Test/Kept")
+    assert sys.getallocatedblocks() - blocks < 1000  # three blocks are kept of each object that qi makes of one
+    for value in values:
+        robot.server.memory.raise_event("Test/Kept", value)
+    assert sorted(told.get(timeout=PATIENCE) for _ in values) == sorted(values)
+    assert references() == before

@@ -13,13 +13,12 @@ from plan_clients import PlanClient, client_of
 from plan_tools import Beside
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.driver.joint_controller import JointController
-from nao_library_modules.places import Place
+from nao_library_modules.base.places import Place
+from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.process_modules import low_level
 from nao_library_modules.process_modules import nao_goals as goals
-from nao_library_modules.process_modules.action_client import ActionEnd
-from nao_library_modules.process_modules.chains import Chain
-from nao_library_modules.process_modules.failures import (
+from nao_library_modules.process_modules.core.registry import get_process_module
+from nao_library_modules.process_modules.language.failures import (
     DesignatorError,
     GripperClosedCompletely,
     GripperGoalNotReached,
@@ -32,8 +31,9 @@ from nao_library_modules.process_modules.failures import (
     SpeechLowLevelFailure,
     TaskEvaporatedFailure,
 )
-from nao_library_modules.process_modules.registry import get_process_module
-from nao_library_modules.process_modules.settings import load_settings
+from nao_library_modules.process_modules.language.settings import load_settings
+from nao_library_modules.process_modules.robot.action_client import ActionEnd
+from nao_library_modules.process_modules.robot.chains import Chain
 from nao_sim_bridge.paths import urdf_file
 
 FRAME_TORSO, STANDING = 0, 0.28

@@ -6,10 +6,10 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import pytest
+from waits import hold
 
 import naoqi
 
@@ -44,7 +44,7 @@ class Robot:
 
     def silence(self):
         """As if the network cable were pulled: sockets stay open, nothing answers."""
-        self._process.send_signal(signal.SIGSTOP)
+        hold(self._process.pid)
 
     def speak(self):
         self._process.send_signal(signal.SIGCONT)
@@ -110,17 +110,3 @@ def begun(proxy, eventually):
 def states():
     """Makes a follower of the states of a connection."""
     return States
-
-
-@pytest.fixture
-def eventually():
-    """Asks again and again until a condition holds, for things that nobody announces."""
-
-    def wait(condition, what):
-        end = time.monotonic() + PATIENCE
-        pause = threading.Event()
-        while not condition():
-            assert time.monotonic() < end, f"never came true: {what}"
-            pause.wait(0.01)
-
-    return wait

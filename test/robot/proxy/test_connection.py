@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 import socket
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+import qi
 
 import naoqi
 from naoqi import directory, errors
+from naoqi.native_threads import wait_until_idle
 from naoqi.state import Timing
 
 SOON = 10.0
@@ -123,6 +126,21 @@ def test_a_closed_connection_refuses_and_a_new_one_can_be_had(robot, states):
         proxy.add(1, 2)
     assert proxy.connection.wait_connected() is False
     assert robot.proxy().add(1, 2) == 3
+
+
+def test_the_end_waits_for_a_thread_of_libqi_that_is_still_at_work():
+    begun, let_go, much = threading.Event(), threading.Event(), bytes(100_000_000)
+
+    def work():
+        threading.current_thread()  # as logging does: Python has the thread in its list from then on
+        while not let_go.is_set():
+            hashlib.sha256(much)
+            begun.set()
+
+    working = qi.runAsync(work)
+    assert begun.wait(SOON) and not wait_until_idle(0.05)
+    let_go.set()
+    assert wait_until_idle(SOON) and working.isFinished()
 
 
 def test_a_silent_robot_is_given_up_within_two_seconds():

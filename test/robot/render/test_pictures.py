@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from seen import AWAY, MODEL, STATE
+from waits import hold
 
 from nao_sim_bridge.sim.errors import UnknownName
 from nao_sim_bridge.sim.leds_layout import load_leds
@@ -99,7 +100,7 @@ def test_a_process_that_is_killed_or_hangs_is_started_again(caplog):
         assert np.array_equal(own.render(STATE, FRONT), before), "after a first picture nobody notices"
         assert warnings_of(caplog) == ["picture: the picture process ended with status -9; it is started again"]
         assert len({first, second, own.pid}) == 3
-        os.kill(own.pid, signal.SIGSTOP)
+        hold(own.pid)
         with pytest.raises(RenderError, match="no answer .* within 0.2 s"):
             own.render(STATE, FRONT, timeout=0.2)
         assert own.render(STATE, FRONT).shape == (120, 160, 3)

@@ -3,11 +3,13 @@
 import math
 import threading
 import time
+from types import SimpleNamespace
 
 import pytest
 
+from nao_sim_bridge.closing import FAILED, wait_for_end
 from nao_sim_bridge.sim import led_animations
-from nao_sim_bridge.sim.errors import SimulationStopped
+from nao_sim_bridge.sim.errors import BadValue, SimulationStopped, TaskKilled
 from nao_sim_bridge.sim.motion import sequences
 from nao_sim_bridge.sim.motion.curves import Ramp
 from nao_sim_bridge.sim.runner import FASTEST, SimulationRunner
@@ -75,6 +77,55 @@ def test_advances_follow_each_other_and_end_after_exactly_their_time(start, paus
     assert ends[-1].time == pytest.approx(0.5, abs=tick_s)
 
 
+@pytest.mark.parametrize("speed", [1e-12, 1e-320, 1e7, 1.7e308, -1.0, math.nan])
+def test_a_speed_at_which_the_thread_would_wait_for_ever_is_refused(start, speed):
+    runner, _ = start(paused=False)
+    with pytest.raises(BadValue, match="speed is .* allowed is 0.001 to 1e.06, above 0; infinity"):
+        runner.set_speed(speed)
+    assert runner.wait_for_tick(runner.ticks, PATIENCE) is not None
+
+
+@pytest.mark.parametrize("seconds", [1e9, 1.7e308, math.inf, math.nan, -1.0])
+def test_no_more_than_a_day_is_asked_for_at_once(start, seconds):
+    with pytest.raises(BadValue, match="seconds is .* 0 or more, finite, 86400 s at most"):
+        start()[0].advance(seconds)
+
+
+@pytest.mark.parametrize("by", ["a pause", "a reset"])
+def test_an_advance_ends_with_a_pause_or_a_reset_and_the_next_one_is_heard(start, by):
+    runner, simulation = start()
+    long, waits = runner.advance(86400.0), runner.advance(5.0)
+    runner.wait_for_tick(runner.ticks + 2, PATIENCE)
+    runner.pause() if by == "a pause" else runner.end_advances(by)
+    after = runner.advance(0.1)
+    for task, seconds in ((long, 86400), (waits, 5)):
+        with pytest.raises(TaskKilled, match=rf"was ended by {by} after [\d.]+ of {seconds} s"):
+            task.result(PATIENCE)
+    end = after.result(PATIENCE).tick
+    assert runner.call(lambda: runner.snapshot.tick) == end
+
+
+def test_an_advance_that_is_cancelled_ends_and_the_next_one_has_its_turn(start):
+    runner, simulation = start()
+    first, second = runner.advance(86400.0), runner.advance(86400.0)
+    last = runner.advance(0.1)
+    for task in (second, first):
+        task.then(lambda snapshot: snapshot and snapshot.time).request_kill()
+        assert task.result(PATIENCE) is None and task.killed
+    assert last.result(PATIENCE).time > 0.0
+
+
+def test_a_listener_that_raises_is_named_and_the_tick_goes_on(start, monkeypatch):
+    runner, simulation = start()
+    heard = []
+    simulation.after_tick[:0] = [lambda _: 1 / 0]
+    simulation.after_tick.append(lambda snapshot: heard.append(snapshot.tick))
+    monkeypatch.setattr(simulation.cameras, "tick", lambda _: {}["camera"])
+    assert runner.advance(0.1).result(PATIENCE).tick == heard[-1] == 12 == len(heard)
+    counts = {failure.error: failure.count for failure in simulation.shared.guard.failures()}
+    assert counts == {"ZeroDivisionError: division by zero": 12, "KeyError: 'camera'": 12}
+
+
 def test_time_stands_still_while_paused_and_passes_no_faster_than_asked(start):
     runner, simulation = start(speed=4.0)
     runner.call(lambda: None)
@@ -93,7 +144,8 @@ def test_time_stands_still_while_paused_and_passes_no_faster_than_asked(start):
 
 
 def test_stop_ends_everybody_who_waits_with_an_error(start):
-    (runner, simulation), seen = start(), []
+    ended, seen = threading.Event(), []
+    runner, simulation = start(on_end=ended.set)
     task, advance = follow(runner, simulation), runner.advance(1000.0)
     waiting = threading.Thread(target=lambda: seen.append(runner.wait_for_tick(after=10**9, timeout=PATIENCE)))
     waiting.start()
@@ -103,9 +155,21 @@ def test_stop_ends_everybody_who_waits_with_an_error(start):
     for late in (lambda: advance.result(0), lambda: runner.execute(lambda: None), lambda: runner.advance(1.0)):
         with pytest.raises(SimulationStopped, match="has stopped"):
             late()
+    assert wait_for_end(SimpleNamespace(ended=ended, runner=runner)) == 0
 
 
-def test_a_failing_simulation_tells_everybody_why(start, monkeypatch):
+def test_what_holds_time_and_fails_does_not_hold_it(start):
+    runner, simulation = start()
+
+    def waits():
+        raise ValueError("no thread")
+
+    runner.call(lambda: simulation.holds.insert(0, waits))
+    assert runner.advance(0.1).result(PATIENCE).time == pytest.approx(0.1, abs=simulation.settings.tick_s)
+    assert [one.error for one in simulation.shared.guard.failures()] == ["ValueError: no thread"]
+
+
+def test_a_failing_simulation_tells_everybody_why_and_so_does_the_exit_status(start, monkeypatch):
     ended = threading.Event()
     runner, simulation = start(on_end=ended.set)
 
@@ -117,4 +181,4 @@ def test_a_failing_simulation_tells_everybody_why(start, monkeypatch):
         runner.advance(1.0).result(PATIENCE)
     assert ended.wait(PATIENCE)
     runner.stop(PATIENCE)
-    assert not runner.running
+    assert not runner.running and wait_for_end(SimpleNamespace(ended=ended, runner=runner)) == FAILED

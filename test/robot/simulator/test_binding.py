@@ -1,6 +1,7 @@
 """Plain classes as libqi services: signatures, errors, calls that take time, posted calls, other parts later."""
 
 import logging
+import threading
 
 import pytest
 from simulator import PATIENCE, connected
@@ -237,3 +238,17 @@ def test_a_posted_call_can_be_stopped_and_waited_for_before_it_began(proxy, moti
     assert proxy.ping() and future.isRunning()
     motion.tasks[1].finish()
     assert ended(future) is False
+
+
+def test_a_wait_that_is_cancelled_or_over_leaves_nothing_with_what_it_waited_for(proxy, motion):
+    posted = proxy.pCall("wakeUp")
+    threads = threading.active_count()
+    waiting = [begun(proxy, "wait", posted, milliseconds) for milliseconds in (0, 1, 3600000)]
+    assert threading.active_count() == threads
+    assert ended(waiting[1]) is True
+    for future in (waiting[0], waiting[2]):
+        future.cancel()
+        future.wait(int(1000 * PATIENCE))
+        assert future.isCanceled()
+    callbacks = motion.tasks[0]._callbacks
+    assert len(callbacks) == 1, callbacks  # that of the posted call itself

@@ -8,14 +8,27 @@ import socket
 import subprocess
 import sys
 import threading
+import time
+from pathlib import Path
 
+import av
 import pytest
 import qi
 from simulator import PATIENCE, connected
+from sounds import sound_of
+from waits import hold
 
+from nao_library_modules.processes.process_tree import descendants, identify, kill_survivors
 from nao_sim_bridge import broker as module
+from nao_sim_bridge import own_sockets
 from nao_sim_bridge.broker import Broker
+from nao_sim_bridge.services import client_calls
+from nao_sim_bridge.testing import wait_until
 
+END_LIMIT = 5.0
+SPEAKS = 0.01
+"""s of processor time after which a copy of the speech process speaks: what comes before takes less than 1 ms."""
+"""s within which a simulator that is told to end is over, and after a kill all that it has started."""
 LISTENS = re.compile(r"listens on 127\.0\.0\.1:(\d+)")
 
 
@@ -116,6 +129,127 @@ def test_modules_of_clients_are_called_in_order_and_one_that_hangs_holds_up_no_o
     assert stuck.calls.get(timeout=PATIENCE) == 3  # the one that waited was dropped
 
 
+def test_of_too_many_calls_that_wait_for_a_module_the_oldest_are_lost_and_counted(listening, connect, caplog):
+    broker, stuck = listening(), Echo(held_up=True)
+    client = connect(broker.port)
+    client.listen("tcp://127.0.0.1:0")
+    client.registerService("Stuck", stuck)
+    broker.call("Stuck", "hear", [-1])
+    assert stuck.entered.wait(PATIENCE)
+    for n in range(module.WAITING + 3):
+        broker.call("Stuck", "hear", [n])
+    stuck.let_go.set()
+    heard = [stuck.calls.get(timeout=PATIENCE) for _ in range(module.WAITING + 1)]
+    assert heard == [-1, *range(3, module.WAITING + 3)]
+    assert [r.args for r in caplog.records if "does not keep up" in r.msg] == [("Stuck", 1), ("Stuck", 2)]
+
+
+def test_a_callback_that_always_fails_is_told_less_and_less(listening, connect, caplog):
+    broker, echo = listening(), Echo()
+    client = connect(broker.port)
+    client.listen("tcp://127.0.0.1:0")
+    client.registerService("Echo", echo)
+    for _ in range(100):
+        broker.call("Echo", "no_such_method", [1])
+    broker.call("Echo", "hear", ["the last"])
+    assert echo.calls.get(timeout=PATIENCE) == "the last"
+    assert [r.args[-1] for r in caplog.records if "callback %s.%s" in r.msg] == [1, 2, 4, 8, 16, 32, 64]
+
+
+CLIENT = """
+import sys, time
+import qi
+session = qi.Session()
+session.connect("tcp://127.0.0.1:" + sys.argv[1])
+class Module:
+    def hear(self, value):
+        print("hears", flush=True)
+        time.sleep(1000)
+session.listen("tcp://127.0.0.1:0")
+session.registerService("Client", Module())
+if sys.argv[2:]:
+    source = session.service(sys.argv[2])
+    source.told.connect(lambda value: print("told", flush=True))
+print("ready", flush=True)
+time.sleep(1000)
+"""
+
+
+@pytest.fixture
+def client_program():
+    """Starts programs that are clients, killed after the test; each has said that it is ready."""
+    started = []
+
+    def start(*arguments):
+        command = [sys.executable, "-c", CLIENT, *map(str, arguments)]
+        started.append(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
+        said(started[-1], "ready")
+        return started[-1]
+
+    yield start
+    for one in started:
+        one.kill()
+        one.communicate()
+
+
+def said(program, word):
+    """Return when a program has said a word."""
+    assert any(line.strip() == word for line in program.stdout)
+
+
+def test_a_program_that_is_killed_in_a_call_leaves_no_thread_and_is_told_of(listening, client_program):
+    broker, gone = listening(), queue.Queue()
+    broker.when_gone(gone.put)
+    program = client_program(broker.port)
+    broker.call("Client", "hear", [1])
+    broker.call("Client", "hear", [2])
+    said(program, "hears")
+    (caller,) = (thread for thread in threading.enumerate() if thread.name == "calls of Client")
+    program.kill()
+    assert gone.get(timeout=PATIENCE) == "Client"
+    caller.join(PATIENCE)
+    assert not caller.is_alive()
+
+
+def test_a_module_that_never_answers_is_given_up(listening, client_program, monkeypatch):
+    monkeypatch.setattr(client_calls, "GIVEN_UP", 0.2)
+    broker, gone = listening(), queue.Queue()
+    broker.when_gone(gone.put)
+    client_program(broker.port)
+    broker.call("Client", "hear", [1])
+    assert gone.get(timeout=PATIENCE) == "Client"
+
+
+def test_a_program_that_stopped_before_it_is_called_first_is_not_waited_for(listening, client_program, monkeypatch):
+    monkeypatch.setattr(module, "PATIENCE", 0.2)
+    broker = listening()
+    hold(client_program(broker.port).pid)
+    with pytest.raises(RuntimeError, match="no answer within 0.2 s"):
+        broker.service("Client")
+
+
+def test_a_client_that_takes_nothing_any_more_is_cut_off(listening, client_program, monkeypatch, caplog):
+    monkeypatch.setattr(own_sockets, "STUCK", 0.5)
+    monkeypatch.setattr(own_sockets, "LOOK_PERIOD", 0.1)
+    broker, gone = listening(), queue.Queue()
+    broker.when_gone(gone.put)
+
+    class Source:
+        def __init__(self):
+            self.told = qi.Signal("(m)")
+
+    source = Source()
+    broker.register("Source", source)
+    program = client_program(broker.port, "Source")
+    source.told("first")
+    said(program, "told")
+    hold(program.pid)
+    for _ in range(200):
+        source.told("x" * 100000)  # more than the sockets hold
+    assert gone.get(timeout=PATIENCE) == "Client"
+    assert "has taken nothing for" in caplog.text
+
+
 class Program:
     """A running simulator."""
 
@@ -194,7 +328,80 @@ def test_after_a_kill_it_can_start_again_on_its_port_at_once(program, used):
     assert again.port() == port and not any("waiting" in line for line in again.said)
 
 
+def frames(path):
+    with av.open(str(path)) as film:
+        return sum(1 for _ in film.decode(video=0))
+
+
+def test_ctrl_c_ends_it_in_time_while_it_films_and_records_and_the_files_are_whole(program, connect, tmp_path):
+    running = program("--record-dir", str(tmp_path))
+    session = connect(running.port())
+    film, video, sound = (tmp_path / name for name in ("film.mp4", "video.avi", "sound.wav"))
+    session.service("NaoSimulation").startFilm(film.name, "front", 64, 64, 60.0)
+    session.service("ALVideoRecorder").startRecording("/home/nao", video.stem)
+    session.service("ALAudioRecorder").startMicrophonesRecording(sound.name, "wav", 16000, [0, 0, 1, 0])
+    for path in (film, video, sound):
+        wait_until(path.exists, 4 * PATIENCE, f"the beginning of {path.name}")
+    running.process.send_signal(signal.SIGINT)
+    began = time.monotonic()
+    running.process.wait(4 * PATIENCE)
+    assert time.monotonic() - began < END_LIMIT + 1.0  # the system is busy with other tests, too
+    assert frames(film) and frames(video) and sound_of(sound).duration > 0.1
+
+
+def stopped_copy(pid):
+    """Stop a copy of the speech process that speaks; whether there was one.
+
+    One that has only begun could not yet have asked the system to end it, and while it is stopped it cannot.
+    """
+    for worker in descendants(pid):
+        for copy in descendants(worker.pid):
+            if computed(copy.pid) > SPEAKS:
+                os.kill(copy.pid, signal.SIGSTOP)
+                return identify(copy.pid) is not None
+    return False
+
+
+def computed(pid):
+    """Processor time that a process has had, s; 0 if it is gone."""
+    try:
+        return int(Path(f"/proc/{pid}/schedstat").read_text().split()[0]) / 1e9
+    except (OSError, IndexError):
+        return 0.0
+
+
+def test_nothing_is_left_of_a_simulator_that_is_killed_while_it_speaks_draws_and_recognises(program, connect):
+    running = program()
+    pid, session = running.process.pid, connect(running.port())
+    session.service("NaoSimulation").picture("front", 16, 16)
+    hearing = session.service("ALSpeechRecognition")
+    hearing.setVocabulary(["yes"], False)
+    hearing.subscribe("test")
+    text = " ".join(f"Number {number}, and so on, and so on, and on." for number in range(60))
+    session.service("ALTextToSpeech").call("sayToFile", text, "text.wav", _async=True)
+    wait_until(lambda: stopped_copy(pid), 4 * PATIENCE, "a text that is spoken")
+    session.service("NaoSimulation").call("picture", "front", 4096, 4096, _async=True)
+    started = descendants(pid)
+    assert len(started) == 4
+    running.process.kill()
+    try:
+        wait_until(lambda: not any(identify(one.pid) == one for one in started), END_LIMIT, "the end of its processes")
+    finally:
+        kill_survivors(started)
+
+
 def test_what_keeps_it_from_starting_is_said_in_one_line(program):
     ended = program("--world", "moon")
     assert ended.status() == 1
     assert re.search(r"\[nao_sim\] ERROR .*no world 'moon'.*empty", ended.said[-1])
+
+
+def test_it_knows_whether_a_client_is_connected(listening, connect):
+    broker = listening()
+    other = listening()
+    connect(other.port)
+    assert not broker.has_clients() and other.has_clients()
+    client = connect(broker.port)
+    assert broker.has_clients()
+    client.close()
+    wait_until(lambda: not broker.has_clients(), PATIENCE, "the connection has ended")

@@ -1,9 +1,12 @@
 """A factory reset: whatever clients have changed, the server is as one that has just been started."""
 
+import gc
 import os
 import queue
 import re
+import shutil
 import threading
+import weakref
 
 import numpy as np
 import pytest
@@ -201,6 +204,16 @@ def test_a_client_learns_that_the_robot_has_started_again(robot):
     assert ready.empty() and states.empty()
 
 
+def test_a_session_that_is_over_is_forgotten(robot):
+    connection, states = naoqi.connection(*robot.address), queue.Queue()
+    robot.proxy("ALMotion").robotIsWakeUp()
+    old = weakref.ref(connection.live)
+    connection.add_listener(states.put)
+    robot.server.factory_reset()
+    assert [str(states.get(timeout=PATIENCE)) for _ in range(2)] == ["lost", "connected"]
+    wait_until(lambda: gc.collect() >= 0 and old() is None, PATIENCE, "the session that nobody needs any more")
+
+
 def test_equal_runs_are_equal_to_the_last_bit(robot):
     def run():
         robot.fresh()
@@ -246,14 +259,18 @@ def test_a_reset_to_a_world_is_a_factory_reset_there(robot):
 
 
 def test_a_world_of_a_file_is_read_anew(robot, world_file):
-    path = world_file("{name: crate, box: [0.2, 0.2, 0.2], position: [1, 0, 0.1]}")
-    robot.NaoSimulation.reset(path)
+    file = robot.server.files.folder / "crate.yaml"
+    shutil.move(world_file("{name: crate, box: [0.2, 0.2, 0.2], position: [1, 0, 0.1]}"), file)
+    robot.NaoSimulation.reset("crate.yaml")
     assert list(robot.NaoSimulation.objects()) == ["crate"]
     before = robot.NaoSimulation.picture("far", 64, 48)
-    world_file("{name: crate, box: [0.2, 0.2, 1.2], position: [1, 0, 0.6]}")
-    robot.NaoSimulation.reset(path)
+    shutil.move(world_file("{name: crate, box: [0.2, 0.2, 1.2], position: [1, 0, 0.6]}"), file)
+    robot.NaoSimulation.reset(str(file))
     assert robot.NaoSimulation.objects()["crate"][2] == pytest.approx(0.6)
     assert robot.NaoSimulation.picture("far", 64, 48) != before
+    with pytest.raises(RuntimeError, match="no world file '/etc/secret.yaml' in .*"):
+        robot.NaoSimulation.reset("/etc/secret.yaml")
+    file.unlink()
 
 
 def test_pending_calls_and_posted_calls_end(robot):
@@ -261,18 +278,19 @@ def test_pending_calls_and_posted_calls_end(robot):
     calls = [
         robot.post("ALMotion", "angleInterpolation", "HeadYaw", 0.5, 5.0, True),
         robot.post("ALTextToSpeech", "say", "a text that is not over"),
-        robot.post("ALMemory", "getDataOnChange", "footContact", 0),
+        robot.post("ALMemory", "getDataOnChange", "footContactChanged", 0),
         robot.post("ALPhotoCapture", "takePictures", 5, "", "photo"),
         robot.post("NaoSimulation", "touch", "Head/Touch/Front", 5.0),
     ]
     for module in ("ALMotion", "ALTextToSpeech", "ALMemory", "ALPhotoCapture"):
         robot.handed_over(module)
     robot.advance(0.1)
-    advance = robot.post("NaoSimulation", "advance", 0.5)
+    advance = robot.post("NaoSimulation", "advance", 5000.0)
     robot.server.factory_reset()
     assert [call.wait(int(1000 * PATIENCE)) for call in calls] != [1] * len(calls)
     assert not any(call.isRunning() for call in calls)
-    assert robot.answer(advance) <= 0.5  # time that was asked for goes on
+    with pytest.raises(RuntimeError, match="NaoSimulation::advance was ended by a reset after"):
+        robot.answer(advance)
     assert robot.ALMotion.getTaskList() == []
     assert robot.ALMotion.getAngles("HeadYaw", True) == pytest.approx([0.0], abs=0.01)
 

@@ -7,9 +7,10 @@ import av
 import numpy as np
 import pytest
 from simulator import PATIENCE, Simulator
+from sounds import sound_of
 
 from nao_sim_bridge.sim.errors import SimulationError
-from nao_sim_bridge.sim.sound.files import read_sound
+from nao_sim_bridge.sim.render.wire import StateSender
 from nao_sim_bridge.sim.sound.samples import RATE, sine
 from nao_sim_bridge.sim.sound.wav_file import WavFile
 from nao_sim_bridge.sound_outlets import CARD_DELAY, SoundCard, SoundFile
@@ -73,6 +74,17 @@ def test_there_is_one_film_at_a_time_and_it_is_complete_when_the_program_ends(ro
     robot.advance(0.5)
     robot.server.film.close()  # as at the end of the program: it is complete
     assert len(pictures()) == 3
+    path = simulation.startFilm("", "", SIDE, SIDE, FRAME_RATE)
+    robot.server.film.close()
+    assert path == str(robot.server.files.folder / "film-2.mp4"), "one without a name replaces none"
+
+
+def test_a_film_that_cannot_be_drawn_tells_so_and_holds_no_time_up(robot, film, monkeypatch):
+    monkeypatch.setattr(StateSender, "pack", lambda *_: 1 / 0)
+    film()
+    robot.advance(1.0)
+    with pytest.raises(RuntimeError, match="ZeroDivisionError"):
+        robot.NaoSimulation.stopFilm()
 
 
 class Card:
@@ -112,21 +124,21 @@ def simulation(bench):
 
 def test_the_file_has_silence_and_sound_at_their_times_and_is_whole_while_it_grows(simulation, tmp_path, monkeypatch):
     written, write = threading.Event(), WavFile.write
-    monkeypatch.setattr(WavFile, "write", lambda file, samples: (write(file, samples), written.set()))
+    monkeypatch.setattr(WavFile, "write", lambda file, *block: (write(file, *block), written.set()))
     file = SoundFile(simulation, tmp_path / "all.wav")
     assert file.behind in simulation.holds and not file.behind()
     simulation.run(0.5)
     simulation.sound.loudspeakers.play(sine(1000.0, 0.5, 0.5), "say")
-    assert written.wait(PATIENCE) and read_sound(tmp_path / "all.wav").duration >= 0.5
+    assert written.wait(PATIENCE) and sound_of(tmp_path / "all.wav").duration >= 0.5
     simulation.run(1.5)
     file.close()
-    kept = read_sound(tmp_path / "all.wav")
+    kept = sound_of(tmp_path / "all.wav")
     assert (kept.duration, kept.channels, kept.rate) == (2.0, 2, RATE)
     loud = np.flatnonzero(np.abs(kept.samples[:, 0]) > 1e-3)
     assert loud[0] == pytest.approx(0.5 * RATE, abs=2) and loud[-1] == pytest.approx(RATE, abs=2)
     assert np.array_equal(kept.samples[RATE // 2 : RATE], (sine(1000.0, 0.5, 0.5).pcm16() / 32768.0).repeat(2, axis=1))
     with pytest.raises(SimulationError, match="cannot be written"):
-        SoundFile(simulation, tmp_path / "missing" / "all.wav")
+        SoundFile(simulation, tmp_path / "all.wav" / "all.wav")
 
 
 def test_the_card_gets_what_is_played_after_a_short_silence(simulation, card, bench):
@@ -152,6 +164,6 @@ def test_the_sound_file_goes_on_after_a_factory_reset_and_modules_that_were_take
         robot.advance(0.5)
     finally:
         robot.close()
-    sound = read_sound(tmp_path / "today" / "all.wav").samples
+    sound = sound_of(tmp_path / "today" / "all.wav").samples
     assert len(sound) == pytest.approx(RATE, abs=RATE // 50)
     assert not sound[: RATE // 2].any() and sound[RATE // 2 :].any()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nao_library_modules.own_stack import OwnStack
+from nao_library_modules.processes.own_stack import OwnStack
 
 
 def test_a_roslaunch_that_ends_is_told_at_once_with_its_last_words(tmp_path):

@@ -7,6 +7,7 @@ import signal
 
 import numpy as np
 import pytest
+from waits import hold
 
 from nao_sim_bridge.sim.speech.engines import Engines
 from nao_sim_bridge.sim.speech.speech import SpeechError, Utterance
@@ -83,7 +84,7 @@ def test_a_dead_process_is_started_again_and_ends_with_its_engines(own):
 
 def test_a_process_that_does_not_answer_is_an_error_and_the_next_text_is_spoken(own):
     assert own.missing(*ENGLISH) is None
-    os.kill(own.pid, signal.SIGSTOP)
+    hold(own.pid)
     own.answer_timeout = 0.05
     with pytest.raises(SpeechError, match="speaking 'One.': no answer of the speech process within 0.05 s"):
         own.synthesise(Utterance(*ENGLISH, "One."))

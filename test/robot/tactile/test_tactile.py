@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import threading
+from collections import defaultdict
 
 import pytest
 from goal_functions import tactile as f
 from sensor_msgs.msg import BatteryState
 
 from nao_library_actions.msg import NaoTactileGoal
-from nao_library_modules.tactile import NaoTactile
+from nao_library_modules.base.kept import Kept
+from nao_library_modules.tactile.server import NaoTactile
 from nao_library_msgs.msg import TactileFunction
 
 FRONT, MIDDLE, REAR = (f"Head/Touch/{place}" for place in ("Front", "Middle", "Rear"))
@@ -65,6 +67,21 @@ def tap(press):
         press()
 
     return tap
+
+
+@pytest.fixture
+def truth(robot):
+    """Simulated times, s, at which the physics had a sensor begin and end to be pressed: name -> [begin, end, ...]."""
+    times, before = defaultdict(list), set()
+
+    def look(snapshot):
+        for name in snapshot.touched ^ before:
+            times[name].append(snapshot.time)
+        before.clear()
+        before.update(snapshot.touched)
+
+    robot.server.simulation.after_tick.append(look)
+    return times
 
 
 @pytest.fixture
@@ -166,13 +183,80 @@ def test_releases_holds_and_counts(robot, tactile, press, tap):
     assert wait(*three, touch="count", count=3).touched == ["front head"]
 
 
+def seconds(*times):
+    return [time.to_sec() for time in times]
+
+
+def test_results_and_feedback_have_the_times_of_contact(robot, tactile, press, truth):
+    def wait(*taps, **fields):
+        truth.clear()
+        goal = tactile.send(f("waitForTouch", timeout=8.0, **fields))
+        robot.advance(0.3)
+        for sensors, duration in taps:
+            press(*sensors, duration=duration)
+        result = goal.finish().result
+        (one,) = result.results
+        return goal.feedback, seconds(*result.touch_times), seconds(one.onset, one.offset)
+
+    feedback, first, times = wait(([MIDDLE], 0.2), ([], 0.1))
+    begin, end = truth[MIDDLE]
+    assert [*first, *times] == pytest.approx([begin, begin, 0.0], abs=0.010)
+    assert seconds(feedback[-1].stamp) == pytest.approx([begin], abs=0.010)
+    _, first, times = wait(([FRONT], 0.4), ([], 0.1), touch="release")
+    assert [*first, *times] == pytest.approx([truth[FRONT][0], *truth[FRONT]], abs=0.010)
+    _, first, times = wait(([HAND], 1.8), ([], 0.1), touch="hold", duration=1.5)
+    assert [*first, *times] == pytest.approx([truth[HAND][0], truth[HAND][0], 0.0], abs=0.010)
+    _, first, times = wait(([REAR], 0.2), ([], 0.2), ([CHEST], 0.2), ([], 0.1), touch="count", count=2)
+    assert [*first, *times] == pytest.approx([truth[REAR][0], truth[CHEST][0], truth[REAR][0], 0.0], abs=0.010)
+
+
+def test_a_touch_that_began_before_the_wait_has_its_first_contact(robot, tactile, press, truth):
+    press(FRONT, duration=0.6)
+    before = truth[FRONT][0]
+    (since,) = seconds(*tactile.succeed(f("getTouched")).touch_times)
+    assert since == pytest.approx(before, abs=0.010)
+    hold = tactile.succeed(f("waitForTouch", touch="hold", duration=1.0))
+    assert 1.0 <= hold.results[0].elapsed.to_sec() < 1.0 + SLACK, "it is held from now on"
+    assert seconds(hold.results[0].onset) == pytest.approx([before], abs=0.010)
+    goal = tactile.send(f("waitForTouch", touch="release", timeout=8.0))
+    robot.advance_until(lambda: "waiting" in [told.status for told in goal.feedback], 5.0)
+    press()
+    (release,) = goal.finish().result.results
+    assert seconds(release.onset, release.offset) == pytest.approx(truth[FRONT], abs=0.010)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_clicks_have_first_and_last_contact_however_late_they_are_told(robot, tactile, press, truth, count):
+    goal = tactile.send(f("waitForChestButton", count=count, timeout=8.0))
+    robot.advance(0.3)
+    for _ in range(count):
+        press(CHEST, duration=0.15)
+        press(duration=0.15)
+    (one,) = goal.finish().result.results
+    first, last = truth[CHEST][0], truth[CHEST][-1]
+    assert seconds(one.onset, one.offset) == pytest.approx([first, last], abs=0.010)
+    # Another click might follow one or two of them.
+    assert one.end.to_sec() - last == pytest.approx(0.5 if count < 3 else 0.0, abs=0.05)
+
+
+def test_a_binding_knows_the_first_contact_of_the_touch_that_started_it(tactile, press, truth, runner, started):
+    tactile.succeed(f("onTouch", sensors=["head"], touch="release", behavior="nod"))
+    press(FRONT, duration=0.5)
+    press()
+    started()
+    (binding,) = tactile.succeed(f("listOnTouch")).bindings
+    assert seconds(binding.touched) == pytest.approx(truth[FRONT][:1], abs=0.010)
+
+
 def test_an_obstacle_comes_near(robot, tactile, idle):
     robot.NaoSimulation.placeObject(WALL % 1.5)
     goal = tactile.send(f("waitForObstacle", distance=0.8, timeout=20.0))
     robot.advance(1.5)
     assert goal.active and len(robot.ALSonar.getSubscribersInfo()) == 1
+    moved = robot.now.time
     robot.NaoSimulation.moveObject("wall", [0.7, 0.0, 1.0], [0.0, 0.0, 0.0], 0.0)
     result = goal.finish().result
+    assert 0.0 <= result.results[0].onset.to_sec() - moved < 0.22, "it measures, and is asked, every 0.1 s"
     assert set(result.sonar_names) == set(result.memList) == {"left", "right"} and idle()
     assert all(0.45 < metres < 0.75 for metres in result.sonar)
     assert (
@@ -183,17 +267,22 @@ def test_an_obstacle_comes_near(robot, tactile, idle):
 def test_a_fall(robot, tactile):
     goal = tactile.send(f("waitForFall", timeout=60.0))
     robot.advance(0.2)
+    fallen = robot.now.time
     robot.ALMemory.raiseEvent("robotHasFallen", True)
     assert goal.finish().result.fell is True
+    assert seconds(goal.result.results[0].onset) == pytest.approx([fallen], abs=0.010)
     assert goal.result.memList == ["True"]
 
 
 def test_nothing_in_time_is_an_answer_and_a_cancel_leaves_nothing(robot, tactile, idle):
     began = robot.now.time
-    result = tactile.succeed(
+    goal = tactile.play(
         f("waitForTouch", timeout=0.5), f("waitForFall", timeout=0.5), f("waitForObstacle", timeout=0.5)
     )
-    assert (result.touched, result.fell, result.memList) == ([], False, ["False"])
+    assert (goal.result.touched, goal.result.fell, goal.result.memList) == ([], False, ["False"])
+    assert goal.state == "succeeded" and [text.partition(": ")[2] for text in goal.text.split("; ")] == [
+        "no touch within 0.5 s", "no fall within 0.5 s", "nothing nearer than 0.5 m within 0.5 s"
+    ]  # fmt: skip
     assert robot.now.time - began == pytest.approx(1.5, abs=0.6) and idle()
     for function in ("waitForTouch", "waitForChestButton", "waitForObstacle", "waitForFall"):
         goal = tactile.send(f(function, timeout=100.0))
@@ -244,6 +333,20 @@ def test_a_touch_starts_its_behaviour_each_time(tactile, tap, runner, started):
     assert runner.runs == [("hello", ["text=Hi"])] * 2
     (binding,) = tactile.succeed(f("listOnTouch")).bindings
     assert (binding.runs, binding.running, binding.last) == (2, False, "succeeded")
+
+
+def test_links_of_a_server_that_died_are_there_again_in_the_next(goals_to, tap, tmp_path):
+    first, second = Runner(), Runner()
+    link = f("onTouch", sensors=["head"], touch="press", behavior="hello", parameters=["text=Hi"], cooldown=1.0)
+    tactile = goals_to(NaoTactile, NaoTactileGoal, runner=first, kept=Kept(tmp_path / "kept.json", "run"))
+    (before,) = tactile.succeed(link).bindings
+    tactile.succeed(f("onTouch", sensors=["chest"], behavior="bow"), f("removeOnTouch", str_param="bow"))
+    tactile = goals_to(NaoTactile, NaoTactileGoal, runner=second, kept=Kept(tmp_path / "kept.json", "run"))
+    (after,) = tactile.succeed(f("listOnTouch")).bindings
+    assert after == before
+    tap(FRONT)
+    assert second.started.acquire(timeout=15.0)
+    assert second.runs == [("hello", ["text=Hi"])]
 
 
 def test_touches_while_it_runs_and_cools_down_do_not_count(robot, tactile, tap, runner, started):

@@ -10,6 +10,8 @@ from goal_functions import vision as f
 
 EXTRACTORS = "ALRedBallDetection", "ALFaceDetection", "ALLandMarkDetection", "ALBarcodeReader", "ALMovementDetection"
 BEARING = math.radians(2.0)
+MICROSECOND = 1e-6
+"""NAOqi tells times of pictures in whole ones."""
 FUNCTIONS = "detectBall", "detectLandmarks", "detectFaces", "readBarcodes", "detectMovement"
 
 
@@ -171,3 +173,28 @@ def test_what_cannot_be_is_refused_before_anything_runs(robot, vision):
         refused = vision.refused(f("detectBall", timeout=60.0), message)
         assert text in refused and refused.startswith(f"function 2 ({message.function})")
     assert robot.now.time - began < 20.0
+
+
+@pytest.mark.parametrize(
+    "function, thing, pictures",
+    [
+        ("detectBall", {"ball": 0.03}, 30),
+        ("detectLandmarks", {"landmark": "64"}, 15),
+        ("readBarcodes", {"qr": "nao", "size": 0.2}, 10),
+        ("detectFaces", {"face": "anna"}, 10),
+        ("detectMovement", {"ball": 0.1}, 10),
+    ],
+)
+def test_sights_have_the_times_of_the_first_and_the_last_picture(robot, vision, things, function, thing, pictures):
+    goal = vision.send(f(function, count=2, timeout=10.0))
+    robot.advance(0.6)
+    things.place("thing", things.from_camera(0.8), things.facing, **thing)
+    placed = robot.now.time
+    (one,) = goal.finish().result.results
+    onset, offset = one.onset.to_sec(), one.offset.to_sec()
+    assert -0.010 < onset - placed < 1.0 / pictures + 0.010
+    assert onset < offset <= one.end.to_sec()
+    seen = [feedback for feedback in goal.feedback if feedback.objects]
+    stamps = [feedback.stamp.to_sec() for feedback in seen]
+    assert [stamps[0], stamps[-1]] == pytest.approx([onset, offset], abs=1e-6)
+    assert [feedback.objects[0].header.stamp for feedback in seen] == [feedback.stamp for feedback in seen]

@@ -9,6 +9,10 @@ import pytest
 from camera_topics import BOTTOM, TOP, number_of, numbered_image, read_video, wait_for
 from goal_functions import vision as f
 
+from nao_library_actions.msg import NaoVisionGoal
+from nao_library_modules.base.kept import Kept
+from nao_library_modules.vision import NaoVision
+
 
 @pytest.fixture
 def files(vision):
@@ -58,6 +62,25 @@ def test_the_end_of_the_server_completes_the_files(vision, topics, files):
     assert topics.count(TOP) == 0
 
 
+def test_streams_and_recordings_of_a_server_that_died_go_on_in_the_next(goals_to, topics, tmp_path):
+    def server():
+        kept = Kept(tmp_path / "kept.json", "run")
+        return goals_to(NaoVision, NaoVisionGoal, topics=topics, record_dir=str(tmp_path / "files"), kept=kept)
+
+    died = server()
+    died.succeed(f("subscribe", id="s", width=32), f("createStream", id="made", topic_out="/made"))
+    died.succeed(f("startRecording", id="walk", str_param="walk.mp4", width=16), f("subscribe", id="gone"))
+    died.succeed(f("deleteThread", id="gone"))
+    (tmp_path / "files/walk.mp4").write_bytes(b"what there was until then")
+    vision = server()
+    topics.send(TOP, numbered_image(7, 1.0))
+    wait_for(lambda: [t.frames for t in vision.succeed(f("listThreads")).threads] == [0, 1, 1])
+    result = vision.succeed(f("stopRecording", id="walk"), f("listThreads"))
+    assert states(result) == {"made": "ready", "s": "running", "walk": "stopped"}
+    (video,) = result.recordings
+    assert (video.path, video.frames, video.width) == (str(tmp_path / "files/walk-2.mp4"), 1, 16)
+
+
 def test_the_active_camera_is_the_one_of_the_moment(vision, topics):
     vision.succeed(f("setActiveCamera", camera="1"), f("subscribe", id="a"))
     assert (topics.count(TOP), topics.count(BOTTOM)) == (0, 1)
@@ -75,7 +98,7 @@ REFUSED = [
     (f("subscribe", camera="botom", **A), "'botom' is no camera: did you mean 'bottom'"),
     (f("subscribe", topic="no topic", **A), "field topic: 'no topic' is not allowed: letters, digits"),
     (f("subscribe", topic_out=TOP, **A), "field topic_out: frames come from there: another topic"),
-    (f("subscribe", rate=-1.0, **A), "field rate: -1.0 is not allowed: frames a second, or 0: all"),
+    (f("subscribe", rate=-1.0, **A), "field rate: -1.0 is not allowed: 0.001..1000 Hz, or 0: all"),
     (f("subscribe", width=-2, **A), "field width: -2 is not allowed: 1..8192 pixels, or 0"),
     (f("startRecording", str_param="a.mkv", **A), "'mkv' is no type of file for this"),
     (f("startRecording", file_type="avi", codec="h264", **A), "avi files cannot have h264 here: one of mpeg4, mjpeg"),

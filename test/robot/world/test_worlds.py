@@ -6,6 +6,7 @@ from pathlib import Path
 import pybullet
 import pytest
 import yaml
+from sounds import sound_of
 
 from nao_sim_bridge.sim.errors import BadValue, NotAllowed
 from nao_sim_bridge.sim.rotations import roll_pitch_yaw, rotate
@@ -216,7 +217,8 @@ def playing(bench, tmp_path):
         path = tmp_path / "world.yaml"
         path.write_text(yaml.safe_dump({"floor": {"friction": 1.0}, "objects": [CUBE, BOX], "sounds": list(sounds)}))
         one = bench(world=str(path))
-        WorldSounds(one.simulation, load_world(str(path)), lambda text, _: sine(300.0, 0.1 * len(text), 0.5)).begin()
+        speak = lambda text, _: sine(300.0, 0.1 * len(text), 0.5)  # noqa: E731
+        WorldSounds(one.simulation, load_world(str(path)), speak, sound_of).begin()
         return one
 
     return make

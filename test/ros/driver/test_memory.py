@@ -122,7 +122,7 @@ class DriverMemory(unittest.TestCase):
         self.assertIn("did you mean 'FrontTactilTouched'", self.get("FrontTactileTouched").message)
         self.assertIn("is a sensor of the robot", self.set(CHARGE, "1", False).message)
         self.assertIn("it is empty", self.set(" ", "1", False).message)
-        self.assertIn("0 to 100 Hz", self.watch(FRONT, 1000.0, "").message)
+        self.assertIn("0.001..100 Hz, or 0", self.watch(FRONT, 1000.0, "").message)
         self.assertIn("one of bool", self.watch(FRONT, 0.0, "double").message)
         late = self.watch("FrontTactileTouched", 0.0, "")
         self.addCleanup(self.unwatch, "FrontTactileTouched")

@@ -13,7 +13,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty
 
 from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
-from nao_library_modules.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.simple_action_client import SimpleActionClient
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 LIMIT = 60.0
@@ -77,7 +77,7 @@ class DriverSpeech(unittest.TestCase):
             self.configure(voice="nobody")
         self.assertEqual(configuration(self.settings)["voice"], "")
         rospy.set_param("nao_speech/voice", "nobody")
-        self.assertIn("no voice 'nobody': it has", answer(service("reconfigure", Empty)))
+        self.assertIn("no voice 'nobody': there are", answer(service("reconfigure", Empty)))
         rospy.set_param("nao_speech/voice", "")
         self.succeed("My own voice.")
 

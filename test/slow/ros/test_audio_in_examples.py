@@ -10,7 +10,7 @@ import soundfile
 from examples_fixture import start
 from sound_fixture import Room, bursts, level, recording
 
-from nao_library_modules import dialogue_record
+from nao_library_modules.pictures import dialogue_record
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 HEAD_YAW = "Device/SubDeviceList/HeadYaw/Position/Sensor/Value"
@@ -52,10 +52,13 @@ class AudioInExamples(unittest.TestCase):
             self.start("record_sound.py", "example.wav", "--seconds", "2", "--all")
             output = self.finish()
         self.assertIn("example.wav: succeeded", output)
-        self.assertIn("48000 Hz, left, right, front, rear", output)
         info = soundfile.info(str(recording("example.wav")))
+        told = f"{recording('example.wav')}: {info.duration:.1f} s, 48000 Hz, left, right, front, rear"
+        self.assertIn(told, output)
         self.assertEqual(info.channels, 4)
         self.assertAlmostEqual(info.duration, 2.0, delta=0.3)
+        self.start("record_sound.py", "example.wav", "--seconds", "2")
+        self.assertIn(f"{recording('example.wav')} is there already", self.finish(status=1))
 
     def test_a_recording_that_is_interrupted_is_good(self):
         recording("cut.wav").unlink(missing_ok=True)

@@ -73,7 +73,7 @@ class FeatureCommands(unittest.TestCase):
 
         def run_one(row):
             outcome = run(row, folder, os.environ, robot.port, LIMIT)
-            rospy.loginfo("%5.1f s, status %s: %s", outcome.seconds, outcome.status, row.command)
+            rospy.loginfo("%5.1f s, status %s: %s", outcome.ended.seconds, outcome.ended.status, row.command)
             return outcome
 
         with robot.at_speed(SPEED):
@@ -86,4 +86,4 @@ class FeatureCommands(unittest.TestCase):
 def answers(outcome):
     """Whether a command has printed what it has to."""
     wanted = [answer for part, answer in ANSWERS.items() if part in outcome.feature.command]
-    return all(re.search(answer, outcome.output) for answer in wanted)
+    return all(re.search(answer, outcome.ended.output) for answer in wanted)

@@ -58,14 +58,17 @@ class Camera:
         self.publisher.unregister()
 
     def _run(self):
-        number, due = 0, time.monotonic()
+        number, due, last = 0, time.monotonic(), 0.0
         while self._running.wait() and not self._ended.is_set():
             # Two are never closer than a period: files that count time in ticks would have no room for both.
             self._ended.wait(max(0.0, due - time.monotonic()))
+            stamp = rospy.Time.now()
+            if stamp.to_sec() < last + 0.5 / RATE:  # the simulated clock has fallen behind
+                due = time.monotonic() + 0.005
+                continue
             due = max(due, time.monotonic()) + 1.0 / RATE
             number += 1
-            stamp = rospy.Time.now()
-            self.stamps[number] = stamp.to_sec()
+            last = self.stamps[number] = stamp.to_sec()
             self.publisher.publish(self._message(number % 256, Header(stamp=stamp, frame_id="webcam_optical")))
 
     def _message(self, number, header):

@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 from typing import Any, Union
 
-from nao_library_modules.own_stack import free_port
+from nao_library_modules.processes.own_stack import free_port
 
 CABLE = "to_robot"
 INSIDE = "NAO_SOAK_INSIDE"

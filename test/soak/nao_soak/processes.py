@@ -8,7 +8,6 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -46,11 +45,16 @@ class Servers:
     Args:
         machines: Where they run.
         folder: Where their output goes.
+
+    Attributes:
+        logs: Folder of the logs of the nodes.
+        screen: What roslaunch and the nodes print.
     """
 
     def __init__(self, machines: Machines, folder: Path) -> None:
         self._machines = machines
         self._folder = folder
+        self.logs, self.screen = folder / "ros_log", folder / "roslaunch.log"
         self._processes: list[subprocess.Popen[bytes]] = []
 
     def __enter__(self) -> Servers:
@@ -111,8 +115,12 @@ class Simulator:
         seed: Of its sensors.
 
     Attributes:
+        name: What it is called in figures.
+        log: Its output.
         lives: How often it was started.
     """
+
+    name = "simulator"
 
     def __init__(self, machines: Machines, folder: Path, speed: float, seed: int) -> None:
         self._machines = machines
@@ -120,6 +128,7 @@ class Simulator:
         self._speed = speed
         self._seed = seed
         self._process: subprocess.Popen[bytes] | None = None
+        self.log = folder / "nao_sim.log"
         self.lives = 0
 
     def __enter__(self) -> Simulator:
@@ -138,7 +147,7 @@ class Simulator:
         command = [sys.executable, "-m", "nao_sim_bridge", *where, "--world", "lab", "--sensor-noise", "1"]
         command += ["--speed", str(self._speed), "--seed", str(self._seed + self.lives)]
         command += ["--record-dir", str(self._folder / "robot")]
-        with (self._folder / "nao_sim.log").open("ab") as log:
+        with self.log.open("ab") as log:
             self._process = subprocess.Popen(
                 self._machines.on_robot(command), stdout=log, stderr=subprocess.STDOUT, start_new_session=True
             )
@@ -165,22 +174,8 @@ class Simulator:
             NotReady: It has ended by itself.
         """
         if self._process is None or self._process.poll() is not None:
-            raise NotReady(f"the simulator ended by itself; see {self._folder / 'nao_sim.log'}")
+            raise NotReady(f"the simulator ended by itself; see {self.log}")
         return self._process.pid
-
-
-def memory(processes: Mapping[str, int]) -> dict[str, float]:
-    """Memory that processes hold, MB by name; those that are gone are left out."""
-    held = {}
-    for name, pid in processes.items():
-        try:
-            status = Path(f"/proc/{pid}/status").read_text(encoding="ascii", errors="replace")
-        except OSError:
-            continue
-        for line in status.splitlines():
-            if line.startswith("VmRSS:"):
-                held[name] = int(line.split()[1]) / 1024.0
-    return held
 
 
 def _listens(address: str, port: int) -> bool:

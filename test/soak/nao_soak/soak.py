@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -16,13 +17,17 @@ from sensor_msgs.msg import Image, JointState
 
 from .accidents import Accidents
 from .clients import Client, until
+from .ill_clients import IllClients
+from .levels import MEMORY, Levels
 from .machines import Machines
-from .memory_record import MemoryRecord
-from .processes import Servers, Simulator, memory, ros_environment
+from .processes import Servers, Simulator, ros_environment
 
 START_LIMIT = 120.0
 RECOVERY_LIMIT = 60.0
 SAMPLE_PERIOD = 2.0
+LOGS, SCREEN = "logs of the nodes", "what the nodes print"
+LOG_RATES = {LOGS: 8.0, SCREEN: 8.0}
+"""kB a second that they may grow together: each goal that is refused leaves a line, and there are dozens a second."""
 GARBAGE = Path(__file__).with_name("garbage.py")
 TOPICS = {"joint_states": JointState, "odom": Odometry, "nao_robot/camera/top/image_raw": Image}
 """What the driver publishes when all is well."""
@@ -41,7 +46,9 @@ class Plan:
         seed: Where chance comes from.
         servers: Which are tried.
         folder: Where logs and files go.
-        flat: Whether growing memory is a fault.
+        ill: After how many s a client of the robot is killed, beside one that is stopped and one that loads files; 0
+            for no such clients.
+        flat: Whether it is a fault when a process holds more and more.
     """
 
     seconds: float
@@ -52,6 +59,7 @@ class Plan:
     seed: int
     servers: tuple[str, ...]
     folder: Path
+    ill: float = 60.0
     flat: bool = True
 
 
@@ -63,16 +71,18 @@ class Findings:
         ends: Server -> how its goals ended.
         slowest_end_s: Server -> longest time from a cancel to the end of the goal.
         accidents: What happened.
-        memory_mb: Process -> when it had settled, at the end.
-        memory_course_mb: Process -> at each sample, None where it was not there.
+        memory_course_mb: Process -> at each sample.
+        ill_killed: How many clients of the robot were killed.
+        levels: Process and what it holds -> when it had settled, at the end; of the robot if it is never killed.
         faults: What must not be; empty if all is well.
     """
 
     ends: dict[str, dict[str, int]] = field(default_factory=dict)
     slowest_end_s: dict[str, float] = field(default_factory=dict)
     accidents: list[str] = field(default_factory=list)
-    memory_mb: dict[str, tuple[float, float]] = field(default_factory=dict)
-    memory_course_mb: dict[str, list[float | None]] = field(default_factory=dict)
+    memory_course_mb: dict[str, list[float]] = field(default_factory=dict)
+    ill_killed: int = 0
+    levels: dict[str, tuple[float, float]] = field(default_factory=dict)
     faults: list[str] = field(default_factory=list)
 
     def write(self, path: Path) -> None:
@@ -93,7 +103,8 @@ class _Soak:
     def __init__(self, plan: Plan, machines: Machines, servers: Servers, simulator: Simulator) -> None:
         self._plan, self._servers, self._simulator = plan, servers, simulator
         self._accidents = Accidents(machines, simulator, plan.kills, plan.drops, plan.seconds, plan.seed)
-        self._memory = MemoryRecord()
+        self._levels = Levels(SAMPLE_PERIOD, log_rates=LOG_RATES)
+        self._ill = IllClients(machines.robot, machines.nao_port, plan.ill)
         self._findings = Findings()
         rospy.init_node("soak", anonymous=True, disable_signals=True)
         self._clients = [Client(server, plan.seed, plan.strange) for server in plan.servers]
@@ -107,7 +118,8 @@ class _Soak:
             client.start()
         garbage = subprocess.Popen([sys.executable, str(GARBAGE), str(self._plan.seed), *self._plan.servers])
         try:
-            self._let_it_happen(nodes)
+            with self._ill if self._plan.ill else nullcontext():
+                self._let_it_happen(nodes)
             if garbage.poll() is not None:
                 self._findings.faults.append("the sender of garbage ended by itself")
         finally:
@@ -130,7 +142,12 @@ class _Soak:
                 accident.happen()
             if now >= next_sample:
                 next_sample = now + SAMPLE_PERIOD
-                self._memory.add(memory(nodes))
+                for name, pid in nodes.items():
+                    self._levels.add(name, pid)
+                self._levels.add(LOGS, log=self._servers.logs)
+                self._levels.add(SCREEN, log=self._servers.screen)
+                if not self._plan.kills:
+                    self._levels.add(self._simulator.name, self._simulator.pid, self._simulator.log)
             time.sleep(0.05)
 
     def _everything_works(self, when: str, limit: float) -> bool:
@@ -170,15 +187,16 @@ class _Soak:
                 faults.append(f"{client.server}: {client.unexplained} goals were aborted without a word")
             if not client.ends:
                 faults.append(f"{client.server}: no goal ended")
-        for name, (before, after) in self._memory.swollen().items() if self._plan.flat else ():
-            faults.append(f"{name}: its memory grew from {before:.1f} to {after:.1f} MB")
+        if self._plan.flat:
+            faults += self._levels.swollen()
 
     def _tell(self) -> None:
         findings = self._findings
         findings.ends = {client.server: dict(client.ends) for client in self._clients}
         findings.slowest_end_s = {client.server: round(client.slowest, 2) for client in self._clients}
-        findings.memory_mb = {n: (round(a, 1), round(b, 1)) for n, (a, b) in self._memory.growth().items()}
-        findings.memory_course_mb = self._memory.course()
+        findings.memory_course_mb = self._levels.course(MEMORY)
+        findings.ill_killed = self._ill.killed
+        findings.levels = {n: (round(a, 1), round(b, 1)) for n, (a, b) in self._levels.growth().items()}
 
 
 def _works(client: Client, told: list[str]) -> bool:

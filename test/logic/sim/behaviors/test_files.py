@@ -24,6 +24,8 @@ from nao_sim_bridge.sim.behaviors.steps import (
 from nao_sim_bridge.sim.behaviors.xar import xar_step
 from nao_sim_bridge.sim.errors import ConfigError
 
+RED = {"lights": "FaceLeds", "color": "red"}
+
 
 def steps(*entries, name="test"):
     return behaviors_of({"behaviors": {name: {"do": list(entries)}}}, "file")[name].step.steps
@@ -42,6 +44,7 @@ def test_every_kind_of_step_is_read():
     )
     lights = Lights("FaceLeds", (1.0, 128 / 255, 0.0), 0.5)
     assert read[:4] == (GoToPosture("Stand", 0.5), lights, Say("Hello", True), Wait(1.5))
+    assert steps({"repeat": 100000, "do": [RED, {"wait": 0.1}]}) and steps({"repeat": 3, "do": [{"say": "Hello"}]})
     both, again, frames, joints = read[4:]
     assert isinstance(both, Together) and length_of(both) == 3.0
     assert isinstance(again, Repeat) and again.times is None and length_of(Repeat(Wait(2.0), 3)) == 6.0
@@ -57,7 +60,9 @@ def test_every_kind_of_step_is_read():
         ({"frames": [{"time": 0.5, "angles": {"HeadYaw": 9.0}}]}, "HeadYaw: is 9"),
         ({"joints": {"HeadYaw": {"times": [0.5, 0.5], "angles": [0.1, 0.2]}}}, "do not rise"),
         ({"wait": -1.0}, "allowed is 0"),
-        ({"repeat": 0, "do": [{"lights": "FaceLeds", "color": "red"}]}, "takes no time"),
+        ({"repeat": 0, "do": [RED]}, "takes no time"),
+        ({"repeat": 100000, "do": [RED]}, "beyond step 5000"),
+        ({"repeat": 100, "do": [{"repeat": 100, "do": [RED]}]}, "beyond step 5000"),
         ({"dance": "tango"}, "has not one of"),
         ({"wait": 1.0, "until": 2.0}, "unknown key 'until'"),
     ],
@@ -150,9 +155,38 @@ def test_a_box_speaks_as_fast_as_it_says_and_on_a_timeline_at_its_frame():
     assert isinstance(step, Together) and flat(step.steps[1]) == [Wait(1.0), Say("Hi")]
 
 
+def test_a_chain_of_boxes_may_be_long():
+    boxes = "".join(box(number, "Wait", parameters(Timeout=number)) for number in range(1, 1001))
+    step = played(boxes, *((number, number + 1) for number in range(1, 1000)))
+    assert length_of(step) == sum(range(1, 1001))
+
+
+def layers(count, width, inside):
+    """Boxes in layers, each linked to all of the next layer: there are width ** count ways through."""
+    numbers = [[1 + layer * width + place for place in range(width)] for layer in range(count)]
+    boxes = "".join(box(number, "Text", inside) for layer in numbers for number in layer)
+    links = [(a, b) for layer, after in zip([[0], *numbers], numbers) for a in layer for b in after]
+    return project(boxes, "".join(link(*each) for each in links))
+
+
+def moves(*keys, fps=10):
+    moving = timeline(curve("HeadYaw", *keys)).replace('fps="10"', f'fps="{fps}"')
+    return project(box(1, "Move", moving), link(0, 1))
+
+
 @pytest.mark.parametrize(
     "content, told",
     [
+        (layers(12, 4, "<pluginContent><text>Good day</text></pluginContent>"), "too many boxes"),
+        (layers(12, 4, ""), "too many boxes"),
+        (layers(60, 2, ""), "nested too deep"),
+        (moves((5, 1.0), fps="1e-310"), "frames a second is 1e-310, allowed is 1 to 100"),
+        (moves((5, 1.0), fps="0"), "frames a second is 0"),
+        (moves(("1e308", 1.0)), "frame of a key of HeadYaw is 1e308, allowed is -36000 to 36000"),
+        (moves((5, "inf")), "a key of HeadYaw is inf"),
+        (moves((5, 1.0, '<Tangent ordinateParam="1e308"/>')), "the tangent of a key of HeadYaw is 1e308"),
+        (project(box(1, "Wait", parameters(Timeout="1e9")), link(0, 1)), "the time of box 'Wait' is 1e9"),
+        (project(box(1, "Say", parameters(Text="x" * 10001), SAYS), link(0, 1)), "a text of 10001 characters"),
         (project(box(1, "Mine", "", "os.remove('x')"), link(0, 1)), "box 'Mine' runs a script"),
         (project(box(1, "A", NOD) + box(2, "B", NOD), link(0, 1) + link(1, 2) + link(2, 1)), "circles"),
         (project(box(1, "A", timeline(curve("WheelB", (5, 1.0)))), link(0, 1)), "no joint of a NAO"),

@@ -6,8 +6,9 @@ import math
 
 import pytest
 
-from nao_sim_bridge.sim import balance, errors, fall_manager, settings
+from nao_sim_bridge.sim import balance, errors, fall_manager, settings, sizes
 from nao_sim_bridge.sim.errors import BadValue, ConfigError, UnknownName
+from nao_sim_bridge.sim.hearing import settings as hearing
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.places import NEAREST, ORIGIN, RobotPlace, checked_places, on_circle, parse_places
 from nao_sim_bridge.sim.scene import Scene
@@ -15,11 +16,14 @@ from nao_sim_bridge.sim.sensors import noise_settings
 
 MODEL = load_model()
 BALANCE, FALLS, NOISE, PHYSICS = balance.FILE, fall_manager.FILE, noise_settings.FILE, settings.FILE
+HEARING, SIZES = hearing.FILE, sizes.FILE
 LOADERS = {
     BALANCE: (balance, lambda: balance.load_balance(MODEL)),
     FALLS: (fall_manager, lambda: fall_manager.load_fall_settings(MODEL)),
     NOISE: (noise_settings, noise_settings.load_noise),
     PHYSICS: (settings, settings.load_settings),
+    HEARING: (hearing, hearing.load_recognition.__wrapped__),
+    SIZES: (sizes, sizes.load_sizes.__wrapped__),
 }
 
 
@@ -43,11 +47,22 @@ def test_a_tick_is_a_whole_number_of_steps_and_an_encoder_has_4096_a_turn():
     assert noise_settings.load_noise().joints.angle_step == pytest.approx(2 * math.pi / 4096)
 
 
+def test_every_size_tells_where_it_counts():
+    rows = sizes.size_rows()
+    assert all(where and limit > 0 for _, limit, _, where in rows)
+    assert ("clients.call_s", 300.0, "s") in [row[:3] for row in rows]
+
+
 @pytest.mark.parametrize(
     "file, change, message",
     [
-        (PHYSICS, lambda c: c.update(gravity=9.81), "unknown key 'gravity', did you mean 'gravity_m_s2'"),
+        (PHYSICS, lambda c: c.update(gravity=9.81), "unknown key 'gravity': did you mean 'gravity_m_s2'"),
         (PHYSICS, lambda c: c["motor"].popitem(), f"{PHYSICS}: motor: missing"),
+        (PHYSICS, lambda c: c["motor"].update(_meta={}), f"{PHYSICS}: motor: unknown key '_meta'"),
+        (PHYSICS, lambda c: c.update(gravity_m_s2="9.81"), "gravity_m_s2: is '9.81', not a number"),
+        (PHYSICS, lambda c: c["battery"].update(cell_rest_voltages=3.3), "cell_rest_voltages: is 3.3, not a list"),
+        (HEARING, lambda c: c["gain"].update(_notes=""), "gain: unknown key '_notes': did you mean '_note'"),
+        (SIZES, lambda c: c["call"].update(items=0), f"{SIZES}: call: items: is 0, not a number above 0"),
         (NOISE, lambda c: c["feet"].pop("force"), f"{NOISE}: feet: missing 'force'"),
         (NOISE, lambda c: c["joints"].update(angle=-1), r"joints\.angle: is -1, allowed is 0 or more"),
         (NOISE, lambda c: c["inertial"].update(angle_wander_time_s=0), "angle_wander_time_s: is 0, allowed is above 0"),

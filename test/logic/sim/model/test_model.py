@@ -70,7 +70,7 @@ def test_coupled_limits_interpolate_between_rows():
 @pytest.mark.parametrize(
     "spoil, message",
     [
-        (lambda t: t["links"][2].update(mas=1.0), r"links\[2\]: unknown key 'mas', did you mean 'mass_kg'"),
+        (lambda t: t["links"][2].update(mas=1.0), r"links\[2\]: unknown key 'mas': did you mean 'mass_kg'"),
         (lambda t: t["links"][1]["inertia_kg_m2"][0].__setitem__(0, -1.0), "not symmetric and positive"),
         (lambda t: t["joints"][0].update(lower_rad=3.0), "lower limit 3.0 is not below upper"),
         (lambda t: t["almotion_body_order"].pop(), "does not name the same joints"),

@@ -10,6 +10,7 @@ import pytest
 from nao_sim_bridge.sim.model import load_model
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.sound.air import Air
+from nao_sim_bridge.sim.sound.reader import SoundReader
 from nao_sim_bridge.sim.sound.samples import RATE
 from nao_sim_bridge.sim.sound.settings import load_sound_settings
 from nao_sim_bridge.sim.sound.sound_world import SoundWorld
@@ -78,3 +79,10 @@ def room():
     yield make
     for one in made:
         one.world.close()
+
+
+@pytest.fixture(scope="module")
+def reader():
+    reading = SoundReader()
+    yield reading
+    reading.close()

@@ -87,6 +87,18 @@ def test_ears_lag_behind_a_slow_listener_and_ask_time_to_wait(loud):
     assert loud.ears.lag == 0.0 and not loud.ears.holds()
 
 
+def test_what_cannot_be_worked_out_is_not_heard_and_holds_no_time_up(loud, monkeypatch):
+    blocks, render = [], loud.microphones.render
+    monkeypatch.setattr(loud.microphones, "render", lambda first, last: 1 / 0 if first < 0 else render(first, last))
+    listener = loud.ears.listen("test", blocks.append, exact=True)
+    loud.run(0.6)
+    loud.ears.catch_up()
+    assert not loud.ears.holds()
+    listener.close()
+    assert times(blocks)[0] == pytest.approx(0.17) and blocks[-1].end == pytest.approx(0.6, abs=1e-3)
+    assert [one.error for one in loud.ears.guard.failures()] == ["ZeroDivisionError: division by zero"]
+
+
 def test_a_follower_is_told_of_all_time_from_its_beginning_to_its_end(room):
     one, stretches = room(), []
     one.run(0.5)

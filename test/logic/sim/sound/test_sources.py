@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.sizes import LoadedSizes, load_sizes
+from nao_sim_bridge.sim.sound import sources
 from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
 from nao_sim_bridge.sim.sound.sources import SoundSource
 
@@ -97,3 +101,12 @@ def test_a_source_that_comes_nearer_sounds_higher(sounding):
     heard = one.frames(0.2, 1.2)[0]
     spectrum = np.abs(np.fft.rfft(heard * np.hanning(len(heard))))
     assert np.argmax(spectrum) == pytest.approx(1000.0 / (1.0 - 0.01), abs=1.5)
+
+
+def test_sources_have_a_budget_together(sounding, monkeypatch):
+    two_seconds = LoadedSizes(2 * RATE * 4)
+    monkeypatch.setattr(sources, "load_sizes", lambda: replace(load_sizes(), world_sounds=two_seconds))
+    room = sounding(sine(1000.0, 1.5))
+    with pytest.raises(BadValue, match="sound is '192000 bytes', allowed is 384000 bytes for all sources"):
+        room.sources.add(SoundSource("more", (1.0, 0.0, 0.0), sine(500.0, 1.0)))
+    assert room.sources.names() == ["it"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 
 from nao_sim_bridge.sim.speech.dictionary import Pronunciations
@@ -101,6 +103,14 @@ def test_what_cannot_be_followed_is_never_spoken(read, text):
 )
 def test_sentences_end_where_a_reader_would_end_them(text, expected):
     assert [item.text for item in sentences(TagReader().read(text))] == expected
+
+
+@pytest.mark.parametrize("part", ["\\a= ", " ", ".", ". ", "\\a", "Dr. ", "\\eos=0\\.", '"'])
+def test_a_long_text_takes_no_longer_than_it_should(part):
+    began = time.process_time()
+    sentences(TagReader(lambda _: None).read(part * (5000 // len(part))))
+    sentences(TagReader(lambda _: None).read("\\a=" + part * (5000 // len(part)) + "x"))
+    assert time.process_time() - began < 1.0
 
 
 def test_whole_words_are_replaced_and_places_lead_back_to_the_text_as_it_is_written():

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.walk.clipping import clip_step, step_limits
 from nao_sim_bridge.sim.walk.courses import STANDSTILL, rate_limits
 from nao_sim_bridge.sim.walk.footsteps import FootPose
@@ -140,3 +141,14 @@ def test_steps_can_be_added_or_take_the_place_of_those_to_come(walked):
     made = walked(one, 2)
     one.add([], clear=True)
     assert walked(one, after=made[-1]) == []
+
+
+def test_steps_that_are_left_have_a_bound_and_those_that_are_made_do_not_count(walked):
+    one = planned(*PLAN)
+    made = walked(one, 2)
+    one.add([step(LEFT)] * 998, clear=False)
+    with pytest.raises(BadValue, match="footSteps is '1001 steps', allowed is 1000 steps at most"):
+        one.add([step(LEFT)], clear=False)
+    assert len(one.left) == 1000
+    one.add([step(LEFT)], clear=True)
+    assert len(walked(one, after=made[-1])) == 1

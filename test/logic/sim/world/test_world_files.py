@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from sounds import sound_of
 
 from nao_sim_bridge.sim.kinematics import rpy_matrix
 from nao_sim_bridge.sim.landmarks import load_landmarks
@@ -50,7 +51,7 @@ def robot(entry):
 @pytest.mark.parametrize(
     "content, message",
     [
-        ({"flor": {}}, "unknown key 'flor', did you mean 'floor'"),
+        ({"flor": {}}, "unknown key 'flor': did you mean 'floor'"),
         (floor(friction=-1), r"floor\.friction: is -1, allowed is 0 or more"),
         (of({**BALL, "mas": 1}), r"objects\[0\]: unknown key 'mas'"),
         (of(BALL, BALL), r"objects\[1\]\.name: 'ball' is taken"),
@@ -88,6 +89,26 @@ def test_worlds_are_found_by_name_and_path(tmp_path):
         with pytest.raises(WorldError, match=message):
             load_world(wrong)
     with pytest.raises(WorldError, match=r"mine\.yaml: cannot be read"):
+        load_world(str(path))
+
+
+@pytest.mark.parametrize(
+    "text, told",
+    [
+        ("a: &a [%s]\nb: &b [%s]\nc: &c [%s]\nd: [%s]\n", "more than 200000 values"),
+        ("a: &a {k: 1}\nb: &b {<<: [%s]}\nc: &c {<<: [%s]}\nd: {<<: [%s]}\n", "more than 200000 values"),
+        ("objects: &a [*a]", "more than 50 levels"),
+        ("[" * 5000, "more than 100 brackets"),
+        ("floor: {friction: 1" + "0" * 5000 + "}", "a whole number of 5001 characters"),
+        ("floor: {friction: 2024-99-99}", "month must be"),
+    ],
+    ids=range(6),
+)
+def test_a_few_lines_cannot_stand_for_endless_values(tmp_path, text, told):
+    path = tmp_path / "mine.yaml"
+    lists = [",".join([what] * 80) for what in ("1", "*a", "*b", "*c")]
+    path.write_text(text % tuple(lists[-text.count("%s") :]) if "%s" in text else text)
+    with pytest.raises(WorldError, match=f"mine.yaml: cannot be read: .*{told}"):
         load_world(str(path))
 
 
@@ -201,13 +222,13 @@ def sounds(*entries, folder=None):
 
 def made(entry, folder=None):
     """The sound of an entry; a text takes 0.1 s a letter."""
-    return make_sound(*sounds(entry, folder=folder), lambda text, voice: sine(300.0, 0.1 * len(text), 0.5))
+    return make_sound(*sounds(entry, folder=folder), lambda text, voice: sine(300.0, 0.1 * len(text), 0.5), sound_of)
 
 
 @pytest.mark.parametrize(
     "entry, message",
     [
-        ({**HUM, "levl_db": 3}, "unknown key 'levl_db', did you mean 'level_db'"),
+        ({**HUM, "levl_db": 3}, "unknown key 'levl_db': did you mean 'level_db'"),
         (HERE, "has nothing to sound, needs exactly one of file, tone, noise, say"),
         ({"name": "hum", "on": "dog", "tone": 1}, r"on: is 'dog', allowed is an object of this world \(ball, table\)"),
         ({**HUM, "tone": -5}, "tone: is -5, allowed is above 0 to 20000 Hz"),

@@ -1,0 +1,50 @@
+"""Texts with instructions, before a voice and a robot have them."""
+
+from __future__ import annotations
+
+import random
+import time
+
+import pytest
+
+from nao_sim_bridge.services.audio.animated_talk import AnimatedTalk
+from nao_sim_bridge.services.audio.annotated_text import Instruction, method_call, read
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.speech.animations import load_animations
+from nao_sim_bridge.sim.speech.clips import Style
+from nao_sim_bridge.sim.speech.sentences import Sentence
+from nao_sim_bridge.sim.speech.studio import Studio
+
+SHUTDOWN = "Good ^call(ALSystem.shutdown()) night ^pCall(ALSystem.reboot())."
+
+
+def items_of(text, call=None):
+    return AnimatedTalk(
+        text, Style(None), "disabled", Studio(object()), load_animations(), random.Random(0), call
+    )._items
+
+
+def test_a_behaviour_calls_no_methods_and_who_calls_the_robot_does():
+    assert [type(item) for item in items_of(SHUTDOWN)] == [Sentence]
+    assert len(items_of(SHUTDOWN, call=lambda *_: None)) == 3  # a sentence, a gate at which it waits, a sentence
+
+
+@pytest.mark.parametrize(
+    "text, told", [("word " * 2001, "10005 characters"), (r"a \pau=60000\ " * 20, "1200 s of pauses")]
+)
+def test_a_text_with_gestures_is_bounded_as_one_without(text, told):
+    with pytest.raises(BadValue, match=told):
+        items_of(text)
+
+
+def test_instructions_that_never_end_are_text_and_take_no_time():
+    began = time.process_time()
+    (text,) = read("^a(" * 8000)
+    assert len(text) == 24000 and time.process_time() - began < 1.0
+    assert Instruction("mode", "mode", "x") in read("2 ^a( ^b( ^mode(x)")
+
+
+def test_arguments_that_are_none_are_refused_however_deep_they_nest():
+    for arguments in ("(" * 5000, "[" * 900 + "]" * 900, "-" * 1900 + "1", "{[]: 1}", "1 +"):
+        with pytest.raises(ValueError, match="arguments"):
+            method_call(f"A.b({arguments})")

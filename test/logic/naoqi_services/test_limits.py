@@ -1,0 +1,106 @@
+"""Bounds of the numbers that come in over NAOqi: declared for each parameter, and kept."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import re
+
+import pytest
+
+from nao_sim_bridge.paths import config_file
+from nao_sim_bridge.services import limits
+from nao_sim_bridge.services.api import FILE, module_methods
+from nao_sim_bridge.services.nao_simulation import NaoSimulation
+from nao_sim_bridge.services.wire_types import fitted
+from nao_sim_bridge.sim.config import read_json
+from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.sim.limits import check, declared, kinds
+
+NUMERIC = ("int", "float", "ALValue")
+BAD = [math.nan, -math.inf, 1.7e308, -1.7e308]
+
+
+def numeric_parameters():
+    """Module, method and parameter of everything in NAOqi's table, and of NaoSimulation, that may hold numbers."""
+    for module in read_json(config_file(FILE)):
+        if not module.startswith("_"):
+            for name, method in module_methods(module).items():
+                for overload in method.overloads:
+                    for kind, parameter in zip(overload.types, overload.names):
+                        if any(number in kind for number in NUMERIC):
+                            yield module, name, parameter
+    for name, method in inspect.getmembers(NaoSimulation, inspect.isfunction):
+        for parameter in inspect.signature(method).parameters.values():
+            if any(number in str(parameter.annotation) for number in NUMERIC):
+                yield NaoSimulation.__name__, name, parameter.name
+
+
+def test_each_parameter_that_takes_numbers_is_declared_and_nothing_else():
+    found = list(numeric_parameters())
+    assert len(found) > 400
+    assert {parameter for _, _, parameter in found} == set(declared()["parameters"])
+    own = {(method, parameter) for method, own in declared()["methods"].items() for parameter in own}
+    assert own <= {(f"{module}.{method}", parameter) for module, method, parameter in found}
+    used = {limits.kind_of(*parameter).name for parameter in found}
+    assert used <= set(kinds()) and "anything" in used
+
+
+def test_no_number_gets_far_out_but_where_it_is_only_data():
+    for module, name, parameter in numeric_parameters():
+        kind = limits.kind_of(module, name, parameter)
+        for bad in BAD:
+            assert kind.fits(bad) == kind.anything
+        assert kind.fits(math.inf) == (kind.anything or kind.infinite)
+        assert kind.fits(0) and kind.fits(1) and (module == "ALMemory" or kind.fits(0.5))
+
+
+@pytest.mark.parametrize(
+    "value, place",
+    [
+        (1e4, ""),
+        ([1e4], "[0]"),
+        ([[0.0, [1e4, 1e5]]], "[0][1][0]"),
+        ({"a": (0.0, 1e4)}, "['a'][1]"),
+        ([1.0, math.nan], "[1]"),
+        (-(2**70), ""),
+    ],
+)
+def test_a_number_out_of_bounds_is_told_wherever_it_is(value, place):
+    told = rf"^angles{re.escape(place)} is .*, allowed is a finite number, -1000 to 1000 rad$"
+    with pytest.raises(BadValue, match=told):
+        check(value, "angles", kinds()["angle"])
+    check(value, "data", kinds()["anything"])
+
+
+def test_deeply_nested_values_are_looked_at():
+    value = [1e9]
+    for _ in range(2000):
+        value = [value]
+    with pytest.raises(BadValue):
+        check(value, "angles", kinds()["angle"])
+
+
+def test_a_time_is_nothing_or_long_enough_to_be_one():
+    time = kinds()["time"]
+    assert not time.fits(1e-320) and not time.fits(-1e-7)
+    assert time.fits(0.0) and time.fits(1e-6) and time.fits(86400)
+
+
+def test_arguments_are_looked_at_before_a_method_gets_them():
+    interpolation = module_methods("ALMotion")["angleInterpolation"]
+    with pytest.raises(BadValue, match=r"angleLists\[0\] is 1.7e.308"):
+        fitted(interpolation, ["HeadYaw", [1.7e308, -1.7e308], [1.0, 2.0], True], "ALMotion")
+    with pytest.raises(BadValue, match=r"timeLists\[0\] is 1.7e.308, .* 86400 s"):
+        fitted(interpolation, ["HeadYaw", [0.1], [1.7e308], True], "ALMotion")
+    kept = fitted(module_methods("ALMemory")["insertData"], ["key", math.inf], "ALMemory")
+    assert kept == ["key", math.inf]
+
+
+def test_the_table_tells_bounds_and_where_they_hold():
+    rows = {row.kind: row for row in limits.table()}
+    assert list(rows) == list(kinds())
+    assert rows["time"][1:5] == (-86400, 86400, "s", 1e-6)
+    assert "duration" in rows["time"].where and "ALAudioPlayer.goTo position" in rows["time"].where
+    assert "field force" in rows["force"].where and "world mass" in rows["mass"].where
+    assert sum(len(row.where) for row in rows.values()) > 150

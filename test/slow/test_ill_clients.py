@@ -1,0 +1,98 @@
+"""Clients of simulator and servers that are stopped, killed, or load files for ever: nothing is kept of them."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from nao_library_modules.processes.own_stack import can_connect, free_port
+from nao_sim_bridge.testing import wait_until
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "soak"))
+from nao_soak.ill_clients import IllClients
+from nao_soak.levels import Levels
+
+pytestmark = [pytest.mark.alone, pytest.mark.timeout(400)]
+# The short form; `make soak` is the long one. s of wall time.
+WARM, SECONDS, KILLED_EVERY, SAMPLED_EVERY = 90.0, 120.0, 6.0, 1.0
+
+
+NODE = Path(__file__).resolve().parents[2] / "nao_library_modules/nodes/nao_lights"
+USER = """
+import rospy
+from actionlib import SimpleActionClient
+from nao_library_actions.msg import NaoLedAction, NaoLedGoal
+from nao_library_msgs.msg import LedFunction
+
+rospy.init_node("mortal", anonymous=True)
+client = SimpleActionClient("NaoLights", NaoLedAction)
+client.wait_for_server()
+wait = LedFunction(function="setIntensity", lights=["FaceLeds"], i_values=[0.5], time=rospy.Duration.from_sec(0.05))
+while True:
+    client.send_goal_and_wait(NaoLedGoal([wait, LedFunction(function="getColor", lights=["FaceLeds"])]))
+"""
+
+
+class Server:
+    """NaoLights on a ROS master of its own, and a client that sends it goals until it is killed, and another one.
+
+    Attributes:
+        killed: How many were.
+    """
+
+    def __init__(self, folder, robot_port):
+        port, self.log = free_port(), folder / "NaoLights.log"
+        uri, folders = f"http://127.0.0.1:{port}", dict.fromkeys(("ROS_HOME", "ROS_LOG_DIR"), str(folder / "ros"))
+        self._options = {"env": {**os.environ, **folders, "ROS_MASTER_URI": uri}, "stderr": subprocess.DEVNULL}
+        self._master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], **self._options)
+        wait_until(lambda: can_connect(port), WARM, "the ROS master")
+        node = [sys.executable, str(NODE), "--pport", str(robot_port), f"__log:={self.log}"]
+        self.process = subprocess.Popen(node, stdout=subprocess.DEVNULL, **self._options)
+        self.killed, self._user, self._until = 0, None, 0.0
+
+    def look(self, now):
+        """Kill the client when its time has come."""
+        if now > self._until:
+            self._until = now + KILLED_EVERY
+            if self._user:
+                self._user.kill()
+                self._user.wait()
+                self.killed += 1
+            self._user = subprocess.Popen([sys.executable, "-c", USER], stdout=subprocess.DEVNULL, **self._options)
+
+    def close(self):
+        for process in filter(None, (self._user, self.process, self._master)):
+            process.kill()
+            process.wait()
+
+
+def test_memory_threads_descriptors_and_log_are_level_with_ill_clients(tmp_path):
+    port, log = free_port(), tmp_path / "nao_sim.log"
+    command = [sys.executable, "-m", "nao_sim_bridge", "--port", str(port), "--speed", "2"]
+    with log.open("wb") as said:
+        simulator = subprocess.Popen([*command, "--record-dir", str(tmp_path)], stdout=said, stderr=subprocess.STDOUT)
+    levels = Levels(SAMPLED_EVERY)
+    try:
+        while b"listens on" not in log.read_bytes() and simulator.poll() is None:
+            time.sleep(SAMPLED_EVERY)
+        with IllClients("127.0.0.1", port, KILLED_EVERY) as clients, closing(Server(tmp_path, port)) as server:
+            began = time.monotonic()
+            while (now := time.monotonic() - began) < WARM + SECONDS:
+                server.look(now)
+                if now > WARM:
+                    levels.add("simulator", simulator.pid, log)
+                    levels.add("NaoLights", server.process.pid, server.log)
+                time.sleep(SAMPLED_EVERY)
+            ended = simulator.poll(), server.process.poll()
+    finally:
+        simulator.send_signal(signal.SIGTERM)
+        simulator.wait(20.0)
+    print(f"\n{clients.killed} clients of the robot killed, {server.killed} of the server\n{levels.table()}")
+    assert ended == (None, None) and clients.died == 0
+    assert min(clients.killed, server.killed) >= 0.3 * SECONDS / KILLED_EVERY
+    assert len(levels.growth()) == 8 and levels.swollen() == [], log.read_text(errors="replace")[-4000:]

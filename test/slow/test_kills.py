@@ -1,0 +1,67 @@
+"""Nodes that are killed in the middle of what they do: the robot stands, no goal hangs, and all works again."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from xmlrpc.client import ServerProxy
+
+import pytest
+import qi
+import rosgraph
+
+from nao_library_modules.processes.own_stack import OwnStack, can_connect
+from nao_sim_bridge.testing import wait_until
+
+pytestmark = [pytest.mark.alone, pytest.mark.timeout(600)]
+SCRIPT = Path(__file__).resolve().parents[1] / "soak/kills.py"
+LIMIT = 60.0
+KILLS = 18
+"""Of the first kinds; `test/soak/kills.py` takes all of them, and with `--kills 100` some again."""
+
+
+def test_what_a_killed_node_was_doing_ends_and_the_node_comes_back(tmp_path):
+    command = [sys.executable, str(SCRIPT), "--kills", str(KILLS), "--output", str(tmp_path)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    print(run.stdout)
+    assert run.returncode == 0, run.stdout + run.stderr[-4000:]
+    assert json.loads(run.stdout.splitlines()[-1])["kills"] == KILLS
+
+
+def test_a_simulator_that_was_killed_comes_back_and_one_that_was_switched_off_does_not(tmp_path):
+    folders = dict.fromkeys(("ROS_HOME", "ROS_LOG_DIR"), str(tmp_path))
+    arguments = {"driver": "false", "record_dir": str(tmp_path), "sim_time": "true"}
+    with OwnStack(tmp_path / "stack.txt", arguments) as stack:
+        environment = {**os.environ, **folders, "ROS_MASTER_URI": stack.master_uri}
+
+        def lights_work():
+            command = ["nao", "leds", "FaceLeds", "green"]
+            return subprocess.run(command, env=environment, capture_output=True, timeout=LIMIT).returncode == 0
+
+        stack.wait_for_robot()
+        wait_until(lights_work, LIMIT, "lights")
+        node = rosgraph.Master("/test", stack.master_uri).lookupNode("/nao_sim")
+        os.kill(ServerProxy(node).getPid("/test")[2], signal.SIGKILL)
+        wait_until(lambda: not can_connect(stack.nao_port), LIMIT, "the end of the simulator")
+        wait_until(lights_work, LIMIT, "lights of the simulator that was started again")
+
+        second = OwnStack(tmp_path / "second.txt", {**arguments, "sim_time": "false"}, ros_port=stack.ros_port)
+        wait_until(lambda: not second.alive(), LIMIT, "the end of a second launch file")
+        assert "runs on this ROS master already" in second.log.read_text()
+        wait_until(lights_work, LIMIT, "lights of the first one")
+        assert rosgraph.Master("/test", stack.master_uri).getParam("/use_sim_time") is True
+
+        session = qi.Session()
+        session.connect(f"tcp://127.0.0.1:{stack.nao_port}")
+        session.service("ALSystem").shutdown()
+        wait_until(lambda: "nao_sim is off" in stack.log.read_text(), LIMIT, "the end of the simulator")
+        assert not can_connect(stack.nao_port) and stack.alive()
+
+
+def test_a_simulator_that_cannot_start_ends_its_launch_file(tmp_path):
+    for arguments, told in (({"world": "lob"}, "did you mean 'lab'"), ({"robots": "20"}, "1 to 8")):
+        stack = OwnStack(tmp_path / "stack.txt", {"driver": "false", "record_dir": str(tmp_path), **arguments})
+        wait_until(lambda stack=stack: not stack.alive(), LIMIT, "the end of the launch file")
+        assert told in stack.log.read_text()
