@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import random
 import signal
+import time
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -43,6 +45,7 @@ def pytest_addoption(parser):
     parser.addoption("--words", default="", help="run tests with one of these words in their path or name")
     parser.addoption("--closing", default="", help="file for the closing line")
     parser.addoption("--shuffle", default="", help="run the files in a random order of this seed")
+    parser.addoption("--until", type=float, default=float("inf"), help="time (s since 1970) after which no case begins")
 
 
 def pytest_configure(config):
@@ -159,7 +162,7 @@ def _name(report):
 
 
 def pytest_terminal_summary(terminalreporter, config):
-    """The slowest tests, how long each file took, and the closing line: a test that was skipped has not passed."""
+    """The slowest tests, how long each file took, what did not begin, and the closing line."""
     if hasattr(config, "workerinput"):
         return
     reports = [r for group in terminalreporter.stats.values() for r in group if hasattr(r, "duration")]
@@ -174,6 +177,11 @@ def pytest_terminal_summary(terminalreporter, config):
         terminalreporter.line(f"{duration:7.2f} s  {name}")
     RESULTS.mkdir(parents=True, exist_ok=True)
     DURATIONS.write_text(json.dumps({**_durations(), **{file: round(t, 2) for file, t in took.items()}}, indent=0))
+    left_out = Counter(_name(report).split("::")[0] for report in terminalreporter.stats.get("skipped", []))
+    if left_out:
+        terminalreporter.section(f"not begun, because the time was up: {left_out.total()}")
+        for file, cases in sorted(left_out.items()):
+            terminalreporter.line(f"{cases:7}    {file}")
     count = {name: len(terminalreporter.stats.get(name, [])) for name in ("passed", "failed", "error")}
     closing = config.getoption("--closing")
     if closing:
@@ -194,10 +202,20 @@ def pytest_runtest_teardown(item, nextitem):
         stack.rest()
 
 
+class TimeIsUp(pytest.skip.Exception):
+    """A case that does not begin, because the time of the whole run is up."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    if time.time() > item.config.getoption("--until"):
+        raise TimeIsUp("the time is up")
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item, call):
     report = yield
-    if report.skipped and not hasattr(report, "wasxfail"):
+    if report.skipped and not (hasattr(report, "wasxfail") or call.excinfo.errisinstance(TimeIsUp)):
         report.outcome = "failed"
         report.longrepr = f"skipped, which shows nothing: {call.excinfo.value}"
     return report

@@ -19,7 +19,7 @@ FRONT, MIDDLE, REAR = (f"Head/Touch/{place}" for place in ("Front", "Middle", "R
 CHEST, LEFT_BUMPER, HAND = "ChestBoard/Button", "LFoot/Bumper/Left", "RHand/Touch/Back"
 WALL = "{name: wall, box: [0.1, 2.0, 2.0], position: [%g, 0.0, 1.0]}"
 HELLO = TactileFunction(function="onTouch", sensors=["head"], behavior="hello", parameters=["text=Hi"])
-SLACK = 0.3
+SLACK = 0.8
 """Simulated time that the way of an event takes on a busy computer, s."""
 
 
@@ -175,10 +175,10 @@ def test_releases_holds_and_counts(robot, tactile, press, tap):
     press(CHEST)
     assert wait(([], 0.1), sensors=["chest"], touch="release").touched == ["chest"]
     held = wait(([HAND], 0.1), sensors=["right hand"], touch="hold", duration=1.5)
-    assert held.touched == ["right hand back"] and held.results[0].elapsed.to_sec() == pytest.approx(1.8, abs=SLACK)
+    assert held.touched == ["right hand back"] and 1.5 <= held.results[0].elapsed.to_sec() < 1.8 + SLACK
     press()
     short = wait(([HAND], 0.5), ([], 0.1), touch="hold", duration=1.5)
-    assert short.touched == [] and short.results[0].elapsed.to_sec() == pytest.approx(4.0, abs=SLACK)
+    assert short.touched == [] and 4.0 <= short.results[0].elapsed.to_sec() < 4.0 + SLACK
     three = [step for _ in range(3) for step in (([FRONT], 0.1), ([], 0.1))]
     assert wait(*three, touch="count", count=3).touched == ["front head"]
 
