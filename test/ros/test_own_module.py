@@ -41,6 +41,7 @@ class OwnFunction(RobotTestCase):
         own.terminate()
         own.wait()
         wait_until(lambda: self.knows_blink() is False, 60.0, "the server of the launch file")
+        self.client = self.robot.action_client(*self.server)  # one that knows the server that has just come
         self.succeed(f("on", lights=["Eyes"]))
 
     def behave(self, step):
