@@ -88,6 +88,13 @@ def test_velocities_along_a_way():
         assert velocity(Place(*way), LIMITED) == pytest.approx(speeds)
 
 
+def test_in_one_round_the_robot_does_not_get_past_its_target():
+    for frequency, speed in ((0.0, 0.04 / 0.6), (1.0, 0.04 / 0.42)):  # m/s
+        seldom = Settings(controller_frequency=0.5, threshold_damp_xy=0.01, max_vel_x=1.0, step_freq=frequency)
+        ahead, _, turn = velocity(Place(0.05, 0.0, 0.05), seldom)
+        assert ahead * speed * 2.0 == pytest.approx(0.05) and 0.0 < turn * 2.0 * 0.349 / 0.6 <= 0.05
+
+
 def test_it_ends_at_the_last_waypoint_with_its_heading():
     course = PathCourse(CORNER, SETTINGS)
     on_the_way = [(0.2, 0, 0), (0.5, 0, 0), (0.8, 0, 0), (1, 0.1, QUARTER), (1, 0.3, QUARTER), (1, 0.7, QUARTER)]

@@ -7,8 +7,10 @@ import pytest
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.interrupt import Interrupt
 from nao_library_modules.base.places import Place
+from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.walk.footsteps_walk import FootstepWalk
 from nao_library_modules.driver.walk.footsteps_walk import Step as Footstep
+from nao_library_modules.driver.walk.head_scan import AFTERWARDS, DOWN, UP, HeadScan
 from nao_library_modules.driver.walk.moveto_walk import Goal, MoveToWalk
 from nao_library_modules.driver.walk.walk_commands import Step, Target, Velocity
 from nao_library_modules.driver.walk.walk_orders import Overtaken, Stop, WalkEnded
@@ -267,3 +269,33 @@ def test_a_walk_that_is_cancelled_or_stopped_by_others_is_told(moving, robot, un
     moving.go(goal("window", 1.0, 0.0, 0.0))
     eventually(lambda: "window: " in moving.report().message and "stiff" in moving.report().message)
     assert moving.report().level == Level.ERROR
+
+
+@pytest.fixture
+def scan(standing, driver_robot, closing):
+    return closing(HeadScan(JointController(driver_robot), 0.2))
+
+
+def test_a_head_scan_sweeps_evenly_from_the_ground_to_the_sky(scan, robot, begin, until):
+    pitch = lambda: robot.ALMotion.getAngles("HeadPitch", True)[0]  # noqa: E731
+    running = begin(scan.run)
+    until(lambda: pitch() > DOWN - 0.01)
+    started, samples = robot.now.time, []
+    until(lambda: samples.append((robot.now.time - started, pitch())) or samples[-1][1] < UP + 0.01, 25.0)
+    assert 18.0 < samples[-1][0] < 21.0
+    half = next(angle for time, angle in samples if time > samples[-1][0] / 2.0)
+    assert half == pytest.approx((DOWN + UP) / 2.0, abs=0.05)
+    with pytest.raises(NaoError, match="a head scan is under way"):
+        scan.run()
+    until(running.done)
+    assert running.result() is None and not scan.active and pitch() == pytest.approx(AFTERWARDS, abs=0.02)
+
+
+def test_a_head_scan_ends_with_the_node(scan, robot, begin, until):
+    running = begin(scan.run)
+    until(lambda: robot.ALMotion.getAngles("HeadPitch", True)[0] > 0.2)
+    scan.close()
+    until(running.done)
+    with pytest.raises(NaoError, match="the head scan was ended before time: the node ends"):
+        running.result()
+    assert not scan.active

@@ -13,6 +13,7 @@ from geometry_msgs.msg import Pose2D, Twist
 from news import Reports
 from rospy import Duration
 from services import answer, service
+from std_msgs.msg import Empty as EmptyMessage
 from std_srvs.srv import Empty
 
 from nao_library_modules.owners.host import call_for
@@ -145,6 +146,19 @@ class DriverWalker(unittest.TestCase):
         service("enable_arms_walking_srv", SetArmsEnabled)(False, True)
         self.addCleanup(self.motion.setMoveArmsEnabled, True, True)
         self.assertEqual([self.motion.getMoveArmsEnabled(arm) for arm in ("LArm", "RArm")], [False, True])
+
+    def test_the_robot_stands_while_its_head_scans(self):
+        scan = rospy.Publisher("start_scan", EmptyMessage, queue_size=1)
+        wait_until(lambda: scan.get_num_connections() > 0, LIMIT, "subscriber of start_scan")
+        self.cmd_pose.publish(Pose2D(1.0, 0.0, 0.0))
+        self.wait_for_walk()
+        scan.publish()
+        wait_until(lambda: self.motion.getAngles("HeadPitch", True)[0] > 0.45, LIMIT, "the head looking down")
+        self.assertFalse(self.motion.moveIsActive())
+        with self.assertRaisesRegex(rospy.ServiceException, "a head scan is under way"):
+            self.walk_to(Pose2D(0.1, 0.0, 0.0))
+        wait_until(lambda: answer(lambda: self.walk_to(Pose2D(0.0, 0.0, 0.0))) == "", LIMIT, "the end of the scan")
+        self.assertAlmostEqual(self.motion.getAngles("HeadPitch", True)[0], 0.38, delta=0.03)
 
     # --- inhibition -----------------------------------------------------------------------------------------------
 

@@ -26,7 +26,8 @@ class Settings:
         max_vel_x: Velocity mode: share of the robot's top speed ahead, above 0 to 1.
         max_vel_y: Likewise sideways.
         max_vel_yaw: Likewise turning.
-        step_freq: Velocity mode: share of the highest step frequency. Kept for its name: `cmd_vel` cannot carry it.
+        step_freq: Velocity mode: step frequency that nao_walker walks with (its ~step_frequency), 0 (slow) to 1. It
+            tells how far the robot gets in a round, and so how slow it must be to meet its target.
         use_vel_ctrl: Whether the robot is led by velocities (`cmd_vel`) and not by poses (`cmd_pose`).
         use_foot_contact_protection: Whether a robot that is lifted gives its goal up.
         path_next_target_distance: How far ahead on a path the robot aims, m.

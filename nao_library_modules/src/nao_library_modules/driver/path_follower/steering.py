@@ -7,6 +7,7 @@ import math
 from naoqi.errors import NaoError
 
 from ...base.places import Place, wrapped
+from ...nao.walk_speed import top_speeds
 from .courses import facing
 from .settings import Settings
 
@@ -19,13 +20,17 @@ PROGRESS = 0.02
 def velocity(way: Place, settings: Settings) -> tuple[float, float, float]:
     """Shares -1..1 of the top speeds ahead, to the left and turning left, for a way that lies before the robot.
 
+    None is so large that the robot would be past its target in the next round, at the step frequency of the settings.
+
     Args:
         way: To where it goes, in its own frame.
         settings: Of the follower.
     """
     far = way.distance > FACE_DISTANCE
     turn = facing(way) if far else way.yaw
+    top, top_turn = (speed / settings.controller_frequency for speed in top_speeds(settings.step_freq))
     yaw = settings.max_vel_yaw * max(-1.0, min(1.0, wrapped(turn) / settings.threshold_damp_yaw))
+    yaw = math.copysign(min(abs(yaw), abs(wrapped(turn)) / top_turn), yaw)
     if way.distance < 1e-6:
         return 0.0, 0.0, yaw
     share = min(1.0, way.distance / settings.threshold_damp_xy)
@@ -33,7 +38,7 @@ def velocity(way: Place, settings: Settings) -> tuple[float, float, float]:
         share *= max(0.0, math.cos(turn))  # first turn, then go
     # Along an ellipse, so that it keeps its direction where it is slower sideways than ahead.
     ahead, aside = way.x / way.distance, way.y / way.distance
-    share /= math.hypot(ahead / settings.max_vel_x, aside / settings.max_vel_y)
+    share = min(share / math.hypot(ahead / settings.max_vel_x, aside / settings.max_vel_y), way.distance / top)
     return share * ahead, share * aside, yaw
 
 

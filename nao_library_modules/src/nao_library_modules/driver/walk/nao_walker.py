@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import rospy
+import std_msgs.msg
 from geometry_msgs.msg import Pose2D, Twist
 from std_msgs.msg import String
 from std_srvs.srv import Empty
@@ -23,6 +24,7 @@ from ...ros.ros_edge import node_file
 from ..base.services import offer
 from ..joints.joint_controller import QUICK_LIMIT, JointController
 from .gait_config import read_gait_config, read_share
+from .head_scan import HeadScan
 from .walk_commands import Velocity, read_step, read_target, read_velocity
 from .walk_inhibition import WalkInhibition
 from .walk_orders import Command, Order, Overtaken, Stop
@@ -45,17 +47,20 @@ class NaoWalker:
     ROS API (relative names):
         Subscribes `cmd_vel` (geometry_msgs/Twist: linear.x, linear.y, angular.z as fractions -1..1 of the top speed;
         all below 0.001: stand), `cmd_pose` (geometry_msgs/Pose2D: m, rad, in the robot's frame), `cmd_step`
-        (nao_library_msgs/StepTarget; steps queue up).
-        Publishes `speech` (std_msgs/String, latched): "Walker online" when the robot is reached; nao_speech says it.
+        (nao_library_msgs/StepTarget; steps queue up), `start_scan` (std_msgs/Empty): as `head_scan_srv`.
+        Publishes `speech` (std_msgs/String, latched): "Walker online" when the robot is reached, "Starting scan" and
+        "Scan complete"; nao_speech says it.
         Services that answer when the walk has ended, with an error when it did not get there: `cmd_pose_srv`
         (nao_library_msgs/CmdPoseService), `cmd_step_srv` (nao_library_msgs/StepTargetService), `stop_walk_srv`,
-        `inhibit_walk` (std_srvs/Empty). Others: `cmd_vel_srv` (nao_library_msgs/CmdVelService), `uninhibit_walk`,
-        `needs_start_walk_pose_srv`, `read_foot_gait_config_srv` (std_srvs/Empty), `enable_arms_walking_srv`
-        (nao_library_msgs/SetArmsEnabled).
+        `inhibit_walk` (std_srvs/Empty). `head_scan_srv` (std_srvs/Empty) stops the walk, sweeps the head from 28
+        degrees below the horizon to 35 above in 19 s, and answers at the end; meanwhile the robot does not walk.
+        Others: `cmd_vel_srv` (nao_library_msgs/CmdVelService), `uninhibit_walk`, `needs_start_walk_pose_srv`,
+        `read_foot_gait_config_srv` (std_srvs/Empty), `enable_arms_walking_srv` (nao_library_msgs/SetArmsEnabled).
         Parameters `~cmd_vel_timeout` (0.5 s; 0: none), `~step_frequency` (0.5; 0..1, of velocities), `~use_walk_pose`
         (false; true: the first walk begins with the pose for walking), `~use_foot_gait_config` (false),
         `~foot_gait_config` (pairs of name and value for ALMotion), `~init_stiffness` (0),
-        `~enable_foot_contact_protection` (unset: left as it is).
+        `~enable_foot_contact_protection` (unset: left as it is), `~max_head_speed` (0.2, fraction of the top speed: of
+        the head on its way to a scan).
     """
 
     def __init__(self, robot: Any) -> None:
@@ -72,6 +77,7 @@ class NaoWalker:
         self._init_stiffness = read_share("~init_stiffness", rospy.get_param("~init_stiffness", 0.0))
         frequency = read_share("~step_frequency", rospy.get_param("~step_frequency", 0.5))
         gait = self._gait()
+        head_speed = number_parameter("~max_head_speed", rospy.get_param("~max_head_speed", 0.2), limit("fraction"))
         self._kept = node_file()
         self._inhibition = WalkInhibition(self._kept)
         self._journal = WalkJournal()
@@ -79,6 +85,7 @@ class NaoWalker:
         self._walker.frequency = frequency
         self._walker.gait = gait
         self._walker.needs_walk_pose = bool(rospy.get_param("~use_walk_pose", False))
+        self._scan = HeadScan(JointController(robot), head_speed)
         self._speech = rospy.Publisher("speech", String, queue_size=10, latch=True)
         self._online = False
         robot.connection.add_listener(self._connection_changed)
@@ -87,6 +94,7 @@ class NaoWalker:
         rospy.Subscriber("cmd_vel", Twist, self._on_velocity, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("cmd_pose", Pose2D, self._on_pose, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("cmd_step", StepTarget, self._on_step, queue_size=STEPS_IN_LINE)
+        rospy.Subscriber("start_scan", std_msgs.msg.Empty, self._on_scan, queue_size=1)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
@@ -96,6 +104,7 @@ class NaoWalker:
         """Stop the walk and wait until the robot stands; holds on walking end with the node."""
         self._kept.forget()
         self._robot.connection.remove_listener(self._connection_changed)
+        self._scan.close()
         self._walker.close(CLOSE_LIMIT)
 
     # --- topics ---------------------------------------------------------------------------------------------------
@@ -109,12 +118,18 @@ class NaoWalker:
     def _on_step(self, message: StepTarget) -> None:
         self._take("cmd_step", message, lambda: read_step(message))
 
+    def _on_scan(self, message: std_msgs.msg.Empty) -> None:
+        try:
+            self._serve_scan(_caller(message))
+        except NaoError as error:
+            self._journal.failed("start_scan", error)
+
     def _take(self, topic: str, message: Any, read: Callable[[], Command], watched: bool = False) -> None:
         """Take a command from a topic; what goes wrong goes to the log."""
         caller = _caller(message)
         try:
             command = read()
-            if isinstance(command, Velocity) and command.is_zero and self._inhibition.against(caller):
+            if _is_zero(command) and self._inhibition.against(caller):
                 return  # a stick at rest is no news to those who inhibit walking
             order = self._order(topic, caller, command, watched=watched)
         except NaoError as error:
@@ -144,6 +159,8 @@ class NaoWalker:
         owners = self._inhibition.against(caller)
         if owners:
             raise NaoError(f"refused from {caller}: walking is inhibited by {', '.join(owners)}")
+        if self._scan.active and not _is_zero(command):
+            raise NaoError(f"refused from {caller}: a head scan is under way")
         source = f"{name} from {caller}"
         self._journal.commanded(source, rospy.get_time())
         order = self._walker.order(command, source, **options)
@@ -160,6 +177,7 @@ class NaoWalker:
         serve("cmd_pose_srv", CmdPoseService, self._serve_pose)
         serve("cmd_step_srv", StepTargetService, self._serve_step)
         serve("stop_walk_srv", Empty, self._serve_stop)
+        serve("head_scan_srv", Empty, self._serve_scan)
         serve("inhibit_walk", Empty, self._serve_inhibit)
         serve("uninhibit_walk", Empty, self._serve_uninhibit)
         serve("needs_start_walk_pose_srv", Empty, self._serve_walk_pose)
@@ -177,6 +195,13 @@ class NaoWalker:
 
     def _serve_stop(self, caller: str, _: Any) -> None:
         _wait(self._walker.order(Stop(), f"stop_walk_srv from {caller}"))
+
+    def _serve_scan(self, caller: str, _: Any = None) -> None:
+        self._serve_stop(caller, None)
+        self._speech.publish("Starting scan")
+        self._scan.run()
+        self._speech.publish("Scan complete")
+        self._serve_walk_pose()
 
     def _serve_inhibit(self, caller: str, _: Any) -> None:
         count = self._inhibition.inhibit(caller)
@@ -237,6 +262,10 @@ class NaoWalker:
         return self._journal.report(
             rospy.get_time(), self._walker.doing, active, self._inhibition.owners, self._walker.watchdog_stops
         )
+
+
+def _is_zero(command: Command) -> bool:
+    return isinstance(command, Velocity) and command.is_zero
 
 
 def _wait(order: Order) -> None:
