@@ -14,7 +14,7 @@ import json
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,11 +22,9 @@ from typing import Any
 import yaml
 
 from nao_library_modules.base.limits import table as limits_of_modules
-from nao_library_modules.functions.chain import CHECK_ATTRIBUTE, CONTEXT
-from nao_library_modules.functions.describe import Description
-from nao_library_modules.functions.describe_fields import read_fields
+from nao_library_modules.functions.describe import NO_UNIT, Described, Description
 from nao_library_modules.functions.describe_offline import offline_servers
-from nao_library_modules.functions.memory_functions import MemoryFunctions
+from nao_library_modules.functions.message_fields import read_fields
 from nao_library_modules.vision.capture.pictures import size_rows as sizes_of_pictures
 from nao_sim_bridge.cli import parser as simulator_parser
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
@@ -45,8 +43,8 @@ CLIENT = ROOT / "nao_library_modules" / "examples" / "green_eyes.py"
 NAOQI = ROOT / "nao_sim_bridge" / "config" / "naoqi_api.json"
 NOT_WRAPPED = ROOT / "scripts" / "not_wrapped.yaml"
 OUR_MESSAGES = "nao_library_msgs"
-NO_FIELDS = ("self", "_self", CONTEXT)
-"""Parameters of checks that are no fields of a message."""
+FEW = 5
+"""Functions that are named where all that read a field read it alike."""
 LAUNCH_FILES = ROOT / "launch" / "launch"
 MARKED = re.compile(r"<!-- begin: (?P<name>[^>]+) -->\n(?P<body>.*?)<!-- end: (?P<end>[^>]+) -->", re.DOTALL)
 
@@ -64,7 +62,8 @@ class Server:
         action: Type of the action, without its package.
         message: Type of the function messages, without its package.
         module: Class behind it.
-        functions: Name -> callable, without the functions that all servers share.
+        functions: Its own by name.
+        shared: Those that all servers share, by name.
         answers: `result` and `feedback` -> the message of each.
     """
 
@@ -72,7 +71,8 @@ class Server:
     action: str
     message: str
     module: type
-    functions: Mapping[str, Callable[..., Any]]
+    functions: Mapping[str, Described]
+    shared: Mapping[str, Described]
     answers: Mapping[str, type]
 
 
@@ -160,12 +160,13 @@ def find_servers() -> list[Server]:
     """The servers of all modules of the library, by name."""
     servers = []
     for found in offline_servers():
-        shared = MemoryFunctions.memory_functions(found.module)
-        functions = {name: f for name, f in found.module.function_table.items() if name not in shared}
-        message = Description(found.module, found.action).message.rpartition("/")[2]
+        description = Description(found.table, found.kind, found.action)
+        described = description.functions()
+        own, shared = ({each.name: each for each in described if each.shared == of_all} for of_all in (False, True))
+        message = description.message.rpartition("/")[2]
         action = found.action()
         answers = {"result": type(action.action_result.result), "feedback": type(action.action_feedback.feedback)}
-        servers.append(Server(found.name, found.action.__name__, message, type(found.module), functions, answers))
+        servers.append(Server(found.name, found.action.__name__, message, found.kind, own, shared, answers))
     return servers
 
 
@@ -176,21 +177,35 @@ def servers_table(servers: Sequence[Server]) -> str:
     return table(("server", "action", "function message", "class", "what it does"), rows)
 
 
-def functions_table(functions: Mapping[str, Callable[..., Any]]) -> str:
+def functions_table(functions: Mapping[str, Described]) -> str:
     """Functions of a server, the fields that each takes from its message, and what it does."""
-    rows = []
-    for name, function in functions.items():
-        check = getattr(function, CHECK_ATTRIBUTE, None)
-        checked = [name for name in inspect.signature(check).parameters if name not in NO_FIELDS] if check else ()
-        fields = dict.fromkeys((*inspect.signature(function).parameters, *checked))
-        rows.append((code(name), ", ".join(map(code, fields)) or code(""), first_line(function)))
+    rows = [
+        (code(name), ", ".join(code(argument.name) for argument in each.arguments) or code(""), each.help)
+        for name, each in functions.items()
+    ]
     return table(("function", "fields", "what it does"), rows)
+
+
+def fields_table(functions: Mapping[str, Described]) -> str:
+    """What the fields of a server's message mean to its functions; a row for each meaning of a field."""
+    read: dict[str, dict[tuple[str, str], list[str]]] = {}
+    for function in functions.values():
+        for field in function.arguments:
+            units = [field.unit] if field.unit not in ("", NO_UNIT, *field.allowed.split()) else []
+            holds = ", ".join([*filter(None, [field.allowed]), *units])
+            read.setdefault(field.name, {}).setdefault((field.help, holds), []).append(function.name)
+    rows = [
+        (code(name), ", ".join(map(code, of)) if len(meanings) > 1 or len(of) < FEW else "all", meaning, holds)
+        for name, meanings in sorted(read.items())
+        for (meaning, holds), of in meanings.items()
+    ]
+    return table(("field", "functions that read it", "meaning", "what it holds"), rows)
 
 
 def answers_table(answers: Mapping[str, Any]) -> str:
     """Fields of a server's result and feedback, as the comments in the action's definition tell of them."""
     rows = [
-        (where, code(field.name), field_type(field.type), field.text)
+        (where, code(field.name), field_type(field.type), field.comment)
         for where, message in answers.items()
         for field in read_fields(message._full_text).values()
     ]
@@ -204,11 +219,6 @@ def field_type(kind: str) -> str:
     return f"[{text}](../{package}/msg/{name.partition('[')[0]}.msg)" if package == OUR_MESSAGES else text
 
 
-def memory_functions() -> Mapping[str, Callable[..., Any]]:
-    """Functions that all servers share."""
-    return MemoryFunctions.memory_functions(MemoryFunctions())
-
-
 def wrapped(servers: Sequence[Server]) -> str:
     """What of NAOqi's modules the functions of the servers do, and why they do not do the rest.
 
@@ -217,7 +227,7 @@ def wrapped(servers: Sequence[Server]) -> str:
     """
     api = json.loads(NAOQI.read_text(encoding="utf-8"))
     tables: dict[str, Mapping[str, Any]] = {server.name: server.functions for server in servers}
-    tables["every server"] = memory_functions()
+    tables["every server"] = servers[0].shared
     rows = []
     for server, modules in yaml.safe_load(NOT_WRAPPED.read_text(encoding="utf-8")).items():
         for module, told in modules.items():
@@ -323,8 +333,9 @@ def all_tables() -> dict[str, str]:
         "launch nao": launch_arguments(LAUNCH_FILES / "nao.launch"),
         "servers": servers_table(servers),
         **{f"functions {server.name}": functions_table(server.functions) for server in servers},
+        **{f"fields {server.name}": fields_table(server.functions) for server in servers},
         **{f"answers {server.name}": answers_table(server.answers) for server in servers},
-        "memory functions": functions_table(memory_functions()),
+        "memory functions": functions_table(servers[0].shared),
         "wrapped": wrapped(servers),
         "limits": limits(),
         "sizes": sizes(),

@@ -11,7 +11,6 @@ from nao_library_modules.behaviors.language.checking import outlook_facts
 from nao_library_modules.behaviors.language.validation import ask_nobody
 from nao_library_modules.functions.check_service import CheckService, NotValidated, check_request, read_response
 from nao_library_modules.functions.goal_checks import GoalCheck, GoalProblem
-from nao_library_modules.functions.known_robot import KnownRobot
 from nao_library_modules.functions.offline_module import offline_module
 from nao_library_modules.functions.server_types import server_type
 
@@ -131,7 +130,7 @@ def test_a_server_that_answers_counts_and_one_that_does_not_is_told(shipped, tab
 
 def test_the_service_refuses_goals_of_another_type():
     kind = server_type("NaoLights")
-    module, _ = offline_module(kind.module, KnownRobot())
+    module = offline_module(kind.module)
     service = CheckService(module, kind.action)
     goal = kind.goal([kind.function(function="on", lights=["FaceLed"]), kind.function(function="of")])
     check = read_response(service.answer(check_request([goal, kind.goal()])))

@@ -311,7 +311,7 @@ def test_servers_and_functions_are_listed_and_explained(run, graph):
     assert text.startswith("NaoLights setIntensity: Set intensities at once")
     assert "i_values (float64[]) no unit, []" in text and "allowed: each within 0..1" in text
     (described,) = json.loads(run("help", "setIntensity", "--json").stdout)
-    assert described["server"] == "NaoLights" and described["arguments"][1]["minimum"] is None
+    assert described["server"] == "NaoLights" and described["arguments"][0]["minimum"] is None
     # A function of several servers is told of all of them; one that all have once.
     told = (["setParameter"], ["nao_audio_in", "setParameter"], ["getData"])
     assert [run("help", *names).stdout.count("nao call") for names in told] == [3, 1, 1]

@@ -27,8 +27,6 @@ def refused(text, function, *arguments):
 
 def test_colours_are_in_one_field_only():
     refused("field i_values: there is a colour in str_param already", light_goals.colours, TWO, [0, 1, 0], "green")
-    light_goals.require_angle(360)
-    refused(r"field angle: .* 0\.\.360 deg", light_goals.require_angle, 361)
 
 
 def test_colours_as_text_and_as_integers(tmp_path):

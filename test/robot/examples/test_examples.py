@@ -108,5 +108,5 @@ def test_a_new_function_blinks_is_checked_and_leaves_the_lights_as_they_were(exa
     goal = lights.send(f("blink", times=[60.0], **blink))
     robot.advance(1.0)
     assert goal.cancel().state == "preempted" and robot.led(BRAIN0) == 0.25
-    text = lights.refused(f("blink", **blink))
-    assert text == "function 1 (blink): field times: [] is not allowed: lengths of the flashes in s, above 0"
+    text = lights.refused(f("blink", times=[0.5, 0.0], **blink))
+    assert text == "function 1 (blink): field times: 0.0 is not allowed: 0.01..60 s"

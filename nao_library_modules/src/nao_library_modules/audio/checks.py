@@ -6,10 +6,16 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 
 from ..base.errors import BadGoal
-from ..base.field_checks import CONTROL, LONGEST_NAME, require_known, require_text, require_whole
+from ..base.field_checks import CONTROL, LONGEST_NAME, require_known, require_text
 
 OUTPUT_RATES = (16000, 22050, 44100, 48000)
+RATES = f"one of {', '.join(map(str, OUTPUT_RATES))} (Hz)"
 DEVICE_PARAMETERS = ("outputSampleRate", "inputBufferSize")
+SET_PARAMETERS = DEVICE_PARAMETERS[:1]
+"""Those that can be set."""
+SETTABLE = "parameter of ALAudioDevice that can be set"
+SOUND_FILES = (".wav", ".ogg", ".flac", ".mp3")
+"""What the robot plays."""
 HOME = "/home/nao/"
 """Folder of the robot's user: absolute file names lead there."""
 
@@ -26,7 +32,7 @@ def require_file(field: str, name: str, suffixes: Sequence[str]) -> str:
         The name without blanks around it.
     """
     path = require_text(field, name, "the name of a file")
-    allowed = f"a relative name or one in {HOME}, without '..', that ends in {', '.join(suffixes)}"
+    allowed = allowed_files(suffixes)
     if CONTROL.search(path):
         raise BadGoal(field, name, allowed, problem=f"{name!r} has characters that names do not have")
     if ".." in PurePosixPath(path).parts or (path.startswith("/") and not path.startswith(HOME)):
@@ -40,22 +46,18 @@ def require_file(field: str, name: str, suffixes: Sequence[str]) -> str:
     return path
 
 
-# Checks of NaoAudio's functions: parameters are fields of the function message.
+def allowed_files(suffixes: Sequence[str]) -> str:
+    """What `require_file` takes, in words."""
+    return f"a relative name or one in {HOME}, without '..', that ends in {', '.join(suffixes)}"
 
 
-def check_output_volume(_self: object, volume: float) -> None:
-    """A volume in %."""
-    require_whole("volume", volume, 0, 100, " (%)")
-
-
-def check_device_parameter(_self: object, str_param: str) -> None:
-    """A parameter of the sound card."""
-    require_known("str_param", str_param, DEVICE_PARAMETERS, "parameter of ALAudioDevice")
+def require_rate(field: str, values: Sequence[float]) -> None:
+    """A sample rate of the outputs, Hz."""
+    if len(values) != 1 or values[0] not in OUTPUT_RATES:
+        raise BadGoal(field, list(values), RATES)
 
 
 def check_device_setting(_self: object, str_param: str, values: Sequence[float]) -> None:
     """The sample rate of the outputs, which is all that can be set."""
-    require_known("str_param", str_param, DEVICE_PARAMETERS[:1], "parameter of ALAudioDevice that can be set")
-    if len(values) != 1 or values[0] not in OUTPUT_RATES:
-        rates = ", ".join(map(str, OUTPUT_RATES))
-        raise BadGoal("values", list(values), f"one of {rates} (Hz)")
+    require_known("str_param", str_param, SET_PARAMETERS, SETTABLE)
+    require_rate("values", values)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..functions.chain import checked_by
-from .checks import check_device_parameter, check_device_setting, check_output_volume
+from .fields import DeviceParameter, DeviceSetting, Mute, OutputRate, OutputVolume, Revert
 
 DEVICE = "ALAudioDevice"
 DECIMALS = 6
@@ -23,30 +22,9 @@ class NaoAudio:
     call_now: Callable[..., Any]  # of NaoBasic: a call that it does not
     after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
 
-    def audio_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "setOutputVolume": self.set_output_volume,
-            "getOutputVolume": self.get_output_volume,
-            "muteAudioOut": self.mute_audio_out,
-            "isAudioOutMuted": self.is_audio_out_muted,
-            "flushAudioOutputs": self.flush_audio_outputs,
-            "openAudioOutputs": self.open_audio_outputs,
-            "closeAudioOutputs": self.close_audio_outputs,
-            "isOutputClosed": self.is_output_closed,
-            "openAudioInputs": self.open_audio_inputs,
-            "closeAudioInputs": self.close_audio_inputs,
-            "isInputClosed": self.is_input_closed,
-            "listOutputs": self.list_outputs,
-            "listInputs": self.list_inputs,
-            "setParameter": self.set_device_parameter,
-            "getParameter": self.get_device_parameter,
-        }
-
     # Volume
 
-    @checked_by(check_output_volume)
-    def set_output_volume(self, volume: float, revert: bool = False) -> None:
+    def set_output_volume(self, volume: OutputVolume, revert: Revert = False) -> None:
         """Set the volume of everything that sounds, 0..100."""
         if revert:
             self.put_back(DEVICE, "setOutputVolume", int(self.device("getOutputVolume")))
@@ -56,7 +34,7 @@ class NaoAudio:
         """Volume of everything that sounds, 0..100."""
         return int(self.device("getOutputVolume"))
 
-    def mute_audio_out(self, enable: bool, revert: bool = False) -> None:
+    def mute_audio_out(self, enable: Mute, revert: Revert = False) -> None:
         """Silence the loudspeakers (`enable` true), or let them sound again."""
         if revert:
             self.put_back(DEVICE, "muteAudioOut", bool(self.device("isAudioOutMuted")))
@@ -106,16 +84,14 @@ class NaoAudio:
 
     # Parameters
 
-    @checked_by(check_device_setting)
-    def set_device_parameter(self, str_param: str, values: list[float], revert: bool = False) -> None:
+    def set_device_parameter(self, str_param: DeviceSetting, values: OutputRate, revert: Revert = False) -> None:
         """Set a parameter of the sound card named in `str_param`: outputSampleRate, Hz."""
         name = str_param.strip()
         if revert:
             self.put_back(DEVICE, "setParameter", name, int(self.device("getParameter", name)))
         self.device("setParameter", name, int(values[0]))
 
-    @checked_by(check_device_parameter)
-    def get_device_parameter(self, str_param: str) -> int:
+    def get_device_parameter(self, str_param: DeviceParameter) -> int:
         """A parameter of the sound card named in `str_param`: outputSampleRate, inputBufferSize."""
         return int(self.device("getParameter", str_param.strip()))
 
@@ -134,6 +110,24 @@ class NaoAudio:
             args: The arguments that it is put back with.
         """
         self.after_wait(lambda: self.call_now(self.robot.proxy(module), method, *args))
+
+    functions = {
+        "setOutputVolume": set_output_volume,
+        "getOutputVolume": get_output_volume,
+        "muteAudioOut": mute_audio_out,
+        "isAudioOutMuted": is_audio_out_muted,
+        "flushAudioOutputs": flush_audio_outputs,
+        "openAudioOutputs": open_audio_outputs,
+        "closeAudioOutputs": close_audio_outputs,
+        "isOutputClosed": is_output_closed,
+        "openAudioInputs": open_audio_inputs,
+        "closeAudioInputs": close_audio_inputs,
+        "isInputClosed": is_input_closed,
+        "listOutputs": list_outputs,
+        "listInputs": list_inputs,
+        "setParameter": set_device_parameter,
+        "getParameter": get_device_parameter,
+    }
 
 
 def decimal(value: Any) -> float:

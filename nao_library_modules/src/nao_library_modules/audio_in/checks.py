@@ -8,20 +8,20 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 from typing import Any, Protocol
 
-from ..audio.checks import DEVICE_PARAMETERS, check_device_setting, require_file
+from ..audio.checks import DEVICE_PARAMETERS, check_device_setting
 from ..base.errors import BadGoal
-from ..base.field_checks import require_known, require_text, require_within
-from ..base.limits import limit
+from ..base.field_checks import require_known
 
 MICROPHONES = ("left", "right", "front", "rear")
 """In the order in which NAOqi has them in recordings."""
 ONE_CHANNEL, ALL_CHANNELS = 16000, 48000
 """Rates in Hz of recordings of one microphone, and of all."""
+CHANNELS = f"one of {', '.join(MICROPHONES)} at {ONE_CHANNEL} Hz, or all of them at {ALL_CHANNELS} Hz"
 DEFAULT_MICROPHONE = "front"
 FILE_TYPES = ("wav", "ogg")
-TIMEOUT, LENGTH, SHARE, SETTING = limit("timeout"), limit("recording"), limit("share"), limit("setting")
-LONGEST = TIMEOUT.highest
-"""s, of waits."""
+PHRASES = "at least one word or phrase"
+PHRASES_OR_SET = f"{PHRASES}, here or by setVocabulary before"
+PHRASE = "words of letters, digits, apostrophes, hyphens, with blanks in between"
 LONGEST_PHRASE = 200
 # What grammars of speech recognisers are written with, and what nobody can say.
 STRANGE = re.compile(r"[<>|{}\[\]()*+=;:#$%^~_@\"/\\\x00-\x1f\x7f]")
@@ -45,37 +45,26 @@ class KnowsLanguages(Protocol):
         ...
 
 
-def require_timeout(timeout: float) -> None:
-    """Check how long to wait, s; 0 for the default."""
-    require_within("timeout", timeout, TIMEOUT, f"up to {LONGEST:g} s, or 0 for the default")
-
-
-def require_confidence(confidence: float) -> None:
-    """Check the least confidence that counts."""
-    require_within("confidence", confidence, SHARE)
-
-
 def require_phrases(vocabulary: Sequence[str]) -> list[str]:
     """Words and phrases that can be said, at least one, without blanks around them."""
     if not vocabulary:
-        raise BadGoal("vocabulary", [], "at least one word or phrase", problem="it is empty")
+        raise BadGoal("vocabulary", [], PHRASES, problem="it is empty")
     return [_phrase(phrase) for phrase in vocabulary]
 
 
 def _phrase(phrase: str) -> str:
     bare = " ".join(phrase.split())
-    allowed = "words of letters, digits, apostrophes, hyphens, with blanks in between"
     if not bare:
-        raise BadGoal("vocabulary", phrase, allowed, problem="there is an empty phrase in it")
+        raise BadGoal("vocabulary", phrase, PHRASE, problem="there is an empty phrase in it")
     if len(bare) > LONGEST_PHRASE:
         problem = f"{bare[:20]!r}... is too long"
         raise BadGoal("vocabulary", phrase, f"phrases of up to {LONGEST_PHRASE} characters", problem=problem)
     strange = STRANGE.search(bare)
     if strange or any(unicodedata.category(character) in ("Cc", "Cs", "Co", "Cn", "So") for character in bare):
         what = f"{strange.group()!r} in {bare!r}" if strange else f"a character of {bare!r}"
-        raise BadGoal("vocabulary", phrase, allowed, problem=f"{what} cannot be said")
+        raise BadGoal("vocabulary", phrase, PHRASE, problem=f"{what} cannot be said")
     if not any(character.isalnum() for character in bare):
-        raise BadGoal("vocabulary", phrase, allowed, problem=f"there is nothing to say in {bare!r}")
+        raise BadGoal("vocabulary", phrase, PHRASE, problem=f"there is nothing to say in {bare!r}")
     return bare
 
 
@@ -84,30 +73,21 @@ def recording_format(rate: int, channels: Sequence[str]) -> tuple[int, list[str]
 
     The robot records one microphone at 16000 Hz, or all at 48000 Hz.
     """
-    if rate not in (0, ONE_CHANNEL, ALL_CHANNELS):
-        raise BadGoal("rate", rate, f"{ONE_CHANNEL}, {ALL_CHANNELS} (Hz), or 0: as the channels need")
-    for name in channels:
-        if name not in MICROPHONES:
-            require_known("channels", name, MICROPHONES, "microphone")
-            raise BadGoal("channels", name, f"one of {', '.join(MICROPHONES)}")
-    if len(set(channels)) != len(channels):
-        raise BadGoal("channels", list(channels), "each microphone once")
     if not channels:
         channels = MICROPHONES if rate == ALL_CHANNELS else (DEFAULT_MICROPHONE,)
     wanted = {1: ONE_CHANNEL, len(MICROPHONES): ALL_CHANNELS}.get(len(channels))
     if wanted is None or rate not in (0, wanted):
-        allowed = f"one of {', '.join(MICROPHONES)} at {ONE_CHANNEL} Hz, or all of them at {ALL_CHANNELS} Hz"
         at = f" at {rate} Hz" if rate else ""
-        raise BadGoal("channels", list(channels), allowed, problem=f"{len(channels)} channel(s){at}")
+        raise BadGoal("channels", list(channels), CHANNELS, problem=f"{len(channels)} channel(s){at}")
     return wanted, [name for name in MICROPHONES if name in channels]
 
 
 def recording_file(name: str, file_type: str) -> tuple[str, str]:
     """Name of a recording and what kind of file it is: wav or ogg."""
-    path = require_file("str_param", name, [f".{kind}" for kind in FILE_TYPES])
+    path, wanted = name.strip(), file_type.strip()
     kind = PurePosixPath(path).suffix.lower()[1:]
-    if file_type and require_known("file_type", file_type, FILE_TYPES, "type of recordings") != kind:
-        raise BadGoal("file_type", file_type, f"{kind}, as the file's name ends", problem=f"{path!r} is no {file_type}")
+    if wanted and wanted != kind:
+        raise BadGoal("file_type", file_type, f"{kind}, as the file's name ends", problem=f"{path!r} is no {wanted}")
     return path, kind
 
 
@@ -123,7 +103,7 @@ def check_recording_begin(
     overwrite: bool,
     context: dict[str, Any],
 ) -> None:
-    """A file that is new or may be replaced, a format, and no recording that runs."""
+    """A file that is new or may be replaced, of its type, a format, and no recording that runs."""
     path, _ = recording_file(str_param, file_type)
     self.require_new_file(path, overwrite)
     recording_format(rate, channels)
@@ -144,34 +124,23 @@ def check_record(
     rate: int,
     channels: Sequence[str],
     file_type: str,
-    duration: float,
     overwrite: bool,
     context: dict[str, Any],
 ) -> None:
-    """As startRecording, and a length."""
-    require_within("duration", duration, LENGTH)
+    """As startRecording; later functions of the chain may record."""
     check_recording_begin(self, str_param, rate, channels, file_type, overwrite, context)
     context["recording"] = False
 
 
-def check_input_file(_self: object, str_param: str) -> None:
-    """A sound file."""
-    require_file("str_param", str_param, [".wav", ".ogg", ".flac", ".mp3"])
-
-
-def check_vocabulary(_self: object, vocabulary: Sequence[str], context: dict[str, Any]) -> None:
-    """Words and phrases; later functions of the chain may recognise them."""
-    require_phrases(vocabulary)
+def check_vocabulary(_self: object, context: dict[str, Any]) -> None:
+    """Nothing can be wrong; later functions of the chain may recognise the words."""
     context["vocabulary"] = True
 
 
 def check_recognition(self: KnowsLanguages, vocabulary: Sequence[str], context: dict[str, Any]) -> None:
-    """Words and phrases, or those of setVocabulary."""
-    if vocabulary:
-        require_phrases(vocabulary)
-    elif not context.get("vocabulary", self.vocabulary_is_set):
-        allowed = "at least one word or phrase, here or by setVocabulary before"
-        raise BadGoal("vocabulary", [], allowed, problem="it is empty")
+    """Words and phrases here, or those of setVocabulary."""
+    if not vocabulary and not context.get("vocabulary", self.vocabulary_is_set):
+        raise BadGoal("vocabulary", [], PHRASES_OR_SET, problem="it is empty")
 
 
 def check_pause(_self: object, context: dict[str, Any]) -> None:
@@ -184,65 +153,22 @@ def check_resume(_self: object, context: dict[str, Any]) -> None:
     context["paused"] = False
 
 
-def check_listen(
-    self: KnowsLanguages,
-    vocabulary: Sequence[str],
-    timeout: float,
-    confidence: float,
-    str_param: str,
-    context: dict[str, Any],
-) -> None:
-    """Words and phrases, a timeout, a confidence, and a language that the robot knows if one is named."""
+def check_listen(self: KnowsLanguages, vocabulary: Sequence[str], str_param: str, context: dict[str, Any]) -> None:
+    """Words and phrases, no pause, and a language that the robot knows if one is named."""
     check_recognition(self, vocabulary, context)
     if context.get("paused", self.paused):
         raise BadGoal("function", "listen", "resume comes first", problem="the recognition is paused")
-    require_timeout(timeout)
-    require_confidence(confidence)
     if str_param.strip():
         check_language(self, str_param)
 
 
 def check_language(self: KnowsLanguages, str_param: str) -> None:
     """A language that the robot recognises."""
-    require_text("str_param", str_param, "a language by NAOqi's name, such as English")
     require_known("str_param", str_param, self.languages(), "language that the robot recognises")
 
 
-def check_detection(_self: object, timeout: float, confidence: float) -> None:
-    """A timeout and a confidence."""
-    require_timeout(timeout)
-    require_confidence(confidence)
-
-
-def check_localization(_self: object, timeout: float, confidence: float, duration: float) -> None:
-    """A timeout, a confidence, and how long to wait for better ones."""
-    check_detection(_self, timeout, confidence)
-    check_mean(_self, duration)
-
-
-def check_sensitivity(_self: object, sensitivity: float, str_param: str) -> None:
-    """A sensitivity of something that hears."""
-    if not 0.0 < sensitivity <= 1.0:
-        raise BadGoal("sensitivity", sensitivity, "above 0 to 1")
-    if str_param.strip():
-        require_known("str_param", str_param, list(SENSES), "sense")
-
-
-def check_mean(_self: object, duration: float) -> None:
-    """How long to look."""
-    require_within("duration", duration, TIMEOUT)
-
-
 def check_setting(_self: object, str_param: str, values: Sequence[float]) -> None:
-    """A parameter and its value; which ones the recognition has the robot knows."""
-    name = require_text("str_param", str_param, "the name of a parameter")
+    """A value that the parameter may have, where it is one of the sound card; others the robot knows."""
+    name = str_param.strip()
     if name in DEVICE_PARAMETERS:
         check_device_setting(_self, name, values)
-    if len(values) != 1:
-        raise BadGoal("values", list(values), "one number")
-    require_within("values", values[0], SETTING)
-
-
-def check_parameter(_self: object, str_param: str) -> None:
-    """A parameter; which ones there are the robot knows."""
-    require_text("str_param", str_param, "the name of a parameter")

@@ -9,9 +9,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..functions.chain import checked_by
 from .base import AudioInBase
-from .checks import MICROPHONES, check_mean
+from .checks import MICROPHONES
+from .fields import MeanTime
 
 log = logging.getLogger(__name__)
 
@@ -32,40 +32,23 @@ class EnergyFunctions(AudioInBase):
     keep_left: Callable[[], None]  # of NaoAudioInput
     _computing = False  # since enableEnergyComputation of this server
 
-    def energy_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "getEnergy": self.get_energy,
-            "getLeftMicEnergy": self.get_left_mic_energy,
-            "getRightMicEnergy": self.get_right_mic_energy,
-            "getFrontMicEnergy": self.get_front_mic_energy,
-            "getRearMicEnergy": self.get_rear_mic_energy,
-            "enableEnergyComputation": self.enable_energy_computation,
-            "disableEnergyComputation": self.disable_energy_computation,
-        }
-
-    @checked_by(check_mean)
-    def get_energy(self, duration: float) -> list[float]:
+    def get_energy(self, duration: MeanTime) -> list[float]:
         """How loud it is: left, right, front, rear."""
         return self._energies(MICROPHONES, duration)
 
-    @checked_by(check_mean)
-    def get_left_mic_energy(self, duration: float) -> list[float]:
+    def get_left_mic_energy(self, duration: MeanTime) -> list[float]:
         """How loud it is on the left."""
         return self._energies(["left"], duration)
 
-    @checked_by(check_mean)
-    def get_right_mic_energy(self, duration: float) -> list[float]:
+    def get_right_mic_energy(self, duration: MeanTime) -> list[float]:
         """How loud it is on the right."""
         return self._energies(["right"], duration)
 
-    @checked_by(check_mean)
-    def get_front_mic_energy(self, duration: float) -> list[float]:
+    def get_front_mic_energy(self, duration: MeanTime) -> list[float]:
         """How loud it is in front."""
         return self._energies(["front"], duration)
 
-    @checked_by(check_mean)
-    def get_rear_mic_energy(self, duration: float) -> list[float]:
+    def get_rear_mic_energy(self, duration: MeanTime) -> list[float]:
         """How loud it is at the rear."""
         return self._energies(["rear"], duration)
 
@@ -137,3 +120,13 @@ class EnergyFunctions(AudioInBase):
 
     def _read(self, microphones: Sequence[str]) -> list[float]:
         return [float(self.device(f"get{name.capitalize()}MicEnergy")) for name in microphones]
+
+    functions = {
+        "getEnergy": get_energy,
+        "getLeftMicEnergy": get_left_mic_energy,
+        "getRightMicEnergy": get_right_mic_energy,
+        "getFrontMicEnergy": get_front_mic_energy,
+        "getRearMicEnergy": get_rear_mic_energy,
+        "enableEnergyComputation": enable_energy_computation,
+        "disableEnergyComputation": disable_energy_computation,
+    }

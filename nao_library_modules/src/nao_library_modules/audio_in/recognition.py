@@ -10,6 +10,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ..audio.fields import Revert
 from ..functions.chain import checked_by
 from .base import Events, timeout_of
 from .checks import (
@@ -22,6 +23,17 @@ from .checks import (
     require_phrases,
 )
 from .events import recognised
+from .fields import (
+    AudioExpression,
+    Confidence,
+    Language,
+    LanguageMeanwhile,
+    Phrases,
+    PhrasesOrSet,
+    Timeout,
+    VisualExpression,
+    WordSpotting,
+)
 from .heard import HeardWord
 from .recogniser import DEAF, HEARS, RECOGNITION, STATUS, RecogniserAccess
 from .times import SPEECH, WordTimes
@@ -69,28 +81,16 @@ class RecognitionFunctions(RecogniserAccess):
     keep_left: Callable[[], None]  # of NaoAudioInput
     _recognition: Recognition | None = None
 
-    def recognition_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "listen": self.listen,
-            "startRecognition": self.start_recognition,
-            "stopRecognition": self.stop_recognition,
-            "setVocabulary": self.set_vocabulary,
-            "pause": self.pause,
-            "resume": self.resume,
-            "setLanguage": self.set_language,
-            "getLanguage": self.get_language,
-            "getAvailableLanguages": self.get_available_languages,
-            "setAudioExpression": self.set_audio_expression,
-            "getAudioExpression": self.get_audio_expression,
-            "setVisualExpression": self.set_visual_expression,
-        }
-
     # Functions
 
     @checked_by(check_listen)
     def listen(
-        self, vocabulary: Sequence[str], word_spotting: bool, timeout: float, confidence: float, str_param: str
+        self,
+        vocabulary: PhrasesOrSet,
+        word_spotting: WordSpotting,
+        timeout: Timeout,
+        confidence: Confidence,
+        str_param: LanguageMeanwhile,
     ) -> list[Any]:
         """Wait until something is recognised; answers words and confidences, the best first, nothing if none came."""
         with self._settings_for(vocabulary, word_spotting, str_param.strip()):
@@ -105,7 +105,7 @@ class RecognitionFunctions(RecogniserAccess):
         return [part for heard in words for part in (heard.word, heard.confidence)]
 
     @checked_by(check_recognition)
-    def start_recognition(self, vocabulary: Sequence[str], word_spotting: bool) -> None:
+    def start_recognition(self, vocabulary: PhrasesOrSet, word_spotting: WordSpotting) -> None:
         """Recognise words also beyond the end of the goal; they come as event WordRecognized on `memory_events`."""
         self.stop_recognition()  # one that runs already is replaced
         phrases = require_phrases(vocabulary) if vocabulary else []
@@ -134,7 +134,7 @@ class RecognitionFunctions(RecogniserAccess):
             self.stop_extractor(RECOGNITION, "recognition")
 
     @checked_by(check_vocabulary)
-    def set_vocabulary(self, vocabulary: Sequence[str], word_spotting: bool) -> None:
+    def set_vocabulary(self, vocabulary: Phrases, word_spotting: WordSpotting) -> None:
         """Set the words and phrases to recognise, for good."""
         self.idly("setVocabulary", require_phrases(vocabulary), word_spotting)
         self.vocabulary_is_set = True
@@ -155,7 +155,7 @@ class RecognitionFunctions(RecogniserAccess):
         self.keep_left()
 
     @checked_by(check_language)
-    def set_language(self, str_param: str, revert: bool) -> None:
+    def set_language(self, str_param: Language, revert: Revert) -> None:
         """Set the language that is recognised."""
         if revert:
             former = self.get_language()
@@ -170,7 +170,7 @@ class RecognitionFunctions(RecogniserAccess):
         """Languages that the robot recognises."""
         return list(self.recogniser("getAvailableLanguages"))
 
-    def set_audio_expression(self, enable: bool, revert: bool) -> None:
+    def set_audio_expression(self, enable: AudioExpression, revert: Revert) -> None:
         """Have the robot bip when it begins and ends to listen, or not."""
         if revert:
             self.put_back(RECOGNITION, "setAudioExpression", bool(self.recogniser("getAudioExpression")))
@@ -180,7 +180,7 @@ class RecognitionFunctions(RecogniserAccess):
         """Whether the robot bips when it begins and ends to listen."""
         return bool(self.recogniser("getAudioExpression"))
 
-    def set_visual_expression(self, enable: bool) -> None:
+    def set_visual_expression(self, enable: VisualExpression) -> None:
         """Have the eyes show that the robot listens, or not."""
         self.recogniser("setVisualExpression", bool(enable))
 
@@ -298,3 +298,18 @@ class RecognitionFunctions(RecogniserAccess):
             self.events.unsubscribe(WORDS)
         if recognition.kept:
             self.restore_settings()
+
+    functions = {
+        "listen": listen,
+        "startRecognition": start_recognition,
+        "stopRecognition": stop_recognition,
+        "setVocabulary": set_vocabulary,
+        "pause": pause,
+        "resume": resume,
+        "setLanguage": set_language,
+        "getLanguage": get_language,
+        "getAvailableLanguages": get_available_languages,
+        "setAudioExpression": set_audio_expression,
+        "getAudioExpression": get_audio_expression,
+        "setVisualExpression": set_visual_expression,
+    }

@@ -20,13 +20,13 @@ from ..functions.chain import checked_by
 from .base import AudioInBase
 from .checks import (
     MICROPHONES,
-    check_input_file,
     check_record,
     check_recording_begin,
     check_recording_end,
     recording_file,
     recording_format,
 )
+from .fields import Channels, FileType, HeardFile, Length, Overwrite, RecordingFile, RecordingRate
 
 log = logging.getLogger(__name__)
 
@@ -92,26 +92,15 @@ class RecordingFunctions(AudioInBase):
         """Whether a recording runs that this server began."""
         return self._recording is not None
 
-    def recording_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "record": self.record,
-            "startRecording": self.start_recording,
-            "startMicrophonesRecording": self.start_recording,
-            "stopRecording": self.stop_recording,
-            "stopMicrophonesRecording": self.stop_recording,
-            "setFileAsInput": self.set_file_as_input,
-        }
-
     @checked_by(check_record)
     def record(
         self,
-        str_param: str,
-        rate: int,
-        channels: Sequence[str],
-        file_type: str,
-        duration: float,
-        overwrite: bool,
+        str_param: RecordingFile,
+        rate: RecordingRate,
+        channels: Channels,
+        file_type: FileType,
+        duration: Length,
+        overwrite: Overwrite,
     ) -> list[Any]:
         """Record for `duration`, and wait for the end; answers file and length (s). Interrupted, the file is valid."""
         self._begin_recording(str_param, rate, channels, file_type, overwrite)
@@ -122,7 +111,12 @@ class RecordingFunctions(AudioInBase):
 
     @checked_by(check_recording_begin)
     def start_recording(
-        self, str_param: str, rate: int, channels: Sequence[str], file_type: str, overwrite: bool
+        self,
+        str_param: RecordingFile,
+        rate: RecordingRate,
+        channels: Channels,
+        file_type: FileType,
+        overwrite: Overwrite,
     ) -> None:
         """Begin to record, also beyond the end of the goal: until stopRecording or the end of the server."""
         self._begin_recording(str_param, rate, channels, file_type, overwrite)
@@ -139,8 +133,7 @@ class RecordingFunctions(AudioInBase):
         file = self.heard.files[-1]
         return [file.path, file.duration]
 
-    @checked_by(check_input_file)
-    def set_file_as_input(self, str_param: str) -> None:
+    def set_file_as_input(self, str_param: HeardFile) -> None:
         """Have the robot hear a file instead of its microphones."""
         self.device("setFileAsInput", robot_path(str_param.strip()))
 
@@ -217,3 +210,12 @@ class RecordingFunctions(AudioInBase):
                 file="" if length is None else str(file),
             )
         )
+
+    functions = {
+        "record": record,
+        "startRecording": start_recording,
+        "startMicrophonesRecording": start_recording,
+        "stopRecording": stop_recording,
+        "stopMicrophonesRecording": stop_recording,
+        "setFileAsInput": set_file_as_input,
+    }

@@ -13,15 +13,17 @@ from nao_library_actions.msg import NaoAudioInAction
 from naoqi.errors import NaoError
 
 from ..audio.checks import DEVICE_PARAMETERS
+from ..audio.fields import Revert
 from ..audio.sound_card import NaoAudio
 from ..base.answers import Outcome
 from ..functions.chain import checked_by
 from ..processes.launcher import LaunchPath
 from ..server.nao_basic import NaoBasic
 from .base import subscriber_name
-from .checks import SENSES, check_parameter, check_setting
+from .checks import SENSES, check_setting
 from .contexts import ContextFunctions
 from .energy import EnergyFunctions
+from .fields import Parameter, SetParameter, Value
 from .heard import Heard, HeardWord, times_of
 from .recognition import RECOGNITION, Recognition, RecognitionFunctions
 from .recording import Recording, RecordingFunctions
@@ -104,16 +106,6 @@ class NaoAudioInput(
         self.saved_sets = set()
         self._took_over = False
         self._left = self.kept.load()
-        for functions in (
-            self.audio_functions(),
-            self.recording_functions(),
-            self.recognition_functions(),
-            self.context_functions(),
-            self.sound_functions(),
-            self.energy_functions(),
-            {"setParameter": self.set_parameter, "getParameter": self.get_parameter},
-        ):
-            self.function_table.update(functions)
         self.serve("nao_audio_in", NaoAudioInAction)
         if self._left:
             self.robot.connection.in_background(self._take_up)
@@ -121,7 +113,7 @@ class NaoAudioInput(
     # Functions that two of NAOqi's modules have
 
     @checked_by(check_setting)
-    def set_parameter(self, str_param: str, values: Sequence[float], revert: bool) -> None:
+    def set_parameter(self, str_param: SetParameter, values: Value, revert: Revert) -> None:
         """Set a parameter of the speech recognition (Sensitivity, NbHypotheses, ...) or of the sound card."""
         name = str_param.strip()
         if name in DEVICE_PARAMETERS:
@@ -132,13 +124,14 @@ class NaoAudioInput(
             self.put_back(RECOGNITION, "setParameter", name, float(self.call(proxy, "getParameter", name)))
         self.call(proxy, "setParameter", name, float(values[0]))
 
-    @checked_by(check_parameter)
-    def get_parameter(self, str_param: str) -> float:
+    def get_parameter(self, str_param: Parameter) -> float:
         """A parameter of the speech recognition (Sensitivity, NbHypotheses, ...) or of the sound card."""
         name = str_param.strip()
         if name in DEVICE_PARAMETERS:
             return self.get_device_parameter(name)
         return float(self.call(self.robot.proxy(RECOGNITION), "getParameter", name))
+
+    function_table = {"setParameter": set_parameter, "getParameter": get_parameter}
 
     # The life of a goal
 

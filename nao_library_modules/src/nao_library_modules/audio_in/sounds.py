@@ -8,12 +8,12 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..functions.chain import checked_by
 from ..robot.robot_clock import same_clock
 from ..server.extractor_use import Event
 from .base import AudioInBase, timeout_of
-from .checks import SENSES, check_detection, check_localization, check_sensitivity
+from .checks import SENSES
 from .events import LocatedSound, begun_sounds, located_sound
+from .fields import BetterTime, Confidence, Sense, Sensitivity, Timeout
 from .heard import sound_message
 
 log = logging.getLogger(__name__)
@@ -26,16 +26,7 @@ class SoundFunctions(AudioInBase):
 
     frame_prefix: str
 
-    def sound_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "detectSound": self.detect_sound,
-            "localizeSound": self.localize_sound,
-            "setSensitivity": self.set_sensitivity,
-        }
-
-    @checked_by(check_detection)
-    def detect_sound(self, timeout: float, confidence: float) -> list[float]:
+    def detect_sound(self, timeout: Timeout, confidence: Confidence) -> list[float]:
         """Wait for a sound to begin; answers its confidence and after how long it came (s), nothing if none did."""
         with self.events_of(DETECTED) as events, self.subscribed(SENSES["detection"], "detect"):
             began = self.clock.now()
@@ -48,8 +39,7 @@ class SoundFunctions(AudioInBase):
         self._remark_silence(timeout)
         return []
 
-    @checked_by(check_localization)
-    def localize_sound(self, timeout: float, confidence: float, duration: float) -> list[float]:
+    def localize_sound(self, timeout: Timeout, confidence: Confidence, duration: BetterTime) -> list[float]:
         """Wait for a sound and tell where it is, rad: azimuth, elevation of the head, confidence, both of the base."""
         module = SENSES["localization"]
         try:
@@ -76,8 +66,7 @@ class SoundFunctions(AudioInBase):
         head, base = best.in_head, best.in_base
         return [head.azimuth, head.elevation, best.confidence, base.azimuth, base.elevation]
 
-    @checked_by(check_sensitivity)
-    def set_sensitivity(self, sensitivity: float, str_param: str) -> None:
+    def set_sensitivity(self, sensitivity: Sensitivity, str_param: Sense) -> None:
         """Make speech recognition, sound detection or localization more or less sensitive; all if none is named."""
         for sense in [str_param.strip()] if str_param.strip() else SENSES:
             self.call(self.robot.proxy(SENSES[sense]), "setParameter", "Sensitivity", float(sensitivity))
@@ -93,6 +82,12 @@ class SoundFunctions(AudioInBase):
 
     def _remark_silence(self, timeout: float) -> None:
         self.remark(f"no sound within {timeout_of(timeout):g} s")
+
+    functions = {
+        "detectSound": detect_sound,
+        "localizeSound": localize_sound,
+        "setSensitivity": set_sensitivity,
+    }
 
 
 def _parsed(parse: Callable[[Any], Any], value: Any, nothing: Any) -> Any:

@@ -2,32 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
+from ..audio.fields import Revert
 from ..audio.sound_card import decimal
 from ..base.errors import Preempted
 from ..functions.chain import checked_by
+from .fields import (
+    Address,
+    Background,
+    EndTime,
+    Frequency,
+    FullVolume,
+    LoadedFile,
+    Loop,
+    LoopTime,
+    MasterVolume,
+    OptionalSet,
+    Pan,
+    Panorama,
+    PitchLevel,
+    Position,
+    SetFile,
+    SetFileTime,
+    SetVolume,
+    SoundFile,
+    SoundId,
+    SoundSet,
+    SoundVolume,
+    StartPosition,
+    ToneLength,
+    TonePan,
+    VolumeFile,
+    VolumeId,
+)
 from .files import FileNotes, LoadedSounds
 from .player_checks import (
-    check_go_to,
+    check_background,
     check_load,
     check_loaded,
-    check_panorama,
-    check_pitch,
     check_play,
-    check_play_file,
-    check_play_from,
     check_set,
     check_set_file,
-    check_set_file_name,
-    check_set_name,
-    check_share,
-    check_sine,
-    check_stream,
     check_unload,
     check_unload_all,
-    check_volume,
     check_volume_of,
 )
 from .sounds import PLAYER, Sounds
@@ -45,74 +63,50 @@ class PlayerFunctions(Sounds):
     loaded: LoadedSounds
     files: FileNotes
 
-    def player_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "playFile": self.play_file,
-            "playFileInLoop": self.play_file_in_loop,
-            "playFileFromPosition": self.play_file_from_position,
-            "playSine": self.play_sine,
-            "playWebStream": self.play_web_stream,
-            "loadFile": self.load_file,
-            "play": self.play,
-            "playInLoop": self.play_in_loop,
-            "pause": self.pause,
-            "goTo": self.go_to,
-            "getCurrentPosition": self.get_current_position,
-            "getFileLength": self.get_file_length,
-            "setPitch": self.set_pitch,
-            "disablePitch": self.disable_pitch,
-            "unloadFile": self.unload_file,
-            "unloadAllFiles": self.unload_all_files,
-            "getLoadedFilesIds": self.get_loaded_files_ids,
-            "getLoadedFilesNames": self.get_loaded_files_names,
-            "setVolume": self.set_volume,
-            "getVolume": self.get_volume,
-            "setMasterVolume": self.set_master_volume,
-            "getMasterVolume": self.get_master_volume,
-            "setPanorama": self.set_panorama,
-            "playSoundSetFile": self.play_sound_set_file,
-            "loadSoundSet": self.load_sound_set,
-            "unloadSoundSet": self.unload_sound_set,
-            "isSoundSetInstalled": self.is_sound_set_installed,
-            "isSoundSetLoaded": self.is_sound_set_loaded,
-            "isSoundSetFileInstalled": self.is_sound_set_file_installed,
-            "getSoundSetFileNames": self.get_sound_set_file_names,
-            "getInstalledSoundSetsList": self.get_installed_sound_sets_list,
-            "getLoadedSoundSetsList": self.get_loaded_sound_sets_list,
-        }
-
     # Files
 
-    @checked_by(check_play_file)
-    def play_file(self, str_param: str, volume: float, pan: float, duration: float, background: bool) -> None:
+    @checked_by(check_background)
+    def play_file(
+        self, str_param: SoundFile, volume: SoundVolume, pan: Pan, duration: EndTime, background: Background
+    ) -> None:
         """Play a file, and wait until it is over."""
         name = str_param.strip()
         self._play(name, "playFile", name, *_level(volume, pan), duration=duration, background=background)
 
-    @checked_by(check_play_file)
-    def play_file_in_loop(self, str_param: str, volume: float, pan: float, duration: float, background: bool) -> None:
+    @checked_by(check_background)
+    def play_file_in_loop(
+        self, str_param: SoundFile, volume: SoundVolume, pan: Pan, duration: LoopTime, background: Background
+    ) -> None:
         """Play a file again and again, for `duration` or, with 0, until it is stopped."""
         name, endless = str_param.strip(), background or duration == 0.0
         self._play(name, "playFileInLoop", name, *_level(volume, pan), duration=duration, background=endless)
 
-    @checked_by(check_play_from)
+    @checked_by(check_background)
     def play_file_from_position(
-        self, str_param: str, position: float, volume: float, pan: float, duration: float, background: bool
+        self,
+        str_param: SoundFile,
+        position: StartPosition,
+        volume: SoundVolume,
+        pan: Pan,
+        duration: EndTime,
+        background: Background,
     ) -> None:
         """Play a file from a time on, and wait until it is over."""
         name, level = str_param.strip(), _level(volume, pan)
         self._play(name, "playFileFromPosition", name, position, *level, duration=duration, background=background)
 
-    @checked_by(check_stream)
-    def play_web_stream(self, str_param: str, volume: float, pan: float, duration: float, background: bool) -> None:
+    @checked_by(check_background)
+    def play_web_stream(
+        self, str_param: Address, volume: FullVolume, pan: Pan, duration: EndTime, background: Background
+    ) -> None:
         """Play a stream of the network, and wait until it is over."""
         address = str_param.strip()
         level = (volume or 1.0, pan)
         self._play(address, "playWebStream", address, *level, duration=duration, background=background)
 
-    @checked_by(check_sine)
-    def play_sine(self, frequency: float, volume: float, pan: float, duration: float, background: bool) -> None:
+    def play_sine(
+        self, frequency: Frequency, volume: FullVolume, pan: TonePan, duration: ToneLength, background: Background
+    ) -> None:
         """Play a tone, and wait until it is over."""
         gain = round(100.0 * (volume or 1.0))
         self.sound(PLAYER, "playSine", int(frequency), gain, int(pan), duration, background=background)
@@ -120,7 +114,7 @@ class PlayerFunctions(Sounds):
     # Sounds that are loaded
 
     @checked_by(check_load)
-    def load_file(self, str_param: str) -> int:
+    def load_file(self, str_param: SoundFile) -> int:
         """Load a file, so that it begins to play at once; answers the id of the sound."""
         name = str_param.strip()
         number = int(self.player("loadFile", name))
@@ -128,7 +122,15 @@ class PlayerFunctions(Sounds):
         return number
 
     @checked_by(check_play)
-    def play(self, sound_id: int, str_param: str, volume: float, pan: float, duration: float, background: bool) -> None:
+    def play(
+        self,
+        sound_id: SoundId,
+        str_param: LoadedFile,
+        volume: SoundVolume,
+        pan: Pan,
+        duration: EndTime,
+        background: Background,
+    ) -> None:
         """Play a sound that is loaded, from where it was paused; and wait until it is over."""
         number = self._number(sound_id, str_param)
         name, level = self.loaded.name(number), _level(volume, pan)
@@ -136,7 +138,13 @@ class PlayerFunctions(Sounds):
 
     @checked_by(check_play)
     def play_in_loop(
-        self, sound_id: int, str_param: str, volume: float, pan: float, duration: float, background: bool
+        self,
+        sound_id: SoundId,
+        str_param: LoadedFile,
+        volume: SoundVolume,
+        pan: Pan,
+        duration: LoopTime,
+        background: Background,
     ) -> None:
         """Play a sound that is loaded again and again, for `duration` or, with 0, until it is stopped."""
         number = self._number(sound_id, str_param)
@@ -144,37 +152,37 @@ class PlayerFunctions(Sounds):
         self._play(name, "playInLoop", number, *level, duration=duration, background=endless)
 
     @checked_by(check_loaded)
-    def pause(self, sound_id: int, str_param: str) -> None:
+    def pause(self, sound_id: SoundId, str_param: LoadedFile) -> None:
         """Pause a sound; `play` goes on with it."""
         self.player("pause", self._number(sound_id, str_param))
 
-    @checked_by(check_go_to)
-    def go_to(self, sound_id: int, str_param: str, position: float) -> None:
+    @checked_by(check_loaded)
+    def go_to(self, sound_id: SoundId, str_param: LoadedFile, position: Position) -> None:
         """Go to a time of a sound."""
         self.player("goTo", self._number(sound_id, str_param), position)
 
     @checked_by(check_loaded)
-    def get_current_position(self, sound_id: int, str_param: str) -> float:
+    def get_current_position(self, sound_id: SoundId, str_param: LoadedFile) -> float:
         """Where a sound is, s from its beginning."""
         return decimal(self.player("getCurrentPosition", self._number(sound_id, str_param)))
 
     @checked_by(check_loaded)
-    def get_file_length(self, sound_id: int, str_param: str) -> float:
+    def get_file_length(self, sound_id: SoundId, str_param: LoadedFile) -> float:
         """Length of a sound, s."""
         return decimal(self.player("getFileLength", self._number(sound_id, str_param)))
 
-    @checked_by(check_pitch)
-    def set_pitch(self, sound_id: int, str_param: str, pitch: float) -> None:
+    @checked_by(check_loaded)
+    def set_pitch(self, sound_id: SoundId, str_param: LoadedFile, pitch: PitchLevel) -> None:
         """Change the pitch of a sound."""
         self.player("setPitch", self._number(sound_id, str_param), pitch)
 
     @checked_by(check_loaded)
-    def disable_pitch(self, sound_id: int, str_param: str) -> None:
+    def disable_pitch(self, sound_id: SoundId, str_param: LoadedFile) -> None:
         """Play a sound at its own pitch again."""
         self.player("disablePitch", self._number(sound_id, str_param))
 
     @checked_by(check_unload)
-    def unload_file(self, sound_id: int, str_param: str) -> None:
+    def unload_file(self, sound_id: SoundId, str_param: LoadedFile) -> None:
         """Forget a sound that is loaded."""
         number = self._number(sound_id, str_param)
         self.player("unloadFile", number)
@@ -196,8 +204,8 @@ class PlayerFunctions(Sounds):
 
     # Volume and direction
 
-    @checked_by(check_volume)
-    def set_volume(self, sound_id: int, str_param: str, volume: float, revert: bool) -> None:
+    @checked_by(check_volume_of)
+    def set_volume(self, sound_id: VolumeId, str_param: VolumeFile, volume: SetVolume, revert: Revert) -> None:
         """Set the volume of speech, or of a sound that is loaded, 0..1."""
         module, subject = self._volume_of(sound_id, str_param)
         if revert:
@@ -206,13 +214,12 @@ class PlayerFunctions(Sounds):
         self.call(self.robot.proxy(module), "setVolume", *subject, volume)
 
     @checked_by(check_volume_of)
-    def get_volume(self, sound_id: int, str_param: str) -> float:
+    def get_volume(self, sound_id: VolumeId, str_param: VolumeFile) -> float:
         """Volume of speech, or of a sound that is loaded, 0..1."""
         module, subject = self._volume_of(sound_id, str_param)
         return decimal(self.call(self.robot.proxy(module), "getVolume", *subject))
 
-    @checked_by(check_share)
-    def set_master_volume(self, volume: float, revert: bool) -> None:
+    def set_master_volume(self, volume: MasterVolume, revert: Revert) -> None:
         """Set the volume of all sounds that are played, 0..1."""
         if revert:
             self.put_back(PLAYER, "setMasterVolume", decimal(self.player("getMasterVolume")))
@@ -222,8 +229,7 @@ class PlayerFunctions(Sounds):
         """Volume of all sounds that are played, 0..1."""
         return decimal(self.player("getMasterVolume"))
 
-    @checked_by(check_panorama)
-    def set_panorama(self, pan: float) -> None:
+    def set_panorama(self, pan: Panorama) -> None:
         """Have all sounds come from a direction, -1 (left) to 1 (right)."""
         self.player("setPanorama", pan)
 
@@ -232,14 +238,14 @@ class PlayerFunctions(Sounds):
     @checked_by(check_set_file)
     def play_sound_set_file(
         self,
-        str_param: str,
-        file_name: str,
-        position: float,
-        volume: float,
-        pan: float,
-        loop: bool,
-        duration: float,
-        background: bool,
+        str_param: OptionalSet,
+        file_name: SetFile,
+        position: StartPosition,
+        volume: SoundVolume,
+        pan: Pan,
+        loop: Loop,
+        duration: SetFileTime,
+        background: Background,
     ) -> None:
         """Play a file of a sound set, or of any that is loaded; and wait until it is over."""
         names = [name for name in (str_param.strip(), file_name.strip()) if name]
@@ -248,32 +254,29 @@ class PlayerFunctions(Sounds):
         self._play("/".join(names), "playSoundSetFile", *names, *level, duration=duration, background=quiet)
 
     @checked_by(check_set)
-    def load_sound_set(self, str_param: str) -> None:
+    def load_sound_set(self, str_param: SoundSet) -> None:
         """Load a sound set."""
         self.player("loadSoundSet", str_param.strip())
 
     @checked_by(check_set)
-    def unload_sound_set(self, str_param: str) -> None:
+    def unload_sound_set(self, str_param: SoundSet) -> None:
         """Forget a sound set that is loaded."""
         self.player("unloadSoundSet", str_param.strip())
 
-    @checked_by(check_set_name)
-    def is_sound_set_installed(self, str_param: str) -> bool:
+    def is_sound_set_installed(self, str_param: SoundSet) -> bool:
         """Whether the robot has a sound set."""
         return bool(self.player("isSoundSetInstalled", str_param.strip()))
 
-    @checked_by(check_set_name)
-    def is_sound_set_loaded(self, str_param: str) -> bool:
+    def is_sound_set_loaded(self, str_param: SoundSet) -> bool:
         """Whether a sound set is loaded."""
         return bool(self.player("isSoundSetLoaded", str_param.strip()))
 
-    @checked_by(check_set_file_name)
-    def is_sound_set_file_installed(self, str_param: str, file_name: str) -> bool:
+    def is_sound_set_file_installed(self, str_param: SoundSet, file_name: SetFile) -> bool:
         """Whether a sound set has a file."""
         return bool(self.player("isSoundSetFileInstalled", str_param.strip(), file_name.strip()))
 
     @checked_by(check_set)
-    def get_sound_set_file_names(self, str_param: str) -> list[str]:
+    def get_sound_set_file_names(self, str_param: SoundSet) -> list[str]:
         """Files of a sound set."""
         return list(self.player("getSoundSetFileNames", str_param.strip()))
 
@@ -310,6 +313,41 @@ class PlayerFunctions(Sounds):
     def _volume_of(self, sound_id: int, name: str) -> tuple[str, list[int]]:
         """Module that knows a volume, and what it is of: a sound, or speech where none is named."""
         return (PLAYER, [self._number(sound_id, name)]) if sound_id or name.strip() else (SPEECH, [])
+
+    functions = {
+        "playFile": play_file,
+        "playFileInLoop": play_file_in_loop,
+        "playFileFromPosition": play_file_from_position,
+        "playSine": play_sine,
+        "playWebStream": play_web_stream,
+        "loadFile": load_file,
+        "play": play,
+        "playInLoop": play_in_loop,
+        "pause": pause,
+        "goTo": go_to,
+        "getCurrentPosition": get_current_position,
+        "getFileLength": get_file_length,
+        "setPitch": set_pitch,
+        "disablePitch": disable_pitch,
+        "unloadFile": unload_file,
+        "unloadAllFiles": unload_all_files,
+        "getLoadedFilesIds": get_loaded_files_ids,
+        "getLoadedFilesNames": get_loaded_files_names,
+        "setVolume": set_volume,
+        "getVolume": get_volume,
+        "setMasterVolume": set_master_volume,
+        "getMasterVolume": get_master_volume,
+        "setPanorama": set_panorama,
+        "playSoundSetFile": play_sound_set_file,
+        "loadSoundSet": load_sound_set,
+        "unloadSoundSet": unload_sound_set,
+        "isSoundSetInstalled": is_sound_set_installed,
+        "isSoundSetLoaded": is_sound_set_loaded,
+        "isSoundSetFileInstalled": is_sound_set_file_installed,
+        "getSoundSetFileNames": get_sound_set_file_names,
+        "getInstalledSoundSetsList": get_installed_sound_sets_list,
+        "getLoadedSoundSetsList": get_loaded_sound_sets_list,
+    }
 
 
 def _level(volume: float, pan: float) -> list[float]:

@@ -11,6 +11,7 @@ from naoqi.errors import NaoError
 
 from ..audio.sound_card import DEVICE
 from ..base.answers import Outcome
+from ..functions.memory_functions import MemoryFunctions
 from ..processes.launcher import LaunchPath
 from ..server.nao_basic import NaoBasic
 from .files import FileNotes, LoadedSounds
@@ -60,12 +61,6 @@ class NaoAudioOutput(NaoBasic, SpeechFunctions, PlayerFunctions):
         self.words = SpokenWords(self.robot, self.clock, self.robot_clock, self.call, self._tell_word)
         self.loaded = LoadedSounds(self.robot.connection)
         self.files = FileNotes()
-        self._memory_functions = frozenset(self.function_table)
-        self.function_table.update(self.audio_functions())
-        self.function_table.update(self.speech_functions())
-        self.function_table.update(self.voice_functions())  # its parameters have the sound card's among them
-        self.function_table.update(self.player_functions())
-        self.function_table.update({"stopAll": self.stop_all, "waitUntilSilent": self.wait_until_silent})
         self.serve("nao_audio_out", NaoAudioOutAction)
 
     # Functions: parameters are fields of AudioOutFunction
@@ -80,6 +75,8 @@ class NaoAudioOutput(NaoBasic, SpeechFunctions, PlayerFunctions):
     def wait_until_silent(self) -> None:
         """Wait for the end of what goals of this server have left in the background."""
         self.wait_for_sounds()
+
+    function_table = {"stopAll": stop_all, "waitUntilSilent": wait_until_silent}
 
     # The life of a goal
 
@@ -105,7 +102,7 @@ class NaoAudioOutput(NaoBasic, SpeechFunctions, PlayerFunctions):
         result.files = self.files.names
         result.durations = self.files.durations
         result.volume = UNKNOWN_VOLUME
-        if any(outcome.function not in self._memory_functions for outcome in outcomes):
+        if any(outcome.function not in MemoryFunctions.functions for outcome in outcomes):
             try:
                 result.volume = float(self.call_now(self.robot.proxy(DEVICE), "getOutputVolume"))
             except NaoError as error:

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..audio.checks import DEVICE_PARAMETERS
+from ..audio.fields import Revert
 from ..audio.sound_card import NaoAudio, decimal
 from ..functions.chain import checked_by
-from .speech_checks import (
-    check_default_voice,
-    check_deletion,
-    check_language,
-    check_parameter_names,
-    check_parameters,
-    check_preference,
-    check_voice,
-    check_word,
+from .fields import (
+    DeletedTexts,
+    Language,
+    ParameterNames,
+    ParameterValues,
+    Preference,
+    ReadParameter,
+    SetParameter,
+    Voice,
+    VoiceOfLanguage,
+    Word,
+    WordTexts,
 )
+from .speech_checks import check_default_voice, check_language, check_parameter_names, check_parameters, check_voice
 from .voices import SPEECH, Voices
 
 
@@ -30,32 +34,10 @@ class VoiceFunctions(NaoAudio):
 
     voices: Voices
 
-    def voice_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "setVoice": self.set_voice,
-            "getVoice": self.get_voice,
-            "getAvailableVoices": self.get_available_voices,
-            "setLanguage": self.set_language,
-            "getLanguage": self.get_language,
-            "getAvailableLanguages": self.get_available_languages,
-            "getSupportedLanguages": self.get_supported_languages,
-            "setLanguageDefaultVoice": self.set_language_default_voice,
-            "locale": self.locale,
-            "setParameter": self.set_parameter,
-            "getParameter": self.get_parameter,
-            "resetSpeed": self.reset_speed,
-            "reset": self.reset,
-            "loadVoicePreference": self.load_voice_preference,
-            "addToDictionary": self.add_to_dictionary,
-            "deleteFromDictionary": self.delete_from_dictionary,
-            "showDictionary": self.show_dictionary,
-        }
-
     # Voices and languages
 
     @checked_by(check_voice)
-    def set_voice(self, str_param: str, revert: bool) -> None:
+    def set_voice(self, str_param: Voice, revert: Revert) -> None:
         """Change the voice."""
         if revert:
             self._put_back_voice()
@@ -70,7 +52,7 @@ class VoiceFunctions(NaoAudio):
         return list(self.speech("getAvailableVoices"))
 
     @checked_by(check_language)
-    def set_language(self, str_param: str, revert: bool) -> None:
+    def set_language(self, str_param: Language, revert: Revert) -> None:
         """Change the language."""
         if revert:
             self._put_back_voice()
@@ -89,7 +71,7 @@ class VoiceFunctions(NaoAudio):
         return list(self.speech("getSupportedLanguages"))
 
     @checked_by(check_default_voice)
-    def set_language_default_voice(self, str_param: str, voice: str) -> None:
+    def set_language_default_voice(self, str_param: Language, voice: VoiceOfLanguage) -> None:
         """Choose the voice that a language is spoken with."""
         self.speech("setLanguageDefaultVoice", str_param.strip(), voice.strip())
 
@@ -100,7 +82,9 @@ class VoiceFunctions(NaoAudio):
     # Parameters
 
     @checked_by(check_parameters)
-    def set_parameter(self, str_param: str, names: Sequence[str], values: Sequence[float], revert: bool) -> None:
+    def set_parameter(
+        self, str_param: SetParameter, names: ParameterNames, values: ParameterValues, revert: Revert
+    ) -> None:
         """Set parameters of the voice; or outputSampleRate of the sound card, named in `str_param`."""
         if not names:
             self.set_device_parameter(str_param, values, revert)
@@ -111,7 +95,7 @@ class VoiceFunctions(NaoAudio):
             self.speech("setParameter", name.strip(), float(value))
 
     @checked_by(check_parameter_names)
-    def get_parameter(self, str_param: str, names: Sequence[str]) -> list[float]:
+    def get_parameter(self, str_param: ReadParameter, names: ParameterNames) -> list[float]:
         """Parameters of the voice; or one, also of the sound card, named in `str_param`."""
         if not names and str_param.strip() in DEVICE_PARAMETERS:
             return [self.get_device_parameter(str_param)]
@@ -125,20 +109,17 @@ class VoiceFunctions(NaoAudio):
         """Speak as the robot usually does again."""
         self.speech("reset")
 
-    @checked_by(check_preference)
-    def load_voice_preference(self, str_param: str) -> None:
+    def load_voice_preference(self, str_param: Preference) -> None:
         """Set the parameters of the voice as a preference of the robot says."""
         self.speech("loadVoicePreference", str_param.strip())
 
     # The dictionary
 
-    @checked_by(check_word)
-    def add_to_dictionary(self, str_param: str, texts: Sequence[str]) -> bool:
+    def add_to_dictionary(self, str_param: Word, texts: WordTexts) -> bool:
         """Teach how a word is spoken."""
         return bool(self.speech("addToDictionary", str_param.strip(), *texts))
 
-    @checked_by(check_deletion)
-    def delete_from_dictionary(self, str_param: str, texts: Sequence[str]) -> bool:
+    def delete_from_dictionary(self, str_param: Word, texts: DeletedTexts) -> bool:
         """Forget how a word is spoken."""
         return bool(self.speech("deleteFromDictionary", str_param.strip(), *texts))
 
@@ -158,3 +139,23 @@ class VoiceFunctions(NaoAudio):
         language, voice = self.speech("getLanguage"), self.speech("getVoice")
         self.put_back(SPEECH, "setVoice", voice)
         self.put_back(SPEECH, "setLanguage", language)  # the last one left is done first
+
+    functions = {
+        "setVoice": set_voice,
+        "getVoice": get_voice,
+        "getAvailableVoices": get_available_voices,
+        "setLanguage": set_language,
+        "getLanguage": get_language,
+        "getAvailableLanguages": get_available_languages,
+        "getSupportedLanguages": get_supported_languages,
+        "setLanguageDefaultVoice": set_language_default_voice,
+        "locale": locale,
+        "setParameter": set_parameter,
+        "getParameter": get_parameter,
+        "resetSpeed": reset_speed,
+        "reset": reset,
+        "loadVoicePreference": load_voice_preference,
+        "addToDictionary": add_to_dictionary,
+        "deleteFromDictionary": delete_from_dictionary,
+        "showDictionary": show_dictionary,
+    }

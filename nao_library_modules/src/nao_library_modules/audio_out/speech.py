@@ -3,27 +3,37 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from naoqi.errors import NaoError
 
+from ..audio.fields import Revert
 from ..audio.sound_card import decimal
 from ..base.errors import BadGoal
 from ..functions.chain import checked_by
+from .fields import (
+    Background,
+    Gestures,
+    Overwrite,
+    Package,
+    SpokenText,
+    Tag,
+    TagAnimations,
+    TagWords,
+    TextGestures,
+    TextLanguage,
+    TextPitch,
+    TextSpeed,
+    TextVoice,
+    TextVolume,
+    WrittenFile,
+)
 from .files import FileNotes
 from .settings import VoiceFunctions
 from .sounds import ANIMATED, PLAYER, Sounds
-from .speech_checks import (
-    check_animated_say,
-    check_body_language,
-    check_package,
-    check_say,
-    check_say_and_play,
-    check_say_to_file,
-    check_tag,
-)
+from .speech_checks import check_animated_say, check_say, check_say_to_file, check_spoken
 from .voices import SPEECH
 from .words import SpokenWords
 
@@ -41,32 +51,18 @@ class SpeechFunctions(VoiceFunctions, Sounds):
     words: SpokenWords
     files: FileNotes
 
-    def speech_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "say": self.say,
-            "animatedSay": self.animated_say,
-            "sayToFile": self.say_to_file,
-            "sayToFileAndPlay": self.say_to_file_and_play,
-            "setBodyLanguageMode": self.set_body_language_mode,
-            "getBodyLanguageMode": self.get_body_language_mode,
-            "addTagsToWords": self.add_tags_to_words,
-            "declareTagForAnimations": self.declare_tag_for_animations,
-            "declareAnimationsPackage": self.declare_animations_package,
-        }
-
     # Speaking
 
     @checked_by(check_say)
     def say(
         self,
-        str_param: str,
-        language: str,
-        voice: str,
-        volume: float,
-        speed: float,
-        pitch: float,
-        background: bool,
+        str_param: SpokenText,
+        language: TextLanguage,
+        voice: TextVoice,
+        volume: TextVolume,
+        speed: TextSpeed,
+        pitch: TextPitch,
+        background: Background,
     ) -> None:
         """Say a text, and wait until it is said."""
         arguments = [_tagged(str_param, speed, pitch)]
@@ -79,14 +75,14 @@ class SpeechFunctions(VoiceFunctions, Sounds):
     @checked_by(check_animated_say)
     def animated_say(
         self,
-        str_param: str,
-        language: str,
-        voice: str,
-        volume: float,
-        speed: float,
-        pitch: float,
-        background: bool,
-        body_language: str,
+        str_param: SpokenText,
+        language: TextLanguage,
+        voice: TextVoice,
+        volume: TextVolume,
+        speed: TextSpeed,
+        pitch: TextPitch,
+        background: Background,
+        body_language: TextGestures,
     ) -> None:
         """Say a text with gestures, annotated ones and those of the mode of body language."""
         arguments: list[Any] = [_tagged(str_param, speed, pitch)]
@@ -98,14 +94,14 @@ class SpeechFunctions(VoiceFunctions, Sounds):
     @checked_by(check_say_to_file)
     def say_to_file(
         self,
-        str_param: str,
-        file_name: str,
-        language: str,
-        voice: str,
-        volume: float,
-        speed: float,
-        pitch: float,
-        overwrite: bool,
+        str_param: SpokenText,
+        file_name: WrittenFile,
+        language: TextLanguage,
+        voice: TextVoice,
+        volume: TextVolume,
+        speed: TextSpeed,
+        pitch: TextPitch,
+        overwrite: Overwrite,
     ) -> float:
         """Write a text as speech to a file, unheard; answers how long it is, s, 0 if the robot does not tell."""
         file = file_name.strip()
@@ -116,9 +112,15 @@ class SpeechFunctions(VoiceFunctions, Sounds):
         self.files.note(file, duration)
         return duration
 
-    @checked_by(check_say_and_play)
+    @checked_by(check_spoken)
     def say_to_file_and_play(
-        self, str_param: str, language: str, voice: str, volume: float, speed: float, pitch: float
+        self,
+        str_param: SpokenText,
+        language: TextLanguage,
+        voice: TextVoice,
+        volume: TextVolume,
+        speed: TextSpeed,
+        pitch: TextPitch,
     ) -> None:
         """Say a text by way of a file of the robot."""
         with self._spoken_with(language, voice, volume):
@@ -126,8 +128,7 @@ class SpeechFunctions(VoiceFunctions, Sounds):
 
     # Body language
 
-    @checked_by(check_body_language)
-    def set_body_language_mode(self, body_language: str, revert: bool) -> None:
+    def set_body_language_mode(self, body_language: Gestures, revert: Revert) -> None:
         """Choose the gestures that go with animatedSay."""
         if revert:
             self.put_back(ANIMATED, "setBodyLanguageModeFromStr", self.get_body_language_mode())
@@ -137,18 +138,15 @@ class SpeechFunctions(VoiceFunctions, Sounds):
         """Gestures that go with animatedSay: disabled, random or contextual."""
         return str(self.call(self.robot.proxy(ANIMATED), "getBodyLanguageModeToStr"))
 
-    @checked_by(check_tag)
-    def add_tags_to_words(self, str_param: str, texts: Sequence[str]) -> None:
+    def add_tags_to_words(self, str_param: Tag, texts: TagWords) -> None:
         """Link words to a tag, whose animations then go with them."""
         self.call(self.robot.proxy(ANIMATED), "addTagsToWords", {str_param.strip(): list(texts)})
 
-    @checked_by(check_tag)
-    def declare_tag_for_animations(self, str_param: str, texts: Sequence[str]) -> None:
+    def declare_tag_for_animations(self, str_param: Tag, texts: TagAnimations) -> None:
         """Link animations to a tag."""
         self.call(self.robot.proxy(ANIMATED), "declareTagForAnimations", {str_param.strip(): list(texts)})
 
-    @checked_by(check_package)
-    def declare_animations_package(self, str_param: str) -> None:
+    def declare_animations_package(self, str_param: Package) -> None:
         """Add a package of animations."""
         self.call(self.robot.proxy(ANIMATED), "declareAnimationsPackage", str_param.strip())
 
@@ -224,6 +222,18 @@ class SpeechFunctions(VoiceFunctions, Sounds):
         except NaoError as error:
             log.warning("the length of %s is not known: %s", file, error)  # it is written all the same
             return 0.0
+
+    functions = {
+        "say": say,
+        "animatedSay": animated_say,
+        "sayToFile": say_to_file,
+        "sayToFileAndPlay": say_to_file_and_play,
+        "setBodyLanguageMode": set_body_language_mode,
+        "getBodyLanguageMode": get_body_language_mode,
+        "addTagsToWords": add_tags_to_words,
+        "declareTagForAnimations": declare_tag_for_animations,
+        "declareAnimationsPackage": declare_animations_package,
+    }
 
 
 def _tagged(text: str, speed: float, pitch: float) -> str:

@@ -39,6 +39,10 @@ def named_colours() -> Mapping[str, Colour]:
     return read_colours(config_file("colours.json"))
 
 
+ALLOWED = f"'#RRGGBB', '0xRRGGBB' or one of {', '.join(named_colours())}"
+"""What a text for a colour may be."""
+
+
 def parse_colour(text: str, field: str = "str_param") -> Colour:
     """A colour from its name, `#RRGGBB` or `0xRRGGBB`.
 
@@ -53,7 +57,7 @@ def parse_colour(text: str, field: str = "str_param") -> Colour:
         raise BadGoal(
             field,
             text,
-            f"'#RRGGBB', '0xRRGGBB' or one of {', '.join(named_colours())}",
+            ALLOWED,
             problem=f"unknown colour {text!r}{did_you_mean(word, named_colours())}",
         )
     return from_integer(int(match.group(1), 16))

@@ -50,6 +50,9 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
         others send. Parameter `~behavior_dir`: folder of the user's behaviours.
     """
 
+    without_robot = frozenset({**RunningFunctions.functions, **KeepingFunctions.functions, **NotingFunctions.functions})
+    """The servers of the steps need it."""
+
     def __init__(
         self,
         ip: str,
@@ -81,9 +84,6 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
         self.shown: list[Facts] = []
         self.cut_short: list[FunctionResult] = []
         self.replaced = self.ended_behavior = ""
-        own = {**self.running_functions(), **self.keeping_functions(), **self.noting_functions()}
-        self.without_robot = frozenset(own)  # the servers of the steps need it
-        self.function_table.update(own)
         self._edge.serve("NaoBehavior/list", ListBehaviors, self.answer_list)
         self.serve("NaoBehavior", NaoBehaviorAction)
 
@@ -133,9 +133,7 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
         return [*super().shutdown_steps(), self.keep_recording]
 
     def argument_choices(self, function: str, field: str) -> Sequence[str]:
-        """Names of the behaviours and servers, for the description of the functions."""
-        if field in ("server", "servers"):
-            return NAMES
+        """Names of the behaviours, for the description of the functions."""
         named = ("runBehavior", "describeBehavior", "checkBehavior", "renameBehavior", "copyBehavior", "deleteBehavior")
         return self.store.names() if field == "str_param" and function in named else ()
 

@@ -2,15 +2,16 @@
 
 A library function takes the fields it needs by their names: `def set_color(self, lights, i_values)` is called with the
 fields `lights` and `i_values` of the message. With `*args`, or with a parameter `args`, it gets all fields that it does
-not name, in the order of the message, but for `function`, `time` and `on_error`. A check beside it sees the same fields
-before anything of the chain runs:
+not name, in the order of the message, but for `function`, `time` and `on_error`. What each field may hold is declared
+by the annotation of its parameter (see `fields`). A check beside the function sees the same fields before anything of
+the chain runs; it is for what depends on several of them, or on the robot:
 
-    def check_volume(self, i_values):
-        if any(value < 0 for value in i_values):
-            raise BadGoal("i_values", i_values, "0 or more")
+    def check_lights(self, lights, i_values):
+        if len(i_values) != len(lights):
+            raise BadGoal("i_values", i_values, "one a light")
 
-    @checked_by(check_volume)
-    def set_volume(self, i_values): ...
+    @checked_by(check_lights)
+    def set_intensity(self, lights: Lights, i_values: Intensities): ...
 """
 
 from __future__ import annotations
@@ -24,21 +25,25 @@ from typing import Any, Callable, TypeVar
 from naoqi.errors import NaoError
 
 from ..base.errors import BadGoal, FunctionFailed, Preempted, UnknownFunction
+from ..base.failure_policy import ALLOWED as POLICIES
 from ..base.failure_policy import FailurePolicy
-from ..base.field_checks import require_length, require_within
+from ..base.field_checks import require_length
 from ..base.limits import limit
+from .fields import Field, fields_of, free, number
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 StandIn = Callable[[object], object]
 
-WAIT = limit("wait")
 FUNCTIONS, NAMES, NUMBERS, CHARACTERS = map(limit, ("functions", "names", "numbers", "characters"))
 CHECK_ATTRIBUTE = "goal_check"
-COMMON = ("time", "on_error")
-"""Fields that every function has."""
+COMMON = {
+    "time": number("wait", "how long the server waits after the function"),
+    "on_error": free("what becomes of the goal when the function fails: stop it, go on, try again", allowed=POLICIES),
+}
+"""Fields that every function has, and that no function takes."""
 CONTEXT = "context"
 REST = "args"
-OF_THE_SERVER = frozenset({"function", "time", "on_error"})
+OF_THE_SERVER = frozenset({"function", *COMMON})
 """Fields that are no arguments."""
 
 
@@ -88,6 +93,25 @@ def fields_taken(function: Callable[..., Any], fields: Sequence[str]) -> list[st
     parameters = inspect.signature(function).parameters.values()
     named = [parameter.name for parameter in parameters if parameter.name in fields]
     return [*named, *_rest(named, fields)] if any(map(_takes_rest, parameters)) else named
+
+
+def fields_read(function: Callable[..., Any], fields: Sequence[str]) -> list[str]:
+    """Fields of a message, as `fields_taken`, and those that only the check beside the function looks at."""
+    check = getattr(function, CHECK_ATTRIBUTE, None)
+    checked = fields_taken(check, fields) if check else ()
+    return list(dict.fromkeys((*fields_taken(function, fields), *checked)))
+
+
+def declared_fields(function: Callable[..., Any], names: Collection[str]) -> dict[str, Field]:
+    """What a function and the check beside it declare of fields.
+
+    Args:
+        function: The function.
+        names: The fields of its message.
+    """
+    check = getattr(function, CHECK_ATTRIBUTE, None)
+    of_check = {} if check is None else fields_of(check, names)
+    return {**fields_of(function, names), **of_check}
 
 
 def _takes_rest(parameter: inspect.Parameter) -> bool:
@@ -154,16 +178,27 @@ class Binding:
     Attributes:
         function: The callable.
         arguments: Takes a message and the context, gives the arguments.
+        fields: What it declares of fields, by their names.
         check: The check that was declared for it, if any.
     """
 
     def __init__(self, function: Callable[..., Any], message_type: type) -> None:
         self.function = function
         self.arguments = _Signature(function, message_type).arguments
+        self.fields = declared_fields(function, message_type.__slots__)
         self.check: Callable[..., None] | None = getattr(function, CHECK_ATTRIBUTE, None)
         if self.check is not None:
             self._bound_self = getattr(function, "__self__", None)
             self._check_arguments = _Signature(self.check, message_type, self._bound_self).arguments
+
+    def check_fields(self, message: Any) -> None:
+        """See that each field that the function declares holds what it may hold.
+
+        Raises:
+            BadGoal: Names the first field that does not.
+        """
+        for name, field in self.fields.items():
+            field.require(name, getattr(message, name))
 
     def run_check(self, message: Any, context: dict[str, Any], stand_in: StandIn = lambda owner: owner) -> None:
         """Run the check, if there is one.
@@ -206,8 +241,11 @@ class FunctionTable(ChainMap):
 class FunctionChain:
     """Reads chains of function messages for one function table.
 
-    The table stays a plain dict that anybody may change at any time: a binding is kept only as long as the
-    table holds the same callable.
+    A binding is kept only as long as the table holds the same callable.
+
+    Attributes:
+        table: NAOqi function name -> callable; anybody may change it at any time.
+        server: Name of the action that serves it, for texts; it may be set later.
     """
 
     def __init__(self, function_table: Mapping[str, Callable[..., Any]], server: str = "") -> None:
@@ -218,7 +256,7 @@ class FunctionChain:
             server: Name of the action that serves it, for texts; it may be set later.
         """
         self.server = server
-        self._table = function_table
+        self.table = function_table
         self._bindings: dict[tuple[str, type], Binding] = {}
 
     def look_up(self, name: str) -> Callable[..., Any]:
@@ -231,9 +269,9 @@ class FunctionChain:
         if not name:
             raise BadGoal("function", name, "the name of a function", problem="it is empty")
         try:
-            return require_callable(name, self._table[name])
+            return require_callable(name, self.table[name])
         except KeyError:
-            raise UnknownFunction(name, self._table, self.server) from None
+            raise UnknownFunction(name, self.table, self.server) from None
 
     def read(self, messages: Sequence[Any], before_check: Callable[[int], None] = lambda _: None) -> list[Step]:
         """Check a whole chain and bind it; nothing runs.
@@ -289,7 +327,7 @@ class FunctionChain:
         return found
 
     def bind(self, messages: Sequence[Any]) -> list[Binding]:
-        """Look at what concerns no robot: names of functions, times, failure policies.
+        """Look at what concerns no robot: names of functions, times, failure policies, what fields declare.
 
         Returns:
             For each message what is to be called; its `run_check` runs the check.
@@ -313,14 +351,14 @@ class FunctionChain:
     def bind_one(self, message: Any) -> Binding:
         """As `bind`, for one message; raises what is wrong with it, BadGoal or UnknownFunction."""
         _require_lengths(message)
-        sleep_time = seconds(message.time)
-        require_within("time", sleep_time, WAIT)
+        COMMON["time"].require("time", seconds(message.time))
         _policy(message)
         function = self.look_up(message.function)
         key = (message.function, type(message))
         binding = self._bindings.get(key)
         if binding is None or binding.function is not function:
             binding = self._bindings[key] = Binding(function, type(message))
+        binding.check_fields(message)
         return binding
 
 

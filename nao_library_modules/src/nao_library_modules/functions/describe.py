@@ -1,33 +1,27 @@
-"""What the functions of a server are, told from its code: names, arguments, units, limits, one line of help.
+"""What the functions of a server are, as they declare it: names, arguments, units, limits, one line of help.
 
-Nothing is written down for it. Names and arguments come from the function table and the functions' parameters, help
-from docstrings, types and meaning of the fields from the message's definition with its comments, limits and words from
-the checks, and the names that only a robot knows from the robot.
+Names come from the function table, help from the docstrings, answers from the annotations, and what a field may hold
+from its declaration in the signature (see `fields`). Of a field that is not declared the message's definition tells.
 """
 
 from __future__ import annotations
 
 import inspect
 import json
-import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..base.failure_policy import ALLOWED as POLICIES
-from .chain import CHECK_ATTRIBUTE, COMMON, WAIT, fields_taken
-from .describe_checks import allowed_in
-from .describe_fields import FieldComment, FieldHelp, read_fields
-from .describe_limits import Allowed
+from .chain import COMMON, declared_fields, fields_read
+from .fields import Field, Question
 from .memory_functions import MemoryFunctions
+from .message_fields import read_fields
 
+NO_UNIT = "no unit"
+"""Unit of numbers that have none."""
 NOTHING = "nothing"
 _ANSWERS = {"str": "text", "float": "number", "int": "whole number", "bool": "truth value", "Any": "value"}
-_COMMON_LIMITS = {
-    "time": Allowed("{:g}..{:g} {}".format(*WAIT), WAIT.lowest, WAIT.highest),
-    "on_error": Allowed(POLICIES),
-}
 _MANY = re.compile(r"(?:list|List|Sequence|tuple)\[(.*)\]")
 
 
@@ -40,10 +34,10 @@ class Argument:
     unit: str
     default: str
     help: str
-    allowed: str = ""
-    choices: tuple[str, ...] = ()
-    minimum: float = math.nan
-    maximum: float = math.nan
+    allowed: str
+    choices: tuple[str, ...]
+    minimum: float
+    maximum: float
 
 
 @dataclass(frozen=True)
@@ -58,38 +52,39 @@ class Described:
 
 
 class Description:
-    """The functions of one module. Each is worked out when it is asked for, and kept.
+    """The functions of one server. Each is worked out when it is asked for, and kept.
 
     Attributes:
         action: Type of the action, with its package.
         message: Type of the function messages, with its package.
-        help: First line of the module's docstring.
-        choices: Function, field -> words that it may hold, where the checks do not tell them: those of the robot.
+        table: NAOqi function name -> callable; it may change.
+        help: First line of the docstring of the module's class.
+        choices: Function, field, what to ask the robot -> words that it may hold, where they are not declared.
     """
 
-    def __init__(self, module: Any, action: type) -> None:
-        """Look at what the module serves.
+    def __init__(self, table: Mapping[str, Callable[..., Any]], kind: type, action: type) -> None:
+        """Look at what the server takes.
 
         Args:
-            module: The module; its `function_table` may change later.
+            table: Its functions, those of the robot's memory among them.
+            kind: Class of the module behind it.
             action: Type of its action; the first field of the goal is the array of function messages.
         """
-        self.choices: Callable[[str, str], Sequence[str]] = lambda function, field: ()
+        self.choices: Callable[[str, str, Sequence[Question]], Sequence[str]] = lambda function, field, asked: ()
         goal = action().action_goal.goal
         self.action = f"{goal._type.rpartition('/')[0]}/{action.__name__[: -len('Action')]}"
         self.message = goal._slot_types[0].partition("[")[0]
-        self.help = first_line(type(module))
-        self._module = module
+        self.table = table
+        self.help = first_line(kind)
         self._message_type = message_class(goal)
         self._fields = read_fields(self._message_type._full_text)
         self._defaults = self._message_type()
-        self._shared = frozenset(MemoryFunctions.memory_functions(module))
-        self._limits: dict[str, tuple[Any, Mapping[str, Allowed]]] = {}
+        self._shared = frozenset(MemoryFunctions.functions)
 
     @property
     def names(self) -> list[str]:
         """Names of the functions, in the order of the table."""
-        return list(self._module.function_table)
+        return list(self.table)
 
     def functions(self, names: Sequence[str] = (), arguments: bool = True) -> list[Described]:
         """Descriptions of functions; of all without names. Unknown names are left out.
@@ -98,48 +93,36 @@ class Description:
             names: Names of functions.
             arguments: False: without what they take.
         """
-        table = dict(self._module.function_table)
-        texts = FieldHelp(self._fields, table, self._shared)
-        return [self._describe(name, table[name], texts, arguments) for name in names or table if name in table]
+        table = dict(self.table)
+        return [self._described(name, table[name], arguments) for name in names or table if name in table]
 
     def common(self) -> list[Argument]:
         """The fields that every function has."""
-        texts = FieldHelp(self._fields, self._module.function_table, self._shared)
-        return [self._argument(name, "", texts, _COMMON_LIMITS[name]) for name in COMMON if name in self._fields]
+        return [self._argument("", name, field) for name, field in COMMON.items() if name in self._fields]
 
-    def _describe(self, name: str, function: Callable[..., Any], texts: FieldHelp, arguments: bool) -> Described:
-        taken = self._arguments(name, function, texts) if arguments else ()
+    def _described(self, name: str, function: Callable[..., Any], arguments: bool) -> Described:
+        taken = self._arguments(name, function) if arguments else ()
         return Described(name, first_line(function), answers(function), name in self._shared, tuple(taken))
 
-    def _arguments(self, name: str, function: Callable[..., Any], texts: FieldHelp) -> list[Argument]:
-        limits = self._limits_of(name, function)
+    def _arguments(self, name: str, function: Callable[..., Any]) -> list[Argument]:
         names = self._message_type.__slots__
-        fields = fields_taken(function, names)
-        check = getattr(function, CHECK_ATTRIBUTE, None)
-        checked = fields_taken(check, names) if check else ()
-        read = dict.fromkeys((*fields, *checked))
-        return [self._argument(field, name, texts, limits.get(field, Allowed())) for field in read]
+        declared = declared_fields(function, names)
+        return [self._argument(name, each, declared.get(each)) for each in fields_read(function, names)]
 
-    def _limits_of(self, name: str, function: Callable[..., Any]) -> Mapping[str, Allowed]:
-        known = self._limits.get(name)
-        if known is None or known[0] is not function and known[0] != function:
-            check = getattr(function, CHECK_ATTRIBUTE, None)
-            owner = getattr(function, "__self__", self._module)
-            known = self._limits[name] = (function, allowed_in(check, owner, self._fields))
-        return known[1]
-
-    def _argument(self, field: str, function: str, texts: FieldHelp, limits: Allowed) -> Argument:
-        comment: FieldComment = self._fields[field]
+    def _argument(self, function: str, name: str, declared: Field | None) -> Argument:
+        known = self._fields[name]
+        field = declared or Field(known.comment)
+        unit = "s" if known.is_time else field.unit
         return Argument(
-            field,
-            comment.type,
-            texts.unit(field, function, limits.text),
-            default_text(getattr(self._defaults, field)),
-            texts.help(field, function),
-            limits.text,
-            limits.choices or tuple(self.choices(function, field)),
-            limits.minimum if comment.numeric else math.nan,  # "up to 64" counts the characters of a text
-            limits.maximum if comment.numeric else math.nan,
+            name,
+            known.type,
+            unit or (NO_UNIT if known.numeric else ""),
+            default_text(getattr(self._defaults, name)),
+            field.help,
+            field.allowed,
+            tuple(field.choices) or tuple(self.choices(function, name, field.asked)),
+            field.minimum,
+            field.maximum,
         )
 
 

@@ -10,13 +10,12 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ..nao.light_names import plain_words
+from .fields import Question
 
 log = logging.getLogger(__name__)
 
 LIMIT = 3.0
 """s that the robot has for an answer: who asks for a description is waiting for more than this."""
-
-Question = tuple  # (NAOqi module, method, arguments...)
 
 LIGHTS: Sequence[Question] = (("ALLeds", "listGroups"), ("ALLeds", "listLEDs"))
 JOINTS: Sequence[Question] = (("ALMotion", "getBodyNames", "Chains"), ("ALMotion", "getBodyNames", "Body"))
@@ -25,54 +24,38 @@ VOICES: Sequence[Question] = (("ALTextToSpeech", "getAvailableVoices"),)
 LANGUAGES: Sequence[Question] = (("ALTextToSpeech", "getAvailableLanguages"),)
 HEARD_LANGUAGES: Sequence[Question] = (("ALSpeechRecognition", "getAvailableLanguages"),)
 
-OF_FIELDS: dict[tuple[str, str], Sequence[Question]] = {
-    ("LedFunction", "lights"): LIGHTS,
-    ("MotionFunction", "names"): JOINTS,
-    ("AudioOutFunction", "voice"): VOICES,
-    ("AudioOutFunction", "language"): LANGUAGES,
-}
-"""(message, field) -> what to ask, for every function that reads the field."""
-
-OF_FUNCTIONS: dict[tuple[str, str, str], Sequence[Question]] = {
-    ("LedFunction", "listGroup", "str_param"): LIGHTS,
-    ("MotionFunction", "goToPosture", "str_param"): POSTURES,
-    ("MotionFunction", "applyPosture", "str_param"): POSTURES,
-    ("AudioOutFunction", "setVoice", "str_param"): VOICES,
-    ("AudioOutFunction", "setLanguage", "str_param"): LANGUAGES,
-    ("AudioInFunction", "setLanguage", "str_param"): HEARD_LANGUAGES,
-}
-"""(message, function, field) -> what to ask; it comes before what the field has for all functions."""
-
 
 class Choices:
     """What one robot answers. Any thread may ask."""
 
-    def __init__(self, robot: Any, message: str, own: Callable[[str, str], Sequence[str]]) -> None:
+    def __init__(self, robot: Any, own: Callable[[str, str], Sequence[str]]) -> None:
         """Ask nothing yet.
 
         Args:
             robot: Proxies and connection.
-            message: Type of the function messages, without its package.
             own: Function, field -> words that the module itself knows.
         """
         self._own = own
         self._robot = robot
-        self._message = message
         self._lock = threading.Lock()
         self._known: dict[Question, tuple[str, ...]] = {}
         self._generation: int | None = None
 
-    def of(self, function: str, field: str) -> tuple[str, ...]:
-        """Words that a field of a function may hold; none where nobody has a say or the robot cannot be asked."""
+    def of(self, function: str, field: str, asked: Sequence[Question]) -> tuple[str, ...]:
+        """Words that a field of a function may hold; none where nobody has a say or the robot cannot be asked.
+
+        Args:
+            function: Its name.
+            field: The name of the field.
+            asked: What the field declares to ask the robot.
+        """
         own = self._own(function, field)
         if own:
             return tuple(own)
-        key = (self._message, function, field)
-        questions = OF_FUNCTIONS.get(key) or OF_FIELDS.get((self._message, field), ())
-        if not questions or self._robot.connection.state != "connected":
+        if not asked or self._robot.connection.state != "connected":
             return ()
-        told = [word for question in questions for word in self._answer(question)]
-        words = plain_words(told) if questions is LIGHTS else []
+        told = [word for question in asked for word in self._answer(question)]
+        words = plain_words(told) if asked is LIGHTS else []
         return tuple(dict.fromkeys([*told, *words]))
 
     def _answer(self, question: Question) -> tuple[str, ...]:

@@ -1,12 +1,15 @@
-"""The servers of all modules without a robot and without ROS: for documents, and for help where nothing runs."""
+"""The servers of all modules as their classes declare them: for documents, and for help where nothing runs."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from .chain import FunctionTable
+from .describe import Description
 from .describe_service import DescribeService
-from .offline_module import offline_module
+from .memory_functions import MemoryFunctions
 from .server_types import ACTIONS, server_type
 
 
@@ -17,24 +20,26 @@ class OfflineServer:
     Attributes:
         name: Relative name of the action.
         action: Its type.
-        module: The module behind it, which nothing runs.
+        kind: Class of the module behind it.
+        table: NAOqi function name -> plain function of the class.
         service: What would answer NAME/describe.
     """
 
     name: str
     action: type
-    module: Any
+    kind: type
+    table: Mapping[str, Callable[..., Any]]
     service: DescribeService
 
 
 def offline_servers() -> list[OfflineServer]:
     """The servers of all modules in this package, by name."""
-    servers = [server for name in ACTIONS for server in _served(server_type(name).module)]
-    return sorted(servers, key=lambda server: server.name.lower())
+    return [_declared(name) for name in sorted(ACTIONS, key=str.lower)]
 
 
-def _served(kind: type) -> list[OfflineServer]:
-    module, served = offline_module(kind)
-    return [
-        OfflineServer(name, action, module, DescribeService(module, action, lambda: ((), 0))) for name, action in served
-    ]
+def _declared(name: str) -> OfflineServer:
+    server = server_type(name)
+    kind, action = server.module, server.action
+    table = FunctionTable(kind.declared_functions(), MemoryFunctions.functions)
+    service = DescribeService(lambda: Description(table, kind, action), None, lambda: ((), 0))
+    return OfflineServer(name, action, kind, table, service)

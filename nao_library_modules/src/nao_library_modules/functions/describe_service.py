@@ -10,7 +10,6 @@ from nao_library_msgs.msg import ArgumentDescription, FunctionDescription
 from nao_library_msgs.srv import DescribeFunctionsResponse
 
 from .describe import Argument, Described, Description
-from .describe_choices import Choices
 
 
 class DescribeService:
@@ -20,16 +19,18 @@ class DescribeService:
         Service `NAME/describe` (nao_library_msgs/DescribeFunctions), NAME the name of the action.
     """
 
-    def __init__(self, module: Any, action: type, running: Callable[[], tuple[Sequence[str], int]]) -> None:
+    def __init__(
+        self, describe: Callable[[], Description], robot: Any, running: Callable[[], tuple[Sequence[str], int]]
+    ) -> None:
         """Keep what it tells of; nothing is worked out before somebody asks.
 
         Args:
-            module: The module.
-            action: Type of its action.
+            describe: Makes the description; called once.
+            robot: Proxies and connection; None: there is none.
             running: The functions of the goal that runs, and the index of the one that does.
         """
-        self._module = module
-        self._action = action
+        self._describe = describe
+        self._robot = robot
         self._running = running
         self._lock = threading.Lock()
         self._description: Description | None = None
@@ -37,15 +38,15 @@ class DescribeService:
     def answer(self, request: Any) -> Any:
         """Response to a request."""
         running, index = self._running()
-        robot = self._module.robot
+        robot = self._robot
         with self._lock:
             description = self._described()
             response = DescribeFunctionsResponse(
                 action=description.action,
                 message=description.message,
                 help=description.help,
-                robot=str(robot.address),
-                connected=robot.connection.state == "connected",
+                robot="" if robot is None else str(robot.address),
+                connected=robot is not None and robot.connection.state == "connected",
                 running=list(running),
                 index=index,
             )
@@ -59,9 +60,7 @@ class DescribeService:
 
     def _described(self) -> Description:
         if self._description is None:
-            self._description = Description(self._module, self._action)
-            message = self._description.message.rpartition("/")[2]
-            self._description.choices = Choices(self._module.robot, message, self._module.argument_choices).of
+            self._description = self._describe()
         return self._description
 
 

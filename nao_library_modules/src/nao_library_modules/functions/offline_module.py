@@ -1,60 +1,62 @@
-"""A module without robot and without ROS: to look at its functions where nothing runs."""
+"""A module that no node runs, for its checks: in place of the robot a table of facts, in place of ROS nothing."""
 
 from __future__ import annotations
 
-import inspect
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from ..base.clock import WallClock
+from ..base.kept import Kept
+from .known_robot import KnownRobot
 
 
-class _Nothing:
-    """Takes the place of robot and ROS: whatever it is asked for, it is nothing, and does nothing."""
-
-    address = ""
-    state = "not connected"
-    generation = 0
-
-    def __getattr__(self, name: str) -> _Nothing:
-        if name.startswith("__"):
-            raise AttributeError(name)
-        return self
-
-    def __call__(self, *_: Any, **__: Any) -> _Nothing:
-        return self
+def offline_module(kind: type) -> Any:
+    """A module of a class of this package; it connects to nothing and serves nothing."""
+    return kind("127.0.0.1", 9559, robot=KnownRobot(), edge=_OfflineEdge())
 
 
-class _Edge(_Nothing):
-    """Remembers what a module serves."""
+class _OfflineServer:
+    """An action server that gets no goals."""
+
+    def start(self) -> None:
+        """There is nothing to start."""
+
+
+class _OfflineEdge:
+    """Takes the place of `RosEdge`: what is published goes nowhere, what is served is never asked."""
 
     namespace = "/"
 
     def __init__(self) -> None:
         self.clock = WallClock()
-        self.served: list[tuple[str, type]] = []
 
-    def load(self) -> None:
-        """There is nothing that was kept."""
+    def action_server(self, *_: Any) -> _OfflineServer:
+        return _OfflineServer()
 
     def driver(self) -> None:
         """There is none."""
 
-    def action_server(self, name: str, action: type, *_: Any) -> _Nothing:
-        """Note an action server."""
-        self.served.append((name, action))
-        return _Nothing()
+    def event_sink(self) -> Callable[[str, Any], None]:
+        return lambda _name, _value: None
 
+    def frame_prefix(self) -> str:
+        return ""
 
-def offline_module(kind: type, robot: Any = None) -> tuple[Any, list[tuple[str, type]]]:
-    """A module that nothing runs, and the names and types of the actions that it would serve.
+    def kept(self) -> Kept:
+        return Kept(Path(tempfile.gettempdir()) / "nao_library" / "no_node.json", "")
 
-    Args:
-        kind: Its class, of the family of NaoBasic.
-        robot: What it asks; None: something that answers nothing.
-    """
-    edge = _Edge()
-    # Some have more to do with ROS than others; what they take None for, they would make themselves.
-    parameters = inspect.signature(kind).parameters.values()
-    more = {parameter.name: _Nothing() for parameter in parameters if parameter.default is None}
-    module = kind("127.0.0.1", 9559, **{**more, "launchpath": None, "robot": robot or _Nothing(), "edge": edge})
-    return module, edge.served
+    def on_shutdown(self, _action: Callable[[], None]) -> None:
+        """It does not end."""
+
+    def publish_diagnostics(self, *_: Any) -> None:
+        """Nobody would see them."""
+
+    def seconds(self, _name: str, default: float) -> float:
+        return default
+
+    def serve(self, *_: Any) -> None:
+        """Nobody would ask."""
+
+    serve_description = subscribe = serve

@@ -6,13 +6,9 @@ from collections.abc import Sequence
 from typing import Any, Protocol
 
 from ..base.errors import BadGoal
-from ..base.field_checks import require_rising, require_within, require_zero_or
-from ..base.limits import limit
 from ..nao.light_names import LightNames
-from .goals import colour_steps, colours, intensities, one_colour, require_angle, require_coloured, require_lights
+from .goals import colour_steps, colours, intensities, one_colour, require_coloured, require_lights
 from .led_access import LedAccess
-
-DURATION, COLOURS = limit("duration"), limit("colours")
 
 
 class HasLeds(Protocol):
@@ -48,18 +44,6 @@ def check_intensities(self: HasLeds, lights: Sequence[str], i_values: Sequence[f
     intensities(lights, i_values)
 
 
-def check_fade(
-    self: HasLeds,
-    lights: Sequence[str],
-    i_values: Sequence[float],
-    duration: float,
-    context: dict[str, Any],
-) -> None:
-    """As setIntensity, and a duration."""
-    check_intensities(self, lights, i_values, context)
-    require_zero_or("duration", duration, DURATION)
-
-
 def check_colours(
     self: HasLeds, lights: Sequence[str], i_values: Sequence[float], str_param: str, context: dict[str, Any]
 ) -> None:
@@ -73,19 +57,6 @@ def check_readable_colours(self: HasLeds, lights: Sequence[str], context: dict[s
     require_coloured(_names(self, lights, context), lights)
 
 
-def check_fade_rgb(
-    self: HasLeds,
-    lights: Sequence[str],
-    i_values: Sequence[float],
-    str_param: str,
-    duration: float,
-    context: dict[str, Any],
-) -> None:
-    """As setColor, and a duration."""
-    check_colours(self, lights, i_values, str_param, context)
-    require_zero_or("duration", duration, DURATION)
-
-
 def check_fade_list(
     self: HasLeds,
     lights: Sequence[str],
@@ -94,38 +65,20 @@ def check_fade_list(
     times: Sequence[float],
     context: dict[str, Any],
 ) -> None:
-    """Coloured lights, rising times, one colour a time."""
+    """Coloured lights, one colour a time."""
     require_coloured(_names(self, lights, context), lights)
-    require_rising("times", times, DURATION, COLOURS)
     colour_steps(times, i_values, str_param)
 
 
-def check_animation(_self: object, duration: float) -> None:
-    """A duration."""
-    require_within("duration", duration, DURATION)
-
-
-def check_rotation(
-    _self: object, i_values: Sequence[float], str_param: str, rotation_time: float, duration: float
-) -> None:
-    """One colour, the time of a turn, and a duration."""
+def check_rotation(_self: object, i_values: Sequence[float], str_param: str) -> None:
+    """One colour."""
     one_colour(i_values, str_param)
-    require_within("rotation_time", rotation_time, DURATION)
-    require_within("duration", duration, DURATION)
-
-
-def check_ear_angle(_self: object, angle: int, duration: float) -> None:
-    """An angle and a duration."""
-    require_angle(angle)
-    require_within("duration", duration, DURATION)
 
 
 def check_new_group(self: HasLeds, str_param: str, lights: Sequence[str], context: dict[str, Any]) -> None:
     """A free name and known lights; later functions of the chain may use the group."""
     name = str_param.strip()
     names = _names(self, lights, context)
-    if not name:
-        raise BadGoal("str_param", str_param, "the name of the new group", problem="it is empty")
     if name in names.lights:
         raise BadGoal("str_param", name, "a name that is no single light", problem=f"{name!r} is a light")
     require_lights(names, lights)

@@ -38,23 +38,10 @@ def require_coloured(names: LightNames, lights: Sequence[str]) -> None:
             )
 
 
-def require_angle(angle: int) -> None:
-    """Check an angle in deg."""
-    if not 0 <= angle <= 360:
-        raise BadGoal("angle", angle, "0..360 deg")
-
-
-def _require_intensities(i_values: Sequence[float]) -> None:
-    for value in i_values:
-        if not 0.0 <= value <= 1.0:  # false for NaN as well
-            raise BadGoal("i_values", value, "each within 0..1")
-
-
 def intensities(lights: Sequence[str], i_values: Sequence[float]) -> list[float]:
     """One intensity a light, from one for all or one each."""
     if len(i_values) not in (1, len(lights)):
         raise _wrong_count(i_values, f"{_count(lights)}", _for_all_or_each(1, len(lights)))
-    _require_intensities(i_values)
     return _spread([float(value) for value in i_values], len(lights))
 
 
@@ -68,7 +55,6 @@ def colours(lights: Sequence[str], i_values: Sequence[float], str_param: str) ->
         raise BadGoal("str_param", "", "a name or '#RRGGBB' here, or red, green and blue in i_values", problem)
     if len(i_values) not in (3, 3 * len(lights)):
         raise _wrong_count(i_values, f"the colours of {_count(lights)}", _for_all_or_each(3, len(lights)))
-    _require_intensities(i_values)
     return _spread(_triples(i_values), len(lights))
 
 
@@ -92,7 +78,6 @@ def colour_steps(times: Sequence[float], i_values: Sequence[float], str_param: s
         return steps
     if len(i_values) != 3 * len(times):
         raise _wrong_count(i_values, f"{len(times)} times", f"{3 * len(times)} (red green blue a time)")
-    _require_intensities(i_values)
     return _triples(i_values)
 
 

@@ -14,18 +14,34 @@ from ..functions.chain import checked_by
 from ..processes.launcher import LaunchPath
 from ..server.nao_basic import NaoBasic
 from .checks import (
-    check_animation,
     check_colours,
-    check_ear_angle,
-    check_fade,
     check_fade_list,
-    check_fade_rgb,
     check_group,
     check_intensities,
     check_lights,
     check_new_group,
     check_readable_colours,
     check_rotation,
+)
+from .fields import (
+    Angle,
+    AnimationTime,
+    ColouredLights,
+    Colours,
+    ColourSteps,
+    ColourText,
+    ColourTexts,
+    FadeTime,
+    Group,
+    Intensities,
+    LeaveOn,
+    Lights,
+    Members,
+    Moments,
+    NewGroup,
+    OneColour,
+    Revert,
+    TurnTime,
 )
 from .goals import colour_steps, colours, intensities, one_colour
 from .led_access import LedAccess
@@ -65,81 +81,58 @@ class NaoLights(NaoBasic):
         super().__init__(ip, port, autostart, launchpath, **options)
         self.leds = LedAccess(self.robot, self.call, self.call_all, self.call_now)
         self._touched: dict[str, None] = {}  # an ordered set of lights and groups
-        self.function_table.update(
-            {
-                "on": self.on,
-                "off": self.off,
-                "setIntensity": self.set_intensity,
-                "getIntensity": self.get_intensity,
-                "setColor": self.set_color,
-                "getColor": self.get_color,
-                "fade": self.fade,
-                "fadeRGB": self.fade_rgb,
-                "fadeListRGB": self.fade_list_rgb,
-                "randomEyes": self.random_eyes,
-                "rasta": self.rasta,
-                "rotateEyes": self.rotate_eyes,
-                "earLedsSetAngle": self.ear_leds_set_angle,
-                "reset": self.reset,
-                "createGroup": self.create_group,
-                "listLEDs": self.list_leds,
-                "listLED": self.list_led,
-                "listGroup": self.list_group,
-                "listGroups": self.list_groups,
-            }
-        )
         self.serve("NaoLights", NaoLedAction)
 
     # Functions: parameters are fields of LedFunction
 
     @checked_by(check_lights)
-    def on(self, lights: Sequence[str], revert: bool) -> None:
+    def on(self, lights: Lights, revert: Revert) -> None:
         """Light up fully."""
         self._act(lights, revert, "on", self._each(lights, repeat(())))
 
     @checked_by(check_lights)
-    def off(self, lights: Sequence[str], revert: bool) -> None:
+    def off(self, lights: Lights, revert: Revert) -> None:
         """Switch off."""
         self._act(lights, revert, "off", self._each(lights, repeat(())))
 
     @checked_by(check_lights)
-    def reset(self, lights: Sequence[str], revert: bool) -> None:
+    def reset(self, lights: Lights, revert: Revert) -> None:
         """Bring lights to the robot's default."""
         self._act(lights, revert, "reset", self._each(lights, repeat(())))
 
     @checked_by(check_intensities)
-    def set_intensity(self, lights: Sequence[str], i_values: Sequence[float], revert: bool) -> None:
+    def set_intensity(self, lights: Lights, i_values: Intensities, revert: Revert) -> None:
         """Set intensities at once; one value for all lights, or one a light."""
         self._act(lights, revert, "setIntensity", self._each(lights, zip(intensities(lights, i_values))))
 
     @checked_by(check_lights)
-    def get_intensity(self, lights: Sequence[str]) -> list[float]:
+    def get_intensity(self, lights: Lights) -> list[float]:
         """Intensity of each light: of a coloured one its strongest LED, of a group the mean of its lights."""
         self._touch(lights)
         values = self.leds.read(lights)
         return [mean_intensity(self.leds.names, light, values) for light in lights]
 
     @checked_by(check_colours)
-    def set_color(self, lights: Sequence[str], i_values: Sequence[float], str_param: str, revert: bool) -> None:
+    def set_color(self, lights: ColouredLights, i_values: Colours, str_param: ColourText, revert: Revert) -> None:
         """Set colours at once; one for all lights, or one a light."""
         self.fade_rgb(lights, i_values, str_param, 0.0, revert)
 
     @checked_by(check_readable_colours)
-    def get_color(self, lights: Sequence[str]) -> list[list[float]]:
+    def get_color(self, lights: ColouredLights) -> list[list[float]]:
         """Red, green and blue of each light, of a group the mean of its lights."""
         self._touch(lights)
         values = self.leds.read(lights)
         return [mean_colour(self.leds.names, light, values) for light in lights]
 
-    @checked_by(check_fade)
-    def fade(self, lights: Sequence[str], i_values: Sequence[float], duration: float, revert: bool) -> None:
+    @checked_by(check_intensities)
+    def fade(self, lights: Lights, i_values: Intensities, duration: FadeTime, revert: Revert) -> None:
         """Fade to intensities, all lights together."""
         fades = [(value, duration) for value in intensities(lights, i_values)]
         self._act(lights, revert, "fade", self._each(lights, fades), together=duration > 0.0)
 
-    @checked_by(check_fade_rgb)
+    @checked_by(check_colours)
     def fade_rgb(
-        self, lights: Sequence[str], i_values: Sequence[float], str_param: str, duration: float, revert: bool
+        self, lights: ColouredLights, i_values: Colours, str_param: ColourText, duration: FadeTime, revert: Revert
     ) -> None:
         """Fade to colours, all lights together."""
         fades = [(*colour, duration) for colour in colours(lights, i_values, str_param)]
@@ -147,47 +140,39 @@ class NaoLights(NaoBasic):
 
     @checked_by(check_fade_list)
     def fade_list_rgb(
-        self,
-        lights: Sequence[str],
-        i_values: Sequence[float],
-        str_param: str,
-        times: Sequence[float],
-        revert: bool,
+        self, lights: ColouredLights, i_values: ColourSteps, str_param: ColourTexts, times: Moments, revert: Revert
     ) -> None:
         """Fade through colours, each reached at its time, all lights together."""
         steps = [to_integer(colour) for colour in colour_steps(times, i_values, str_param)]
         self._act(lights, revert, "fadeListRGB", self._each(lights, repeat((steps, list(times)))), together=True)
 
-    @checked_by(check_animation)
-    def random_eyes(self, duration: float, revert: bool) -> None:
+    def random_eyes(self, duration: AnimationTime, revert: Revert) -> None:
         """Random colours in the eyes."""
         self._act([EYES], revert, "randomEyes", [(duration,)])
 
-    @checked_by(check_animation)
-    def rasta(self, duration: float, revert: bool) -> None:
+    def rasta(self, duration: AnimationTime, revert: Revert) -> None:
         """Green, yellow and red all over the body."""
         self._act([ALL], revert, "rasta", [(duration,)])
 
     @checked_by(check_rotation)
     def rotate_eyes(
         self,
-        i_values: Sequence[float],
-        str_param: str,
-        rotation_time: float,
-        duration: float,
-        revert: bool,
+        i_values: OneColour,
+        str_param: ColourText,
+        rotation_time: TurnTime,
+        duration: AnimationTime,
+        revert: Revert,
     ) -> None:
         """A colour that goes round in the eyes."""
         rgb = to_integer(one_colour(i_values, str_param))
         self._act([EYES], revert, "rotateEyes", [(rgb, rotation_time, duration)])
 
-    @checked_by(check_ear_angle)
-    def ear_leds_set_angle(self, angle: int, duration: float, leave_on: bool, revert: bool) -> None:
+    def ear_leds_set_angle(self, angle: Angle, duration: AnimationTime, leave_on: LeaveOn, revert: Revert) -> None:
         """Show a direction on the ears."""
         self._act([EARS], revert, "earLedsSetAngle", [(angle, duration, leave_on)])
 
     @checked_by(check_new_group)
-    def create_group(self, str_param: str, lights: Sequence[str]) -> None:
+    def create_group(self, str_param: NewGroup, lights: Members) -> None:
         """Make a group of lights and groups, used like any other."""
         self.leds.create_group(str_param.strip(), lights)
 
@@ -196,18 +181,40 @@ class NaoLights(NaoBasic):
         return self.leds.list_names("listLEDs")
 
     @checked_by(check_group)
-    def list_led(self, str_param: str) -> list[str]:
+    def list_led(self, str_param: Group) -> list[str]:
         """LEDs of a single light: the keys of the robot's memory that hold their intensities."""
         return self.leds.names.devices([str_param.strip()])
 
     @checked_by(check_group)
-    def list_group(self, str_param: str) -> list[str]:
+    def list_group(self, str_param: Group) -> list[str]:
         """Names of the lights in a group."""
         return self.leds.names.expand([str_param.strip()])
 
     def list_groups(self) -> list[str]:
         """Names of the groups."""
         return self.leds.list_names("listGroups")
+
+    function_table = {
+        "on": on,
+        "off": off,
+        "setIntensity": set_intensity,
+        "getIntensity": get_intensity,
+        "setColor": set_color,
+        "getColor": get_color,
+        "fade": fade,
+        "fadeRGB": fade_rgb,
+        "fadeListRGB": fade_list_rgb,
+        "randomEyes": random_eyes,
+        "rasta": rasta,
+        "rotateEyes": rotate_eyes,
+        "earLedsSetAngle": ear_leds_set_angle,
+        "reset": reset,
+        "createGroup": create_group,
+        "listLEDs": list_leds,
+        "listLED": list_led,
+        "listGroup": list_group,
+        "listGroups": list_groups,
+    }
 
     def _touch(self, lights: Sequence[str]) -> None:
         """Note lights for the result; their names are read now if need be, for at its end nothing waits."""

@@ -2,82 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
-from ..base.errors import BadGoal
-from ..base.field_checks import require_count, require_each, require_length, require_rising
-from ..base.limits import limit
-from ..base.suggestion import did_you_mean
+from ..base.field_checks import require_count, require_length
 from ..functions.chain import checked_by
 from .base import DEFAULT_SPEED, MotionBase
 from .facts import BODY
-from .plan import DURATION, MotionPlan, require_fraction
+from .fields import Commanded, Frame, Relative, SomeJoints, Speed, Stiffness
+from .plan import MotionPlan
+from .walk_fields import (
+    EFFECTORS,
+    POSES,
+    AxisMask,
+    Effectors,
+    Parts,
+    PoseChanges,
+    PosePath,
+    Poses,
+    PoseTimes,
+    TransformPath,
+    Transforms,
+)
 
-FRAMES = ("FRAME_TORSO", "FRAME_WORLD", "FRAME_ROBOT")
-POSITION, ALL_AXES = 7, 63
+POSITION = 7
 POSE, TRANSFORM = 6, 12
-POSE_NUMBER, POSES = limit("pose"), limit("poses")
-# Chains that an effector moves; the torso moves on both legs.
-CHAINS: Mapping[str, Sequence[str]] = {
-    "Head": ("Head",),
-    "LArm": ("LArm",),
-    "RArm": ("RArm",),
-    "LLeg": ("LLeg",),
-    "RLeg": ("RLeg",),
-    "Torso": ("LLeg", "RLeg"),
-}
-
-
-def require_frame(frame: int) -> None:
-    """Check the number of a frame.
-
-    Raises:
-        BadGoal: If there is no such frame.
-    """
-    if not 0 <= frame < len(FRAMES):
-        raise BadGoal("frame", frame, ", ".join(f"{i} ({name})" for i, name in enumerate(FRAMES)))
-
-
-def _effectors(names: Sequence[str]) -> list[str]:
-    if not names:
-        raise BadGoal("names", [], f"one or more of {', '.join(CHAINS)}", problem="no effector is named")
-    for name in names:
-        if name not in CHAINS:
-            raise BadGoal(
-                "names",
-                name,
-                f"one of {', '.join(CHAINS)}",
-                problem=f"{name!r} is no effector{did_you_mean(name, CHAINS)}",
-            )
-    return list(names)
 
 
 def _rows(values: Sequence[float], count: int, size: int) -> list[list[float]]:
     """Numbers as `count` rows of `size`."""
     require_count("values", values, count * size, f"{size} for each of {count}")
-    require_each("values", values, POSE_NUMBER)
     return [list(values[i * size : (i + 1) * size]) for i in range(count)]
 
 
-def check_place(_self: MotionBase, names: Sequence[str], frame: int) -> None:
-    """One name, a known frame; the robot tells whether it has such a place."""
-    require_frame(frame)
-    if not names:
-        raise BadGoal("names", [], "effectors, joints or sensors", problem="nothing is named")
-
-
-def check_frame(_self: MotionBase, frame: int) -> None:
-    """A known frame."""
-    require_frame(frame)
-
-
-def _check_move(plan: MotionPlan, names: Sequence[str], frame: int, axis_mask: int, stiffness: float) -> list[str]:
+def _check_move(plan: MotionPlan, names: Sequence[str], stiffness: float) -> list[str]:
     """See that effectors can move; the joints that will."""
-    require_frame(frame)
-    if not 0 <= axis_mask <= ALL_AXES:
-        raise BadGoal("axis_mask", axis_mask, "1..63: the sum of 1 x, 2 y, 4 z, 8 wx, 16 wy, 32 wz; 0 for 7")
-    joints = [joint for name in _effectors(names) for chain in CHAINS[name] for joint in plan.facts.chains[chain]]
+    joints = [joint for name in names for chain in EFFECTORS[name] for joint in plan.facts.chains[chain]]
     joints = [joint for joint in dict.fromkeys(joints) if not joint.endswith("Hand")]
     plan.require_stiff(joints, stiffness)
     plan.touch(joints)
@@ -85,45 +44,21 @@ def _check_move(plan: MotionPlan, names: Sequence[str], frame: int, axis_mask: i
     return joints
 
 
-def _check_with_speed(
-    self: MotionBase,
-    names: Sequence[str],
-    values: Sequence[float],
-    size: int,
-    frame: int,
-    axis_mask: int,
-    speed: float,
-    stiffness: float,
+def _check_targets(
+    self: MotionBase, names: Sequence[str], values: Sequence[float], size: int, stiffness: float
 ) -> None:
-    self.plan.aim(_check_move(self.plan, names, frame, axis_mask, stiffness))
+    self.plan.aim(_check_move(self.plan, names, stiffness))
     _rows(values, len(names), size)
-    require_fraction("speed", speed, DEFAULT_SPEED)
 
 
-def check_poses(
-    self: MotionBase,
-    names: Sequence[str],
-    values: Sequence[float],
-    frame: int,
-    axis_mask: int,
-    speed: float,
-    stiffness: float,
-) -> None:
-    """Known effectors on stiff chains, a pose each, a frame, an axis mask, a speed."""
-    _check_with_speed(self, names, values, POSE, frame, axis_mask, speed, stiffness)
+def check_poses(self: MotionBase, names: Sequence[str], values: Sequence[float], stiffness: float) -> None:
+    """Stiff chains, a pose for each effector."""
+    _check_targets(self, names, values, POSE, stiffness)
 
 
-def check_transforms(
-    self: MotionBase,
-    names: Sequence[str],
-    values: Sequence[float],
-    frame: int,
-    axis_mask: int,
-    speed: float,
-    stiffness: float,
-) -> None:
+def check_transforms(self: MotionBase, names: Sequence[str], values: Sequence[float], stiffness: float) -> None:
     """As setPosition, with transforms."""
-    _check_with_speed(self, names, values, TRANSFORM, frame, axis_mask, speed, stiffness)
+    _check_targets(self, names, values, TRANSFORM, stiffness)
 
 
 def _check_paths(
@@ -132,79 +67,48 @@ def _check_paths(
     values: Sequence[float],
     size: int,
     times: Sequence[float],
-    frame: int,
-    axis_mask: int,
     stiffness: float,
 ) -> None:
-    _check_move(self.plan, names, frame, axis_mask, stiffness)
-    require_rising("times", times, DURATION, POSES)
+    _check_move(self.plan, names, stiffness)
     require_length("times", len(names) * len(times), POSES)
     _rows(values, len(names) * len(times), size)
     self.plan.takes(times[-1])
 
 
 def check_pose_paths(
-    self: MotionBase,
-    names: Sequence[str],
-    values: Sequence[float],
-    times: Sequence[float],
-    frame: int,
-    axis_mask: int,
-    stiffness: float,
+    self: MotionBase, names: Sequence[str], values: Sequence[float], times: Sequence[float], stiffness: float
 ) -> None:
-    """Known effectors on stiff chains, a pose for each time, a frame, an axis mask."""
-    _check_paths(self, names, values, POSE, times, frame, axis_mask, stiffness)
+    """Stiff chains, a pose for each time of each effector."""
+    _check_paths(self, names, values, POSE, times, stiffness)
 
 
 def check_transform_paths(
-    self: MotionBase,
-    names: Sequence[str],
-    values: Sequence[float],
-    times: Sequence[float],
-    frame: int,
-    axis_mask: int,
-    stiffness: float,
+    self: MotionBase, names: Sequence[str], values: Sequence[float], times: Sequence[float], stiffness: float
 ) -> None:
     """As positionInterpolation, with transforms."""
-    _check_paths(self, names, values, TRANSFORM, times, frame, axis_mask, stiffness)
+    _check_paths(self, names, values, TRANSFORM, times, stiffness)
 
 
 class CartesianFunctions(MotionBase):
     """Functions of ALMotion for effectors in space. Parameters are fields of MotionFunction."""
 
-    def cartesian_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "getPosition": self.get_position,
-            "getTransform": self.get_transform,
-            "setPosition": self.set_position,
-            "setTransform": self.set_transform,
-            "changePosition": self.change_position,
-            "positionInterpolation": self.position_interpolation,
-            "transformInterpolation": self.transform_interpolation,
-            "getCOM": self.get_com,
-            "getSupportPolygon": self.get_support_polygon,
-        }
-
-    @checked_by(check_place)
-    def get_position(self, names: Sequence[str], frame: int, commanded: bool) -> list[list[float]]:
+    def get_position(self, names: Parts, frame: Frame, commanded: Commanded) -> list[list[float]]:
         """Pose of each effector, joint or sensor: x, y, z in m, wx, wy, wz in rad."""
         return [list(self.motion("getPosition", name, frame, not commanded)) for name in names]
 
-    @checked_by(check_place)
-    def get_transform(self, names: Sequence[str], frame: int, commanded: bool) -> list[list[float]]:
+    def get_transform(self, names: Parts, frame: Frame, commanded: Commanded) -> list[list[float]]:
         """Transform of each effector, joint or sensor: 16 numbers, row by row."""
         return [list(self.motion("getTransform", name, frame, not commanded)) for name in names]
 
     @checked_by(check_poses)
     def set_position(
         self,
-        names: Sequence[str],
-        values: Sequence[float],
-        frame: int,
-        axis_mask: int,
-        speed: float,
-        stiffness: float,
+        names: Effectors,
+        values: Poses,
+        frame: Frame,
+        axis_mask: AxisMask,
+        speed: Speed,
+        stiffness: Stiffness,
     ) -> None:
         """Give effectors poses as targets and go on at once."""
         self._set("setPositions", names, _rows(values, len(names), POSE), frame, axis_mask, speed, stiffness)
@@ -212,12 +116,12 @@ class CartesianFunctions(MotionBase):
     @checked_by(check_transforms)
     def set_transform(
         self,
-        names: Sequence[str],
-        values: Sequence[float],
-        frame: int,
-        axis_mask: int,
-        speed: float,
-        stiffness: float,
+        names: Effectors,
+        values: Transforms,
+        frame: Frame,
+        axis_mask: AxisMask,
+        speed: Speed,
+        stiffness: Stiffness,
     ) -> None:
         """Give effectors transforms (12 numbers each, row by row) as targets and go on at once."""
         self._set("setTransforms", names, _rows(values, len(names), TRANSFORM), frame, axis_mask, speed, stiffness)
@@ -225,12 +129,12 @@ class CartesianFunctions(MotionBase):
     @checked_by(check_poses)
     def change_position(
         self,
-        names: Sequence[str],
-        values: Sequence[float],
-        frame: int,
-        axis_mask: int,
-        speed: float,
-        stiffness: float,
+        names: Effectors,
+        values: PoseChanges,
+        frame: Frame,
+        axis_mask: AxisMask,
+        speed: Speed,
+        stiffness: Stiffness,
     ) -> None:
         """Move effectors by differences of poses and go on at once."""
         self._stiffen(names, stiffness)
@@ -240,13 +144,13 @@ class CartesianFunctions(MotionBase):
     @checked_by(check_pose_paths)
     def position_interpolation(
         self,
-        names: Sequence[str],
-        values: Sequence[float],
-        times: Sequence[float],
-        frame: int,
-        axis_mask: int,
-        relative: bool,
-        stiffness: float,
+        names: Effectors,
+        values: PosePath,
+        times: PoseTimes,
+        frame: Frame,
+        axis_mask: AxisMask,
+        relative: Relative,
+        stiffness: Stiffness,
     ) -> None:
         """Move effectors through poses at given times, and wait for the end; all poses of the first one come first."""
         self._follow("positionInterpolations", names, values, POSE, times, frame, axis_mask, relative, stiffness)
@@ -254,24 +158,22 @@ class CartesianFunctions(MotionBase):
     @checked_by(check_transform_paths)
     def transform_interpolation(
         self,
-        names: Sequence[str],
-        values: Sequence[float],
-        times: Sequence[float],
-        frame: int,
-        axis_mask: int,
-        relative: bool,
-        stiffness: float,
+        names: Effectors,
+        values: TransformPath,
+        times: PoseTimes,
+        frame: Frame,
+        axis_mask: AxisMask,
+        relative: Relative,
+        stiffness: Stiffness,
     ) -> None:
         """Move effectors through transforms (12 numbers each) at given times, and wait for the end."""
         self._follow("transformInterpolations", names, values, TRANSFORM, times, frame, axis_mask, relative, stiffness)
 
-    @checked_by(check_frame)
-    def get_com(self, frame: int, commanded: bool, names: Sequence[str]) -> list[list[float]]:
+    def get_com(self, frame: Frame, commanded: Commanded, names: SomeJoints) -> list[list[float]]:
         """Centre of mass of the body, or of each joint or chain that is named: x, y, z in m."""
         return [list(self.motion("getCOM", name, frame, not commanded)) for name in names or [BODY]]
 
-    @checked_by(check_frame)
-    def get_support_polygon(self, frame: int, commanded: bool) -> list[list[float]]:
+    def get_support_polygon(self, frame: Frame, commanded: Commanded) -> list[list[float]]:
         """Corners of the support polygon: x, y in m."""
         return [list(corner) for corner in self.motion("getSupportPolygon", frame, not commanded)]
 
@@ -309,4 +211,16 @@ class CartesianFunctions(MotionBase):
     def _stiffen(self, names: Sequence[str], stiffness: float) -> None:
         if stiffness > 0.0:
             chains = self.access.facts.chains
-            self.stiffen([joint for name in names for chain in CHAINS[name] for joint in chains[chain]], stiffness)
+            self.stiffen([joint for name in names for chain in EFFECTORS[name] for joint in chains[chain]], stiffness)
+
+    functions = {
+        "getPosition": get_position,
+        "getTransform": get_transform,
+        "setPosition": set_position,
+        "setTransform": set_transform,
+        "changePosition": change_position,
+        "positionInterpolation": position_interpolation,
+        "transformInterpolation": transform_interpolation,
+        "getCOM": get_com,
+        "getSupportPolygon": get_support_polygon,
+    }

@@ -10,6 +10,7 @@ from typing import Any, List, Tuple, Union
 from ..base.errors import BadGoal
 from ..base.places import Place
 from ..base.suggestion import did_you_mean
+from ..nao.walk_speed import step_period
 from .facts import MOTION
 
 SETTABLE = (
@@ -27,8 +28,8 @@ FREQUENCY = "Frequency"
 DEFAULT, LEAST, MOST = CONFIGS = ("Default", "Min", "Max")
 # The robot's numbers have 32 bits: a limit that it tells must be allowed as a value.
 TOLERANCE = 1e-6
-# Source: NAOqi's documentation of the walk. s, s, m.
-SHORTEST_STEP, LONGEST_STEP, FOOT_SEPARATION = 0.42, 0.6, 0.1
+FOOT_SEPARATION = 0.1
+"""m; from NAOqi's documentation of the walk."""
 # From standing to the first step and from the last one to standing, about, s.
 BEGIN_AND_END = 2.0
 
@@ -122,8 +123,7 @@ def walk_time(points: Sequence[Place], pairs: GaitPairs, ranges: Mapping[str, Ga
     """
     gait = {name: limits.default for name, limits in ranges.items()}
     gait.update({str(name): float(value) for name, value in pairs})
-    frequency = gait.get("MaxStepFrequency", 1.0)
-    period = LONGEST_STEP + frequency * (SHORTEST_STEP - LONGEST_STEP)
+    period = step_period(gait.get("MaxStepFrequency", 1.0))
     # Of two steps to the side only the first one gets ahead.
     most = (gait["MaxStepX"], 0.5 * (gait["MaxStepY"] - FOOT_SEPARATION), gait["MaxStepTheta"])
     steps, before = 0.0, Place(0.0, 0.0, 0.0)

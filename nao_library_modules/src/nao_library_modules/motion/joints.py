@@ -8,14 +8,35 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ..base.errors import BadGoal
-from ..base.field_checks import KEY_FRAMES, require_length, require_rising, require_zero_or
+from ..base.field_checks import KEY_FRAMES, require_length
 from ..base.suggestion import did_you_mean
 from ..functions.chain import checked_by
 from ..functions.joint_trajectory import KeyFrames, read_trajectory
 from ..robot.robot import wait_for_calls
 from .base import DEFAULT_SPEED, MotionBase
 from .facts import BODY, one_each
-from .plan import DURATION, MotionPlan, require_fraction
+from .fields import (
+    Angles,
+    Changes,
+    Commanded,
+    Duration,
+    Hands,
+    HandStiffness,
+    Joints,
+    KeyAngles,
+    Pose,
+    PoseJoints,
+    PosePoint,
+    Relative,
+    SmoothTrajectory,
+    Speed,
+    Speeds,
+    Stiffness,
+    Times,
+    Trajectory,
+    TrajectoryJoints,
+)
+from .plan import MotionPlan
 from .poses import NamedPoses
 
 OPEN, CLOSED = 1.0, 0.0
@@ -30,9 +51,7 @@ def _angles_of(plan: MotionPlan, names: Sequence[str], angles: Sequence[float]) 
 
 def _fractions(joints: Sequence[str], speed: float, speeds: Sequence[float]) -> list[float]:
     if not speeds:
-        return [require_fraction("speed", speed, DEFAULT_SPEED)] * len(joints)
-    for value in speeds:
-        require_fraction("speeds", value, DEFAULT_SPEED)
+        return [speed or DEFAULT_SPEED] * len(joints)
     return [value or DEFAULT_SPEED for value in one_each(speeds, joints, "speeds")]
 
 
@@ -41,7 +60,6 @@ def _key_angles(
 ) -> dict[str, list[float]]:
     """Joint -> its values at the times, from one flat list: one joint after the other."""
     joints = plan.facts.joints(names)
-    require_rising("times", times, DURATION, shared=len(joints) > 1)
     count = len(times)
     require_length("times", count * len(joints), KEY_FRAMES)
     if len(angles) == count:
@@ -81,35 +99,32 @@ def check_angles(
     self: MotionBase,
     names: Sequence[str],
     angles: Sequence[float],
-    speed: float,
     speeds: Sequence[float],
     stiffness: float,
     relative: bool,
 ) -> None:
-    """Known stiff joints, angles in their limits, fractions of speed."""
+    """Known stiff joints, angles in their limits, speeds for all or one each."""
     wanted = _angles_of(self.plan, names, angles)
-    _fractions(list(wanted), speed, speeds)
+    if speeds:
+        one_each(speeds, list(wanted), "speeds")
     self.plan.require_stiff(list(wanted), stiffness)
     # Nobody waits for targets: they take no time.
     self.plan.move(self.plan.targets(wanted, relative), 0.0)
     self.plan.aim(wanted)
 
 
-def check_changes(
-    self: MotionBase, names: Sequence[str], angles: Sequence[float], speed: float, stiffness: float
-) -> None:
+def check_changes(self: MotionBase, names: Sequence[str], angles: Sequence[float], stiffness: float) -> None:
     """As setAngles, relative to where the joints are by then."""
-    check_angles(self, names, angles, speed, (), stiffness, True)
+    check_angles(self, names, angles, (), stiffness, True)
 
 
 def check_with_speed(
     self: MotionBase, names: Sequence[str], angles: Sequence[float], speed: float, stiffness: float
 ) -> None:
-    """Known stiff joints, angles in their limits, a fraction of speed."""
+    """Known stiff joints, angles in their limits."""
     wanted = _angles_of(self.plan, names, angles)
-    fraction = require_fraction("speed", speed, DEFAULT_SPEED)
     self.plan.require_stiff(list(wanted), stiffness)
-    self.plan.move_with_speed(self.plan.targets(wanted, False), dict.fromkeys(wanted, fraction))
+    self.plan.move_with_speed(self.plan.targets(wanted, False), dict.fromkeys(wanted, speed or DEFAULT_SPEED))
 
 
 def check_interpolation(
@@ -136,9 +151,7 @@ def check_trajectory(self: MotionBase, names: Sequence[str], trajectory: Any, re
 
 
 def check_bezier(self: MotionBase, names: Sequence[str], trajectory: Any, stiffness: float) -> None:
-    """As setTrajectory, with velocities."""
-    if any(not point.velocities for point in trajectory.points):
-        raise BadGoal("trajectory.points", "no velocities", "velocities in every point; setTrajectory needs none")
+    """As setTrajectory."""
     check_trajectory(self, names, trajectory, False, stiffness)
 
 
@@ -152,7 +165,7 @@ def check_pose(
     duration: float,
     stiffness: float,
 ) -> None:
-    """Known stiff joints, angles in their limits, a speed or a time they can keep."""
+    """Known stiff joints, angles in their limits, a time they can keep."""
     if self.is_of_driver(str_param):
         for field, value in (("names", names), ("angles", angles), ("speed", speed), ("duration", duration)):
             if value:
@@ -169,11 +182,10 @@ def check_pose(
     if time > 0.0:
         self.plan.follow({joint: [angle] for joint, angle in pose.items()}, [time], False)
         return
-    fraction = require_fraction("speed", speed, DEFAULT_SPEED)
-    self.plan.move_with_speed(self.plan.targets(pose, False), dict.fromkeys(pose, fraction))
+    self.plan.move_with_speed(self.plan.targets(pose, False), dict.fromkeys(pose, speed or DEFAULT_SPEED))
 
 
-def check_hands(self: MotionBase, names: Sequence[str], stiffness: float) -> None:
+def check_hands(self: MotionBase, names: Sequence[str], stiffness: HandStiffness) -> None:
     """Known hands that can move; NAOqi stiffens a hand itself."""
     hands = self.plan.facts.joints(names)
     known = [joint for joint in self.plan.facts.limits if joint.endswith("Hand")]
@@ -195,35 +207,20 @@ class JointMotion(MotionBase):
     take_driver_pose: Callable[[str], Any]
     """Has it take one of them; gives a call."""
 
-    def joint_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "getAngles": self.get_angles,
-            "setAngles": self.set_angles,
-            "changeAngles": self.change_angles,
-            "angleInterpolation": self.angle_interpolation,
-            "angleInterpolationWithSpeed": self.angle_interpolation_with_speed,
-            "angleInterpolationBezier": self.angle_interpolation_bezier,
-            "setTrajectory": self.set_trajectory,
-            "setPose": self.set_pose,
-            "openHand": self.open_hand,
-            "closeHand": self.close_hand,
-        }
-
     @checked_by(check_joints)
-    def get_angles(self, names: Sequence[str], commanded: bool) -> list[float]:
+    def get_angles(self, names: Joints, commanded: Commanded) -> list[float]:
         """Angles of joints and chains now, measured or as told; the result has them in `name` and `position`."""
         return list(self.motion("getAngles", self.joints(names), not commanded))
 
     @checked_by(check_angles)
     def set_angles(
         self,
-        names: Sequence[str],
-        angles: Sequence[float],
-        speed: float,
-        speeds: Sequence[float],
-        stiffness: float,
-        relative: bool,
+        names: Joints,
+        angles: Angles,
+        speed: Speed,
+        speeds: Speeds,
+        stiffness: Stiffness,
+        relative: Relative,
     ) -> None:
         """Give joints targets and go on at once; newer targets replace older ones."""
         wanted = _angles_of(self.plan, names, angles)
@@ -235,7 +232,7 @@ class JointMotion(MotionBase):
         self.motion("setAngles", list(wanted), list(wanted.values()), fractions if speeds else fractions[0])
 
     @checked_by(check_changes)
-    def change_angles(self, names: Sequence[str], angles: Sequence[float], speed: float, stiffness: float) -> None:
+    def change_angles(self, names: Joints, angles: Changes, speed: Speed, stiffness: Stiffness) -> None:
         """Change the targets of joints and go on at once."""
         wanted = _angles_of(self.plan, names, angles)
         self.stiffen(list(wanted), stiffness)
@@ -244,11 +241,11 @@ class JointMotion(MotionBase):
     @checked_by(check_interpolation)
     def angle_interpolation(
         self,
-        names: Sequence[str],
-        angles: Sequence[float],
-        times: Sequence[float],
-        relative: bool,
-        stiffness: float,
+        names: Joints,
+        angles: KeyAngles,
+        times: Times,
+        relative: Relative,
+        stiffness: Stiffness,
     ) -> None:
         """Move joints through key angles at given times, and wait for the end."""
         values = _key_angles(self.plan, names, angles, times)
@@ -259,14 +256,14 @@ class JointMotion(MotionBase):
         self.require_reached({joint: s + path[-1] for (joint, path), s in zip(values.items(), start)})
 
     @checked_by(check_with_speed)
-    def angle_interpolation_with_speed(
-        self, names: Sequence[str], angles: Sequence[float], speed: float, stiffness: float
-    ) -> None:
+    def angle_interpolation_with_speed(self, names: Joints, angles: Angles, speed: Speed, stiffness: Stiffness) -> None:
         """Move joints to angles at a fraction of their top speed, and wait for the end."""
         self._go(_angles_of(self.plan, names, angles), speed, stiffness)
 
     @checked_by(check_trajectory)
-    def set_trajectory(self, names: Sequence[str], trajectory: Any, relative: bool, stiffness: float) -> None:
+    def set_trajectory(
+        self, names: TrajectoryJoints, trajectory: Trajectory, relative: Relative, stiffness: Stiffness
+    ) -> None:
         """Move joints along a trajectory: through its positions, with its velocities where it has some."""
         frames = _key_frames(self.plan, names, trajectory, relative)
         self.stiffen(frames.joints, stiffness)
@@ -279,20 +276,22 @@ class JointMotion(MotionBase):
         self.require_reached(frames.targets)
 
     @checked_by(check_bezier)
-    def angle_interpolation_bezier(self, names: Sequence[str], trajectory: Any, stiffness: float) -> None:
+    def angle_interpolation_bezier(
+        self, names: TrajectoryJoints, trajectory: SmoothTrajectory, stiffness: Stiffness
+    ) -> None:
         """Move joints along the smooth curves of a trajectory with velocities."""
         self.set_trajectory(names, trajectory, False, stiffness)
 
     @checked_by(check_pose)
     def set_pose(
         self,
-        names: Sequence[str],
-        angles: Sequence[float],
-        str_param: str,
-        trajectory: Any,
-        speed: float,
-        duration: float,
-        stiffness: float,
+        names: PoseJoints,
+        angles: Angles,
+        str_param: Pose,
+        trajectory: PosePoint,
+        speed: Speed,
+        duration: Duration,
+        stiffness: Stiffness,
     ) -> None:
         """Take a pose of one or several chains at a speed or in a time: angles, a point, or a pose by name.
 
@@ -314,12 +313,12 @@ class JointMotion(MotionBase):
             self._go(pose, speed, stiffness)
 
     @checked_by(check_hands)
-    def open_hand(self, names: Sequence[str]) -> None:
+    def open_hand(self, names: Hands) -> None:
         """Open hands, and wait until they are; they are limp then."""
         self._hands("openHand", names)
 
     @checked_by(check_hands)
-    def close_hand(self, names: Sequence[str]) -> None:
+    def close_hand(self, names: Hands) -> None:
         """Close hands, and wait until they are; they are limp then."""
         self._hands("closeHand", names)
 
@@ -345,12 +344,9 @@ class JointMotion(MotionBase):
                 "either angles, or one point in trajectory, or a pose's name in str_param",
                 problem=problem,
             )
-        require_zero_or("duration", duration, DURATION)
         if angles:
             return _angles_of(self.plan, names, angles), duration
         if trajectory.points:
-            if len(trajectory.points) > 1:
-                raise BadGoal("trajectory.points", len(trajectory.points), "one point; setTrajectory takes more")
             joints = list(trajectory.joint_names) or list(names)
             point = trajectory.points[0]
             return _angles_of(self.plan, joints, point.positions), duration or point.time_from_start.to_sec()
@@ -371,3 +367,16 @@ class JointMotion(MotionBase):
         self.call_all(hands, method, [(hand,) for hand in self.joints(names)])
 
     call_all: Callable[..., list[Any]]  # of NaoBasic
+
+    functions = {
+        "getAngles": get_angles,
+        "setAngles": set_angles,
+        "changeAngles": change_angles,
+        "angleInterpolation": angle_interpolation,
+        "angleInterpolationWithSpeed": angle_interpolation_with_speed,
+        "angleInterpolationBezier": angle_interpolation_bezier,
+        "setTrajectory": set_trajectory,
+        "setPose": set_pose,
+        "openHand": open_hand,
+        "closeHand": close_hand,
+    }

@@ -3,45 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from ..base.errors import BadGoal
-from ..base.field_checks import require_each, require_zero_or
-from ..base.limits import limit
-from ..base.suggestion import did_you_mean
 from ..functions.chain import checked_by
+from ..nao.gaze import load_head, look_at
 from .base import DEFAULT_SPEED, MotionBase
-from .cartesian import FRAMES, require_frame
-from .gaze import load_head, look_at
-from .plan import DURATION, require_fraction
+from .fields import CAMERA, FRAMES, Camera, Duration, Frame, Point, Speed, Stiffness
 
 HEAD = ("HeadYaw", "HeadPitch")
-CAMERA = "CameraTop"
 TORSO = 0
-POINT = limit("point")
 
 
-def check_look(
-    self: MotionBase,
-    values: Sequence[float],
-    frame: int,
-    str_param: str,
-    speed: float,
-    duration: float,
-    stiffness: float,
-) -> None:
-    """A point in a known frame, a camera, a speed or a time, a stiff head."""
-    if len(values) != 3:
-        raise BadGoal("values", list(values), "x, y, z of a point in m")
-    require_each("values", values, POINT)
-    require_frame(frame)
-    cameras = load_head().cameras
-    if str_param and str_param not in cameras:
-        problem = f"there is no camera {str_param!r}{did_you_mean(str_param, cameras)}"
-        raise BadGoal("str_param", str_param, f"{', '.join(cameras)}, or nothing for {CAMERA}", problem=problem)
-    require_fraction("speed", speed, DEFAULT_SPEED)
-    require_zero_or("duration", duration, DURATION)
+def check_look(self: MotionBase, duration: float, stiffness: float) -> None:
+    """A stiff head."""
     self.plan.require_stiff(HEAD, stiffness)
     self.plan.touch(HEAD)
     self.plan.forget(HEAD)
@@ -51,19 +26,15 @@ def check_look(
 class GazeFunctions(MotionBase):
     """Looking at points. Parameters are fields of MotionFunction."""
 
-    def gaze_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {"lookAt": self.look_at}
-
     @checked_by(check_look)
     def look_at(
         self,
-        values: Sequence[float],
-        frame: int,
-        str_param: str,
-        speed: float,
-        duration: float,
-        stiffness: float,
+        values: Point,
+        frame: Frame,
+        str_param: Camera,
+        speed: Speed,
+        duration: Duration,
+        stiffness: Stiffness,
     ) -> list[float]:
         """Turn the head so that a camera looks at a point, as far as it goes; answers yaw, pitch, and rad missing."""
         head = load_head()
@@ -92,3 +63,7 @@ class GazeFunctions(MotionBase):
         t = self.motion("getTransform", "Torso", frame, True)
         d = (x - t[3], y - t[7], z - t[11])
         return tuple(sum(t[4 * row + column] * d[row] for row in range(3)) for column in range(3))  # type: ignore
+
+    functions = {
+        "lookAt": look_at,
+    }

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ..base.errors import BadGoal
-from ..base.field_checks import degrees_hint, require_within, require_zero_or
+from ..base.field_checks import degrees_hint, require_within
 from ..base.limits import limit
 from .facts import JointState, MotionFacts
 from .health import Health
@@ -21,7 +21,7 @@ TOLERANCE = 1e-4
 # A motion that takes this share longer than a joint at top speed would is taken as possible.
 SPEED_TOLERANCE = 1.001
 POSTURE_TIME = 2.0
-DURATION, FRACTION, ANGLE = limit("duration"), limit("fraction"), limit("angle")
+ANGLE = limit("angle")
 
 
 class MotionPlan:
@@ -136,10 +136,8 @@ class MotionPlan:
         """See that joints can move: stiff already, or stiffened by the function; and that no walk moves them.
 
         Raises:
-            BadGoal: If they are limp, the stiffness is none, or the robot walks with them.
+            BadGoal: If they are limp, or the robot walks with them.
         """
-        if not (math.isfinite(stiffness) and 0.0 <= stiffness <= 1.0):
-            raise BadGoal("stiffness", stiffness, "0 (leave as it is) to 1")
         self.walk.require_free(joints)
         self.health.require_fit(joints)
         limp = self.limp(joints)
@@ -274,12 +272,3 @@ class MotionPlan:
 
 def _unit(joint: str) -> str:
     return "" if joint.endswith("Hand") else " rad"
-
-
-def require_fraction(field: str, value: float, default: float) -> float:
-    """A fraction of the top speed; 0 stands for the default.
-
-    Raises:
-        BadGoal: If it is none.
-    """
-    return require_zero_or(field, value, FRACTION, f" for {default:g}") or default

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from typing import Any
 
 from naoqi.errors import NaoError
@@ -12,12 +11,10 @@ from ..base.suggestion import did_you_mean
 from ..functions.chain import checked_by
 from .base import MotionBase
 from .facts import BODY
-from .plan import POSTURE_TIME, require_fraction
+from .fields import POSTURE_SPEED, Posture, PostureSpeed, Stiffness, Tries
+from .plan import POSTURE_TIME
 
 POSTURES = "ALRobotPosture"
-# Fraction of the top speed where a message leaves it to us.
-POSTURE_SPEED = 0.6
-MOST_TRIES = 20
 
 
 class PostureNotReached(NaoError):  # noqa: N818  named like the errors of the proxy layer
@@ -38,7 +35,7 @@ class PostureNotReached(NaoError):  # noqa: N818  named like the errors of the p
 
 
 def check_posture(self: PostureFunctions, str_param: str, speed: float) -> None:
-    """A posture that the robot knows, a fraction of speed."""
+    """A posture that the robot knows."""
     name = str_param.strip()
     known = self.posture_names()
     if name not in known:
@@ -48,44 +45,25 @@ def check_posture(self: PostureFunctions, str_param: str, speed: float) -> None:
             f"one of {', '.join(known)}",
             problem=f"there is no posture {name!r}{did_you_mean(name, known)}",
         )
-    fraction = require_fraction("speed", speed, POSTURE_SPEED)
     body = list(self.plan.facts.chains[BODY])
     self.plan.require_fit_legs()
     self.plan.set_stiffness(dict.fromkeys(body, 1.0))
     self.plan.forget(body)
     self.plan.touch(body)
-    self.plan.takes(POSTURE_TIME / fraction)
+    self.plan.takes(POSTURE_TIME / (speed or POSTURE_SPEED))
     self.plan.walk.stands(name)
 
 
 def check_applied_posture(self: PostureFunctions, str_param: str, speed: float, stiffness: float) -> None:
-    """A posture that the robot knows, a fraction of speed, stiff joints."""
+    """A posture that the robot knows, stiff joints."""
     self.plan.require_stiff(list(self.plan.facts.chains[BODY]), stiffness)
     check_posture(self, str_param, speed)
-
-
-def check_tries(_self: object, values: Sequence[float]) -> None:
-    """A number of tries."""
-    if len(values) != 1 or not 1 <= values[0] <= MOST_TRIES or values[0] != int(values[0]):
-        raise BadGoal("values", list(values), f"one whole number from 1 to {MOST_TRIES}")
 
 
 class PostureFunctions(MotionBase):
     """Functions of ALRobotPosture. Parameters are fields of MotionFunction."""
 
     _posture_names: tuple[int, list[str]] | None = None
-
-    def posture_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "goToPosture": self.go_to_posture,
-            "applyPosture": self.apply_posture,
-            "getPosture": self.get_posture,
-            "getPostureFamily": self.get_posture_family,
-            "getPostureList": self.get_posture_list,
-            "getPostureFamilyList": self.get_posture_family_list,
-            "setMaxTryNumber": self.set_max_try_number,
-        }
 
     def posture_names(self) -> list[str]:
         """Postures that the robot knows, asked once for each connection."""
@@ -95,12 +73,12 @@ class PostureFunctions(MotionBase):
         return self._posture_names[1]
 
     @checked_by(check_posture)
-    def go_to_posture(self, str_param: str, speed: float) -> None:
+    def go_to_posture(self, str_param: Posture, speed: PostureSpeed) -> None:
         """Go to a posture from wherever the robot is, getting up if need be; awake afterwards."""
         self._reach("goToPosture", str_param.strip(), speed)
 
     @checked_by(check_applied_posture)
-    def apply_posture(self, str_param: str, speed: float, stiffness: float) -> None:
+    def apply_posture(self, str_param: Posture, speed: PostureSpeed, stiffness: Stiffness) -> None:
         """Take the angles of a posture straight away; the robot may fall."""
         self.stiffen(list(self.access.facts.chains[BODY]), stiffness)
         self._reach("applyPosture", str_param.strip(), speed)
@@ -121,8 +99,7 @@ class PostureFunctions(MotionBase):
         """Families that getPostureFamily tells apart."""
         return list(self._postures("getPostureFamilyList"))
 
-    @checked_by(check_tries)
-    def set_max_try_number(self, values: Sequence[float]) -> None:
+    def set_max_try_number(self, values: Tries) -> None:
         """How often goToPosture tries before it gives up."""
         self._postures("setMaxTryNumber", int(values[0]))
 
@@ -132,3 +109,13 @@ class PostureFunctions(MotionBase):
 
     def _postures(self, method: str, *args: Any) -> Any:
         return self.call(self.robot.proxy(POSTURES), method, *args)
+
+    functions = {
+        "goToPosture": go_to_posture,
+        "applyPosture": apply_posture,
+        "getPosture": get_posture,
+        "getPostureFamily": get_posture_family,
+        "getPostureList": get_posture_list,
+        "getPostureFamilyList": get_posture_family_list,
+        "setMaxTryNumber": set_max_try_number,
+    }

@@ -10,31 +10,36 @@ from nao_library_msgs.msg import FunctionResult
 
 from ..base.answers import values_of
 from ..base.errors import BadGoal
-from ..base.field_checks import require_within, require_zero_or
-from ..base.limits import limit
 from ..base.whole_file import written
 from ..functions.chain import checked_by
 from .base import DEFAULT_SPEED, MotionBase
 from .facts import BODY
+from .fields import (
+    RATE,
+    Limp,
+    Mirror,
+    Motion,
+    NewMotion,
+    NewName,
+    Overwrite,
+    RecordingTime,
+    ReplaySpeed,
+    SampleRate,
+    SomeJoints,
+    Stiffness,
+)
 from .recorded_motion import RecordedMotion, recorded
 from .store import MotionStore
 
-RATE = 25.0
-"""Samples a second where a message leaves it to us."""
-SAMPLING, LENGTH, FACTOR = limit("sampling rate"), limit("recording"), limit("factor")
 # The way to the first pose of a motion takes that long at least, s.
 APPROACH = 0.5
 
 
 def check_recording(
-    self: MotionRecording, str_param: str, names: Sequence[str], duration: float, rate: float, overwrite: bool
+    self: MotionRecording, str_param: str, names: Sequence[str], duration: float, overwrite: bool
 ) -> None:
-    """A name for the motion, free or to be overwritten, known joints, a duration, a rate."""
-    require_within("duration", duration, LENGTH)
-    require_zero_or("rate", rate, SAMPLING, f" for {RATE:g}")
-    if overwrite:
-        self.store.path(str_param)
-    else:
+    """A name for the motion, free or to be overwritten, known joints."""
+    if not overwrite:
         self.require_free(str_param, "str_param")
     joints = self.plan.facts.joints(names or [BODY])
     self.plan.touch(joints)
@@ -45,7 +50,6 @@ def check_recording(
 
 def check_replay(self: MotionRecording, str_param: str, speed: float, mirror: bool, stiffness: float) -> None:
     """A recorded motion that the joints can follow at that speed."""
-    require_zero_or("speed", speed, FACTOR, " for the speed of the recording")
     if str_param in self.recording_names:
         return  # recorded by an earlier function of this chain: nothing is known of it yet
     motion = self.replay(str_param, speed, mirror)
@@ -58,9 +62,7 @@ def check_replay(self: MotionRecording, str_param: str, speed: float, mirror: bo
 
 
 def check_rename(self: MotionRecording, str_param: str, texts: Sequence[str]) -> None:
-    """A recorded motion, one new name that is free."""
-    if len(texts) != 1:
-        raise BadGoal("texts", list(texts), "the new name, and nothing else")
+    """A recorded motion, a new name that is free."""
     check_deletion(self, str_param)
     self.require_free(texts[0], "texts")
     self.recording_names.add(texts[0])
@@ -91,19 +93,15 @@ class MotionRecording(MotionBase):
     wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
     after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
 
-    def recording_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "recordMotion": self.record_motion,
-            "playMotion": self.play_motion,
-            "listMotions": self.list_motions,
-            "renameMotion": self.rename_motion,
-            "deleteMotion": self.delete_motion,
-        }
-
     @checked_by(check_recording)
     def record_motion(
-        self, str_param: str, names: Sequence[str], duration: float, rate: float, limp: bool, overwrite: bool
+        self,
+        str_param: NewMotion,
+        names: SomeJoints,
+        duration: RecordingTime,
+        rate: SampleRate,
+        limp: Limp,
+        overwrite: Overwrite,
     ) -> dict[str, Any]:
         """Record joints for a time, or until the goal is cancelled; with `limp` they can be moved by hand."""
         joints = self.joints(names or [BODY])
@@ -124,7 +122,7 @@ class MotionRecording(MotionBase):
         return answer
 
     @checked_by(check_replay)
-    def play_motion(self, str_param: str, speed: float, mirror: bool, stiffness: float) -> float:
+    def play_motion(self, str_param: Motion, speed: ReplaySpeed, mirror: Mirror, stiffness: Stiffness) -> float:
         """Replay a recorded motion, from wherever the joints are; answers how long it took, s."""
         motion = self.replay(str_param, speed, mirror)
         joints = list(motion.joints)
@@ -152,12 +150,12 @@ class MotionRecording(MotionBase):
         return self.store.names()
 
     @checked_by(check_rename)
-    def rename_motion(self, str_param: str, texts: Sequence[str]) -> None:
+    def rename_motion(self, str_param: Motion, texts: NewName) -> None:
         """Give a recorded motion the name in `texts`."""
         self.remark(f"written: {self.store.rename(str_param, texts[0])}")
 
     @checked_by(check_deletion)
-    def delete_motion(self, str_param: str) -> None:
+    def delete_motion(self, str_param: Motion) -> None:
         """Delete a recorded motion."""
         self.store.delete(str_param)
 
@@ -212,3 +210,11 @@ class MotionRecording(MotionBase):
         time = max(APPROACH, slowest)
         angles = [[angle] for angle in motion.start.values()]
         self.motion("angleInterpolation", list(motion.joints), angles, [[time]] * len(angles), True)
+
+    functions = {
+        "recordMotion": record_motion,
+        "playMotion": play_motion,
+        "listMotions": list_motions,
+        "renameMotion": rename_motion,
+        "deleteMotion": delete_motion,
+    }

@@ -35,8 +35,7 @@ from .state import MotionState
 from .stiffness import StiffnessFunctions
 from .store import MotionStore
 from .switches import MotionSwitches
-from .walk import WalkFunctions
-from .walk_end import WalkFailure
+from .walk import WalkFailure, WalkFunctions
 from .walk_state import WalkState
 
 log = logging.getLogger(__name__)
@@ -130,19 +129,6 @@ class NaoMotion(
         self.cut_short = []
         self._dry_run = False
         self._mishaps = EventRelay(lambda: self.robot.proxy(MEMORY), self._told)
-        for functions in (
-            self.joint_functions(),
-            self.stiffness_functions(),
-            self.posture_functions(),
-            self.gaze_functions(),
-            self.cartesian_functions(),
-            self.recording_functions(),
-            self.state_functions(),
-            self.switch_functions(),
-            self.walk_functions(),
-            self.walk_state_functions(),
-        ):
-            self.function_table.update(functions)
         self.serve("NaoMotion", NaoMotionAction)
 
     # Checks without a goal

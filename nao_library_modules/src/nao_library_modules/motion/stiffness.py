@@ -2,38 +2,27 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from ..base.errors import BadGoal
-from ..base.field_checks import KEY_FRAMES, require_length, require_rising
+from ..base.field_checks import KEY_FRAMES, require_length
 from ..functions.chain import checked_by
 from .base import MotionBase
 from .facts import BODY, one_each
-from .plan import DURATION, POSTURE_TIME
-
-
-def _require_stiffnesses(values: Sequence[float]) -> None:
-    for value in values:
-        if not (math.isfinite(value) and 0.0 <= value <= 1.0):
-            raise BadGoal("angles", value, "stiffnesses from 0 (limp) to 1", problem=f"{value:g} is no stiffness")
+from .fields import Joints, KeyStiffnesses, Stiffnesses, Times
+from .plan import POSTURE_TIME
 
 
 def check_stiffnesses(self: MotionBase, names: Sequence[str], angles: Sequence[float]) -> None:
-    """Known joints, stiffnesses 0..1, one for all or one each."""
+    """Known joints, stiffnesses for all or one each."""
     joints = self.plan.facts.joints(names)
-    values = one_each(angles, joints, "angles")
-    _require_stiffnesses(values)
-    self.plan.set_stiffness(dict(zip(joints, values)))
+    self.plan.set_stiffness(dict(zip(joints, one_each(angles, joints, "angles"))))
 
 
 def check_stiffness_interpolation(
     self: MotionBase, names: Sequence[str], angles: Sequence[float], times: Sequence[float]
 ) -> None:
-    """Known joints, stiffnesses 0..1 at rising times."""
-    require_rising("times", times, DURATION)
-    _require_stiffnesses(angles)
+    """Known joints, one stiffness a time."""
     if len(angles) != len(times):
         raise BadGoal("angles", list(angles), f"{len(times)}, one a time, the same for all joints")
     joints = self.plan.facts.joints(names)
@@ -71,17 +60,6 @@ def check_rest(self: MotionBase) -> None:
 class StiffnessFunctions(MotionBase):
     """Functions of ALMotion for stiffness. Parameters are fields of MotionFunction."""
 
-    def stiffness_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "wakeUp": self.wake_up,
-            "rest": self.rest,
-            "robotIsWakeUp": self.robot_is_wake_up,
-            "setStiffnesses": self.set_stiffnesses,
-            "getStiffnesses": self.get_stiffnesses,
-            "stiffnessInterpolation": self.stiffness_interpolation,
-        }
-
     @checked_by(check_wake_up)
     def wake_up(self) -> None:
         """Switch the motors on; a robot on its feet stands up."""
@@ -97,19 +75,28 @@ class StiffnessFunctions(MotionBase):
         return bool(self.motion("robotIsWakeUp"))
 
     @checked_by(check_stiffnesses)
-    def set_stiffnesses(self, names: Sequence[str], angles: Sequence[float]) -> None:
+    def set_stiffnesses(self, names: Joints, angles: Stiffnesses) -> None:
         """Make joints and chains stiff (1) or limp (0) at once."""
         joints = self.joints(names)
         self.motion("setStiffnesses", joints, one_each(angles, joints, "angles"))
 
     @checked_by(check_stiffness_names)
-    def get_stiffnesses(self, names: Sequence[str]) -> list[float]:
+    def get_stiffnesses(self, names: Joints) -> list[float]:
         """Stiffnesses of joints and chains, 0..1."""
         return list(self.motion("getStiffnesses", self.joints(names)))
 
     @checked_by(check_stiffness_interpolation)
-    def stiffness_interpolation(self, names: Sequence[str], angles: Sequence[float], times: Sequence[float]) -> None:
+    def stiffness_interpolation(self, names: Joints, angles: KeyStiffnesses, times: Times) -> None:
         """Change stiffness along key values at given times, and wait for the end."""
         joints = self.joints(names)
         count = len(joints)
         self.motion("stiffnessInterpolation", joints, [list(angles)] * count, [list(times)] * count)
+
+    functions = {
+        "wakeUp": wake_up,
+        "rest": rest,
+        "robotIsWakeUp": robot_is_wake_up,
+        "setStiffnesses": set_stiffnesses,
+        "getStiffnesses": get_stiffnesses,
+        "stiffnessInterpolation": stiffness_interpolation,
+    }

@@ -15,6 +15,21 @@ from .recorded_motion import RecordedMotion, motion_of
 SUFFIX = ".yaml"
 # No separators and no dot in front: a name stays in the folder.
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. -]*")
+NAME_ALLOWED = "letters, digits, '_', '-', '.' and blanks, the first a letter, a digit or '_'"
+
+
+def require_name(field: str, name: str) -> None:
+    """See that a motion can have a name.
+
+    Args:
+        field: Of the message that has the name.
+        name: The name.
+
+    Raises:
+        BadGoal: It cannot.
+    """
+    if not NAME.fullmatch(name):
+        raise BadGoal(field, name, NAME_ALLOWED, problem=f"{name!r} is no name for a motion")
 
 
 class MotionStore:
@@ -124,9 +139,7 @@ class MotionStore:
         Raises:
             BadGoal: If the name will not do.
         """
-        if not NAME.fullmatch(name):
-            allowed = "letters, digits, '_', '-', '.' and blanks, the first a letter, a digit or '_'"
-            raise BadGoal(field, name, allowed, problem=f"{name!r} is no name for a motion")
+        require_name(field, name)
         return self.folder / f"{name}{SUFFIX}"
 
     def _existing(self, name: str) -> Path:

@@ -21,18 +21,35 @@ from .walk_checks import (
     check_end,
     check_fast_steps,
     check_init,
-    check_move,
     check_move_to,
-    check_move_toward,
+    check_pace,
     check_path,
-    check_target,
     check_timed_steps,
     places,
     require_way,
     step_speeds,
     steps,
 )
-from .walk_end import WalkFailure
+from .walk_fields import (
+    Gait,
+    GaitOfEachFoot,
+    GaitValues,
+    LeastTime,
+    PlaceFrame,
+    Places,
+    Replace,
+    StepLegs,
+    Steps,
+    StepSpeed,
+    StepSpeeds,
+    StepTimes,
+    Target,
+    TfFrame,
+    TimeOfWalk,
+    Velocity,
+    VelocityShares,
+    Ways,
+)
 
 log = logging.getLogger(__name__)
 
@@ -42,6 +59,30 @@ STANDING_LIMIT = 2.0
 """s that a robot whose walk was stopped may take to stand, before it is told how far it got."""
 STOP_LIMIT = 10.0
 """s that the robot may take to stand on both feet; it takes about one."""
+
+
+class WalkFailure:
+    """Why a walk ended before time, as the robot tells in an event that may come a little after the end.
+
+    Told from a thread of libqi, asked from the one that executes goals.
+    """
+
+    def __init__(self) -> None:
+        """Nothing has failed yet."""
+        self._cause = ""
+
+    def tell(self, value: Any) -> None:
+        """Take a value of ALMotion/MoveFailed: cause, 0 not started or 1 stopped on the way, place of an obstacle."""
+        self._cause = str(value[0]) if isinstance(value, (list, tuple)) and value else str(value or "")
+
+    def forget(self) -> None:
+        """A new walk begins."""
+        self._cause = ""
+
+    @property
+    def cause(self) -> str:
+        """What the robot said last; empty if nothing since `forget`."""
+        return self._cause
 
 
 class WalkFunctions(WalkBase):
@@ -58,25 +99,6 @@ class WalkFunctions(WalkBase):
     _walk_begun = False  # by this chain
     _left_walking = False  # by a chain that succeeded
 
-    def walk_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "moveInit": self.move_init,
-            "moveTo": self.move_to,
-            "walkTo": self.move_to,
-            "walkTarget": self.walk_target,
-            "walk_target": self.walk_target,
-            "walkPath": self.walk_path,
-            "walk_path": self.walk_path,
-            "move": self.move,
-            "moveToward": self.move_toward,
-            "setFootSteps": self.set_foot_steps,
-            "setFootStepsWithSpeed": self.set_foot_steps_with_speed,
-            "waitUntilMoveIsFinished": self.wait_until_move_is_finished,
-            "stopMove": self.stop_move,
-            "killMove": self.kill_move,
-        }
-
     # To places
 
     @checked_by(check_init)
@@ -85,20 +107,18 @@ class WalkFunctions(WalkBase):
         self._walk("moveInit")
 
     @checked_by(check_move_to)
-    def move_to(
-        self, values: Sequence[float], duration: float, gait: Sequence[str], gait_values: Sequence[float]
-    ) -> list[float]:
+    def move_to(self, values: Ways, duration: LeastTime, gait: Gait, gait_values: GaitValues) -> list[float]:
         """Walk to a place seen from the robot, through others if there are more; answers how far it got: m, rad."""
         return self._walk_through(places(values), self.walk_config(gait, gait_values), duration)
 
-    @checked_by(check_target)
+    @checked_by(check_path)
     def walk_target(
         self,
-        values: Sequence[float],
-        frame: int,
-        str_param: str,
-        gait: Sequence[str],
-        gait_values: Sequence[float],
+        values: Target,
+        frame: PlaceFrame,
+        str_param: TfFrame,
+        gait: Gait,
+        gait_values: GaitValues,
     ) -> list[float]:
         """Walk to a place in the frame of /tf named in `str_param`, the world or, else, seen from the robot."""
         return self.walk_path(values, frame, str_param, gait, gait_values)
@@ -106,11 +126,11 @@ class WalkFunctions(WalkBase):
     @checked_by(check_path)
     def walk_path(
         self,
-        values: Sequence[float],
-        frame: int,
-        str_param: str,
-        gait: Sequence[str],
-        gait_values: Sequence[float],
+        values: Places,
+        frame: PlaceFrame,
+        str_param: TfFrame,
+        gait: Gait,
+        gait_values: GaitValues,
     ) -> list[float]:
         """Walk through places in the frame of /tf named in `str_param`, the world or, else, seen from the robot."""
         points = places(values)
@@ -124,14 +144,14 @@ class WalkFunctions(WalkBase):
 
     # At a speed
 
-    @checked_by(check_move)
-    def move(self, values: Sequence[float], duration: float, gait: Sequence[str], gait_values: Sequence[float]) -> None:
+    @checked_by(check_pace)
+    def move(self, values: Velocity, duration: TimeOfWalk, gait: GaitOfEachFoot, gait_values: GaitValues) -> None:
         """Walk at x, y (m/s) and theta (rad/s), and go on at once; with `duration` walk that long, then stop."""
         self._walk_at("move", values, duration, self.walk_config(gait, gait_values, each_foot=True))
 
-    @checked_by(check_move_toward)
+    @checked_by(check_pace)
     def move_toward(
-        self, values: Sequence[float], duration: float, gait: Sequence[str], gait_values: Sequence[float]
+        self, values: VelocityShares, duration: TimeOfWalk, gait: GaitOfEachFoot, gait_values: GaitValues
     ) -> None:
         """Walk at shares -1..1 of the top speed, and go on at once; with `duration` walk that long, then stop."""
         self._walk_at("moveToward", values, duration, self.walk_config(gait, gait_values, each_foot=True))
@@ -139,9 +159,7 @@ class WalkFunctions(WalkBase):
     # Footsteps
 
     @checked_by(check_timed_steps)
-    def set_foot_steps(
-        self, names: Sequence[str], values: Sequence[float], times: Sequence[float], enable: bool
-    ) -> None:
+    def set_foot_steps(self, names: StepLegs, values: Steps, times: StepTimes, enable: Replace) -> None:
         """Put feet (x, y, theta seen from the other foot) where they are to be at given times, and go on at once."""
         with self._on_two_feet_if_interrupted():
             self.motion("setFootSteps", list(names), steps(names, values), list(times), enable)
@@ -149,11 +167,11 @@ class WalkFunctions(WalkBase):
     @checked_by(check_fast_steps)
     def set_foot_steps_with_speed(
         self,
-        names: Sequence[str],
-        values: Sequence[float],
-        speed: float,
-        speeds: Sequence[float],
-        enable: bool,
+        names: StepLegs,
+        values: Steps,
+        speed: StepSpeed,
+        speeds: StepSpeeds,
+        enable: Replace,
     ) -> None:
         """Put feet (x, y, theta seen from the other foot) down, all as fast as given, and wait for the end."""
         fractions = step_speeds(len(names), speed, speeds)
@@ -272,3 +290,20 @@ class WalkFunctions(WalkBase):
     def _place(self) -> Place:
         """Where the robot is in the world, by its odometry."""
         return Place(*self.motion("getRobotPosition", True))
+
+    functions = {
+        "moveInit": move_init,
+        "moveTo": move_to,
+        "walkTo": move_to,
+        "walkTarget": walk_target,
+        "walk_target": walk_target,
+        "walkPath": walk_path,
+        "walk_path": walk_path,
+        "move": move,
+        "moveToward": move_toward,
+        "setFootSteps": set_foot_steps,
+        "setFootStepsWithSpeed": set_foot_steps_with_speed,
+        "waitUntilMoveIsFinished": wait_until_move_is_finished,
+        "stopMove": stop_move,
+        "killMove": kill_move,
+    }

@@ -19,6 +19,8 @@ from ..base.answers import Outcome, values_of
 from ..base.errors import FunctionFailed, Preempted, RobotLost, cut
 from ..functions.chain import FunctionTable, Step, require_callable
 from ..functions.check_service import CHECK, CheckService
+from ..functions.describe import Description
+from ..functions.describe_choices import Choices
 from ..functions.describe_service import DescribeService
 from ..functions.goal_checks import GoalCheck, check_goals
 from ..functions.memory_functions import MEMORY, MemoryFunctions
@@ -74,15 +76,29 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
     """Functions that do not need the robot: a goal of nothing else never waits for it."""
     left_by_goals: frozenset[str] = frozenset()
     """Attributes that checks look at and goals change: what is stored, loaded, running."""
-    _declared: ClassVar[Mapping[str, Callable[..., Any]]] = {}
+    functions: ClassVar[Mapping[str, Callable[..., Any]]] = {}
+    """NAOqi function name -> function of the class, of each class that a module inherits from."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         """Take over the table that a class declares."""
         super().__init_subclass__(**options)
         table = cls.__dict__.get("function_table")
         if isinstance(table, Mapping):
-            cls._declared = {**cls._declared, **table}
+            cls.functions = table
             del cls.function_table  # the property is in its place again
+
+    @classmethod
+    def declared_functions(cls) -> dict[str, Callable[..., Any]]:
+        """The functions that the class and those that it inherits from declare, without those of the robot's memory.
+
+        Of two of the same name the one counts that Python's order of inheritance has first.
+        """
+        declared: dict[str, Callable[..., Any]] = {}
+        for kind in cls.__mro__:
+            if kind is not MemoryFunctions:
+                for name, function in vars(kind).get("functions", {}).items():
+                    declared.setdefault(name, function)
+        return declared
 
     def __init__(
         self,
@@ -153,8 +169,8 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         """The module's own functions, over those of the robot's memory."""
         table = self.__dict__.get("_function_table")
         if table is None:
-            table = self._function_table = FunctionTable({}, self.memory_functions())
-            table.update({name: self._method(function) for name, function in self._declared.items()})
+            table = self._function_table = FunctionTable({}, self._bound(MemoryFunctions.functions))
+            table.update(self._bound(self.declared_functions()))
         return table
 
     @function_table.setter
@@ -164,11 +180,16 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
                 require_callable(name, function)
             self.function_table.maps[0] = table
 
-    def _method(self, function: Any) -> Callable[..., Any]:
-        """A function of the class as a method of this module, any other as it is."""
-        named = (name for kind in type(self).__mro__ for name, member in vars(kind).items() if member is function)
-        name = next(named, None)
-        return function if name is None else getattr(self, name)
+    def _bound(self, functions: Mapping[str, Any]) -> dict[str, Callable[..., Any]]:
+        """Functions of the class as methods of this module, any others as they are."""
+        members: dict[int, str] = {}
+        for kind in type(self).__mro__:
+            for name, member in vars(kind).items():
+                members.setdefault(id(member), name)
+        return {
+            name: getattr(self, members[id(function)]) if id(function) in members else function
+            for name, function in functions.items()
+        }
 
     def serve(self, name: str, action: type) -> None:
         """Start the action server, its services and the diagnostics: the last line of a module's constructor.
@@ -188,10 +209,15 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         if self.launchpath is not None:
             reports[f"{name} launch file"] = lambda: launch_report(self._launch)
         self._diagnostics = self._edge.publish_diagnostics(self.robot.address, reports)
-        description = DescribeService(self, action, lambda: self._running)
+        description = DescribeService(lambda: self._description(action), self.robot, lambda: self._running)
         self._edge.serve_description(name, description.answer)
         self._edge.serve(name + CHECK, CheckGoals, CheckService(self, action).answer)
         self._tell_ready()
+
+    def _description(self, action: type) -> Description:
+        description = Description(self.function_table, type(self), action)
+        description.choices = Choices(self.robot, self.argument_choices).of
+        return description
 
     def _tell_ready(self) -> None:
         """Say once that goals are carried out from now on: the server is there, and the robot."""

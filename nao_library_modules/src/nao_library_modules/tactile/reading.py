@@ -12,7 +12,6 @@ from naoqi.errors import RobotError
 
 from ..base.errors import BadGoal
 from ..base.suggestion import did_you_mean
-from ..functions.chain import checked_by
 from ..functions.memory_functions import MEMORY
 from ..nao.body_devices import (
     BATTERY_STATUS,
@@ -30,8 +29,8 @@ from ..nao.body_devices import (
 )
 from ..nao.touch_names import Sensor, sensors_of
 from ..server.extractor_use import Event, ExtractorUse
-from .checks import FEET, check_bumpers, check_feet, check_sensors, check_sonars, words_of
 from .felt import Felt
+from .fields import FEET, Bumpers, Enable, Feet, Revert, Sensors, Sonars, Warm, words_of
 from .touch import Contact
 
 SONAR = "ALSonar"
@@ -59,30 +58,15 @@ class ReadingFunctions(ExtractorUse):
     sonar_on: bool
     after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
 
-    def reading_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "getTouched": self.get_touched,
-            "getBumpers": self.get_bumpers,
-            "getSonar": self.get_sonar,
-            "getFsr": self.get_fsr,
-            "getBattery": self.get_battery,
-            "getTemperatures": self.get_temperatures,
-            "setSonarEnabled": self.set_sonar_enabled,
-        }
-
-    @checked_by(check_sensors)
-    def get_touched(self, sensors: Sequence[str]) -> list[str]:
+    def get_touched(self, sensors: Sensors) -> list[str]:
         """Which sensors are touched now."""
         return self.felt.touch(self.contacts(sensors_of(sensors)))
 
-    @checked_by(check_bumpers)
-    def get_bumpers(self, sensors: Sequence[str]) -> list[str]:
+    def get_bumpers(self, sensors: Bumpers) -> list[str]:
         """Which bumpers are pressed now."""
         return self.felt.touch(self.contacts(sensors_of(sensors or ["bumpers"])))
 
-    @checked_by(check_sonars)
-    def get_sonar(self, sensors: Sequence[str]) -> list[float]:
+    def get_sonar(self, sensors: Sonars) -> list[float]:
         """How far away what the sonars hear is, m, infinite if they hear nothing; they are switched on for it."""
         sides = words_of(sensors, SIDES, "sonar")
         if self.sonar_on:
@@ -94,8 +78,7 @@ class ReadingFunctions(ExtractorUse):
         self.felt.sonars += zip(sides, distances)
         return distances
 
-    @checked_by(check_feet)
-    def get_fsr(self, sensors: Sequence[str]) -> list[float]:
+    def get_fsr(self, sensors: Feet) -> list[float]:
         """What rests on the corners of the feet and on each of them, kg."""
         names, keys = [], []
         for foot in words_of(sensors, FEET, "foot"):
@@ -119,7 +102,7 @@ class ReadingFunctions(ExtractorUse):
         self.felt.batteries.append(state)
         return _number(charge)
 
-    def get_temperatures(self, sensors: Sequence[str]) -> list[float]:
+    def get_temperatures(self, sensors: Warm) -> list[float]:
         """How warm motors, the computer in the head and the battery are, degrees Celsius."""
         joints = self._joints(sensors)
         names = [name for name in (*joints, HEAD, PACK) if not sensors or name in joints or name in sensors]
@@ -129,7 +112,7 @@ class ReadingFunctions(ExtractorUse):
         self.felt.heat += [(name, warmth, int(state or 0)) for name, warmth, state in zip(names, warmths, states)]
         return warmths
 
-    def set_sonar_enabled(self, enable: bool, revert: bool) -> None:
+    def set_sonar_enabled(self, enable: Enable, revert: Revert) -> None:
         """Keep the sonars measuring until they are switched off again, or let them be silent."""
         before = self.sonar_on
         self._switch_sonar(enable)
@@ -215,6 +198,16 @@ class ReadingFunctions(ExtractorUse):
         from genpy import Time
 
         return Time.from_sec(self.clock.now())
+
+    functions = {
+        "getTouched": get_touched,
+        "getBumpers": get_bumpers,
+        "getSonar": get_sonar,
+        "getFsr": get_fsr,
+        "getBattery": get_battery,
+        "getTemperatures": get_temperatures,
+        "setSonarEnabled": set_sonar_enabled,
+    }
 
 
 def _number(value: Any) -> float:

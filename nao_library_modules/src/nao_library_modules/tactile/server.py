@@ -22,8 +22,20 @@ from ..processes.launcher import LaunchPath
 from ..server.extractor_use import subscriber_name
 from ..server.nao_basic import NaoBasic
 from .bindings import Binding, BindingState, TouchBindings
-from .checks import check_binding, check_removal, wanted_of
+from .checks import check_binding, check_removal
 from .felt import Felt
+from .fields import (
+    BehaviorName,
+    Cooldown,
+    Link,
+    NewLink,
+    Parameters,
+    Presses,
+    Sensors,
+    Touch,
+    TouchTime,
+    wanted_of,
+)
 from .reading import ReadingFunctions
 from .touch import Wanted
 from .waiting import WaitingFunctions
@@ -82,11 +94,6 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
         self.subscriber = subscriber_name("NaoTactile", str(self._edge.namespace))
         event_time = lambda event: self.robot_clock.event_time(self.call_now, *event)  # noqa: E731
         self.bindings = TouchBindings(lambda: self.robot.proxy(MEMORY), runner, self.clock, event_time)
-        self.function_table.update(self.reading_functions())
-        self.function_table.update(self.waiting_functions())
-        self.function_table.update(
-            onTouch=self.on_touch, listOnTouch=self.list_on_touch, removeOnTouch=self.remove_on_touch
-        )
         self._unrestored = self.kept.load() or ()
         self.serve("NaoTactile", NaoTactileAction)
         if self._unrestored:
@@ -97,14 +104,14 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
     @checked_by(check_binding)
     def on_touch(
         self,
-        str_param: str,
-        sensors: Sequence[str],
-        touch: str,
-        count: int,
-        duration: float,
-        behavior: str,
-        parameters: Sequence[str],
-        cooldown: float,
+        str_param: NewLink,
+        sensors: Sensors,
+        touch: Touch,
+        count: Presses,
+        duration: TouchTime,
+        behavior: BehaviorName,
+        parameters: Parameters,
+        cooldown: Cooldown,
     ) -> str:
         """Run a stored behaviour at each such touch from now on; answers the name of the link."""
         wanted = sensors_of(sensors)
@@ -125,11 +132,13 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
         return self.bindings.names
 
     @checked_by(check_removal)
-    def remove_on_touch(self, str_param: str) -> None:
+    def remove_on_touch(self, str_param: Link) -> None:
         """Start the behaviour of a link, or of all of them, no more; what runs goes on."""
         self._restore()
         self.bindings.remove(str_param.strip())
         self._keep()
+
+    function_table = {"onTouch": on_touch, "listOnTouch": list_on_touch, "removeOnTouch": remove_on_touch}
 
     # The life of a goal
 

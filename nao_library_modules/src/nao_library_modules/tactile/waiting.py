@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
 
 from ..functions.chain import checked_by
+from ..nao.body_devices import SIDES
 from ..nao.touch_names import BY_EVENT, Sensor, sensors_of
-from .checks import (
+from .checks import check_touch
+from .fields import (
     CLICKS,
     DEFAULT_DISTANCE,
-    SIDES,
-    check_clicks,
-    check_obstacle,
-    check_timeout,
-    check_touch,
+    Clicks,
+    Distance,
+    Presses,
+    Sensors,
+    Sonars,
+    Timeout,
+    Touch,
+    TouchTime,
     timeout_of,
     wanted_of,
     words_of,
@@ -37,18 +41,9 @@ class WaitingFunctions(ReadingFunctions):
     remark: Callable[[str], None]  # of NaoBasic
     happened: tuple[float, float]  # of NaoBasic
 
-    def waiting_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "waitForTouch": self.wait_for_touch,
-            "waitForChestButton": self.wait_for_chest_button,
-            "waitForObstacle": self.wait_for_obstacle,
-            "waitForFall": self.wait_for_fall,
-        }
-
     @checked_by(check_touch)
     def wait_for_touch(
-        self, sensors: Sequence[str], touch: str, count: int, duration: float, timeout: float
+        self, sensors: Sensors, touch: Touch, count: Presses, duration: TouchTime, timeout: Timeout
     ) -> list[str]:
         """Wait until a sensor is pressed, let go, held, or pressed several times; answers which it was."""
         wanted = sensors_of(sensors)
@@ -92,8 +87,7 @@ class WaitingFunctions(ReadingFunctions):
         )
         return self.felt.touch(contacts)
 
-    @checked_by(check_clicks)
-    def wait_for_chest_button(self, count: int, timeout: float) -> list[str]:
+    def wait_for_chest_button(self, count: Clicks, timeout: Timeout) -> list[str]:
         """Wait until the chest button is clicked once, twice or three times; answers chest."""
         clicked, (button,) = CLICKS[count or 1], CHEST
         end = self.clock.now() + timeout_of(timeout)
@@ -113,8 +107,7 @@ class WaitingFunctions(ReadingFunctions):
         self.remark(f"no click within {timeout_of(timeout):g} s")
         return []
 
-    @checked_by(check_obstacle)
-    def wait_for_obstacle(self, sensors: Sequence[str], distance: float, timeout: float) -> list[str]:
+    def wait_for_obstacle(self, sensors: Sonars, distance: Distance, timeout: Timeout) -> list[str]:
         """Wait until a sonar hears something nearer than a distance; answers which of them do."""
         sides = words_of(sensors, SIDES, "sonar")
         limit = distance or DEFAULT_DISTANCE
@@ -136,8 +129,7 @@ class WaitingFunctions(ReadingFunctions):
                     return list(near)
                 self.wait(SONAR_PERIOD)
 
-    @checked_by(check_timeout)
-    def wait_for_fall(self, timeout: float) -> bool:
+    def wait_for_fall(self, timeout: Timeout) -> bool:
         """Wait until the robot has fallen; answers whether it has."""
         end = self.clock.now() + timeout_of(timeout)
         with self.events_of(FALLEN) as events:
@@ -149,3 +141,10 @@ class WaitingFunctions(ReadingFunctions):
                     return True
         self.remark(f"no fall within {timeout_of(timeout):g} s")
         return False
+
+    functions = {
+        "waitForTouch": wait_for_touch,
+        "waitForChestButton": wait_for_chest_button,
+        "waitForObstacle": wait_for_obstacle,
+        "waitForFall": wait_for_fall,
+    }

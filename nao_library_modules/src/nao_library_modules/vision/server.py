@@ -71,6 +71,8 @@ class NaoVision(
 
     typed_answers = TYPED | {"takePicture", "takePictures", "stopRecording", "listThreads"}
 
+    without_robot = frozenset({**StreamingFunctions.functions, **PictureFunctions.functions})
+    """They take topics, of any camera."""
     left_by_goals = frozenset({"threads", "files", "topics"})
 
     def __init__(
@@ -122,17 +124,6 @@ class NaoVision(
         self._brought: Any = None  # the launch file that nodes and images here are of
         self._nodes: frozenset[str] = frozenset()
         self._images: list[str] = []
-        for functions in (
-            self.streaming_functions(),
-            self.picture_functions(),
-            self.setting_functions(),
-            self.detection_functions(),
-            self.face_functions(),
-            self.tracking_functions(),
-        ):
-            self.function_table.update(functions)
-        # They take topics, of any camera.
-        self.without_robot = frozenset({**self.streaming_functions(), **self.picture_functions()})
         self.make_again()
         self.serve("NaoVision", NaoVisionAction)
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from types import MethodType
 from typing import TYPE_CHECKING, Any, Optional
 
 from naoqi.errors import NaoError
 
 from ...base.errors import BadGoal, FunctionFailed, UnknownFunction
 from ...base.suggestion import did_you_mean
-from ...functions.chain import COMMON, fields_taken
+from ...functions.chain import COMMON, FunctionChain, FunctionTable, fields_taken
 from ...functions.goal_checks import GoalCheck, GoalProblem, check_goals
-from ...functions.known_robot import KnownRobot
+from ...functions.memory_functions import MemoryFunctions
 from ...functions.offline_module import offline_module
 from ...functions.server_types import ACTIONS, ServerType, described_type, server_type
 
@@ -43,9 +44,9 @@ def nobody_describes(_server: str, _functions: Sequence[str] | None) -> Describe
 class FunctionTables:
     """What the servers can do: functions, and checks that need no robot.
 
-    The servers of this package are read from their code, each when it is asked for the first time. A server of another
-    name, and a function that one of these does not have, is asked of the server that runs. Any thread may ask; two that
-    come at the same time do the same work.
+    Functions of the servers of this package are read from their classes, each when it is asked for the first time. A
+    server of another name, and a function that one of these does not have, is asked of the server that runs. Any thread
+    may ask; two that come at the same time do the same work.
 
     Args:
         describe: Has a server that runs describe its functions.
@@ -56,6 +57,7 @@ class FunctionTables:
         self._describe = describe
         self._running = running
         self._modules: dict[str, Any] = {}
+        self._chains: dict[str, FunctionChain] = {}
         self._others: dict[str, ServerType] = {}
 
     def server(self, name: str, field: str = "step") -> ServerType:
@@ -106,8 +108,7 @@ class FunctionTables:
             checks only the server can finish.
         """
         if server.ours:
-            chain = self._module(server).chain
-            failures = chain.failures(messages, stand_in=lambda _: _Elsewhere())
+            failures = self._chain(server).failures(messages)
         else:
             # Nothing of it is known here: all its functions are asked of the server that runs.
             names = [message.function for message in messages]
@@ -163,11 +164,18 @@ class FunctionTables:
             return {}
 
     def _functions(self, server: ServerType) -> Mapping[str, Callable[..., Any]]:
-        return self._module(server).function_table if server.ours else {}
+        return self._chain(server).table if server.ours else {}
+
+    def _chain(self, server: ServerType) -> FunctionChain:
+        if server.name not in self._chains:
+            declared = {**MemoryFunctions.functions, **server.module.declared_functions()}
+            methods = {name: MethodType(function, _Elsewhere()) for name, function in declared.items()}
+            self._chains[server.name] = FunctionChain(FunctionTable(methods), server.name)
+        return self._chains[server.name]
 
     def _module(self, server: ServerType) -> Any:
         if server.name not in self._modules:
-            self._modules[server.name] = offline_module(server.module, KnownRobot())[0]
+            self._modules[server.name] = offline_module(server.module)
         return self._modules[server.name]
 
 

@@ -13,6 +13,7 @@ from ..language.reader import read
 from ..language.servers import NAMES, FunctionTables
 from ..language.store import BehaviorStore
 from ..language.writer import from_goal
+from .fields import EITHER_TO_STORE, CopyName, Name, NewName, Overwrite, OwnName, Server, StoredName, TextToStore
 
 
 def check_new(
@@ -22,7 +23,7 @@ def check_new(
     planned = PlannedStore.of(self.store, context)
     planned.require_free(str_param, overwrite)
     if bool(text.strip()) == bool(server):
-        raise BadGoal("text", text[:200], "either a behavior, or the server whose last goal is to be stored")
+        raise BadGoal("text", text[:200], EITHER_TO_STORE)
     if server:
         self.tables.server(server, "server")
     else:
@@ -74,17 +75,8 @@ class KeepingFunctions:
     goals: Any  # GoalLog
     remark: Callable[[str], None]  # of NaoBasic
 
-    def keeping_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "storeBehavior": self.store_behavior,
-            "renameBehavior": self.rename_behavior,
-            "copyBehavior": self.copy_behavior,
-            "deleteBehavior": self.delete_behavior,
-        }
-
     @checked_by(check_new)
-    def store_behavior(self, str_param: str, text: str, server: str, overwrite: bool) -> None:
+    def store_behavior(self, str_param: StoredName, text: TextToStore, server: Server, overwrite: Overwrite) -> None:
         """Store a behaviour: the one in `text`, or the goal that `server` got last."""
         if server:
             self.goals.listen(self.tables.server(server, "server"))
@@ -97,18 +89,18 @@ class KeepingFunctions:
         self.remark(f"written: {self.store.save(str_param, text, overwrite)}")
 
     @checked_by(check_rename)
-    def rename_behavior(self, str_param: str, new_name: str, overwrite: bool) -> list[str]:
+    def rename_behavior(self, str_param: OwnName, new_name: NewName, overwrite: Overwrite) -> list[str]:
         """Give one of one's own behaviours another name; answers which other ones still use the old one as a box."""
         self.remark(f"written: {self.store.rename(str_param, new_name, overwrite)}")
         return self._users_of(str_param)
 
     @checked_by(check_copy)
-    def copy_behavior(self, str_param: str, new_name: str, overwrite: bool) -> None:
+    def copy_behavior(self, str_param: Name, new_name: CopyName, overwrite: Overwrite) -> None:
         """Make a behaviour of one's own that is the same as another one, also as one that comes with the library."""
         self.remark(f"written: {self.store.save(new_name, self.store.text(str_param), overwrite)}")
 
     @checked_by(check_delete)
-    def delete_behavior(self, str_param: str) -> list[str]:
+    def delete_behavior(self, str_param: OwnName) -> list[str]:
         """Delete one of one's own behaviours; answers which other ones still use it as a box."""
         self.store.delete(str_param)
         return self._users_of(str_param)
@@ -116,3 +108,10 @@ class KeepingFunctions:
     def _users_of(self, name: str) -> list[str]:
         """Behaviours with a box of a name that nothing has any more."""
         return [] if self.store.exists(name) else self.store.users_of(name)
+
+    functions = {
+        "storeBehavior": store_behavior,
+        "renameBehavior": rename_behavior,
+        "copyBehavior": copy_behavior,
+        "deleteBehavior": delete_behavior,
+    }

@@ -11,8 +11,6 @@ from nao_library_msgs.msg import FunctionResult
 from naoqi.errors import NaoError
 
 from ...base.errors import BadGoal
-from ...base.field_checks import require_zero_or
-from ...base.limits import limit
 from ...base.whole_file import written
 from ...functions.chain import checked_by
 from ..language.binder import bind
@@ -21,6 +19,7 @@ from ..language.reader import read
 from ..language.servers import NAMES, FunctionTables
 from ..language.store import BehaviorStore
 from ..language.writer import text_of
+from .fields import Length, Overwrite, Servers, StoredName
 from .recording import Recording
 
 log = logging.getLogger(__name__)
@@ -39,12 +38,11 @@ def check_recording(
     overwrite: bool,
     context: dict[str, Any],
 ) -> None:
-    """A name that is free, servers, a duration, and no other recording."""
+    """A name that is free, servers, and no other recording."""
     planned = PlannedStore.of(self.store, context)
     planned.require_free(str_param, overwrite)
     for server in servers:
         self.tables.server(server, "servers")
-    require_zero_or("duration", duration, limit("recording"), ": until stopRecording")
     if context.get(BEGUN, self.recording is not None):
         name = self.recording.name if self.recording is not None else "of this chain"
         raise BadGoal("function", "recordBehavior", "stopRecording before", problem=f"the recording {name} goes on")
@@ -78,13 +76,9 @@ class NotingFunctions:
     tell_recorded: Callable[[str, Any], None]  # of NaoBehavior
     wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
 
-    def noting_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {"recordBehavior": self.record_behavior, "stopRecording": self.stop_recording}
-
     @checked_by(check_recording)
     def record_behavior(
-        self, str_param: str, servers: Sequence[str], duration: float, overwrite: bool
+        self, str_param: StoredName, servers: Servers, duration: Length, overwrite: Overwrite
     ) -> list[str] | None:
         """Record what anybody sends to the servers, for `duration`, or on until stopRecording; answers as that does."""
         for server in servers:
@@ -147,3 +141,8 @@ class NotingFunctions:
 
     def _check_step(self, step: dict[str, Any]) -> None:
         bind(read(text_of("A step.", [step]), "recording"), {}, self.store.load, self.tables)
+
+    functions = {
+        "recordBehavior": record_behavior,
+        "stopRecording": stop_recording,
+    }

@@ -24,6 +24,7 @@ from ..language.servers import FunctionTables
 from ..language.store import BehaviorStore
 from ..language.yaml_text import dump_line
 from .execution import Execution
+from .fields import EITHER, File, Name, NameOrNone, Text, Values
 from .report import Event, Record
 
 UNNAMED = "text"
@@ -58,7 +59,7 @@ def check_what(self: RunningFunctions, str_param: str, text: str, context: dict[
 
 def _require_one(str_param: str, text: str) -> None:
     if bool(str_param.strip()) == bool(text.strip()):
-        raise BadGoal("text", text[:200], "either a name in str_param or a behavior in text")
+        raise BadGoal("text", text[:200], EITHER)
 
 
 def _behavior(load: Library, str_param: str, text: str, file: str) -> Behavior:
@@ -88,19 +89,8 @@ class RunningFunctions:
     clock: Any  # of NaoBasic
     tell: Callable[[Event], None]  # of NaoBehavior
 
-    def running_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "runBehavior": self.run_behavior,
-            "stopBehavior": self.stop_behavior,
-            "listBehaviors": self.list_behaviors,
-            "getInstalledBehaviors": self.list_behaviors,
-            "describeBehavior": self.describe_behavior,
-            "checkBehavior": self.check_behavior,
-        }
-
     @checked_by(check_run)
-    def run_behavior(self, str_param: str, text: str, file: str, parameters: Sequence[str]) -> float:
+    def run_behavior(self, str_param: NameOrNone, text: Text, file: File, parameters: Values) -> float:
         """Run a behaviour, stored or in `text`, and wait for its end; answers how long it took, s of ROS time."""
         self.ended_behavior = ""
         behavior = _behavior(self.store.load, str_param, text, file)
@@ -131,14 +121,14 @@ class RunningFunctions:
         return names
 
     @checked_by(check_name)
-    def describe_behavior(self, str_param: str) -> str:
+    def describe_behavior(self, str_param: Name) -> str:
         """The text of a behaviour; what it does, its parameters and servers are in the result as well."""
         text = self.store.text(str_param)
         self.shown.append(self.outlook(str_param))
         return text
 
     @checked_by(check_what)
-    def check_behavior(self, str_param: str, text: str, file: str, parameters: Sequence[str]) -> list[str]:
+    def check_behavior(self, str_param: NameOrNone, text: Text, file: File, parameters: Values) -> list[str]:
         """What is wrong with a behaviour, stored or in `text`; nothing if it can be run; then the result tells more."""
         facts = self.outlook(str_param.strip(), text, file, parameters, validate=True)
         self.shown.append(facts)
@@ -175,6 +165,15 @@ class RunningFunctions:
         if check is None:
             raise NotValidated("it cannot be asked")
         return check(goals)
+
+    functions = {
+        "runBehavior": run_behavior,
+        "stopBehavior": stop_behavior,
+        "listBehaviors": list_behaviors,
+        "getInstalledBehaviors": list_behaviors,
+        "describeBehavior": describe_behavior,
+        "checkBehavior": check_behavior,
+    }
 
 
 def step_message(record: Record) -> BehaviorStep:

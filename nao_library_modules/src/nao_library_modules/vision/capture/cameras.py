@@ -14,6 +14,11 @@ VIDEO = "ALVideoDevice"
 CAMERAS = {name: number for number, name in camera_facts.CAMERAS.items()}
 """Name -> NAOqi's number."""
 OPTICAL_FRAMES = {name: f"{CAMERA_NAMES[number]}_optical_frame" for name, number in CAMERAS.items()}
+ONE_CAMERA = "top or 0, bottom or 1"
+ANY_CAMERA = f"{ONE_CAMERA}, empty: the active one"
+KNOWN_RESOLUTIONS = "one of " + ", ".join(
+    f"{name} (or {number}, {w}x{h})" for name, (number, w, h) in RESOLUTIONS.items()
+)
 FRAME_RATES = (1, 30)
 """Frames a second, the least and the most."""
 
@@ -44,6 +49,7 @@ PARAMETERS = {
 }
 """A camera's parameter, by NAOqi's name without kCamera and ID -> NAOqi's number. Not every camera has all of them:
 that the robot knows, which also takes other numbers."""
+KNOWN_PARAMETERS = f"one of {', '.join(PARAMETERS)}, also by NAOqi's name or number"
 MOST_PARAMETERS = 64
 _SPELLINGS = {name.lower(): number for name, number in PARAMETERS.items()}
 _SPELLINGS.update(exposition=17, autoexposure=11)
@@ -69,7 +75,7 @@ def camera_name(text: str, active: str) -> str:
         if bare in (name, str(number)):
             return name
     problem = f"{text!r} is no camera{did_you_mean(bare, CAMERAS)}"
-    raise BadGoal("camera", text, "top or 0, bottom or 1, empty: the active one", problem=problem)
+    raise BadGoal("camera", text, ANY_CAMERA, problem=problem)
 
 
 def resolution_name(text: str) -> str:
@@ -85,9 +91,8 @@ def resolution_name(text: str) -> str:
     for name, (number, width, height) in RESOLUTIONS.items():
         if bare in (name.lower(), f"k{name.lower()}", f"{width}x{height}", str(number)):
             return name
-    known = ", ".join(f"{name} (or {number}, {w}x{h})" for name, (number, w, h) in RESOLUTIONS.items())
     problem = f"{text!r} is no resolution{did_you_mean(bare, [*RESOLUTIONS])}"
-    raise BadGoal("resolution", text, f"one of {known}", problem=problem)
+    raise BadGoal("resolution", text, KNOWN_RESOLUTIONS, problem=problem)
 
 
 def resolution_of(number: int) -> str:
@@ -112,6 +117,5 @@ def parameter_number(text: str) -> int:
         return int(bare)
     if bare not in _SPELLINGS:
         problem = f"{text!r} is no parameter of a camera{did_you_mean(bare, PARAMETERS)}"
-        allowed = f"one of {', '.join(PARAMETERS)}, also by NAOqi's name or number"
-        raise BadGoal("str_param", text, allowed, problem=problem)
+        raise BadGoal("str_param", text, KNOWN_PARAMETERS, problem=problem)
     return _SPELLINGS[bare]

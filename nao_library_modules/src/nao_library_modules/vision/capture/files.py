@@ -16,6 +16,7 @@ from ...base.whole_file import WholeFile, tidy
 DEFAULT_RECORD_DIR = "~/.ros/nao_recordings"
 """As that of the simulator: beside a simulated robot on the same computer, its files and these are in one place."""
 SYNONYMS = {"jpeg": "jpg", "tif": "tiff"}
+SHORT = f"up to {LONGEST_NAME - 10} bytes"
 
 
 class VisionFiles:
@@ -43,12 +44,8 @@ class VisionFiles:
         Raises:
             BadGoal: If it is not known, or name and field differ.
         """
-        field = _kind(file_type)
-        end = _kind(Path(name.strip()).suffix) if name.strip() else ""
-        for source, value in (("file_type", field), ("str_param", end)):
-            if value and value not in known:
-                problem = f"{value!r} is no type of file for this{did_you_mean(value, known)}"
-                raise BadGoal(source, value, f"one of {', '.join(known)}", problem=problem)
+        field = known_type("file_type", file_type, known)
+        end = known_type("str_param", Path(name.strip()).suffix, known)
         if field and end and field != end:
             allowed = f"{end}, as the file's name ends"
             raise BadGoal("file_type", file_type, allowed, problem=f"{name!r} is no {field}")
@@ -68,8 +65,7 @@ class VisionFiles:
         bare = name.strip()
         if CONTROL.search(bare) or bare.startswith("~") or bare.endswith("/"):
             raise BadGoal("str_param", name, allowed, problem=f"{name!r} is not the name of a file")
-        if any(len(os.fsencode(part)) > LONGEST_NAME - len("-000.webp") for part in Path(bare).parts):
-            raise BadGoal("str_param", name, f"up to {LONGEST_NAME - 10} bytes", problem="the name is too long")
+        require_short("str_param", name)
         root = self.folder.resolve()
         path = (root / bare).resolve()
         if root not in path.parents:
@@ -140,6 +136,21 @@ class VisionFiles:
         return file.path
 
 
-def _kind(text: str) -> str:
+def known_type(field: str, text: str, known: Sequence[str]) -> str:
+    """A type of file by its usual name; empty for none.
+
+    Raises:
+        BadGoal: If it is not known.
+    """
     bare = text.strip().lower().lstrip(".")
-    return SYNONYMS.get(bare, bare)
+    kind = SYNONYMS.get(bare, bare)
+    if kind and kind not in known:
+        problem = f"{kind!r} is no type of file for this{did_you_mean(kind, known)}"
+        raise BadGoal(field, kind, f"one of {', '.join(known)}", problem=problem)
+    return kind
+
+
+def require_short(field: str, name: str) -> None:
+    """A path whose parts file systems take, also with what may be put behind its name."""
+    if any(len(os.fsencode(part)) > LONGEST_NAME - len("-000.webp") for part in Path(name.strip()).parts):
+        raise BadGoal(field, name, SHORT, problem="the name is too long")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +24,24 @@ from .checks import (
     check_unsubscribe,
     topic_out_of,
 )
+from .fields import (
+    Camera,
+    Height,
+    NewRecording,
+    NewStream,
+    Overwrite,
+    Rate,
+    RecordingId,
+    SomeThread,
+    StreamId,
+    ThreadId,
+    Topic,
+    TopicOut,
+    VideoCodec,
+    VideoName,
+    VideoType,
+    Width,
+)
 from .jobs import AnyThread
 from .recorder import Recording, VideoWish
 from .stream import Stream
@@ -36,24 +53,9 @@ log = logging.getLogger(__name__)
 class StreamingFunctions(VisionBase):
     """Streams and recordings. Parameters are fields of VisionFunction."""
 
-    def streaming_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "subscribe": self.subscribe,
-            "unsubscribe": self.unsubscribe,
-            "startRecording": self.start_recording,
-            "stopRecording": self.stop_recording,
-            "createStream": self.create_stream,
-            "createRecording": self.create_recording,
-            "startThread": self.start_thread,
-            "stopThread": self.stop_thread,
-            "deleteThread": self.delete_thread,
-            "listThreads": self.list_threads,
-        }
-
     @checked_by(check_subscribe)
     def subscribe(
-        self, id: str, camera: str, topic: str, topic_out: str, rate: float, width: int, height: int
+        self, id: NewStream, camera: Camera, topic: Topic, topic_out: TopicOut, rate: Rate, width: Width, height: Height
     ) -> list[str]:
         """Begin a stream, which goes on until it is stopped; answers its topic."""
         answer = self.create_stream(id, camera, topic, topic_out, rate, width, height)
@@ -62,7 +64,7 @@ class StreamingFunctions(VisionBase):
 
     @checked_by(check_new_stream)
     def create_stream(
-        self, id: str, camera: str, topic: str, topic_out: str, rate: float, width: int, height: int
+        self, id: NewStream, camera: Camera, topic: Topic, topic_out: TopicOut, rate: Rate, width: Width, height: Height
     ) -> list[str]:
         """Make a stream ready; startThread begins it. Answers its topic."""
         target = self.topics.resolved(topic_out_of(id, topic_out))
@@ -74,23 +76,23 @@ class StreamingFunctions(VisionBase):
         return [target]
 
     @checked_by(check_unsubscribe)
-    def unsubscribe(self, id: str) -> None:
+    def unsubscribe(self, id: StreamId) -> None:
         """Stop a stream; it can be started again."""
         self._stop(self.threads.get(id.strip()))
 
     @checked_by(check_start_recording)
     def start_recording(
         self,
-        id: str,
-        str_param: str,
-        camera: str,
-        topic: str,
-        rate: float,
-        width: int,
-        height: int,
-        file_type: str,
-        codec: str,
-        overwrite: bool,
+        id: NewRecording,
+        str_param: VideoName,
+        camera: Camera,
+        topic: Topic,
+        rate: Rate,
+        width: Width,
+        height: Height,
+        file_type: VideoType,
+        codec: VideoCodec,
+        overwrite: Overwrite,
     ) -> list[str]:
         """Begin a recording, which goes on until it is stopped; answers its file."""
         self.create_recording(id, str_param, camera, topic, rate, width, height, file_type, codec, overwrite)
@@ -99,16 +101,16 @@ class StreamingFunctions(VisionBase):
     @checked_by(check_new_recording)
     def create_recording(
         self,
-        id: str,
-        str_param: str,
-        camera: str,
-        topic: str,
-        rate: float,
-        width: int,
-        height: int,
-        file_type: str,
-        codec: str,
-        overwrite: bool,
+        id: NewRecording,
+        str_param: VideoName,
+        camera: Camera,
+        topic: Topic,
+        rate: Rate,
+        width: Width,
+        height: Height,
+        file_type: VideoType,
+        codec: VideoCodec,
+        overwrite: Overwrite,
     ) -> None:
         """Make a recording ready; startThread begins it."""
         kind = self.files.file_type(str_param, file_type, VIDEO_TYPES)
@@ -119,7 +121,7 @@ class StreamingFunctions(VisionBase):
         self._keep()
 
     @checked_by(check_stop_recording)
-    def stop_recording(self, id: str) -> list[Any]:
+    def stop_recording(self, id: RecordingId) -> list[Any]:
         """Stop a recording; answers file, frames and length (s)."""
         thread = self.threads.get(id.strip())
         self._stop(thread)
@@ -127,7 +129,7 @@ class StreamingFunctions(VisionBase):
         return [video.path, video.frames, video.duration]
 
     @checked_by(check_start)
-    def start_thread(self, id: str) -> list[str]:
+    def start_thread(self, id: ThreadId) -> list[str]:
         """Start a stream or recording, also once more: a recording then makes a further file. Answers where it goes."""
         thread = self.threads.get(id.strip())
         thread.start()
@@ -136,12 +138,12 @@ class StreamingFunctions(VisionBase):
         return [report.path or report.topic_out]
 
     @checked_by(check_stop)
-    def stop_thread(self, id: str) -> None:
+    def stop_thread(self, id: ThreadId) -> None:
         """Stop a stream or recording; it can be started again."""
         self._stop(self.threads.get(id.strip()))
 
     @checked_by(check_delete)
-    def delete_thread(self, id: str) -> None:
+    def delete_thread(self, id: ThreadId) -> None:
         """Stop a stream or recording, and forget it; files stay."""
         thread = self.threads.get(id.strip())
         if thread.runs:
@@ -150,7 +152,7 @@ class StreamingFunctions(VisionBase):
         self._keep()
 
     @checked_by(check_list)
-    def list_threads(self, id: str) -> list[str]:
+    def list_threads(self, id: SomeThread) -> list[str]:
         """How streams and recordings are, or the one that is named; answers their names."""
         wanted = id.strip()
         found = [thread.report() for thread in self.threads.known.values() if wanted in ("", thread.ident)]
@@ -186,3 +188,16 @@ class StreamingFunctions(VisionBase):
 
     def _keep(self) -> None:
         self.kept.save([{"settings": each.settings, "runs": each.runs} for each in self.threads.known.values()])
+
+    functions = {
+        "subscribe": subscribe,
+        "unsubscribe": unsubscribe,
+        "startRecording": start_recording,
+        "stopRecording": stop_recording,
+        "createStream": create_stream,
+        "createRecording": create_recording,
+        "startThread": start_thread,
+        "stopThread": stop_thread,
+        "deleteThread": delete_thread,
+        "listThreads": list_threads,
+    }

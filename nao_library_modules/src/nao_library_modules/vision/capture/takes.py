@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,22 @@ from ...base.interrupt import Interrupt
 from ...functions.chain import checked_by
 from .base import VisionBase
 from .cameras import camera_name
-from .checks import DEFAULT_TIMEOUT, check_picture, check_pictures, numbered
+from .checks import check_picture, check_pictures, numbered
+from .fields import (
+    DEFAULT_TIMEOUT,
+    Camera,
+    Count,
+    Height,
+    Interval,
+    Overwrite,
+    PictureName,
+    PictureNames,
+    PictureType,
+    Quality,
+    Timeout,
+    Topic,
+    Width,
+)
 from .pictures import PICTURE_TYPES, encoded, encoding_of, picture_of, scaled
 from .queue import Frame, frame_of
 
@@ -97,22 +112,18 @@ class Frames:
 class PictureFunctions(VisionBase):
     """Pictures in files. Parameters are fields of VisionFunction."""
 
-    def picture_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {"takePicture": self.take_picture, "takePictures": self.take_pictures}
-
     @checked_by(check_picture)
     def take_picture(
         self,
-        str_param: str,
-        camera: str,
-        topic: str,
-        file_type: str,
-        quality: int,
-        width: int,
-        height: int,
-        timeout: float,
-        overwrite: bool,
+        str_param: PictureName,
+        camera: Camera,
+        topic: Topic,
+        file_type: PictureType,
+        quality: Quality,
+        width: Width,
+        height: Height,
+        timeout: Timeout,
+        overwrite: Overwrite,
     ) -> list[str]:
         """Take a picture from now on, not an older one; answers its file."""
         return self.take_pictures(
@@ -122,17 +133,17 @@ class PictureFunctions(VisionBase):
     @checked_by(check_pictures)
     def take_pictures(
         self,
-        str_param: str,
-        camera: str,
-        topic: str,
-        file_type: str,
-        quality: int,
-        width: int,
-        height: int,
-        timeout: float,
-        count: int,
-        interval: float,
-        overwrite: bool,
+        str_param: PictureNames,
+        camera: Camera,
+        topic: Topic,
+        file_type: PictureType,
+        quality: Quality,
+        width: Width,
+        height: Height,
+        timeout: Timeout,
+        count: Count,
+        interval: Interval,
+        overwrite: Overwrite,
     ) -> list[str]:
         """Take several pictures; answers their files."""
         source = self.source(camera, topic)
@@ -184,3 +195,8 @@ class PictureFunctions(VisionBase):
                 encoding=encoding_of(frame.message),
             )
         )
+
+    functions = {
+        "takePicture": take_picture,
+        "takePictures": take_pictures,
+    }

@@ -13,7 +13,7 @@ from naoqi.errors import NaoError
 from ...functions.memory_functions import MEMORY
 from ...nao.camera_facts import RESOLUTIONS
 from ...server.extractor_use import Event, Events
-from ..capture.checks import DEFAULT_TIMEOUT
+from ..capture.fields import DEFAULT_TIMEOUT
 from .cameras import ROBOT, TORSO, CameraAccess
 from .events import (
     BALL,

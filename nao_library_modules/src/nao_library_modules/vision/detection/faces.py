@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 from naoqi.errors import NaoError
 
 from ...base.suggestion import did_you_mean
-from ...functions.chain import checked_by
+from ..capture.fields import Camera
 from .base import DETECTORS, Wanted, timeout_of
-from .checks import camera_index, check_detection, check_learning, check_name, require_name
 from .events import FACE
+from .fields import AnyPerson, HeadSize, Looks, NameConfidence, Person, Timeout
+from .goals import camera_index, require_name
 from .things import DetectionFunctions
 
 FACES = DETECTORS[FACE].module
@@ -21,46 +20,33 @@ FACES = DETECTORS[FACE].module
 class FaceFunctions(DetectionFunctions):
     """Faces. Parameters are fields of VisionFunction. What is learnt the robot keeps."""
 
-    def face_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "detectFaces": self.detect_faces,
-            "learnFace": self.learn_face,
-            "reLearnFace": self.relearn_face,
-            "forgetFace": self.forget_face,
-            "forgetPerson": self.forget_face,
-            "forgetAllFaces": self.forget_all_faces,
-            "clearDatabase": self.forget_all_faces,
-            "listFaces": self.list_faces,
-            "getLearnedFaces": self.list_faces,
-            "getLearnedFacesList": self.list_faces,
-        }
-
-    @checked_by(check_detection)
     def detect_faces(
-        self, str_param: str, camera: str, timeout: float, confidence: float, count: int, size: float
+        self,
+        str_param: AnyPerson,
+        camera: Camera,
+        timeout: Timeout,
+        confidence: NameConfidence,
+        count: Looks,
+        size: HeadSize,
     ) -> list[str]:
         """See faces; answers whose they are, "face" for each that nobody knows."""
         wanted = Wanted(FACE, str_param.strip(), confidence, size, camera_index(camera))
         return self.detect(wanted, timeout, count)
 
-    @checked_by(check_learning)
-    def learn_face(self, str_param: str, camera: str, timeout: float) -> list[bool]:
+    def learn_face(self, str_param: Person, camera: Camera, timeout: Timeout) -> list[bool]:
         """Learn the face that is in view under a name; answers whether there was one, alone, that could be learnt."""
         name = require_name(str_param)
         if name in self.list_faces():
             raise NaoError(f"the face of {name!r} is learnt already: reLearnFace adds to it, forgetFace forgets it")
         return self._learn("learnFace", name, camera, timeout)
 
-    @checked_by(check_learning)
-    def relearn_face(self, str_param: str, camera: str, timeout: float) -> list[bool]:
+    def relearn_face(self, str_param: Person, camera: Camera, timeout: Timeout) -> list[bool]:
         """Add the face that is in view to what is known of a person; answers as learnFace does."""
         name = require_name(str_param)
         self._require_known(name)
         return self._learn("reLearnFace", name, camera, timeout)
 
-    @checked_by(check_name)
-    def forget_face(self, str_param: str) -> None:
+    def forget_face(self, str_param: Person) -> None:
         """Forget a person's face."""
         name = require_name(str_param)
         self._require_known(name)
@@ -94,3 +80,16 @@ class FaceFunctions(DetectionFunctions):
                     self.note([replace(face, sight=replace(face.sight, name=name))])
                     return [True]
         return [False]
+
+    functions = {
+        "detectFaces": detect_faces,
+        "learnFace": learn_face,
+        "reLearnFace": relearn_face,
+        "forgetFace": forget_face,
+        "forgetPerson": forget_face,
+        "forgetAllFaces": forget_all_faces,
+        "clearDatabase": forget_all_faces,
+        "listFaces": list_faces,
+        "getLearnedFaces": list_faces,
+        "getLearnedFacesList": list_faces,
+    }

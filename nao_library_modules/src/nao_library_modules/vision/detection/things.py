@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
-from ...functions.chain import checked_by
+from ..capture.fields import Camera
 from .base import DETECTORS, DetectionBase, Wanted, timeout_of
 from .cameras import InUse
-from .checks import camera_index, check_detection, check_landmarks, check_movement, require_mark
 from .events import BALL, CODE, LANDMARK, MOVEMENT
+from .fields import AnyCode, AnyMark, BallSize, CodeSize, Confidence, Looks, MarkSize, Sensitivity, Timeout
+from .goals import camera_index, require_mark
 from .space import merged
 
 TYPED: frozenset[str] = frozenset()
@@ -19,38 +17,27 @@ TYPED: frozenset[str] = frozenset()
 class DetectionFunctions(DetectionBase):
     """Detections. Parameters are fields of VisionFunction. Nothing seen in time is an answer, too."""
 
-    def detection_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {
-            "detectBall": self.detect_ball,
-            "detectLandmarks": self.detect_landmarks,
-            "readBarcodes": self.read_barcodes,
-            "detectMovement": self.detect_movement,
-        }
-
-    @checked_by(check_detection)
-    def detect_ball(self, camera: str, timeout: float, confidence: float, count: int, size: float) -> list[str]:
+    def detect_ball(
+        self, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, size: BallSize
+    ) -> list[str]:
         """See a red ball."""
         return self.detect(Wanted(BALL, "", confidence, size, camera_index(camera)), timeout, count)
 
-    @checked_by(check_landmarks)
     def detect_landmarks(
-        self, str_param: str, camera: str, timeout: float, confidence: float, count: int, size: float
+        self, str_param: AnyMark, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, size: MarkSize
     ) -> list[str]:
         """See landmarks; answers their numbers."""
         wanted = Wanted(LANDMARK, require_mark(str_param), confidence, size, camera_index(camera))
         return self.detect(wanted, timeout, count)
 
-    @checked_by(check_detection)
     def read_barcodes(
-        self, str_param: str, camera: str, timeout: float, confidence: float, count: int, size: float
+        self, str_param: AnyCode, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, size: CodeSize
     ) -> list[str]:
         """Read barcodes and QR codes; answers what they say."""
         return self.detect(Wanted(CODE, str_param, confidence, size, camera_index(camera)), timeout, count)
 
-    @checked_by(check_movement)
     def detect_movement(
-        self, camera: str, timeout: float, confidence: float, count: int, sensitivity: float
+        self, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, sensitivity: Sensitivity
     ) -> list[str]:
         """See what moves."""
         wanted = Wanted(MOVEMENT, "", confidence, 0.0, camera_index(camera))
@@ -91,3 +78,10 @@ class DetectionFunctions(DetectionBase):
             self.remark(f"no {wanted.kind} seen within {timeout_of(timeout):g} s")
         # Nobody can tell which movement of one picture is which of the next.
         return self.note(merged(pictures[-1:] if wanted.kind == MOVEMENT else pictures))
+
+    functions = {
+        "detectBall": detect_ball,
+        "detectLandmarks": detect_landmarks,
+        "readBarcodes": read_barcodes,
+        "detectMovement": detect_movement,
+    }

@@ -3,13 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
 
-from ...functions.chain import checked_by
+from ..capture.fields import Camera
 from .base import Wanted, Watch, timeout_of
-from .checks import camera_index, check_search, check_tracking, wanted_thing
 from .events import BALL, FACE
+from .fields import (
+    SEARCH_TIMEOUT,
+    AnyPerson,
+    BallSize,
+    Confidence,
+    Duration,
+    HeadSize,
+    Looks,
+    NameConfidence,
+    Patience,
+    Revert,
+    Search,
+    SearchTimeout,
+    Speed,
+    Thing,
+    ThingConfidence,
+    ThingSize,
+)
+from .goals import camera_index, wanted_thing
 from .space import Sighting, merged
 from .track_head import HeadUse, Neck
 from .track_plan import MIDDLE, off_axis, search_angles, the_one
@@ -20,8 +37,6 @@ GLANCE = 0.5
 """s that the head rests where it looks for something."""
 SETTLING = 2.0
 """s that lookFor gives the head to bring what it found into the middle of the picture."""
-SEARCH_TIMEOUT = 20.0
-"""s that lookFor looks, where a message leaves it to us: the whole way round takes about 15."""
 
 
 class TrackingFunctions(HeadUse):
@@ -31,54 +46,47 @@ class TrackingFunctions(HeadUse):
     searching.
     """
 
-    def tracking_functions(self) -> dict[str, Callable[..., Any]]:
-        """Name -> function, to be put into the function table of a module."""
-        return {"trackBall": self.track_ball, "trackFace": self.track_face, "lookFor": self.look_for}
-
-    @checked_by(check_tracking)
     def track_ball(
         self,
-        camera: str,
-        timeout: float,
-        confidence: float,
-        size: float,
-        duration: float,
-        search: bool,
-        speed: float,
-        revert: bool,
+        camera: Camera,
+        timeout: Patience,
+        confidence: Confidence,
+        size: BallSize,
+        duration: Duration,
+        search: Search,
+        speed: Speed,
+        revert: Revert,
     ) -> list[float]:
         """Follow a red ball with the head; answers for how long it was in view, s."""
         wanted = Wanted(BALL, "", confidence, size, camera_index(camera))
         return self._track(wanted, timeout, duration, search, speed, revert)
 
-    @checked_by(check_tracking)
     def track_face(
         self,
-        str_param: str,
-        camera: str,
-        timeout: float,
-        confidence: float,
-        size: float,
-        duration: float,
-        search: bool,
-        speed: float,
-        revert: bool,
+        str_param: AnyPerson,
+        camera: Camera,
+        timeout: Patience,
+        confidence: NameConfidence,
+        size: HeadSize,
+        duration: Duration,
+        search: Search,
+        speed: Speed,
+        revert: Revert,
     ) -> list[float]:
         """Follow a face with the head, or only that of one person; answers for how long it was in view, s."""
         wanted = Wanted(FACE, str_param.strip(), confidence, size, camera_index(camera))
         return self._track(wanted, timeout, duration, search, speed, revert)
 
-    @checked_by(check_search)
     def look_for(
         self,
-        str_param: str,
-        camera: str,
-        timeout: float,
-        confidence: float,
-        count: int,
-        size: float,
-        speed: float,
-        revert: bool,
+        str_param: Thing,
+        camera: Camera,
+        timeout: SearchTimeout,
+        confidence: ThingConfidence,
+        count: Looks,
+        size: ThingSize,
+        speed: Speed,
+        revert: Revert,
     ) -> list[str]:
         """Turn the head until something is in view, look at it, and tell where it is; nothing if it is not found."""
         kind, name = wanted_thing(str_param)
@@ -115,6 +123,12 @@ class TrackingFunctions(HeadUse):
             if last is not None:
                 self.note([last])
         return [in_view]
+
+    functions = {
+        "trackBall": track_ball,
+        "trackFace": track_face,
+        "lookFor": look_for,
+    }
 
 
 class Chase:

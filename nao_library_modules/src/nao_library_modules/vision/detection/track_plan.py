@@ -8,8 +8,8 @@ from itertools import cycle
 from typing import Tuple
 
 from ...motion.facts import JointLimits
-from ...motion.gaze import load_head, look_at
 from ...nao.camera_facts import CAMERA_NAMES
+from ...nao.gaze import load_head, look_at
 from .events import BALL, FACE
 from .space import Sighting
 
