@@ -1,4 +1,4 @@
-"""Reports of a module on /diagnostics, once a second."""
+"""Reports of a node on /diagnostics, once a second."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import logging
 import threading
 from collections.abc import Callable, Mapping
 
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
 from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
 from .health import Level, Report
@@ -13,6 +15,19 @@ from .health import Level, Report
 log = logging.getLogger(__name__)
 
 PERIOD = 1.0
+
+Reports = Mapping[str, Callable[[], Report]]
+"""Name -> function that gives the report of this moment."""
+
+
+class _PartsUpdater(Updater):
+    """diagnostic_updater's, for names that say which part of the node they are of: it puts nothing before them."""
+
+    def publish(self, msg: DiagnosticStatusWrapper | list[DiagnosticStatusWrapper]) -> None:
+        """Publish reports."""
+        array = DiagnosticArray(status=msg if isinstance(msg, list) else [msg])
+        array.header.stamp = rospy.Time.now()
+        self.publisher.publish(array)
 
 
 class DiagnosticsPublisher:
@@ -24,17 +39,18 @@ class DiagnosticsPublisher:
         Publishes `/diagnostics` (diagnostic_msgs/DiagnosticArray).
     """
 
-    def __init__(self, hardware_id: str, reports: Mapping[str, Callable[[], Report]]) -> None:
+    def __init__(self, hardware_id: str, reports: Reports | Callable[[], Reports]) -> None:
         """Start publishing.
 
         Args:
             hardware_id: What the reports are about, `ip:port`.
-            reports: Name -> function that gives the report of this moment.
+            reports: The reports; the name of the node comes before theirs. Or a function that gives those of this
+                moment, with whole names.
         """
-        self._updater = Updater()
+        self._reports = reports if callable(reports) else lambda: reports
+        self._updater = _PartsUpdater() if callable(reports) else Updater()
         self._updater.setHardwareID(hardware_id)
-        for name, report in reports.items():
-            self._updater.add(name, _task(report))
+        self._update()
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name="diagnostics", daemon=True)
         self._thread.start()
@@ -43,10 +59,18 @@ class DiagnosticsPublisher:
         """Publish no more."""
         self._ended.set()
 
+    def _update(self) -> None:
+        reports = self._reports()
+        for name in {task.name for task in self._updater.tasks} - set(reports):
+            self._updater.removeByName(name)
+        for name in [name for name in reports if name not in {task.name for task in self._updater.tasks}]:
+            self._updater.add(name, _task(lambda name=name: self._reports()[name]()))
+
     def _run(self) -> None:
         failed = False
         while not self._ended.is_set():
             try:
+                self._update()
                 self._updater.force_update()
                 failed = False
             except Exception:

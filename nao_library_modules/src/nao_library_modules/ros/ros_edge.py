@@ -146,17 +146,21 @@ class RosEdge:
 
     def kept(self) -> Kept:
         """What users have set up in this node and is there again after its death."""
-        return node_file()
+        return node_file(rospy.get_name())
 
     def on_shutdown(self, action: Callable[[], None]) -> None:
         """Call `action` when the node ends, while it can still publish."""
         rospy.on_shutdown(action)
 
 
-def node_file() -> Kept:
-    """The file of this node, for this run of the ROS master."""
-    name = rospy.get_name().strip("/").replace("/", "_")
-    return Kept(Path(get_ros_home()) / "nao_library" / f"{name}.json", str(rospy.get_param("/run_id", "")))
+def node_file(name: str) -> Kept:
+    """The file of a node, or of a part of one, for this run of the ROS master.
+
+    Args:
+        name: Its full name.
+    """
+    file = name.strip("/").replace("/", "_")
+    return Kept(Path(get_ros_home()) / "nao_library" / f"{file}.json", str(rospy.get_param("/run_id", "")))
 
 
 def _json_type(value: Any) -> str:

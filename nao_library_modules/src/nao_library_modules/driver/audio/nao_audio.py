@@ -21,11 +21,11 @@ from ...base.field_checks import number_parameter
 from ...base.interrupt import Interrupt
 from ...base.limits import limit
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.node import name_for_robot, publish
 from ..base.rotation import from_roll_pitch_yaw
-from ..base.services import offer
 from ..base.topic_demand import TopicDemand
 from .audio_directions import Direction, SoundDirections
 from .audio_player import AudioPlayer
@@ -52,28 +52,30 @@ class NaoAudioServices:
         Parameter `~sensitivity` (-1): of the localisation, 0 to 1; -1: what the robot has.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
-        sensitivity = rospy.get_param("~sensitivity", ROBOTS_OWN)
+        self._node = node
+        sensitivity = self._node.param("~sensitivity", ROBOTS_OWN)
         sensitivity = number_parameter("~sensitivity", sensitivity, limit("share"), also=ROBOTS_OWN)
         self._interrupt = Interrupt()
         self._frame = tf_prefix() + TORSO
         self._player = AudioPlayer(robot, RosClock(), self._interrupt)
-        self._directions = SoundDirections(robot, name_for_robot(), sensitivity, self._publish)
+        self._directions = SoundDirections(robot, name_for_robot(self._node.name), sensitivity, self._publish)
         name = "nao_audio/audio_source_localization"
-        self._topic = rospy.Publisher(name, AudioSourceLocalization, queue_size=10)
+        self._topic = self._node.publisher(name, AudioSourceLocalization, queue_size=10)
         self._demand = TopicDemand(self._topic, self._directions.want)
-        offer("nao_audio/play_file", AudioPlayback, self._play)
-        offer("nao_audio/record", AudioRecorder, self._record)
-        offer("nao_audio/master_volume", SetAudioMasterVolume, self._set_volume)
-        offer("nao_audio/get_master_volume", GetAudioMasterVolume, self._volume)
+        self._node.offer("nao_audio/play_file", AudioPlayback, self._play)
+        self._node.offer("nao_audio/record", AudioRecorder, self._record)
+        self._node.offer("nao_audio/master_volume", SetAudioMasterVolume, self._set_volume)
+        self._node.offer("nao_audio/get_master_volume", GetAudioMasterVolume, self._volume)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""

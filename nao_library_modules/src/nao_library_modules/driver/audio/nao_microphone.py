@@ -11,6 +11,7 @@ from rospy.rostime import is_wallclock
 from nao_library_msgs.msg import AudioBuffer
 
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.node import name_for_robot, publish
@@ -33,24 +34,26 @@ class NaoMicrophone:
         simulated time, which is the clock of the simulated robot). `~frame_id` (Head, after `tf_prefix`).
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer the topic; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
+        self._node = node
         self._use_ros_time = True
-        self._frame = tf_prefix() + str(rospy.get_param("~frame_id", HEAD)).lstrip("/")
-        self._microphone = Microphone(robot, name_for_robot(), RosClock(), self._publish)
+        self._frame = tf_prefix() + str(self._node.param("~frame_id", HEAD)).lstrip("/")
+        self._microphone = Microphone(robot, name_for_robot(self._node.name), RosClock(), self._publish)
         fields = (
             Field("frequency", min(FORMATS), "samples a second and channel", min(FORMATS), max(FORMATS), RATES),
             Field("use_ros_time", is_wallclock(), "whether stamps are in ROS time, instead of the robot's own"),
         )
-        self._server = serve(fields, self._changed)
-        self._audio = rospy.Publisher("~audio_raw", AudioBuffer, queue_size=QUEUE)
+        self._server = serve(node, fields, self._changed)
+        self._audio = self._node.publisher("~audio_raw", AudioBuffer, queue_size=QUEUE)
         self._demand = TopicDemand(self._audio, self._microphone.want)
 
     def reports(self) -> dict[str, Callable[[], Report]]:

@@ -25,13 +25,12 @@ from naoqi.errors import NaoError, UnknownModule
 from ...base.errors import BadGoal
 from ...base.interrupt import Interrupt
 from ...base.suggestion import of_those
-from ...ros.action_server import ActionServer
 from ...ros.goal_crowd import GoalCrowd, Outcome
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ..base.node import name_for_robot, publish
 from ..base.reconfigure import Field, serve, update
-from ..base.services import offer
 from .speech import Speech
 from .speech_recognition import Heard, Recognition
 from .speech_settings import (
@@ -80,37 +79,41 @@ class NaoSpeech:
         `~audio_expression`, `~visual_expression`, `~word_spotting` (with `enable_` before them as well).
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong, or another node speaks already.
         """
-        other = _node_that_offers(START)
+        self._node = node
+        other = _node_that_offers(node.resolve(START))
         if other:
-            raise NaoError(f"{other} speaks for this robot already ({rospy.resolve_name('speech')}): one is enough")
+            raise NaoError(f"{other} speaks for this robot already ({self._node.resolve('speech')}): one is enough")
         self._robot = robot
-        for name, value in _read_parameters().items():
-            rospy.set_param(f"~{name}", value)  # in today's form, as the server of the parameters wants it
+        for name, value in self._read_parameters().items():
+            rospy.set_param(
+                node.resolve(f"~{name}"), value
+            )  # in today's form, as the server of the parameters wants it
         self._settings = SpeechSettings()
-        self._words = rospy.Publisher("word_recognized", WordRecognized, queue_size=10)
+        self._words = self._node.publisher("word_recognized", WordRecognized, queue_size=10)
         self._speech = Speech(robot, RosClock(), lambda: self._settings)
-        self._recognition = Recognition(robot, name_for_robot(), lambda: self._settings, self._publish)
-        self._server = serve(PARAMETERS, self._changed)
+        self._recognition = Recognition(robot, name_for_robot(self._node.name), lambda: self._settings, self._publish)
+        self._server = serve(node, PARAMETERS, self._changed)
         self._goals = {
             "speech_action": GoalCrowd(lambda _: VOICE, self._say, with_feedback=True, robot=robot),
             "speech_vocabulary_action": GoalCrowd(lambda _: VOCABULARY, self._set_vocabulary, robot=robot),
         }
         for (name, crowd), action in zip(self._goals.items(), (SpeechWithFeedbackAction, SetSpeechVocabularyAction)):
-            ActionServer(name, action, crowd.on_goal, crowd.on_cancel, auto_start=False).start()
+            self._node.action(name, action, crowd)
         robot.connection.add_listener(self._connection_changed)
-        rospy.Subscriber("speech", String, self._on_text, queue_size=100)
-        offer("stop_recognition", Empty, lambda _: self._recognition.stop())
-        offer("reconfigure", Empty, lambda _: update(self._server, _read_parameters()))
-        offer(START, Empty, lambda _: self._recognition.start())
+        self._node.subscriber("speech", String, self._on_text, queue_size=100)
+        self._node.offer("stop_recognition", Empty, lambda _: self._recognition.stop())
+        self._node.offer("reconfigure", Empty, lambda _: update(self._server, self._read_parameters()))
+        self._node.offer(START, Empty, lambda _: self._recognition.start())
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
@@ -186,6 +189,15 @@ class NaoSpeech:
 
     # --- the connection -------------------------------------------------------------------------------------------
 
+    def _read_parameters(self) -> dict[str, Any]:
+        """Private parameters that somebody has set, in today's form; former names are gone afterwards."""
+        given = self._node.param(self._node.name, {})
+        values = given_parameters(given)
+        for former in FORMER_NAMES.values():
+            if former in given:
+                rospy.delete_param(self._node.resolve(f"~{former}"))
+        return values
+
     def _connection_changed(self, *_: Any) -> None:
         """Called from the thread that the connection has for its listeners."""
         if self._robot.connection.state == "connected":
@@ -197,24 +209,14 @@ def _listening(settings: SpeechSettings) -> tuple[Any, ...]:
     return settings.vocabulary, settings.audio_expression, settings.visual_expression, settings.word_spotting
 
 
-def _read_parameters() -> dict[str, Any]:
-    """Private parameters that somebody has set, in today's form; former names are gone afterwards."""
-    given = rospy.get_param("~", {})
-    values = given_parameters(given)
-    for former in FORMER_NAMES.values():
-        if former in given:
-            rospy.delete_param(f"~{former}")
-    return values
-
-
 def _complain(text: str, error: Exception) -> None:
     log = rospy.loginfo if isinstance(error, UnknownModule) else rospy.logerr
     log("speech: %r was not said: %s", text, error)
 
 
-def _node_that_offers(service: str) -> str:
+def _node_that_offers(name: str) -> str:
     """Another node that offers a service and is alive; empty if there is none."""
-    name, own = rospy.resolve_name(service), rospy.get_name()
+    own = rospy.get_name()
     _, _, services = rosgraph.Master(own).getSystemState()
     others = [node for offered, nodes in services if offered == name for node in nodes if node != own]
     if not others:

@@ -16,11 +16,12 @@ from ...robot.robot import Robot
 from ...ros.diagnostics import DiagnosticsPublisher
 from ...ros.health import connection_report
 from ...ros.node import own_as_node, robot_address, start_node
+from ...ros.node_interface import NodeInterface
 from ...ros.node_place import NodePlace
 
 
 def run_driver(
-    make: Callable[[Robot], Any],
+    make: Callable[[Robot, NodeInterface], Any],
     name: str,
     description: str,
     argv: Sequence[str] | None = None,
@@ -31,7 +32,7 @@ def run_driver(
     A launched node whose name another node takes comes back when that one has ended.
 
     Args:
-        make: Makes the node's object for a robot: it has `close()`, and `reports()` for /diagnostics.
+        make: Makes the node's object for a robot and a side to ROS: it has `close()`, and `reports()` for /diagnostics.
         name: Default name of the node.
         description: What `--help` says.
         argv: Arguments, those of the process by default.
@@ -47,23 +48,28 @@ def run_driver(
     try:
         ip, port = robot_address(options, rospy.get_param)
         robot = Robot(ip, port)
-        node = make(robot)
+        interface = NodeInterface()
+        node = make(robot, interface)
     except NaoError as error:
         rospy.logfatal("%s", error)
         return 1
     own_as_node(robot, watches)
     reports = {"robot": lambda: connection_report(robot.address, robot.connection), **node.reports()}
     diagnostics = DiagnosticsPublisher(robot.address, reports)  # it puts the name of the node before each
-    rospy.on_shutdown(lambda: close_all(node.close, diagnostics.close))
+    rospy.on_shutdown(lambda: close_all(node.close, interface.close, diagnostics.close))
     place = NodePlace()
     rospy.spin()
     place.come_back()
     return 0
 
 
-def name_for_robot() -> str:
-    """Name under which NAOqi knows this node: as a module, and as a subscriber of its modules."""
-    return "ros" + rospy.get_name().replace("/", "_")
+def name_for_robot(name: str) -> str:
+    """Name under which NAOqi knows a node, or a part of one: as a module, and as a subscriber of its modules.
+
+    Args:
+        name: Its full name.
+    """
+    return "ros" + name.replace("/", "_")
 
 
 def publish(publisher: rospy.Publisher, message: Any) -> None:
@@ -74,10 +80,10 @@ def publish(publisher: rospy.Publisher, message: Any) -> None:
         rospy.logdebug("%s: %s", publisher.name, error)
 
 
-def rate_parameter(name: str, default: float) -> float:
+def rate_parameter(node: NodeInterface, name: str, default: float) -> float:
     """A parameter that is a rate in Hz.
 
     Raises:
         NaoError: If it is none that a node can keep.
     """
-    return number_parameter(name, rospy.get_param(name, default), limit("reading rate"))
+    return number_parameter(name, node.param(name, default), limit("reading rate"))

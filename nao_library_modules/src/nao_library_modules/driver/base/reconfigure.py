@@ -13,6 +13,8 @@ from dynamic_reconfigure.server import Server
 
 from naoqi.errors import NaoError
 
+from ...ros.node_interface import NodeInterface
+
 Value = Union[bool, int, float, str]
 
 TYPES = {bool: "bool", int: "int", float: "double", str: "str"}
@@ -65,19 +67,21 @@ def description_of(fields: Sequence[Field]) -> Any:
 
 
 def serve(
+    node: NodeInterface,
     fields: Sequence[Field],
     changed: Callable[[Mapping[str, Any], Mapping[str, Any]], Mapping[str, Any]],
     part: str = "",
 ) -> Server:
-    """Offer parameters of this node for changes.
+    """Offer parameters of a node for changes.
 
     Args:
+        node: That they belong to.
         fields: The parameters. Those that are set already keep their values.
         changed: Called with the values before and after each change, at once with an empty mapping before; gives the
             values that hold from then on. Called in the thread of the service. A NaoError refuses the change: who
             asked for it gets its text.
-        part: Part of the node that the parameters belong to, where it has several: it comes before their names. With a
-            slash before it, the full name of something else that they belong to, such as a topic.
+        part: What of the node they belong to, where that is not all of it: it comes before their names. With a slash
+            before it, the full name of something else that they belong to, such as a topic.
 
     Returns:
         The server; `update_configuration` changes values from within the node.
@@ -89,10 +93,11 @@ def serve(
         Service `~set_parameters`, topics `~parameter_descriptions`, `~parameter_updates` (dynamic_reconfigure); with
         a part `~PART/set_parameters` and so on.
     """
-    prefix = "" if part.startswith("/") else "~"
+    owner = node.resolve(part if part.startswith("/") else f"~{part}").rstrip("/")
+    told = f"~{part}/" if part else "~"
     for field in fields:
-        name = f"{prefix}{part}/{field.name}" if part else f"{prefix}{field.name}"
-        _check(name, field, rospy.get_param(name, field.default))
+        name = f"{part}/{field.name}" if part.startswith("/") else f"{told}{field.name}"
+        _check(name, field, rospy.get_param(f"{owner}/{field.name}", field.default))
     names = [field.name for field in fields]
     last: dict[str, Any] = {}
 
@@ -103,14 +108,17 @@ def serve(
             values = changed(dict(last), {name: config[name] for name in names})
         except NaoError as error:
             if last:  # the client of dynamic_reconfigure keeps the text of the error to itself
-                rospy.logwarn("%s is refused: %s", rospy.resolve_name(f"{prefix}{part}"), error)
+                rospy.logwarn("%s is refused: %s", owner, error)
             raise rospy.ServiceException(str(error)) from error
         config.update(values)
         last.update(values)
         return config
 
     with _own_errors():
-        return Server(description_of(fields), callback, *([part] if part else []))
+        server = Server(description_of(fields), callback, owner)
+    for end in (server.set_service.shutdown, server.descr_topic.unregister, server.update_topic.unregister):
+        node.at_the_end(end)
+    return server
 
 
 def update(server: Server, changes: Mapping[str, Any]) -> None:

@@ -19,6 +19,7 @@ from naoqi.errors import NaoError
 from ...base.suggestion import did_you_mean
 from ...nao.camera_facts import CAMERA_NAMES, CAMERAS, SIZES
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.node import name_for_robot, publish
@@ -53,11 +54,12 @@ class CameraTopics:
     of their services.
     """
 
-    def __init__(self, robot: Any, camera: int, folder: str, part: str, alone: bool) -> None:
+    def __init__(self, robot: Any, node: NodeInterface, camera: int, folder: str, part: str, alone: bool) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
             camera: NAOqi's number of the camera.
             folder: What comes before the names of the topics, with its slash.
             part: What comes before the names of the parameters; empty if nothing does.
@@ -67,9 +69,10 @@ class CameraTopics:
             NaoError: If a parameter is wrong.
         """
         self._robot = robot
+        self._node = node
         self._camera = camera
-        self._frames = {each: _frame(each) for each in CAMERAS}
-        self._infos = {each: CameraInfos(_camera_name(each), _package_folder) for each in CAMERAS}
+        self._frames = {each: _frame(node, each) for each in CAMERAS}
+        self._infos = {each: CameraInfos(_camera_name(node, each), _package_folder) for each in CAMERAS}
         self._config: Mapping[str, Any] = {}
         self._compression: Mapping[str, Any] = {}
         self._url = ""
@@ -78,25 +81,25 @@ class CameraTopics:
         self._listens: dict[str, bool] = {}
         prefix = f"~{part}/" if part else "~"
         # The defaults are those of the camera. A node that was started again finds all parameters set: these too.
-        given = {name: rospy.get_param(prefix + name, tuning.field.default) for name, tuning in TUNINGS.items()}
+        given = {name: node.param(prefix + name, tuning.field.default) for name, tuning in TUNINGS.items()}
         given = {name: value for name, value in given.items() if value != TUNINGS[name].field.default}
         fields = fields_of(QVGA, RATE, is_wallclock(), camera, alone)
         defaults = {field.name: field.default for field in fields}
-        subscriber = f"{name_for_robot()}_{part}" if part else name_for_robot()
+        subscriber = name_for_robot(node.name) + (f"_{part}" if part else "")
         self._tuning = CameraTuning(self._ask, {})
         self._choices = 0
         stream = stream_settings(defaults, camera)
         self._stream = CameraStream(robot, subscriber, stream, RosClock(), self._show, self._prepare)
-        self._server = serve(fields, self._changed, part)
+        self._server = serve(node, fields, self._changed, part)
         self._tuning.choose(camera, given, connected=False)
         compressed = f"{folder}image_raw/compressed"
-        self._compression_server = serve(COMPRESSION, self._compress_as, rospy.resolve_name(compressed))
+        self._compression_server = serve(node, COMPRESSION, self._compress_as, node.resolve(compressed))
         self._image = self._offer(f"{folder}image_raw", Image)
         self._info = self._offer(f"{folder}camera_info", CameraInfo)
         self._compressed = self._offer(compressed, CompressedImage)
         publishers = {"image": self._image, "info": self._info, "compressed": self._compressed}
         self._demands = [TopicDemand(each, partial(self._on_listeners, name)) for name, each in publishers.items()]
-        rospy.Service(f"{folder}set_camera_info", SetCameraInfo, self._set_camera_info)
+        node.service(f"{folder}set_camera_info", SetCameraInfo, self._set_camera_info)
 
     @property
     def camera(self) -> int:
@@ -113,7 +116,7 @@ class CameraTopics:
         self._stream.close()
 
     def _offer(self, name: str, kind: type) -> rospy.Publisher:
-        return rospy.Publisher(name, kind, queue_size=QUEUE)
+        return self._node.publisher(name, kind, queue_size=QUEUE)
 
     def _on_listeners(self, name: str, listens: bool) -> None:
         with self._lock:
@@ -182,7 +185,7 @@ class CameraTopics:
             after = settled(before, after)
             changed = changed_tunings(before, after) if before else {}
         stream, former = stream_settings(after, self._camera), self._stream.settings
-        url = after["camera_info_url"] or rospy.get_param(f"~calibration_file_{CAMERAS[stream.camera]}", "")
+        url = after["camera_info_url"] or self._node.param(f"~calibration_file_{CAMERAS[stream.camera]}", "")
         if not before or url != self._url or stream.camera != former.camera:
             self._infos[stream.camera].set_url(url)
         self._stream.change(stream)
@@ -220,15 +223,15 @@ class CameraTopics:
         return self._infos[self.camera].source(*SIZES[self._stream.settings.resolution])
 
 
-def _frame(camera: int) -> str:
+def _frame(node: NodeInterface, camera: int) -> str:
     """Name of the optical frame of a camera."""
-    given = rospy.get_param(f"~camera_{CAMERAS[camera]}_frame", f"{CAMERA_NAMES[camera]}_optical_frame")
+    given = node.param(f"~camera_{CAMERAS[camera]}_frame", f"{CAMERA_NAMES[camera]}_optical_frame")
     return tf_prefix() + str(given).lstrip("/")
 
 
-def _camera_name(camera: int) -> str:
+def _camera_name(node: NodeInterface, camera: int) -> str:
     """Name of a camera in calibration files; the namespace of the robot tells several apart."""
-    return camera_name(f"{rospy.get_namespace()}nao_camera_{CAMERAS[camera]}")
+    return camera_name(f"{node.namespace}nao_camera_{CAMERAS[camera]}")
 
 
 def _package_folder(package: str) -> str:

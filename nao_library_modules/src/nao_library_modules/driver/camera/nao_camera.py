@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import rospy
-
 from naoqi.errors import NaoError
 
 from ...nao.camera_facts import CAMERAS, TOP
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from .camera_topics import CameraTopics
 
 ALONE = ("camera_switch", "source")
@@ -42,26 +41,28 @@ class NaoCamera:
         changed while it runs.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
+        self._node = node
         self._cameras: dict[str, CameraTopics] = {}
-        alone = next((name for name in reversed(ALONE) if rospy.has_param(f"~{name}")), None)
+        alone = next((name for name in reversed(ALONE) if self._node.has_param(f"~{name}")), None)
         if alone is None:
             for camera, name in CAMERAS.items():
-                self._cameras[name] = CameraTopics(robot, camera, f"nao_robot/camera/{name}/", name, alone=False)
+                self._cameras[name] = CameraTopics(robot, node, camera, f"nao_robot/camera/{name}/", name, alone=False)
             return
-        camera = rospy.get_param(f"~{alone}", TOP)
+        camera = self._node.param(f"~{alone}", TOP)
         if isinstance(camera, bool) or camera not in CAMERAS:
             listed = " or ".join(f"{number} ({name})" for number, name in CAMERAS.items())
             raise NaoError(f"~{alone} is {camera!r}: {listed}")
-        self._cameras["alone"] = CameraTopics(robot, camera, "", "", alone=True)
+        self._cameras["alone"] = CameraTopics(robot, node, camera, "", "", alone=True)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""

@@ -24,10 +24,9 @@ from ...base.errors import RobotLost
 from ...base.field_checks import number_parameter
 from ...base.interrupt import Interrupt
 from ...base.limits import limit
-from ...ros.action_server import ActionServer
 from ...ros.goal_crowd import GoalCrowd, Outcome
 from ...ros.health import Report
-from ..base.services import offer
+from ...ros.node_interface import NodeInterface
 from .joint_controller import JointController, Reached
 
 COMPLAINT_PERIOD = 5.0
@@ -56,34 +55,36 @@ class NaoController:
         Parameter `~init_stiffness` (0): stiffness that the body gets when the robot is reached, if above 0.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
         """
+        self._node = node
         self._robot = robot
         self._joints = JointController(robot)
         self._init_stiffness = number_parameter(
-            f"~{START_STIFFNESS}", rospy.get_param(f"~{START_STIFFNESS}", 0.0), limit("share")
+            f"~{START_STIFFNESS}", self._node.param(f"~{START_STIFFNESS}", 0.0), limit("share")
         )
         self._crowds = [
             self._serve("joint_trajectory", JointTrajectoryAction, self._trajectory_joints, self._trajectory, True),
             self._serve("joint_stiffness_trajectory", JointTrajectoryAction, self._trajectory_joints, self._stiffness),
             self._serve("joint_angles_action", JointAnglesWithSpeedAction, self._angles_joints, self._angles),
         ]
-        self._life = rospy.Publisher("get_life_state", String, queue_size=1, latch=True)
-        offer("body_stiffness/enable", Empty, lambda _: self._joints.set_body_stiffness(1.0))
-        offer("body_stiffness/disable", Empty, lambda _: self._joints.set_body_stiffness(0.0))
-        offer("wakeup", Empty, lambda _: self._joints.wake_up())
-        offer("rest", Empty, lambda _: self._joints.rest())
-        offer("life/enable", Empty, lambda _: self._set_life(True))
-        offer("life/disable", Empty, lambda _: self._set_life(False))
-        rospy.Service("life/get_state", Trigger, self._on_life_state)
+        self._life = self._node.publisher("get_life_state", String, queue_size=1, latch=True)
+        self._node.offer("body_stiffness/enable", Empty, lambda _: self._joints.set_body_stiffness(1.0))
+        self._node.offer("body_stiffness/disable", Empty, lambda _: self._joints.set_body_stiffness(0.0))
+        self._node.offer("wakeup", Empty, lambda _: self._joints.wake_up())
+        self._node.offer("rest", Empty, lambda _: self._joints.rest())
+        self._node.offer("life/enable", Empty, lambda _: self._set_life(True))
+        self._node.offer("life/disable", Empty, lambda _: self._set_life(False))
+        self._node.service("life/get_state", Trigger, self._on_life_state)
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
-        rospy.Subscriber("joint_angles", JointAnglesWithSpeed, self._on_angles, queue_size=10)
-        rospy.Subscriber("joint_stiffness", JointState, self._on_stiffness, queue_size=10)
+        self._node.subscriber("joint_angles", JointAnglesWithSpeed, self._on_angles, queue_size=10)
+        self._node.subscriber("joint_stiffness", JointState, self._on_stiffness, queue_size=10)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
@@ -108,7 +109,7 @@ class NaoController:
         with_feedback: bool = False,
     ) -> GoalCrowd:
         crowd = GoalCrowd(claims, execute, with_feedback, self._robot)
-        ActionServer(name, action, crowd.on_goal, crowd.on_cancel, auto_start=False).start()
+        self._node.action(name, action, crowd)
         return crowd
 
     def _trajectory_joints(self, goal: Any) -> frozenset[str]:

@@ -22,6 +22,7 @@ from ...base.interrupt import Interrupt
 from ...base.limits import limit
 from ...nao.joint_names import JointNames
 from ...ros.health import Level, Report
+from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.pacer import Pacer
@@ -64,32 +65,34 @@ class NaoJointStates:
         upwards; put before all frames).
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Begin; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
+        self._node = node
         self._robot = robot
         self._names = JointNames(robot)
-        rate = rospy.get_param("~sensor_rate", rospy.get_param("~torso_odom_rate", DEFAULT_RATE))
+        rate = self._node.param("~sensor_rate", self._node.param("~torso_odom_rate", DEFAULT_RATE))
         self._period = 1.0 / number_parameter("~sensor_rate", rate, limit("reading rate"))
         prefix = tf_prefix()
-        self._base = prefix + rospy.get_param("~base_frame_id", "base_link").lstrip("/")
-        self._footprint = prefix + rospy.get_param("~footprint_frame_id", "base_footprint").lstrip("/")
-        self._odom = prefix + rospy.get_param("~odom_frame_id", "odom").lstrip("/")
-        self._use_sensors = bool(rospy.get_param("~use_joint_sensors", True))
-        self._use_odometry = bool(rospy.get_param("~use_odometry", True))
-        self._joint_states = rospy.Publisher("joint_states", JointState, queue_size=10)
-        self._imu = rospy.Publisher("imu", Imu, queue_size=10)
-        self._stiffness = rospy.Publisher("~joint_stiffness", JointState, queue_size=10)
-        self._odometry = rospy.Publisher("odom", Odometry, queue_size=10) if self._use_odometry else None
+        self._base = prefix + self._node.param("~base_frame_id", "base_link").lstrip("/")
+        self._footprint = prefix + self._node.param("~footprint_frame_id", "base_footprint").lstrip("/")
+        self._odom = prefix + self._node.param("~odom_frame_id", "odom").lstrip("/")
+        self._use_sensors = bool(self._node.param("~use_joint_sensors", True))
+        self._use_odometry = bool(self._node.param("~use_odometry", True))
+        self._joint_states = self._node.publisher("joint_states", JointState, queue_size=10)
+        self._imu = self._node.publisher("imu", Imu, queue_size=10)
+        self._stiffness = self._node.publisher("~joint_stiffness", JointState, queue_size=10)
+        self._odometry = self._node.publisher("odom", Odometry, queue_size=10) if self._use_odometry else None
         self._offset = OdometryOffset()
         if self._use_odometry:
-            offer_odometry_services(self._offset)
+            offer_odometry_services(node, self._offset)
         self._frames = TransformBroadcaster()
         self._interrupt = Interrupt()
         self._problem = "nothing was read yet"

@@ -10,21 +10,22 @@ from nao_library_msgs.srv import SetTransform
 from ...base.errors import BadGoal
 from ...base.field_checks import require_within
 from ...base.places import Place, yaw_of_quaternion
-from ..base.services import offer
+from ...ros.node_interface import NodeInterface
 from .odometry_offset import OdometryOffset
 from .planar_frames import PLACE
 
 
-def offer_odometry_services(offset: OdometryOffset) -> None:
+def offer_odometry_services(node: NodeInterface, offset: OdometryOffset) -> None:
     """Offer `pause_odometry`, `resume_odometry`, `odometry_offset` and `set_odometry_pose`.
 
     Args:
+        node: That offers them.
         offset: What they change.
     """
-    offer("pause_odometry", Empty, lambda _: offset.pause())
-    offer("resume_odometry", Empty, lambda _: offset.resume())
-    offer("odometry_offset", SetTransform, lambda request: offset.move_by(read_transform(request.offset)))
-    offer("set_odometry_pose", SetTransform, lambda request: offset.set(read_transform(request.offset)))
+    node.offer("pause_odometry", Empty, lambda _: offset.pause())
+    node.offer("resume_odometry", Empty, lambda _: offset.resume())
+    node.offer("odometry_offset", SetTransform, lambda request: offset.move_by(read_transform(request.offset)))
+    node.offer("set_odometry_pose", SetTransform, lambda request: offset.set(read_transform(request.offset)))
 
 
 def read_transform(transform: Transform) -> Place:

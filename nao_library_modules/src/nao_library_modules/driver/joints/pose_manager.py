@@ -24,9 +24,9 @@ from ...base.interrupt import Interrupt
 from ...nao.joint_names import MOTION
 from ...nao.pose_tables import Pose, UnknownPose, built_in, library, pose_table
 from ...robot.robot_task import run_task
-from ...ros.action_server import ActionServer
 from ...ros.goal_crowd import GoalCrowd, Outcome
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from .joint_controller import FRACTION, QUICK_LIMIT, STIFFEN_TIME
 from .trajectory_client import TrajectoryClient
 
@@ -47,22 +47,24 @@ class PoseManager:
         nobody knows. `~xap`: path, or list of paths, of pose libraries of Choregraphe.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
         """
+        self._node = node
         self._robot = robot
         self._poses = self._read_poses()
         self._trajectory = TrajectoryClient()
-        self._stop_walk = rospy.ServiceProxy(STOP_WALK, Empty)
+        self._stop_walk = self._node.caller(STOP_WALK, Empty)
         self._crowds = {
             "body_pose": GoalCrowd(lambda _: BODY, self._take_pose, robot=robot),
             "body_pose_naoqi": GoalCrowd(lambda _: BODY, self._take_posture, robot=robot),
         }
         for (name, crowd), action in zip(self._crowds.items(), (BodyPoseAction, BodyPoseWithSpeedAction)):
-            ActionServer(name, action, crowd.on_goal, crowd.on_cancel, auto_start=False).start()
+            self._node.action(name, action, crowd)
         robot.connection.add_listener(self._connection_changed)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
@@ -90,15 +92,14 @@ class PoseManager:
             raise UnknownPose(name, self._poses)
         return self._poses[name]
 
-    @staticmethod
-    def _read_poses() -> dict[str, Pose]:
+    def _read_poses(self) -> dict[str, Pose]:
         """All poses; a table that cannot be read is left out, and said to be."""
         poses = built_in()
-        paths = rospy.get_param("~xap", [])
+        paths = self._node.param("~xap", [])
         for path in [paths] if isinstance(paths, str) else list(paths):
             if path:
                 _add(poses, lambda path=path: library(path))
-        _add(poses, lambda: pose_table(rospy.get_param("~poses", {})))
+        _add(poses, lambda: pose_table(self._node.param("~poses", {})))
         return poses
 
     def _end_walk(self) -> None:

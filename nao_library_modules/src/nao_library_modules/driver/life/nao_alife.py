@@ -12,8 +12,8 @@ from std_srvs.srv import Empty, SetBool, SetBoolResponse, Trigger, TriggerRespon
 from naoqi.errors import NaoError
 
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ..base.node import publish
-from ..base.services import offer
 from .autonomous_life import ABILITIES, STATES, Ability, AutonomousLife
 
 
@@ -28,19 +28,21 @@ class NaoAlife:
         Publishes `~state` (std_msgs/String, latched) at every change.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
         """
-        self._state = rospy.Publisher("~state", String, queue_size=1, latch=True)
+        self._node = node
+        self._state = self._node.publisher("~state", String, queue_size=1, latch=True)
         self._life = AutonomousLife(robot, lambda state: publish(self._state, String(data=state)))
         for state in STATES:
-            offer(f"~{state}", Empty, lambda _, state=state: self._life.set_state(state))
+            self._node.offer(f"~{state}", Empty, lambda _, state=state: self._life.set_state(state))
         for ability in ABILITIES:
-            rospy.Service(f"{ability.name}/set_enabled", SetBool, lambda r, a=ability: self._switch(a, r.data))
-            rospy.Service(f"{ability.name}/is_enabled", Trigger, lambda _, a=ability: self._ask(a))
+            self._node.service(f"{ability.name}/set_enabled", SetBool, lambda r, a=ability: self._switch(a, r.data))
+            self._node.service(f"{ability.name}/is_enabled", Trigger, lambda _, a=ability: self._ask(a))
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""

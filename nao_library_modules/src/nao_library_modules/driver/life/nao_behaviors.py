@@ -10,10 +10,9 @@ from nao_library_msgs.srv import GetInstalledBehaviors, GetInstalledBehaviorsRes
 
 from ...base.errors import RobotLost
 from ...base.interrupt import Interrupt
-from ...ros.action_server import ActionServer
 from ...ros.goal_crowd import GoalCrowd, Outcome
 from ...ros.health import Report
-from ..base.services import offer
+from ...ros.node_interface import NodeInterface
 from .behaviors import Behaviors
 
 ROBOT = frozenset({"the robot"})
@@ -30,19 +29,21 @@ class NaoBehaviors:
         behaviour.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
         """
+        self._node = node
         self._robot = robot
         self._behaviors = Behaviors(robot)
         self._crowd = GoalCrowd(lambda _: ROBOT, self._run, robot=robot)
         name = "run_behavior"
-        ActionServer(name, RunBehaviorAction, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
+        self._node.action(name, RunBehaviorAction, self._crowd)
         robot.connection.add_listener(self._connection_changed)
-        offer("get_installed_behaviors", GetInstalledBehaviors, self._installed)
+        self._node.offer("get_installed_behaviors", GetInstalledBehaviors, self._installed)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""

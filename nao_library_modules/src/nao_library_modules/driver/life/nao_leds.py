@@ -16,9 +16,9 @@ from naoqi.errors import NaoError
 from ...base.errors import BadGoal, Preempted, RobotLost
 from ...base.field_checks import require_zero_or
 from ...base.interrupt import Interrupt
-from ...ros.action_server import ActionServer
 from ...ros.goal_crowd import GoalCrowd, Outcome
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from .blinking import DURATION, EYES, Blinks, Colour, blink, fade
 
@@ -36,20 +36,22 @@ class NaoLeds:
         so it never succeeds. `still_blinking` in its result tells that a newer one has come.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
         """
+        self._node = node
         self._robot = robot
         self._clock = RosClock()
         self._chance = random.Random()
         self._interrupt = Interrupt()
         self._crowd = GoalCrowd(lambda _: frozenset({EYES}), self._blink, with_feedback=True, robot=robot)
-        ActionServer("blink", BlinkAction, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
+        self._node.action("blink", BlinkAction, self._crowd)
         robot.connection.add_listener(self._connection_changed)
-        rospy.Subscriber("fade_rgb", FadeRGB, self._fade, queue_size=QUEUE)
+        self._node.subscriber("fade_rgb", FadeRGB, self._fade, queue_size=QUEUE)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict
+from functools import partial
 from typing import Any
 
 import rospy
@@ -36,6 +37,7 @@ from ...base.field_checks import number_parameter
 from ...base.limits import limit
 from ...base.suggestion import did_you_mean
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.ros_edge import node_file
 from ..base.node import publish
@@ -72,29 +74,31 @@ class NaoMemory:
         rate: HZ, type: TYPE}), `~max_topics` (1000).
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
-        largest = rospy.get_param("~max_topics", MOST_TOPICS)
+        self._node = node
+        largest = self._node.param("~max_topics", MOST_TOPICS)
         largest = int(number_parameter("~max_topics", largest, limit("topics")))
-        rules = read_rules(rospy.get_param("~keys", []), "~keys")
+        rules = read_rules(self._node.param("~keys", []), "~keys")
         self._robot = robot
         self._memory = MemoryAccess(robot)
-        self._watch = MemoryWatch(robot, RosClock(), MemoryTopic, largest)
-        self._kept = node_file()
+        self._watch = MemoryWatch(robot, RosClock(), partial(MemoryTopic, node), largest)
+        self._kept = node_file(self._node.name)
         kept = self._kept.load()
         self._watch.watch(rules if kept is None else [Rule(**told) for told in kept])
-        _serve("~watch", WatchMemory, WatchMemoryResponse, self._on_watch)
-        _serve("~unwatch", UnwatchMemory, UnwatchMemoryResponse, self._on_unwatch)
-        _serve("~get", GetMemory, GetMemoryResponse, self._on_get)
-        _serve("~set", SetMemory, SetMemoryResponse, self._on_set)
-        _serve("~list", ListMemory, ListMemoryResponse, self._on_list)
+        self._serve("~watch", WatchMemory, WatchMemoryResponse, self._on_watch)
+        self._serve("~unwatch", UnwatchMemory, UnwatchMemoryResponse, self._on_unwatch)
+        self._serve("~get", GetMemory, GetMemoryResponse, self._on_get)
+        self._serve("~set", SetMemory, SetMemoryResponse, self._on_set)
+        self._serve("~list", ListMemory, ListMemoryResponse, self._on_list)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
@@ -111,7 +115,7 @@ class NaoMemory:
         self._watch.watch([Rule(request.pattern, request.rate, request.type)])
         self._keep()
         found = self._watch.watched(request.pattern)
-        topics = [_resolved(topic) for topic in found.values()]
+        topics = [self._resolved(topic) for topic in found.values()]
         return WatchMemoryResponse(True, self._missing(request.pattern, topics), list(found), topics)
 
     def _missing(self, pattern: str, topics: list[str]) -> str:
@@ -151,24 +155,39 @@ class NaoMemory:
         known = self._memory.known()
         keys = matching(known, request.pattern)
         topics = self._watch.watched(request.pattern)
-        names = [_resolved(topics.get(key, "")) for key in keys]
+        names = [self._resolved(topics.get(key, "")) for key in keys]
         return ListMemoryResponse(True, "", keys, [known[key] for key in keys], names)
+
+    def _serve(self, name: str, kind: type, response: type, answer: Callable[[Any], Any]) -> None:
+        """Offer a service whose response tells what went wrong."""
+
+        def serve(request: Any) -> Any:
+            try:
+                return answer(request)
+            except NaoError as error:
+                return response(success=False, message=str(error))
+
+        self._node.service(name, kind, serve)
+
+    def _resolved(self, topic: str) -> str:
+        return self._node.resolve(f"~{topic}") if topic else ""
 
 
 class MemoryTopic(TopicDemand):
     """The topic of a key. Who begins to listen after others gets the last message first."""
 
-    def __init__(self, name: str, kind: str, tell: Callable[[bool], None]) -> None:
+    def __init__(self, node: NodeInterface, name: str, kind: str, tell: Callable[[bool], None]) -> None:
         """Open the topic.
 
         Args:
+            node: That it is one of.
             name: Of the topic, under that of the node.
             kind: Kind of message, see memory_values.
             tell: Gets whether anybody listens.
         """
         self._kind = MESSAGES[kind]
         self._last: Any = None
-        self._topic = rospy.Publisher(f"~{name}", self._kind, queue_size=QUEUE)
+        self._topic = rospy.Publisher(node.resolve(f"~{name}"), self._kind, queue_size=QUEUE)
         super().__init__(self._topic, tell)
 
     def publish(self, value: Any) -> None:
@@ -188,19 +207,3 @@ class MemoryTopic(TopicDemand):
     def close(self) -> None:
         """Close the topic."""
         self._topic.unregister()
-
-
-def _serve(name: str, kind: type, response: type, answer: Callable[[Any], Any]) -> None:
-    """Offer a service whose response tells what went wrong."""
-
-    def serve(request: Any) -> Any:
-        try:
-            return answer(request)
-        except NaoError as error:
-            return response(success=False, message=str(error))
-
-    rospy.Service(name, kind, serve)
-
-
-def _resolved(topic: str) -> str:
-    return rospy.resolve_name(f"~{topic}") if topic else ""

@@ -16,6 +16,7 @@ from ...base.places import Place
 from ...nao.joint_names import MOTION
 from ...owners.line import SERVICE
 from ...robot.robot_task import run_task
+from ...ros.node_interface import NodeInterface
 from ..joints.joint_controller import QUICK_LIMIT
 from ..joints.joint_sensors import MEMORY
 
@@ -46,24 +47,26 @@ class WalkTopics:
         Calls `stop_walk_srv`, `inhibit_walk`, `uninhibit_walk` (std_srvs/Empty), where they are offered.
     """
 
-    def __init__(self, robot: Any, use_velocities: bool) -> None:
+    def __init__(self, robot: Any, node: NodeInterface, use_velocities: bool) -> None:
         """Advertise the topics.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
             use_velocities: Whether commands go to `cmd_vel`.
         """
         self._robot = robot
+        self._node = node
         self._heard = _Heard()
         self._topic = "cmd_vel" if use_velocities else "cmd_pose"
         kind = Twist if use_velocities else Pose2D
-        self._commands = rospy.Publisher(
+        self._commands = node.publisher(
             self._topic, kind, subscriber_listener=self._heard, tcp_nodelay=True, queue_size=1
         )
-        self._stop = rospy.ServiceProxy(STOP, Empty)
-        self._inhibit = rospy.ServiceProxy(INHIBIT, Empty)
+        self._stop = node.caller(STOP, Empty)
+        self._inhibit = node.caller(INHIBIT, Empty)
         self._failed_before: list = []
-        self._let_go = rospy.ServiceProxy(LET_GO, Empty)
+        self._let_go = node.caller(LET_GO, Empty)
 
     def prepare(self, interrupt: Interrupt) -> None:
         """Get ready to walk: the robot takes the pose for it, if it does not walk already.
@@ -74,7 +77,7 @@ class WalkTopics:
         """
         self._heard.event.wait(LISTENER_LIMIT)
         if not self._commands.get_num_connections():
-            raise NaoError(f"nobody listens to {rospy.resolve_name(self._topic)}: does nao_walker run?")
+            raise NaoError(f"nobody listens to {self._node.resolve(self._topic)}: does nao_walker run?")
         self._failed_before = self._last_failure()
         if not self.walking():
             run_task(self._robot.proxy(MOTION).call_async("moveInit"), interrupt, self._stop_robot)

@@ -23,9 +23,9 @@ from naoqi.errors import NaoError
 from ...base.errors import RobotLost
 from ...base.interrupt import Interrupt
 from ...base.places import Place
-from ...ros.action_server import ActionServer
 from ...ros.goal_crowd import GoalCrowd, Outcome, Replaced
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..joints.planar_frames import PlanarFrames, pose_stamped, read_path, read_place
@@ -63,35 +63,37 @@ class NaoPathFollower:
         those of `Settings`.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
+        self._node = node
         self._robot = robot
-        self._settings = Settings.read(rospy.get_param)
+        self._settings = Settings.read(node.param)
         prefix = tf_prefix()
-        self._base = prefix + rospy.get_param("~base_frame_id", "base_footprint").lstrip("/")
-        self._odom = prefix + rospy.get_param("~odom_frame_id", "odom").lstrip("/")
+        self._base = prefix + self._node.param("~base_frame_id", "base_footprint").lstrip("/")
+        self._odom = prefix + self._node.param("~odom_frame_id", "odom").lstrip("/")
         self._frames = PlanarFrames()
-        self._legs = WalkTopics(robot, self._settings.use_vel_ctrl)
+        self._legs = WalkTopics(robot, node, self._settings.use_vel_ctrl)
         self._clock = RosClock()
         self._touching = True
-        self._aims = rospy.Publisher("~target_pose", PoseStamped, queue_size=1, latch=True)
-        self._paths = rospy.Publisher("~path", Path, queue_size=1, latch=True)
+        self._aims = self._node.publisher("~target_pose", PoseStamped, queue_size=1, latch=True)
+        self._paths = self._node.publisher("~path", Path, queue_size=1, latch=True)
         self._crowd = GoalCrowd(self._claims, self._execute, with_feedback=True, robot=robot)
         for name, action in (("walk_target", MoveBaseAction), ("walk_path", FollowPathAction)):
-            ActionServer(name, action, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
-        self._target_goals = rospy.Publisher("walk_target/goal", MoveBaseActionGoal, queue_size=1)
-        self._path_goals = rospy.Publisher("walk_path/goal", FollowPathActionGoal, queue_size=1)
+            self._node.action(name, action, self._crowd)
+        self._target_goals = self._node.publisher("walk_target/goal", MoveBaseActionGoal, queue_size=1)
+        self._path_goals = self._node.publisher("walk_path/goal", FollowPathActionGoal, queue_size=1)
         robot.connection.add_listener(self._connection_changed)
-        rospy.Subscriber("walk_target_simple/goal", PoseStamped, self._on_target, queue_size=1)
-        rospy.Subscriber("walk_path_simple/goal", Path, self._on_path, queue_size=1)
-        rospy.Subscriber("foot_contact", Bool, self._on_foot_contact, queue_size=1)
+        self._node.subscriber("walk_target_simple/goal", PoseStamped, self._on_target, queue_size=1)
+        self._node.subscriber("walk_path_simple/goal", Path, self._on_path, queue_size=1)
+        self._node.subscriber("foot_contact", Bool, self._on_foot_contact, queue_size=1)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""

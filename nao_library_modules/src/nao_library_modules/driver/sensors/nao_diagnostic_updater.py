@@ -20,9 +20,9 @@ from ...base.interrupt import Interrupt
 from ...base.limits import Limit, limit
 from ...nao.joint_names import JointNames
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ..base.node import publish
 from ..base.robot_facts import KEYS, facts_of, info_fields
-from ..base.services import offer
 from .body_reports import Thresholds, body_reports, keys_of, network_reports, part_of
 
 log = logging.getLogger(__name__)
@@ -59,34 +59,36 @@ class NaoDiagnosticUpdater:
         `~battery_error_threshold` (10): percent.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Begin; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
+        self._node = node
         self._robot = robot
-        self._period = 1.0 / _number("~update_rate", DEFAULT_RATE, RATE)
+        self._period = 1.0 / _number(node, "~update_rate", DEFAULT_RATE, RATE)
         defaults = Thresholds()
         self._limits = Thresholds(
-            **{field: _number(f"~{name}", getattr(defaults, field)) for name, field in THRESHOLDS.items()}
+            **{field: _number(node, f"~{name}", getattr(defaults, field)) for name, field in THRESHOLDS.items()}
         )
         self._names = JointNames(robot)
-        namespace = rospy.get_namespace().strip("/")
+        namespace = node.namespace.strip("/")
         self._prefix = f"/{namespace}/" if namespace else ""
         self._hardware = robot.address
         self._last: dict[str, Report] = {}
         self._told_facts: dict[str, str] = {}
         self._interrupt = Interrupt()
-        self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
-        self._info = rospy.Publisher("info", StringStamped, queue_size=1, latch=True)
-        self._connection = rospy.Publisher("connection", ConnectionState, queue_size=10, latch=True)
+        self._diagnostics = self._node.publisher("/diagnostics", DiagnosticArray, queue_size=10)
+        self._info = self._node.publisher("info", StringStamped, queue_size=1, latch=True)
+        self._connection = self._node.publisher("connection", ConnectionState, queue_size=10, latch=True)
         robot.connection.add_listener(self._on_state)
         self._on_state(robot.connection.state)
-        offer("get_robot_config", GetRobotInfo, self._robot_config)
+        self._node.offer("get_robot_config", GetRobotInfo, self._robot_config)
         self._thread = threading.Thread(target=self._run, name="diagnosis", daemon=True)
         self._thread.start()
 
@@ -175,5 +177,5 @@ class NaoDiagnosticUpdater:
             publish(self._diagnostics, message)
 
 
-def _number(name: str, default: float, kind: Limit = SETTING) -> float:
-    return number_parameter(name, rospy.get_param(name, default), kind)
+def _number(node: NodeInterface, name: str, default: float, kind: Limit = SETTING) -> float:
+    return number_parameter(name, node.param(name, default), kind)

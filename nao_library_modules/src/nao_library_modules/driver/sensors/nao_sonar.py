@@ -11,6 +11,7 @@ from sensor_msgs.msg import Range
 
 from ...nao.body_devices import FARTHEST, NEAREST, SONARS
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.node import name_for_robot, publish, rate_parameter
@@ -31,23 +32,24 @@ class NaoSonar:
         Parameters `~sonar_rate` (10 Hz), `tf_prefix` (searched upwards; put before the frames).
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Begin; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
+        self._node = node
         self._prefix = tf_prefix()
         self._lock = threading.Lock()  # guards the set
         self._wanted: set[str] = set()
-        self._sonars = Sonars(
-            robot, name_for_robot(), rate_parameter("~sonar_rate", DEFAULT_RATE), RosClock(), self._publish
-        )
+        rate = rate_parameter(node, "~sonar_rate", DEFAULT_RATE)
+        self._sonars = Sonars(robot, name_for_robot(node.name), rate, RosClock(), self._publish)
         self._topics = {
-            name: (side, rospy.Publisher(name, Range, queue_size=QUEUE))
+            name: (side, self._node.publisher(name, Range, queue_size=QUEUE))
             for side in SONARS
             for name in (f"nao_robot/sonar/{side}", f"nao_robot/sonar/{side}/sonar")
         }

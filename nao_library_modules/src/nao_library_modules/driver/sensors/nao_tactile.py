@@ -12,6 +12,7 @@ from std_msgs.msg import Bool
 from nao_library_msgs.msg import Bumper, ChestButton, Fsr, HandTouch, HeadTouch, TactileTouch
 
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.node import publish, rate_parameter
@@ -39,29 +40,31 @@ class NaoTactile:
         Parameters `~fsr_rate` (20 Hz), `tf_prefix` (searched upwards; put before the frames).
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Begin; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
+        self._node = node
         self._robot = robot
-        self._head = rospy.Publisher("tactile_touch", TactileTouch, queue_size=QUEUE)
-        self._head_too = rospy.Publisher("head_touch", HeadTouch, queue_size=QUEUE)
-        self._hand = rospy.Publisher("hand_touch", HandTouch, queue_size=QUEUE)
-        self._bumper = rospy.Publisher("bumper", Bumper, queue_size=QUEUE)
-        self._chest = rospy.Publisher("chest_button", ChestButton, queue_size=QUEUE)
-        self._contact = rospy.Publisher("foot_contact", Bool, queue_size=1, latch=True)
+        self._head = self._node.publisher("tactile_touch", TactileTouch, queue_size=QUEUE)
+        self._head_too = self._node.publisher("head_touch", HeadTouch, queue_size=QUEUE)
+        self._hand = self._node.publisher("hand_touch", HandTouch, queue_size=QUEUE)
+        self._bumper = self._node.publisher("bumper", Bumper, queue_size=QUEUE)
+        self._chest = self._node.publisher("chest_button", ChestButton, queue_size=QUEUE)
+        self._contact = self._node.publisher("foot_contact", Bool, queue_size=1, latch=True)
         self._prefix = tf_prefix()
         self._lock = threading.Lock()  # guards what both feet's listeners come to
         self._listeners = dict.fromkeys(SIDES, False)
         self._pressure = Polling(
-            robot, "foot pressure", rate_parameter("~fsr_rate", DEFAULT_RATE), RosClock(), self._read
+            robot, "foot pressure", rate_parameter(node, "~fsr_rate", DEFAULT_RATE), RosClock(), self._read
         )
-        self._feet = {side: rospy.Publisher(f"nao_robot/fsr/{side}", Fsr, queue_size=QUEUE) for side in SIDES}
+        self._feet = {side: self._node.publisher(f"nao_robot/fsr/{side}", Fsr, queue_size=QUEUE) for side in SIDES}
         self._demands = [
             TopicDemand(topic, lambda wanted, side=side: self._want(side, wanted)) for side, topic in self._feet.items()
         ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import rospy
@@ -19,9 +20,9 @@ from naoqi.errors import BadArguments, NaoError, UnknownMethod
 from ...nao.camera_facts import CAMERA_NAMES, TOP
 from ...robot.image_clock import ImageClock
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ..base.node import name_for_robot, publish
-from ..base.services import offer
 from ..camera.image_messages import header_of
 from .vision_detection import FACES, LANDMARKS, MOVEMENT, Detection, Kind
 from .vision_messages import to_face, to_landmarks, to_movement
@@ -52,13 +53,15 @@ class NaoVisionServices:
         the stamp that of its picture.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
         """
-        subscriber = name_for_robot()
+        self._node = node
+        subscriber = name_for_robot(self._node.name)
         self._prefix = tf_prefix()
         self._sensitivity: float | None = None
         self._lock = threading.Lock()  # events come in several threads of libqi
@@ -73,12 +76,16 @@ class NaoVisionServices:
         self._detections = {"face": self._faces, "motion": self._movement, "landmark": self._landmarks}
         for name, detection in self._detections.items():
             folder = f"nao_vision/{name}_detection"
-            offer(f"{folder}/enable", Empty, lambda _, detection=detection: detection.enable())
-            offer(f"{folder}/disable", Empty, lambda _, detection=detection: detection.disable())
+            node.offer(f"{folder}/enable", Empty, lambda _, detection=detection: detection.enable())
+            node.offer(f"{folder}/disable", Empty, lambda _, detection=detection: detection.disable())
         folder = "nao_vision/face_detection"
-        offer(f"{folder}/learn_face", LearnFace, lambda request: self._ask_person("learnFace", request, LEARN_LIMIT))
-        offer(f"{folder}/forget_person", LearnFace, lambda request: self._ask_person("forgetPerson", request))
-        offer("nao_vision/movement_detection_sensitivity", VisionMotionSensitivity, self._set_sensitivity)
+        learn, forget = (
+            partial(self._ask_person, "learnFace", limit=LEARN_LIMIT),
+            partial(self._ask_person, "forgetPerson"),
+        )
+        node.offer(f"{folder}/learn_face", LearnFace, learn)
+        node.offer(f"{folder}/forget_person", LearnFace, forget)
+        node.offer("nao_vision/movement_detection_sensitivity", VisionMotionSensitivity, self._set_sensitivity)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
@@ -89,9 +96,8 @@ class NaoVisionServices:
         for detection in self._detections.values():
             detection.close()
 
-    @staticmethod
-    def _topic(name: str, kind: type) -> rospy.Publisher:
-        return rospy.Publisher(f"nao_vision/{name}", kind, queue_size=QUEUE)
+    def _topic(self, name: str, kind: type) -> rospy.Publisher:
+        return self._node.publisher(f"nao_vision/{name}", kind, queue_size=QUEUE)
 
     # --- services -------------------------------------------------------------------------------------------------
 

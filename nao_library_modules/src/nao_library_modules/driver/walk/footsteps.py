@@ -22,9 +22,9 @@ from ...base.field_checks import number_parameter, require_length, require_withi
 from ...base.interrupt import Interrupt
 from ...base.limits import limit
 from ...base.places import Place
-from ...ros.action_server import ActionServer
 from ...ros.goal_crowd import GoalCrowd, Outcome
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ..joints.joint_controller import JointController
 from .footsteps_clipping import LEFT, RIGHT
@@ -51,28 +51,30 @@ class NaoFootsteps:
         Parameter `~init_stiffness` (0): stiffness that the body gets when the robot is reached, if above 0.
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
+        self._node = node
         self._robot = robot
         self._init_stiffness = number_parameter(
-            f"~{START_STIFFNESS}", rospy.get_param(f"~{START_STIFFNESS}", 0.0), limit("share")
+            f"~{START_STIFFNESS}", self._node.param(f"~{START_STIFFNESS}", 0.0), limit("share")
         )
         self._walk = FootstepWalk(robot, RosClock())
         self._crowd = GoalCrowd(self._claims, self._execute, with_feedback=True, robot=robot)
         name = "footsteps_execution"
-        ActionServer(name, ExecFootstepsAction, self._crowd.on_goal, self._crowd.on_cancel, auto_start=False).start()
+        self._node.action(name, ExecFootstepsAction, self._crowd)
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
-        rospy.Service("footstep_srv", StepTargetService, self._on_step_service)
-        rospy.Service("clip_footstep_srv", ClipFootstep, self._on_clip)
-        rospy.Subscriber("footstep", StepTarget, self._on_step, queue_size=50)
+        self._node.service("footstep_srv", StepTargetService, self._on_step_service)
+        self._node.service("clip_footstep_srv", ClipFootstep, self._on_clip)
+        self._node.subscriber("footstep", StepTarget, self._on_step, queue_size=50)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""

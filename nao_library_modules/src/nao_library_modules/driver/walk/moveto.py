@@ -13,6 +13,7 @@ from naoqi.errors import NaoError
 
 from ...base.places import Place
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ..joints.planar_frames import PlanarFrames, read_place
 from .moveto_walk import Goal, MoveToWalk
@@ -29,19 +30,21 @@ class NaoqiMoveTo:
         Parameters `~base_frame_id` (base_footprint), `~odom_frame_id` (odom), `tf_prefix` (searched upwards).
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Listen; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
         """
+        self._node = node
         prefix = tf_prefix()
-        self._base = prefix + rospy.get_param("~base_frame_id", "base_footprint").lstrip("/")
-        self._odom = prefix + rospy.get_param("~odom_frame_id", "odom").lstrip("/")
+        self._base = prefix + self._node.param("~base_frame_id", "base_footprint").lstrip("/")
+        self._odom = prefix + self._node.param("~odom_frame_id", "odom").lstrip("/")
         self._frames = PlanarFrames()
         self._walk = MoveToWalk(robot)
-        rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_goal, queue_size=1)
-        rospy.Subscriber("move_base_simple/cancel", Empty, lambda _: self._walk.cancel(), queue_size=1)
+        self._node.subscriber("move_base_simple/goal", PoseStamped, self._on_goal, queue_size=1)
+        self._node.subscriber("move_base_simple/cancel", Empty, lambda _: self._walk.cancel(), queue_size=1)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""

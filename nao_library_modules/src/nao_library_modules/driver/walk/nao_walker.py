@@ -19,9 +19,9 @@ from ...base.field_checks import number_parameter
 from ...base.limits import limit
 from ...nao.joint_names import MOTION
 from ...ros.health import Report
+from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.ros_edge import node_file
-from ..base.services import offer
 from ..joints.joint_controller import QUICK_LIMIT, JointController
 from .gait_config import read_gait_config, read_share
 from .head_scan import HeadScan
@@ -63,38 +63,40 @@ class NaoWalker:
         the head on its way to a scan).
     """
 
-    def __init__(self, robot: Any) -> None:
+    def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Offer everything; the robot need not be there yet.
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
+            node: Its side to ROS.
 
         Raises:
             NaoError: If a parameter is wrong.
         """
+        self._node = node
         self._robot = robot
-        timeout = number_parameter("~cmd_vel_timeout", rospy.get_param("~cmd_vel_timeout", 0.5), limit("timeout"))
-        self._init_stiffness = read_share("~init_stiffness", rospy.get_param("~init_stiffness", 0.0))
-        frequency = read_share("~step_frequency", rospy.get_param("~step_frequency", 0.5))
+        timeout = number_parameter("~cmd_vel_timeout", self._node.param("~cmd_vel_timeout", 0.5), limit("timeout"))
+        self._init_stiffness = read_share("~init_stiffness", self._node.param("~init_stiffness", 0.0))
+        frequency = read_share("~step_frequency", self._node.param("~step_frequency", 0.5))
         gait = self._gait()
-        head_speed = number_parameter("~max_head_speed", rospy.get_param("~max_head_speed", 0.2), limit("fraction"))
-        self._kept = node_file()
+        head_speed = number_parameter("~max_head_speed", self._node.param("~max_head_speed", 0.2), limit("fraction"))
+        self._kept = node_file(self._node.name)
         self._inhibition = WalkInhibition(self._kept)
         self._journal = WalkJournal()
         self._walker = Walker(robot, RosClock(), timeout)
         self._walker.frequency = frequency
         self._walker.gait = gait
-        self._walker.needs_walk_pose = bool(rospy.get_param("~use_walk_pose", False))
+        self._walker.needs_walk_pose = bool(self._node.param("~use_walk_pose", False))
         self._scan = HeadScan(JointController(robot), head_speed)
-        self._speech = rospy.Publisher("speech", String, queue_size=10, latch=True)
+        self._speech = self._node.publisher("speech", String, queue_size=10, latch=True)
         self._online = False
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
         self._offer_services()
-        rospy.Subscriber("cmd_vel", Twist, self._on_velocity, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("cmd_pose", Pose2D, self._on_pose, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("cmd_step", StepTarget, self._on_step, queue_size=STEPS_IN_LINE)
-        rospy.Subscriber("start_scan", std_msgs.msg.Empty, self._on_scan, queue_size=1)
+        self._node.subscriber("cmd_vel", Twist, self._on_velocity, queue_size=1, tcp_nodelay=True)
+        self._node.subscriber("cmd_pose", Pose2D, self._on_pose, queue_size=1, tcp_nodelay=True)
+        self._node.subscriber("cmd_step", StepTarget, self._on_step, queue_size=STEPS_IN_LINE)
+        self._node.subscriber("start_scan", std_msgs.msg.Empty, self._on_scan, queue_size=1)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
@@ -171,7 +173,7 @@ class NaoWalker:
 
     def _offer_services(self) -> None:
         def serve(name: str, kind: type, action: Callable[[str, Any], None]) -> None:
-            offer(name, kind, lambda request: action(_caller(request), request))
+            self._node.offer(name, kind, lambda request: action(_caller(request), request))
 
         serve("cmd_vel_srv", CmdVelService, self._serve_velocity)
         serve("cmd_pose_srv", CmdPoseService, self._serve_pose)
@@ -214,7 +216,7 @@ class NaoWalker:
         rospy.loginfo("%s lets walking go: %s", caller, f"still inhibited ({count})" if count else "not inhibited")
 
     def _serve_walk_pose(self, *_: Any) -> None:
-        self._walker.needs_walk_pose = bool(rospy.get_param("~use_walk_pose", False))
+        self._walker.needs_walk_pose = bool(self._node.param("~use_walk_pose", False))
 
     def _serve_gait(self, *_: Any) -> None:
         self._walker.gait = self._gait()
@@ -224,11 +226,10 @@ class NaoWalker:
         arms = request.left_arm, request.right_arm
         self._robot.proxy(MOTION).call_async("setMoveArmsEnabled", *arms).result(timeout=QUICK_LIMIT)
 
-    @staticmethod
-    def _gait() -> list[list[Any]]:
-        if not rospy.get_param("~use_foot_gait_config", False):
+    def _gait(self) -> list[list[Any]]:
+        if not self._node.param("~use_foot_gait_config", False):
             return []
-        return read_gait_config("~foot_gait_config", rospy.get_param("~foot_gait_config", []))
+        return read_gait_config("~foot_gait_config", self._node.param("~foot_gait_config", []))
 
     # --- state ----------------------------------------------------------------------------------------------------
 
@@ -237,7 +238,7 @@ class NaoWalker:
         if self._robot.connection.state != "connected":
             return
         try:
-            protect = rospy.get_param("~enable_foot_contact_protection", None)
+            protect = self._node.param("~enable_foot_contact_protection", None)
             if protect is not None:
                 config = [[CONTACT_PROTECTION, bool(protect)]]
                 self._robot.proxy(MOTION).call_async("setMotionConfig", config).result(timeout=QUICK_LIMIT)

@@ -1,0 +1,154 @@
+"""The node nao_driver: all parts of the driver in one process, with one connection to the robot."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import rospy
+
+from naoqi.errors import NaoError
+
+from ..processes.closing import close_all
+from ..robot.robot import Robot
+from ..ros.diagnostics import DiagnosticsPublisher
+from ..ros.health import Level, Report, connection_report
+from ..ros.node import own_as_node, robot_address, start_node
+from ..ros.node_interface import NodeInterface
+from ..ros.node_place import NodePlace
+from .parts import ALL, PARTS, chosen, part_class
+
+log = logging.getLogger(__name__)
+
+NAME = "nao_driver"
+RETRY = 5.0
+"""s after which a part that could not be started is tried again."""
+
+
+class Part:
+    """One part of the driver: it is started, and tried again as long as that fails. The others go on meanwhile."""
+
+    def __init__(self, word: str, robot: Any) -> None:
+        """Start it, in a thread of its own.
+
+        Args:
+            word: What it is called in `PARTS`.
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+        """
+        self.name = PARTS[word][0]
+        self._told_as = rospy.resolve_name(self.name)[1:]
+        self.started = threading.Event()
+        self._word = word
+        self._robot = robot
+        self._ended = threading.Event()
+        self._problem = "it is being started"
+        self._attempts = 0
+        self._made: tuple[Any, NodeInterface] | None = None
+        self._thread = threading.Thread(target=self._start, name=f"start of {word}", daemon=True)
+        self._thread.start()
+
+    def reports(self) -> Mapping[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name; of a part that does not run, why."""
+        made = self._made
+        reports = {"part": self._report} if made is None else made[0].reports()
+        return {f"{self._told_as}: {name}": report for name, report in reports.items()}
+
+    def close(self) -> None:
+        """End it."""
+        self._ended.set()
+        self._thread.join()
+        if self._made is not None:
+            part, interface = self._made
+            close_all(part.close, interface.close)
+
+    def _report(self) -> Report:
+        level = Level.ERROR if self._attempts else Level.WARN
+        return Report(level, self._problem, {"attempts": str(self._attempts)})
+
+    def _start(self) -> None:
+        while not self._ended.is_set():
+            interface = NodeInterface(self.name)
+            try:
+                self._made = (part_class(self._word)(self._robot, interface), interface)
+            except Exception as error:
+                interface.close()
+                self._failed(error)
+                self._ended.wait(RETRY)
+            else:
+                if self._attempts:
+                    log.info("%s: started", self.name)
+                self.started.set()
+                return
+
+    def _failed(self, error: Exception) -> None:
+        problem = str(error) if isinstance(error, NaoError) else f"unexpected error: {error!r}"
+        if problem != self._problem:  # of several in a row only the first
+            log.error("%s is not there: %s", self.name, problem, exc_info=not isinstance(error, NaoError))
+        self._problem = problem
+        self._attempts += 1
+
+
+class Driver:
+    """All chosen parts beside each other."""
+
+    def __init__(self, robot: Any, words: Sequence[str]) -> None:
+        """Start them.
+
+        Args:
+            robot: Its proxies and connection, see `nao_library_modules.robot`.
+            words: What they are called in `PARTS`.
+        """
+        self._robot = robot
+        self.parts = [Part(word, robot) for word in words]
+
+    def reports(self) -> Mapping[str, Callable[[], Report]]:
+        """Reports for /diagnostics, by name."""
+        connection = lambda: connection_report(self._robot.address, self._robot.connection)  # noqa: E731
+        reports: dict[str, Callable[[], Report]] = {f"{rospy.get_name()[1:]}: robot": connection}
+        for part in self.parts:
+            reports.update(part.reports())
+        return reports
+
+    def close(self) -> None:
+        """End all parts, at the same time: each may take a moment until the robot stands, or is silent."""
+        ends = [threading.Thread(target=part.close, name=f"end of {part.name}") for part in self.parts]
+        for end in ends:
+            end.start()
+        for end in ends:
+            end.join()
+
+
+def run(description: str, argv: Sequence[str] | None = None) -> int:
+    """Start the node and keep it until it ends.
+
+    A launched node whose name another node takes comes back when that one has ended.
+
+    Args:
+        description: What `--help` says.
+        argv: Arguments, those of the process by default.
+
+    Returns:
+        Exit status.
+
+    ROS API:
+        Parameters `~pip`, `~pport`: the robot; `~parts` ("all"): words of `PARTS`. Publishes `/diagnostics`. Each part
+        has the topics, services, actions and parameters that it has as a node of its own, under the same names.
+    """
+    options = start_node(NAME, description, argv)
+    try:
+        ip, port = robot_address(options, rospy.get_param)
+        words = chosen(rospy.get_param("~parts", ALL))
+    except NaoError as error:
+        rospy.logfatal("%s", error)
+        return 1
+    robot = Robot(ip, port)
+    own_as_node(robot, watches=True)
+    driver = Driver(robot, words)
+    diagnostics = DiagnosticsPublisher(robot.address, driver.reports)
+    rospy.on_shutdown(lambda: close_all(driver.close, diagnostics.close))
+    place = NodePlace()
+    rospy.spin()
+    place.come_back()
+    return 0
