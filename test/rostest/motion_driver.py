@@ -52,7 +52,7 @@ class MotionDriver(unittest.TestCase):
             turn.angles, turn.times = [-1.0], [30.0]
             run = send(client, NaoMotionGoal([turn]))
             news.wait(lambda: goals, "a goal at the driver")
-            controller = ServerProxy(rosgraph.Master("").lookupNode("/own/nao_controller"))
+            controller = ServerProxy(rosgraph.Master("").lookupNode("/own/nao_driver"))
             os.kill(controller.getPid("")[2], signal.SIGKILL)
             run.wait(LIMIT)
             self.assertEqual(run.state, GoalStatus.ABORTED)

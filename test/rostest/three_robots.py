@@ -45,7 +45,7 @@ class ThreeRobots(unittest.TestCase):
         nodes = set(launched("--nodes", "robots:=3").split()) - {"/nao_sim"}
         stack = {node[len("/nao1") :] for node in nodes if node.startswith("/nao1/")}
         self.assertEqual(nodes, {f"/nao{number}{node}" for number in (1, 2, 3) for node in stack})
-        self.assertLessEqual({"/NaoLights", "/NaoMotion", "/nao_walker", "/robot_state_publisher"}, stack)
+        self.assertLessEqual({"/NaoLights", "/NaoMotion", "/nao_driver", "/robot_state_publisher"}, stack)
         parameters = yaml.safe_load(launched("--dump-params", "robots:=3", "nao_port:=4000"))
         for number in (1, 2, 3):
             ports = {v for n, v in parameters.items() if n.startswith(f"/nao{number}/") and n.endswith("/pport")}

@@ -21,6 +21,7 @@ from xmlrpc.client import ServerProxy
 import rosgraph
 import rospy
 
+from nao_library_modules.driver.parts import PARTS
 from nao_library_modules.owners.line import PEER, place
 from nao_library_modules.processes.own_stack import OwnStack
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
@@ -37,7 +38,8 @@ STEP = 0.8
 BEGUN = 0.05
 """m after which a robot walks."""
 LAUNCH = ("nao_library_tests", "killed_stack.launch")
-SIMULATOR = "/nao_sim"
+SIMULATOR, DRIVER = "/nao_sim", "/nao_driver"
+IN_DRIVER = {name for name, _ in PARTS.values()}
 
 
 class Robot:
@@ -87,12 +89,12 @@ class Robot:
 
 
 def pid_of(node):
-    """Process of a node, or of a process of the simulator by the module that it runs.
+    """Process of a node, of a part of the driver, or of a process of the simulator by the module that it runs.
 
     Raises:
         LookupError: There is none.
     """
-    name = SIMULATOR if "." in node else f"/{node}"
+    name = SIMULATOR if "." in node else DRIVER if node in IN_DRIVER else f"/{node}"
     pid = ServerProxy(rosgraph.Master("/kills").lookupNode(name)).getPid("/kills")[2]
     if name != SIMULATOR:
         return pid

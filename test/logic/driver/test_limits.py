@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
+from unittest.mock import MagicMock
 
 import pytest
 from boundary import variants
@@ -123,11 +123,11 @@ def test_a_parameter_that_is_changed_to_no_number_is_refused(monkeypatch):
 
     def server(description, callback, *_):
         kept["callback"] = callback
-        return SimpleNamespace()
+        return MagicMock()
 
     monkeypatch.setattr(reconfigure, "Server", server)
-    monkeypatch.setattr(reconfigure.rospy, "get_param", lambda name, default: default)
+    node = MagicMock(param=lambda name, default: default)
     field = reconfigure.Field("gain", 1.0, "", 0.0, 2.0)
-    reconfigure.serve([field], lambda before, after: after)
+    reconfigure.serve(node, [field], lambda before, after: after)
     with pytest.raises(reconfigure.rospy.ServiceException, match="gain is nan"):
         kept["callback"]({"gain": math.nan}, 0)

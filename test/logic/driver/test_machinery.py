@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from unittest.mock import MagicMock
 
 import pytest
 
@@ -177,6 +178,6 @@ def test_what_a_parameter_cannot_be_is_told_when_the_node_begins(monkeypatch):
         ("frequency", 22050, r"16000 \(one channel\) or 48000 \(four channels\)"),
     ):
         given = {f"~{name}": value}
-        monkeypatch.setattr(reconfigure.rospy, "get_param", lambda key, default, given=given: given.get(key, default))
+        node = MagicMock(param=lambda key, default, given=given: given.get(key, default))
         with pytest.raises(NaoError, match=f"~{name} is {value!r}: {allowed}"):
-            reconfigure.serve(FIELDS, lambda before, after: after)
+            reconfigure.serve(node, FIELDS, lambda before, after: after)

@@ -103,5 +103,5 @@ class DriverSpeech(unittest.TestCase):
             timeout=LIMIT,
         )
         self.assertEqual(second.returncode, 1)
-        self.assertIn("/nao_speech speaks for this robot already", second.stdout)
+        self.assertIn("/nao_driver speaks for this robot already", second.stdout)
         self.assertEqual(self.topic.get_num_connections(), 1)

@@ -50,6 +50,7 @@ class DiagnosticsPublisher:
         self._reports = reports if callable(reports) else lambda: reports
         self._updater = _PartsUpdater() if callable(reports) else Updater()
         self._updater.setHardwareID(hardware_id)
+        self._names: set[str] = set()
         self._update()
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name="diagnostics", daemon=True)
@@ -61,10 +62,11 @@ class DiagnosticsPublisher:
 
     def _update(self) -> None:
         reports = self._reports()
-        for name in {task.name for task in self._updater.tasks} - set(reports):
+        for name in self._names - set(reports):
             self._updater.removeByName(name)
-        for name in [name for name in reports if name not in {task.name for task in self._updater.tasks}]:
+        for name in [name for name in reports if name not in self._names]:
             self._updater.add(name, _task(lambda name=name: self._reports()[name]()))
+        self._names = set(reports)
 
     def _run(self) -> None:
         failed = False

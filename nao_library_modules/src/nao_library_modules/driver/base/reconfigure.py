@@ -97,7 +97,7 @@ def serve(
     told = f"~{part}/" if part else "~"
     for field in fields:
         name = f"{part}/{field.name}" if part.startswith("/") else f"{told}{field.name}"
-        _check(name, field, rospy.get_param(f"{owner}/{field.name}", field.default))
+        _check(name, field, node.param(name, field.default))
     names = [field.name for field in fields]
     last: dict[str, Any] = {}
 

@@ -1,0 +1,97 @@
+"""The driver in one process: which parts there are, and what becomes of one that cannot be started."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from nao_library_modules.driver import nao_driver
+from nao_library_modules.driver.nao_driver import Driver, Part
+from nao_library_modules.driver.parts import PARTS, chosen, part_class
+from nao_library_modules.ros.health import Level, Report
+from naoqi.errors import NaoError
+
+
+def test_parts_are_chosen_by_their_words_in_the_order_of_the_table():
+    assert chosen("all") == list(PARTS) == chosen(["all"])
+    assert chosen("walker joint_states") == ["joint_states", "walker"]
+    for words, text in (("", "~parts is empty"), ("wlaker", "no part 'wlaker': did you mean 'walker'")):
+        with pytest.raises(NaoError, match=text):
+            chosen(words)
+
+
+@pytest.mark.parametrize("word", PARTS)
+def test_every_part_has_its_class(word):
+    assert {"reports", "close"} <= set(dir(part_class(word)))
+
+
+class Good:
+    def __init__(self, robot, node):
+        self.closed = False
+        self.node = node
+
+    def reports(self):
+        return {"well": lambda: Report(Level.OK, "it runs")}
+
+    def close(self):
+        self.closed = True
+
+
+@pytest.fixture
+def parts(monkeypatch):
+    """Starts parts whose classes are what the test has for them."""
+    monkeypatch.setattr(nao_driver, "RETRY", 0.01)
+    made = []
+
+    def start(**classes):
+        monkeypatch.setattr(nao_driver, "part_class", classes.__getitem__)
+        made.append(Driver(None, list(classes)))
+        return made[-1]
+
+    yield start
+    for driver in made:
+        driver.close()
+
+
+def test_a_part_that_cannot_be_started_is_tried_again_and_told_of_while_the_others_run(parts, caplog):
+    mended, tried = threading.Event(), threading.Semaphore(0)
+
+    def broken(robot, node):
+        if not mended.is_set():
+            tried.release()
+            raise NaoError("~cmd_vel_timeout is 'soon': 0 to 3600 s")
+        return Good(robot, node)
+
+    driver = parts(walker=broken, leds=Good)
+    walker, leds = driver.parts
+    assert leds.started.wait(5.0) and all(tried.acquire(timeout=5.0) for _ in range(3))
+    report = walker.reports()["nao_walker: part"]()
+    assert report.level == Level.ERROR and report.message == "~cmd_vel_timeout is 'soon': 0 to 3600 s"
+    assert leds.reports()["nao_leds: well"]().message == "it runs"
+    mended.set()
+    assert walker.started.wait(5.0) and list(walker.reports()) == ["nao_walker: well"]
+    told = [record.getMessage() for record in caplog.records if "nao_walker" in record.getMessage()]
+    assert told[0] == "nao_walker is not there: ~cmd_vel_timeout is 'soon': 0 to 3600 s" and len(told) <= 2, "once"
+
+
+def test_a_part_has_names_of_its_own_and_gives_them_back(parts):
+    (part,) = parts(microphone=Good).parts
+    assert part.started.wait(5.0)
+    made, node = part._made
+    assert node.name == "/nao_robot/microphone/naoqi_microphone"
+    assert [node.resolve(name) for name in ("~audio_raw", "speech", "/other")] == [
+        "/nao_robot/microphone/naoqi_microphone/audio_raw", "/nao_robot/microphone/speech", "/other",
+    ]  # fmt: skip
+    given_back = []
+    node.at_the_end(lambda: given_back.append("first"))
+    node.at_the_end(lambda: given_back.append("second"))
+    part.close()
+    assert made.closed and given_back == ["second", "first"]
+
+
+def test_a_part_that_ends_while_it_cannot_be_started_ends(monkeypatch):
+    monkeypatch.setattr(nao_driver, "part_class", lambda word: {}[word])
+    part = Part("leds", None)
+    part.close()
+    assert not part.started.is_set()
