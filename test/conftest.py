@@ -44,6 +44,8 @@ def stack(tmp_path_factory):
 def pytest_addoption(parser):
     parser.addoption("--words", default="", help="run tests with one of these words in their path or name")
     parser.addoption("--closing", default="", help="file for the closing line")
+    parser.addoption("--failures", default="", help="file for the names of the tests that failed, one a line")
+    parser.addoption("--again", default="", help="file with names of tests, one a line: run these alone")
     parser.addoption("--shuffle", default="", help="run the files in a random order of this seed")
     parser.addoption("--until", type=float, default=float("inf"), help="time (s since 1970) after which no case begins")
 
@@ -79,6 +81,11 @@ def pytest_collection_modifyitems(config, items):
         left_out = [item for item in items if not any(word in item.nodeid.lower() for word in words)]
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if item not in set(left_out)]
+    again = config.getoption("--again")
+    if again:
+        named = set(Path(again).read_text(encoding="utf-8").splitlines())
+        config.hook.pytest_deselected(items=[item for item in items if item.nodeid not in named])
+        items[:] = [item for item in items if item.nodeid in named]
     seed = config.getoption("--shuffle")
     if seed:
         random.Random(seed).shuffle(items)
@@ -183,6 +190,10 @@ def pytest_terminal_summary(terminalreporter, config):
         for file, cases in sorted(left_out.items()):
             terminalreporter.line(f"{cases:7}    {file}")
     count = {name: len(terminalreporter.stats.get(name, [])) for name in ("passed", "failed", "error")}
+    failures = config.getoption("--failures")
+    if failures:
+        failed = [_name(report) for kind in ("failed", "error") for report in terminalreporter.stats.get(kind, [])]
+        Path(failures).write_text("".join(f"{name}\n" for name in dict.fromkeys(failed)))
     closing = config.getoption("--closing")
     if closing:
         Path(closing).write_text(f"{count['passed']} passed, {count['failed'] + count['error']} failed\n")
