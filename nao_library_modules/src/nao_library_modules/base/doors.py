@@ -1,4 +1,4 @@
-"""Names of a package whose modules are loaded when they are asked for first."""
+"""What is loaded when it is asked for first: names of a package, and libraries that most processes never need."""
 
 from __future__ import annotations
 
@@ -22,3 +22,17 @@ def door(package: str, names: Mapping[str, str]) -> Callable[[str], Any]:
         return getattr(import_module(f".{module}", package), there or name)
 
     return get
+
+
+class Later:
+    """A library that is imported with the first thing that is asked of it: `cv2 = Later("cv2")`.
+
+    Args:
+        name: Of the module.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(import_module(self._name), name)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping, Sequence
 from importlib import import_module
-from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any
 
 
-class Former(MetaPathFinder, Loader):
+class Former:
     """Finds a module by its former name: it is the same module then, with the same classes.
 
     Args:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import rospy
 from rospkg import get_ros_home
@@ -21,10 +21,12 @@ from ..functions.server_types import DESCRIBE
 from .action_server import PromptActionServer
 from .diagnostics import DiagnosticsPublisher
 from .health import Report
-from .nao_robot_driver import NaoRobotDriver
 from .robot_frames import RobotFrames, tf_prefix
 from .ros_clock import RosClock
 from .soonest_end import SOONEST_END
+
+if TYPE_CHECKING:
+    from .nao_robot_driver import NaoRobotDriver
 
 EVENT_TOPIC = "memory_events"
 LONGEST_SECONDS = 1.0
@@ -132,6 +134,8 @@ class RosEdge:
 
     def driver(self) -> NaoRobotDriver:
         """The robot's driver, which may be there or not."""
+        from .nao_robot_driver import NaoRobotDriver  # its actions are those of all modules, and one asks for it
+
         return NaoRobotDriver()
 
     def locate(self, frame: str) -> Place:

@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from naoqi.errors import NaoError
 
+from ...base.doors import Later
 from .camera_formats import BGR, BYTES, GREY, RGB, YUV422, Picture
 
+cv2 = Later("cv2")
 JPEG, PNG = "jpeg", "png"
 FORMATS = {JPEG: "small, with losses", PNG: "large, without losses"}
-
-
-@lru_cache(maxsize=None)
-def _opencv() -> ModuleType:
-    """OpenCV: loaded with the first picture that needs it, for it takes a while and most nodes never do."""
-    import cv2
-
-    return cv2
 
 
 def compress(picture: Picture, kind: str, jpeg_quality: int, png_level: int) -> tuple[str, bytes]:
@@ -39,8 +31,7 @@ def compress(picture: Picture, kind: str, jpeg_quality: int, png_level: int) -> 
     Raises:
         NaoError: If it can not be done.
     """
-    cv2 = _opencv()
-    pixels, colours = _as_opencv(picture, cv2)
+    pixels, colours = _as_opencv(picture)
     options: list[Any] = [cv2.IMWRITE_JPEG_QUALITY, jpeg_quality]
     if kind == PNG:
         options = [cv2.IMWRITE_PNG_COMPRESSION, png_level]
@@ -50,7 +41,7 @@ def compress(picture: Picture, kind: str, jpeg_quality: int, png_level: int) -> 
     return f"{picture.encoding}; {kind} compressed {colours}", file.tobytes()
 
 
-def _as_opencv(picture: Picture, cv2: ModuleType) -> tuple[np.ndarray, str]:
+def _as_opencv(picture: Picture) -> tuple[np.ndarray, str]:
     """The pixels as OpenCV writes them, and what image_transport calls their colours.
 
     Raises:

@@ -6,13 +6,15 @@ import io
 from collections.abc import Callable
 from typing import Any
 
-import cv2
 import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from naoqi.errors import NaoError
 
+from ...base.doors import Later
 from ...base.limits import limit
+
+cv2 = Later("cv2")
 
 DEFAULT_QUALITY = 95
 DECODED = ("JPEG", "PNG", "WEBP")
@@ -49,25 +51,25 @@ def _as_is(rows: np.ndarray) -> Picture:
     return rows
 
 
-def _converted(code: int) -> Callable[[np.ndarray], Picture]:
-    return lambda rows: cv2.cvtColor(rows, code)
+def _converted(code: str) -> Callable[[np.ndarray], Picture]:
+    return lambda rows: cv2.cvtColor(rows, getattr(cv2, code))
 
 
 # Encoding of sensor_msgs/Image -> bytes a pixel, layers (0: none of their own), and how it becomes a picture.
 ENCODINGS: dict[str, tuple[int, int, Callable[[np.ndarray], Picture]]] = {
     "bgr8": (3, 3, _as_is),
-    "rgb8": (3, 3, _converted(cv2.COLOR_RGB2BGR)),
-    "bgra8": (4, 4, _converted(cv2.COLOR_BGRA2BGR)),
-    "rgba8": (4, 4, _converted(cv2.COLOR_RGBA2BGR)),
-    "mono8": (1, 0, _converted(cv2.COLOR_GRAY2BGR)),
+    "rgb8": (3, 3, _converted("COLOR_RGB2BGR")),
+    "bgra8": (4, 4, _converted("COLOR_BGRA2BGR")),
+    "rgba8": (4, 4, _converted("COLOR_RGBA2BGR")),
+    "mono8": (1, 0, _converted("COLOR_GRAY2BGR")),
     "mono16": (2, 0, _as_is),
-    "yuv422": (2, 2, _converted(cv2.COLOR_YUV2BGR_UYVY)),
-    "yuv422_yuy2": (2, 2, _converted(cv2.COLOR_YUV2BGR_YUY2)),
+    "yuv422": (2, 2, _converted("COLOR_YUV2BGR_UYVY")),
+    "yuv422_yuy2": (2, 2, _converted("COLOR_YUV2BGR_YUY2")),
     # OpenCV names the pattern by its second row, ROS by the first.
-    "bayer_rggb8": (1, 0, _converted(cv2.COLOR_BayerBG2BGR)),
-    "bayer_bggr8": (1, 0, _converted(cv2.COLOR_BayerRG2BGR)),
-    "bayer_gbrg8": (1, 0, _converted(cv2.COLOR_BayerGR2BGR)),
-    "bayer_grbg8": (1, 0, _converted(cv2.COLOR_BayerGB2BGR)),
+    "bayer_rggb8": (1, 0, _converted("COLOR_BayerBG2BGR")),
+    "bayer_bggr8": (1, 0, _converted("COLOR_BayerRG2BGR")),
+    "bayer_gbrg8": (1, 0, _converted("COLOR_BayerGR2BGR")),
+    "bayer_grbg8": (1, 0, _converted("COLOR_BayerGB2BGR")),
 }
 ENCODINGS.update({
     "8UC3": ENCODINGS["bgr8"],

@@ -8,15 +8,16 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-import av
 import numpy as np
 
 from naoqi.errors import NaoError
 
+from ...base.doors import Later
 from ...base.whole_file import FileTrouble, WholeFile
 from .pictures import fitted
 from .times import VideoTimes
 
+av = Later("av")
 # What the encoders have to say of themselves is no matter of the node's log.
 logging.getLogger("libav").setLevel(logging.ERROR)
 
