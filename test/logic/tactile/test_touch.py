@@ -68,6 +68,18 @@ def test_a_count_needs_its_presses_within_its_time_and_tells_every_sensor():
     assert watch.tell("front head", True, 0.4) == [("rear head", 0.1, 0.0), ("front head", 0.4, 0.0)]
 
 
+@pytest.mark.parametrize("kind", [PRESS, RELEASE, COUNT])
+def test_a_short_touch_counts_whose_release_comes_before_its_press_and_the_next_one_as_well(kind):
+    watch = TouchWatch(Wanted(kind, count=1), {}, 10.0)
+    for begin in (11.0, 12.0):
+        assert watch.tell("front head", False, begin + 0.004) == []
+        (contact,) = watch.tell("front head", True, begin)
+        assert contact.name == "front head" and watch.pressed == []
+    watch.tell("front head", False, 20.0)
+    watch.tell("front head", True, 20.2)
+    assert watch.pressed == ["front head"], "a release long before the press was of another touch"
+
+
 def test_what_does_not_echo_is_infinitely_far_and_a_sonar_that_failed_tells_no_distance():
     for value, distance in ((0.8, 0.8), (0.1, 0.1), (2.54, 2.54), (2.55, math.inf), (5.0, math.inf)):
         assert devices.echo_of(value) == distance

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 PRESS, RELEASE, HOLD, COUNT = "press", "release", "hold", "count"
 KINDS = (PRESS, RELEASE, HOLD, COUNT)
+SWAPPED = 0.05
+"""s within which the release and the press of a short touch come in the wrong order: libqi tells each in a thread."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,7 @@ class TouchWatch:
         self._since = dict(pressed)
         # Who asked for events before asking what is pressed may be told of the same press twice.
         self._untold = set(self._since)
+        self._released: dict[str, float] = {}  # when sensors were let go that nobody knew to be pressed
         self._held: set[str] = set()
         self._presses: deque[tuple[float, str]] = deque()
 
@@ -79,10 +82,16 @@ class TouchWatch:
         untold = name in self._untold
         self._untold.discard(name)
         if pressed == (name in self._since) and not (pressed and untold):
+            if not pressed:
+                self._released[name] = now
             return held_enough
         if pressed:
             self._since[name] = min(self._since.get(name, now), now)
-            return self._pressed(name, now)
+            found = self._pressed(name, now)
+            released = self._released.pop(name, None)
+            if released is None or abs(now - released) > SWAPPED:
+                return found
+            return self.tell(name, False, max(now, released)) or found
         begin = self._since.pop(name)
         self._held.discard(name)
         if self._wanted.kind == RELEASE:
