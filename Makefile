@@ -49,10 +49,10 @@ urdf: setup ## Generate the robot's URDF anew from its tables
 	@PYTHONPATH=nao_sim_bridge/src .venv/bin/python nao_sim_bridge/nodes/nao_urdf \
 	    --output nao_sim_bridge/urdf/nao_h25.urdf --meshes nao_sim_bridge/urdf/meshes
 
-docs: build ## Write the tables of README.md anew from the code
+docs: build ## Write the tables of README.md and docs/ anew from the code
 	@scripts/ros-env python3 scripts/readme_tables.py
 
-pictures: build ## Draw the pictures of README.md anew
+pictures: build ## Draw the pictures of README.md and docs/ anew; needs the Debian package graphviz as well
 	@PYTHONPATH=nao_sim_bridge/src:nao_library_modules/src .venv/bin/python scripts/readme_pictures.py
 	@scripts/ros-env python3 scripts/readme_behaviors.py
 

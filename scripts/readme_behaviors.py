@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the contact sheet of README.md anew: the behaviours that come with the library, six moments of each.
+"""Draws the contact sheet of docs/behaviors.md anew: the behaviours that come with the library, six moments of each.
 
 It needs the built workspace: `scripts/ros-env python3 scripts/readme_behaviors.py`.
 """

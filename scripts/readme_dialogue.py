@@ -1,4 +1,4 @@
-"""The dialogue in README.md's picture: a person calls, the robot turns to the voice, asks, listens, answers and nods.
+"""The dialogue in docs/sound.md's picture: a person calls, the robot turns to the voice, asks, listens, answers, nods.
 
 It does over libqi what the example dialogue.py does with goals, so that drawing it needs no ROS.
 """

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""Draws the pictures of README.md anew: the simulated robot standing, sitting, lying, waving, and in rooms.
+"""Draws the pictures of README.md and docs/ anew: the simulated robot standing, sitting, lying, waving, and in rooms.
 
 And what it leaves behind when it walks: its footprints; what its microphones hear of a dialogue; what its cameras see
-and what it recognises there.
+and what it recognises there. The drawing of the architecture needs the Debian package graphviz, as nothing else does:
+scripts/setup does not install it.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -24,6 +26,7 @@ from nao_sim_bridge.sim.simulation import Scene
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "images"
+ARCHITECTURE = ROOT / "docs" / "architecture.dot"
 EXAMPLES = ROOT / "nao_library_modules" / "examples"
 PLOT_WALK, PLOT_SOUND = EXAMPLES / "plot_walk.py", EXAMPLES / "plot_sound.py"
 VIEW, SIZE = "three_quarter", 320
@@ -115,12 +118,22 @@ def draw_dialogue(folder: Path) -> None:
         subprocess.run([*command, "--output", str(folder / "dialogue.png")], check=True, timeout=LIMIT)
 
 
+def draw_architecture(folder: Path) -> None:
+    """Have graphviz draw the architecture."""
+    picture = folder / f"{ARCHITECTURE.stem}.png"
+    subprocess.run(["dot", "-Tpng", str(ARCHITECTURE), "-o", str(picture)], check=True, timeout=LIMIT)
+    print(picture.name, flush=True)
+
+
 def main() -> int:
     """Draw."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--folder", type=Path, default=FOLDER, help="where the pictures go (default: docs/images)")
     folder = parser.parse_args().folder
+    if shutil.which("dot") is None:
+        raise SystemExit("there is no dot for the architecture: apt-get install --no-install-recommends graphviz")
     folder.mkdir(parents=True, exist_ok=True)
+    draw_architecture(folder)
     draw(folder)
     draw_sight(folder / "sight.png")
     print("sight.png", flush=True)

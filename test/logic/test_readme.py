@@ -1,4 +1,4 @@
-"""README.md and docs/*.md: the tables that are made from the code are up to date, and their blocks can be read."""
+"""README.md and docs/*.md: tables from the code are up to date, blocks can be read, links lead somewhere."""
 
 from __future__ import annotations
 
@@ -7,12 +7,20 @@ import re
 
 import pytest
 import readme_tables
+from feature_table import PAGE, features
 from samples import PAGES, samples
+
+LINK = re.compile(r"\]\((?!https?:)(?P<file>[^)#\s]*)(?:#(?P<anchor>[^)\s]+))?\)")
+FENCED = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
+HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
+OTHERS = ("CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "test/faults/README.md")
+LONGEST = 250
+"""Lines of README.md: what takes more has a page of its own."""
 
 
 def test_the_documents_say_what_the_code_says():
     tables = readme_tables.all_tables()
-    texts = {document.name: document.read_text(encoding="utf-8") for document in readme_tables.DOCUMENTS}
+    texts = {document: document.read_text(encoding="utf-8") for document in readme_tables.DOCUMENTS}
     stale = [name for name, text in texts.items() if readme_tables.fill(text, tables) != text]
     assert not stale, "run 'make docs'"
     assert readme_tables.untold(list(texts.values()), tables) == []
@@ -45,3 +53,34 @@ def test_every_block_of_a_page_can_be_read_and_its_comment_as_well(page):
         if sample.kind == "python":
             compile(sample.program, sample.name, "exec")
         assert all((readme_tables.ROOT / file).exists() for file in sample.files), sample.name
+
+
+def test_every_block_has_a_name_of_its_own():
+    names = [sample.name for page in PAGES for sample in samples(page)]
+    assert len(set(names)) == len(names)
+
+
+@pytest.mark.parametrize("page", [*PAGES, *OTHERS])
+def test_every_link_of_a_page_leads_to_a_file_and_to_a_heading_of_it(page):
+    here = readme_tables.ROOT / page
+    for link in LINK.finditer(FENCED.sub("", here.read_text(encoding="utf-8"))):
+        there = (here.parent / link["file"]).resolve() if link["file"] else here
+        assert there.exists(), link[0]
+        assert not link["anchor"] or link["anchor"] in anchors(there.read_text(encoding="utf-8")), link[0]
+
+
+def anchors(text):
+    """What GitHub makes of the headings: lower case, blanks as hyphens, no other punctuation."""
+    headings = HEADING.findall(FENCED.sub("", text))
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def test_the_index_has_every_page_and_the_readme_is_short():
+    index = (readme_tables.ROOT / "docs" / "README.md").read_text(encoding="utf-8")
+    listed = {link["file"] for link in LINK.finditer(index)}
+    assert {page.rpartition("/")[2] for page in PAGES if page.startswith("docs/")} - {"README.md"} <= listed
+    assert (readme_tables.ROOT / "README.md").read_text(encoding="utf-8").count("\n") <= LONGEST
+
+
+def test_the_page_of_features_can_be_read():
+    assert len(features(PAGE.read_text(encoding="utf-8"))) > 100

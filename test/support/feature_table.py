@@ -1,4 +1,4 @@
-"""The tables of features in README.md: what each row says, and what its command needs for itself."""
+"""The tables of features in docs/features.md: what each row says, and what its command needs for itself."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-README = Path(__file__).resolve().parents[2] / "README.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "features.md"
 BEGIN, END = "<!-- features -->", "<!-- end of features -->"
 STAR = "★"
 """Behind a command that starts a stack of its own, opens a window or waits for keys: it is not run with the others."""

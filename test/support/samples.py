@@ -67,7 +67,7 @@ class Sample:
     @property
     def name(self) -> str:
         """What it is called in reports."""
-        return f"{Path(self.page).stem}, line {self.line}, {self.kind} of {self.heading!r}"
+        return f"{self.page}, line {self.line}, {self.kind} of {self.heading!r}"
 
     @property
     def files(self) -> list[str]:

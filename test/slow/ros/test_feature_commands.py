@@ -1,4 +1,4 @@
-"""The tables of features in README.md: every command that has no star runs, and does what it says."""
+"""The tables of features in docs/features.md: every command that has no star runs, and does what it says."""
 
 import os
 import re
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import rospy
 from feature_runner import run, run_all
-from feature_table import README, features
+from feature_table import PAGE, features
 
 from nao_library_actions.msg import (
     NaoAudioInAction,
@@ -67,7 +67,7 @@ class FeatureCommands(unittest.TestCase):
         self.addCleanup(shutil.rmtree, folder, ignore_errors=True)
         # An example has a test of its own, which looks at what it does.
         tested = "".join(path.read_text(encoding="utf-8") for path in Path(__file__).parent.glob("test_*_examples*.py"))
-        rows = [row for row in features(README.read_text(encoding="utf-8")) if not row.starred]
+        rows = [row for row in features(PAGE.read_text(encoding="utf-8")) if not row.starred]
         rows = [row for row in rows if not any(example in tested for example in re.findall(r"\w+\.py\b", row.command))]
         self.assertGreater(len(rows), 50)
 
