@@ -21,13 +21,12 @@ from xmlrpc.client import ServerProxy
 import rosgraph
 import rospy
 
-from nao_library_modules.driver.parts import PARTS
 from nao_library_modules.owners.line import PEER, place
 from nao_library_modules.processes.own_stack import OwnStack
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from nao_soak.kill_scenes import ANSWER, PATIENCE, SCENES, SPEECH, WALK, rviz_goal, works  # noqa: E402
+from nao_soak.kill_scenes import ANSWER, PATIENCE, SCENES, SPEECH, WALK, process_of, rviz_goal, works  # noqa: E402
 
 STILL, ENDED, WORKS = 1.0, 5.0, 5.0
 """Limits, s of wall time: the robot runs in real time."""
@@ -38,8 +37,7 @@ STEP = 0.8
 BEGUN = 0.05
 """m after which a robot walks."""
 LAUNCH = ("nao_library_tests", "killed_stack.launch")
-SIMULATOR, DRIVER = "/nao_sim", "/nao_driver"
-IN_DRIVER = {name for name, _ in PARTS.values()}
+SIMULATOR = "/nao_sim"
 
 
 class Robot:
@@ -94,7 +92,7 @@ def pid_of(node):
     Raises:
         LookupError: There is none.
     """
-    name = SIMULATOR if "." in node else DRIVER if node in IN_DRIVER else f"/{node}"
+    name = SIMULATOR if "." in node else process_of(node)
     pid = ServerProxy(rosgraph.Master("/kills").lookupNode(name)).getPid("/kills")[2]
     if name != SIMULATOR:
         return pid

@@ -10,6 +10,7 @@ import readme_tables
 from nao_library_actions.msg import NaoLedAction
 from nao_library_modules.base.errors import BadGoal, FunctionFailed
 from nao_library_modules.behaviors.language.servers import FunctionTables
+from nao_library_modules.cli import offline
 from nao_library_modules.cli.offline import described_by_code
 from nao_library_modules.functions import fields
 from nao_library_modules.functions.chain import FunctionChain, checked_by
@@ -80,6 +81,7 @@ def test_a_derived_field_differs_in_what_was_changed():
 def with_blink(monkeypatch):
     """NaoLights with one function more, declared in one place."""
     monkeypatch.setattr(NaoLights, "functions", {**NaoLights.functions, "blink": blink})
+    monkeypatch.setattr(offline, "_servers", offline._servers.__wrapped__)  # what is remembered does not have it
 
 
 def test_a_function_that_is_declared_once_is_known_to_all_who_read_declarations(with_blink):

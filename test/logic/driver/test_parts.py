@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import queue
 import threading
 
 import pytest
@@ -70,24 +71,39 @@ def test_a_part_that_cannot_be_started_is_tried_again_and_told_of_while_the_othe
     assert report.level == Level.ERROR and report.message == "~cmd_vel_timeout is 'soon': 0 to 3600 s"
     assert leds.reports()["nao_leds: well"]().message == "it runs"
     mended.set()
-    assert walker.started.wait(5.0) and list(walker.reports()) == ["nao_walker: well"]
+    assert walker.started.wait(5.0) and list(walker.reports()) == ["nao_walker: part", "nao_walker: well"]
+    assert walker.reports()["nao_walker: part"]() == Report(
+        Level.OK, "runs", {"failed attempts": str(walker._attempts)}
+    )
     told = [record.getMessage() for record in caplog.records if "nao_walker" in record.getMessage()]
     assert told[0] == "nao_walker is not there: ~cmd_vel_timeout is 'soon': 0 to 3600 s" and len(told) <= 2, "once"
 
 
-def test_a_part_has_names_of_its_own_and_gives_them_back(parts):
-    (part,) = parts(microphone=Good).parts
-    assert part.started.wait(5.0)
-    made, node = part._made
+def test_a_part_has_names_of_its_own_and_what_a_failed_one_has_made_is_taken_back(parts):
+    given_back, nodes = queue.Queue(), []
+
+    def half_way(robot, node):
+        nodes.append(node)
+        node.if_it_fails(lambda: given_back.put("first"))
+        node.if_it_fails(lambda: {}["no such thing"])
+        node.if_it_fails(lambda: given_back.put("last"))
+        raise NaoError("no")
+
+    parts(microphone=half_way)
+    assert [given_back.get(timeout=5.0) for _ in range(4)] == ["last", "first"] * 2
+    node = nodes[0]
     assert node.name == "/nao_robot/microphone/naoqi_microphone"
     assert [node.resolve(name) for name in ("~audio_raw", "speech", "/other")] == [
         "/nao_robot/microphone/naoqi_microphone/audio_raw", "/nao_robot/microphone/speech", "/other",
     ]  # fmt: skip
-    given_back = []
-    node.at_the_end(lambda: given_back.append("first"))
-    node.at_the_end(lambda: given_back.append("second"))
-    part.close()
-    assert made.closed and given_back == ["second", "first"]
+
+
+def test_a_part_that_runs_is_closed(parts):
+    driver = parts(leds=Good)
+    (part,) = driver.parts
+    assert part.started.wait(5.0)
+    driver.close()
+    assert part._made.closed
 
 
 def test_a_part_that_ends_while_it_cannot_be_started_ends(monkeypatch):

@@ -34,6 +34,7 @@ from nao_library_actions.msg import (
     SpeechWithFeedbackAction,
     SpeechWithFeedbackGoal,
 )
+from nao_library_modules.driver.parts import PARTS
 from nao_library_modules.functions.server_types import server_type
 from nao_library_modules.ros.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import StepTarget
@@ -51,6 +52,8 @@ ANSWER = 2.0
 """s that a node may take for something quick."""
 WALK, SPEECH = "Head", "speech"
 MICROPHONE = "nao_robot/microphone/naoqi_microphone"
+PICTURES = ("cameras", "diagnostics")
+"""Parts of the driver that nao_driver.launch has in a process of their own."""
 CHARGE = "Device/SubDeviceList/Battery/Charge/Sensor/Value"
 SPEECH_WORKER, PICTURE_WORKER = "nao_sim_bridge.sim.speech.worker", "nao_sim_bridge.sim.render.worker"
 """Processes of the simulator, by what they run."""
@@ -122,11 +125,19 @@ class Steered(Nothing):
         self._ended.set()
 
 
+def process_of(node):
+    """Full name of the node that a node, or a part of the driver, is in."""
+    words = {name: word for word, (name, _) in PARTS.items()}
+    if node not in words:
+        return f"/{node}"
+    return "/nao_driver_pictures" if words[node] in PICTURES else "/nao_driver"
+
+
 class Heard(Nothing):
     """A topic that somebody listens to."""
 
     def __init__(self, node: str, topic: str) -> None:
-        self._node = f"/{node}"
+        self._node = process_of(node)
         self._came = threading.Event()
         self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._on_message)
 

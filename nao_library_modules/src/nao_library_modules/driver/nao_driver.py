@@ -45,14 +45,14 @@ class Part:
         self._ended = threading.Event()
         self._problem = "it is being started"
         self._attempts = 0
-        self._made: tuple[Any, NodeInterface] | None = None
+        self._made: Any = None
         self._thread = threading.Thread(target=self._start, name=f"start of {word}", daemon=True)
         self._thread.start()
 
     def reports(self) -> Mapping[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name; of a part that does not run, why."""
+        """Reports for /diagnostics, by name: whether the part runs, else why not, and those of its own."""
         made = self._made
-        reports = {"part": self._report} if made is None else made[0].reports()
+        reports = {"part": self._report, **({} if made is None else made.reports())}
         return {f"{self._told_as}: {name}": report for name, report in reports.items()}
 
     def close(self) -> None:
@@ -60,20 +60,21 @@ class Part:
         self._ended.set()
         self._thread.join()
         if self._made is not None:
-            part, interface = self._made
-            close_all(part.close, interface.close)
+            self._made.close()
 
     def _report(self) -> Report:
-        level = Level.ERROR if self._attempts else Level.WARN
-        return Report(level, self._problem, {"attempts": str(self._attempts)})
+        values = {"failed attempts": str(self._attempts)}
+        if self._made is not None:
+            return Report(Level.OK, "runs", values)
+        return Report(Level.ERROR if self._attempts else Level.OK, self._problem, values)
 
     def _start(self) -> None:
         while not self._ended.is_set():
             interface = NodeInterface(self.name)
             try:
-                self._made = (part_class(self._word)(self._robot, interface), interface)
+                self._made = part_class(self._word)(self._robot, interface)
             except Exception as error:
-                interface.close()
+                interface.fail()
                 self._failed(error)
                 self._ended.wait(RETRY)
             else:
@@ -133,8 +134,10 @@ def run(description: str, argv: Sequence[str] | None = None) -> int:
         Exit status.
 
     ROS API:
-        Parameters `~pip`, `~pport`: the robot; `~parts` ("all"): words of `PARTS`. Publishes `/diagnostics`. Each part
-        has the topics, services, actions and parameters that it has as a node of its own, under the same names.
+        Parameters `~pip`, `~pport`: the robot; `~parts` ("all"): words of `PARTS`; `~watches` (false): whether the node
+        stops what others leave going that die, for one whose parts set nothing going themselves. Publishes
+        `/diagnostics`. Each part has the topics, services, actions and parameters that it has as a node of its own,
+        under the same names.
     """
     options = start_node(NAME, description, argv)
     try:
@@ -144,7 +147,7 @@ def run(description: str, argv: Sequence[str] | None = None) -> int:
         rospy.logfatal("%s", error)
         return 1
     robot = Robot(ip, port)
-    own_as_node(robot, watches=True)
+    own_as_node(robot, watches=bool(rospy.get_param("~watches", False)))
     driver = Driver(robot, words)
     diagnostics = DiagnosticsPublisher(robot.address, driver.reports)
     rospy.on_shutdown(lambda: close_all(driver.close, diagnostics.close))

@@ -38,14 +38,16 @@ class GoalEnds(rospy.SubscribeListener):
         self._cancelled: dict[str, deque[str]] = defaultdict(partial(deque, maxlen=QUEUE))
 
     def cancel(self, topic: str, goal: str) -> None:
-        """Cancel a goal; a server that is not connected yet hears of it when it is."""
+        """Cancel a goal; a server that is not connected yet hears of it when it is.
+
+        One that is connected to another publisher of this process is nobody who begins to listen: it is told at once.
+        """
         with self._lock:
             self._cancelled[topic].append(goal)
             publisher = self._publishers.get(topic)
             if publisher is None:
                 publisher = rospy.Publisher(topic, GoalID, subscriber_listener=self, queue_size=QUEUE)
                 self._publishers[topic] = publisher
-                return
         publisher.publish(GoalID(id=goal))
 
     def peer_subscribe(self, topic_name: str, _publish: Any, peer_publish: Any) -> None:

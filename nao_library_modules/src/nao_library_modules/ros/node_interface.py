@@ -1,16 +1,30 @@
-"""What a part of a node has of ROS: names, parameters, topics, services, actions. All that it makes ends with it."""
+"""What a part of a node has of ROS: names, parameters, topics, services, actions."""
 
 from __future__ import annotations
 
+import socket
 from collections.abc import Callable
 from typing import Any
 
+import rosgraph
 import rospy
 
 from naoqi.errors import NaoError
 
 from ..base.errors import Preempted
+from ..processes.closing import close_all
 from .action_server import ActionServer
+
+PROBE_LIMIT = 1.0
+"""s that a node may take to take a connection, to count as alive."""
+
+
+class AlreadyOffered(NaoError):  # noqa: N818  named like the errors of the proxy layer
+    """Another node that is alive offers a service."""
+
+    def __init__(self, service: str, node: str) -> None:
+        """Compose the text."""
+        super().__init__(f"{node} offers {service} already: leave the part out there (~parts of nao_driver), or here")
 
 
 class NodeInterface:
@@ -58,7 +72,14 @@ class NodeInterface:
         return subscriber
 
     def service(self, name: str, kind: type, answer: Callable[[Any], Any]) -> rospy.Service:
-        """Offer a service; what `answer` raises goes its way."""
+        """Offer a service; what `answer` raises goes its way.
+
+        Raises:
+            AlreadyOffered: Another node does. It would lose its clients, and take them back to nobody at its end.
+        """
+        other = node_that_offers(self.resolve(name))
+        if other:
+            raise AlreadyOffered(self.resolve(name), other)
         service = rospy.Service(self.resolve(name), kind, answer)
         self._ends.append(service.shutdown)
         return service
@@ -101,11 +122,31 @@ class NodeInterface:
         server.start()
         self._ends.append(server.stop)
 
-    def at_the_end(self, action: Callable[[], Any]) -> None:
-        """Have something done when the part ends; what was left last is done first."""
+    def if_it_fails(self, action: Callable[[], Any]) -> None:
+        """Have something done when the part cannot be made; what was left last is done first."""
         self._ends.append(action)
 
-    def close(self) -> None:
-        """Take back all that was made."""
-        while self._ends:
-            self._ends.pop()()
+    def fail(self) -> None:
+        """Take back all that was made: the part cannot be. At the end of the node rospy does it, after all else."""
+        ends, self._ends = self._ends, []
+        close_all(*reversed(ends))
+
+
+def node_that_offers(service: str) -> str:
+    """Another node that offers a service and is alive; empty if there is none.
+
+    Args:
+        service: Full name.
+    """
+    own = rospy.get_name()
+    master = rosgraph.Master(own)
+    try:
+        address = master.lookupService(service).partition("://")[2].strip("/")
+        host, _, port = address.rpartition(":")
+        socket.create_connection((host, int(port)), PROBE_LIMIT).close()
+        node = next(nodes[0] for name, nodes in master.getSystemState()[2] if name == service)
+    except (rosgraph.MasterError, StopIteration):
+        return ""
+    except OSError:
+        return ""  # it was killed, and the master does not know
+    return "" if node == own else node

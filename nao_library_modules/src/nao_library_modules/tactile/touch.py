@@ -90,7 +90,7 @@ class TouchWatch:
             found = self._pressed(name, now)
             released = self._released.pop(name, None)
             if released is None or abs(now - released) > SWAPPED:
-                return found
+                return [*held_enough, *found]
             return self.tell(name, False, max(now, released)) or found
         begin = self._since.pop(name)
         self._held.discard(name)

@@ -48,6 +48,7 @@ class NaoMicrophone:
         self._use_ros_time = True
         self._frame = tf_prefix() + str(self._node.param("~frame_id", HEAD)).lstrip("/")
         self._microphone = Microphone(robot, name_for_robot(self._node.name), RosClock(), self._publish)
+        node.if_it_fails(self._microphone.close)
         fields = (
             Field("frequency", min(FORMATS), "samples a second and channel", min(FORMATS), max(FORMATS), RATES),
             Field("use_ros_time", is_wallclock(), "whether stamps are in ROS time, instead of the robot's own"),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import rosgraph
 import rospy
 from std_msgs.msg import String
 from std_srvs.srv import Empty
@@ -27,7 +26,7 @@ from ...base.interrupt import Interrupt
 from ...base.suggestion import of_those
 from ...ros.goal_crowd import GoalCrowd, Outcome
 from ...ros.health import Report
-from ...ros.node_interface import NodeInterface
+from ...ros.node_interface import NodeInterface, node_that_offers
 from ...ros.ros_clock import RosClock
 from ..base.node import name_for_robot, publish
 from ..base.reconfigure import Field, serve, update
@@ -90,7 +89,7 @@ class NaoSpeech:
             NaoError: If a parameter is wrong, or another node speaks already.
         """
         self._node = node
-        other = _node_that_offers(node.resolve(START))
+        other = node_that_offers(node.resolve(START))
         if other:
             raise NaoError(f"{other} speaks for this robot already ({self._node.resolve('speech')}): one is enough")
         self._robot = robot
@@ -212,17 +211,3 @@ def _listening(settings: SpeechSettings) -> tuple[Any, ...]:
 def _complain(text: str, error: Exception) -> None:
     log = rospy.loginfo if isinstance(error, UnknownModule) else rospy.logerr
     log("speech: %r was not said: %s", text, error)
-
-
-def _node_that_offers(name: str) -> str:
-    """Another node that offers a service and is alive; empty if there is none."""
-    own = rospy.get_name()
-    _, _, services = rosgraph.Master(own).getSystemState()
-    others = [node for offered, nodes in services if offered == name for node in nodes if node != own]
-    if not others:
-        return ""
-    try:
-        rospy.wait_for_service(name, timeout=PROBE_LIMIT)
-    except rospy.ROSException:
-        return ""  # it was killed, and the master does not know
-    return others[0]

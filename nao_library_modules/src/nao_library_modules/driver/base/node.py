@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -16,8 +17,11 @@ from ...robot.robot import Robot
 from ...ros.diagnostics import DiagnosticsPublisher
 from ...ros.health import connection_report
 from ...ros.node import own_as_node, robot_address, start_node
-from ...ros.node_interface import NodeInterface
+from ...ros.node_interface import AlreadyOffered, NodeInterface
 from ...ros.node_place import NodePlace
+
+RETRY = 1.0
+"""s between two looks whether the services of a node that has to wait are free."""
 
 
 def run_driver(
@@ -48,19 +52,39 @@ def run_driver(
     try:
         ip, port = robot_address(options, rospy.get_param)
         robot = Robot(ip, port)
-        interface = NodeInterface()
-        node = make(robot, interface)
+        node = _made(make, robot)
     except NaoError as error:
         rospy.logfatal("%s", error)
         return 1
     own_as_node(robot, watches)
     reports = {"robot": lambda: connection_report(robot.address, robot.connection), **node.reports()}
     diagnostics = DiagnosticsPublisher(robot.address, reports)  # it puts the name of the node before each
-    rospy.on_shutdown(lambda: close_all(node.close, interface.close, diagnostics.close))
+    rospy.on_shutdown(lambda: close_all(node.close, diagnostics.close))
     place = NodePlace()
     rospy.spin()
     place.come_back()
     return 0
+
+
+def _made(make: Callable[[Robot, NodeInterface], Any], robot: Robot) -> Any:
+    """The node's object; where another node has its services, when that has ended.
+
+    Raises:
+        NaoError: It cannot be made.
+    """
+    told = False
+    while True:
+        interface = NodeInterface()
+        try:
+            return make(robot, interface)
+        except AlreadyOffered as error:
+            interface.fail()
+            if not told:
+                rospy.logerr("%s; this node waits for its end", error)
+                told = True
+            if rospy.core.is_shutdown_requested():
+                raise
+            time.sleep(RETRY)
 
 
 def name_for_robot(name: str) -> str:

@@ -117,7 +117,7 @@ def serve(
     with _own_errors():
         server = Server(description_of(fields), callback, owner)
     for end in (server.set_service.shutdown, server.descr_topic.unregister, server.update_topic.unregister):
-        node.at_the_end(end)
+        node.if_it_fails(end)
     return server
 
 

@@ -90,6 +90,7 @@ class CameraTopics:
         self._choices = 0
         stream = stream_settings(defaults, camera)
         self._stream = CameraStream(robot, subscriber, stream, RosClock(), self._show, self._prepare)
+        node.if_it_fails(self._stream.close)
         self._server = serve(node, fields, self._changed, part)
         self._tuning.choose(camera, given, connected=False)
         compressed = f"{folder}image_raw/compressed"

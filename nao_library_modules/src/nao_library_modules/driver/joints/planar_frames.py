@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-import threading
+from functools import lru_cache
 from typing import Any
 
 import rospy
@@ -28,18 +28,24 @@ OLDEST = 2.0
 """s that the robot may have been where odometry has it last. Simulated time may be fast: of real time as well."""
 
 
+@lru_cache(maxsize=None)
+def _frames_of_tf() -> tf2_ros.Buffer:
+    """What /tf tells: a busy topic, to which a process listens once."""
+    buffer = tf2_ros.Buffer(debug=False)
+    buffer.listener = tf2_ros.TransformListener(buffer)
+    return buffer
+
+
 class PlanarFrames:
-    """Looks frames up. Any thread may ask. It listens to /tf, which is a busy topic, from the first question on."""
+    """Looks frames up. Any thread may ask."""
 
     def __init__(self, buffer: Any = None) -> None:
-        """Listen to nothing yet.
+        """Begin to listen to /tf.
 
         Args:
-            buffer: Frames that are known already, instead of those of /tf.
+            buffer: Frames that are known already, instead.
         """
-        self._known = buffer
-        self._since = rospy.Time()  # nothing is known of frames before
-        self._lock = threading.Lock()
+        self._buffer = _frames_of_tf() if buffer is None else buffer
         self._wall = WallClock()
         self._seen: dict[tuple[str, str], tuple[rospy.Time, float]] = {}
 
@@ -68,18 +74,15 @@ class PlanarFrames:
 
         Args:
             frame: The frame to tell it in.
-            pose: Checked, see `read_place`. Its time counts as far back as /tf is known; before, and without one, it is
-                the latest.
+            pose: Checked, see `read_place`. Its time counts as far back as /tf is known; without one it is the latest.
             patience: s to wait for its frame.
 
         Raises:
             NaoError: If the frames are not connected.
         """
         origin = pose.header.frame_id.lstrip("/")
-        self._listen()
         try:
-            stamp = pose.header.stamp if pose.header.stamp >= self._since else rospy.Time()
-            transform = self._look_up(frame, origin, stamp, patience)
+            transform = self._look_up(frame, origin, pose.header.stamp, patience)
         except NaoError:
             transform = self._look_up(frame, origin, rospy.Time(), patience)
         move, turn = transform.transform.translation, transform.transform.rotation
@@ -91,21 +94,12 @@ class PlanarFrames:
 
     def inside(self, frame: str, outer: str) -> bool:
         """Whether a frame hangs below another one, or is that frame itself."""
-        parents = yaml.safe_load(self._listen().all_frames_as_yaml()) or {}
+        parents = yaml.safe_load(self._buffer.all_frames_as_yaml()) or {}
         seen = set()
         while frame != outer and isinstance(parents, dict) and frame in parents and frame not in seen:
             seen.add(frame)
             frame = str(parents[frame]["parent"])
         return frame == outer
-
-    def _listen(self) -> Any:
-        """The frames that are known."""
-        with self._lock:
-            if self._known is None:
-                self._known = tf2_ros.Buffer()
-                self._since = rospy.Time.now()
-                self._listener = tf2_ros.TransformListener(self._known)
-            return self._known
 
     def _unchanged(self, child: str, frame: str, stamp: rospy.Time) -> float:
         """For how long, in s of real time, old transforms with this stamp have been found."""
@@ -116,7 +110,7 @@ class PlanarFrames:
 
     def _look_up(self, frame: str, child: str, time: rospy.Time, patience: float) -> TransformStamped:
         try:
-            return self._listen().lookup_transform(frame, child, time, rospy.Duration.from_sec(patience))
+            return self._buffer.lookup_transform(frame, child, time, rospy.Duration.from_sec(patience))
         except (tf2_ros.TransformException, tf2_ros.InvalidArgumentException) as error:
             raise NaoError(f"{child} cannot be found in {frame}: {error}") from error
 

@@ -91,6 +91,7 @@ class NaoMemory:
         self._robot = robot
         self._memory = MemoryAccess(robot)
         self._watch = MemoryWatch(robot, RosClock(), partial(MemoryTopic, node), largest)
+        node.if_it_fails(self._watch.close)
         self._kept = node_file(self._node.name)
         kept = self._kept.load()
         self._watch.watch(rules if kept is None else [Rule(**told) for told in kept])

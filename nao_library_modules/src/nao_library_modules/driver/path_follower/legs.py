@@ -75,7 +75,8 @@ class WalkTopics:
             NaoError: If it cannot, or nobody passes commands on to it.
             Preempted: Or whatever reason the interrupt has.
         """
-        self._heard.event.wait(LISTENER_LIMIT)
+        if not self._commands.get_num_connections():
+            self._heard.event.wait(LISTENER_LIMIT)
         if not self._commands.get_num_connections():
             raise NaoError(f"nobody listens to {self._node.resolve(self._topic)}: does nao_walker run?")
         self._failed_before = self._last_failure()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+from collections.abc import Callable
 
 from naoqi.errors import NaoError
 
@@ -37,8 +38,11 @@ class HeadScan:
         """Whether a scan is under way."""
         return self._scanning.locked()
 
-    def run(self) -> None:
+    def run(self, prepare: Callable[[], None] = lambda: None) -> None:
         """Look down, sweep up, look at the ground before the feet.
+
+        Args:
+            prepare: Called before the head moves, and counts as a part of the scan.
 
         Raises:
             NaoError: A scan is under way; the robot refuses or is lost; the node ends.
@@ -46,6 +50,7 @@ class HeadScan:
         if not self._scanning.acquire(blocking=False):
             raise NaoError("a head scan is under way")
         try:
+            prepare()
             self._look(DOWN)
             sweep = KeyFrames((PITCH,), ((DOWN - UP) / SWEEP_SPEED,), ((UP,),))
             self._require_end(self._controller.follow(sweep, self._closed).preempted)

@@ -81,7 +81,7 @@ class NaoWalker:
         gait = self._gait()
         head_speed = number_parameter("~max_head_speed", self._node.param("~max_head_speed", 0.2), limit("fraction"))
         self._kept = node_file(self._node.name)
-        self._inhibition = WalkInhibition(self._kept)
+        self._inhibition = WalkInhibition(self._kept, rospy.get_name())
         self._journal = WalkJournal()
         self._walker = Walker(robot, RosClock(), timeout)
         self._walker.frequency = frequency
@@ -199,9 +199,11 @@ class NaoWalker:
         _wait(self._walker.order(Stop(), f"stop_walk_srv from {caller}"))
 
     def _serve_scan(self, caller: str, _: Any = None) -> None:
-        self._serve_stop(caller, None)
-        self._speech.publish("Starting scan")
-        self._scan.run()
+        def stand() -> None:
+            self._serve_stop(caller, None)
+            self._speech.publish("Starting scan")
+
+        self._scan.run(stand)
         self._speech.publish("Scan complete")
         self._serve_walk_pose()
 

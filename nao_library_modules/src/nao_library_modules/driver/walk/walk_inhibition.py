@@ -23,15 +23,17 @@ class WalkInhibition:
 
     Args:
         kept: Where they are kept for the time after the death of this node.
+        own: Name of this node: holds of parts that died with it are gone.
 
     Whoever inhibits walking means the others: a node that follows a path keeps a joystick from interfering, and
     walks itself.
     """
 
-    def __init__(self, kept: Kept) -> None:
+    def __init__(self, kept: Kept, own: str = "") -> None:
         self._lock = threading.Lock()
         self._kept = kept
         self._holds: Counter[str] = Counter(kept.load() or {})
+        self._holds.pop(own, None)
 
     def inhibit(self, owner: str) -> int:
         """Put a hold on walking.
