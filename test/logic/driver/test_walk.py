@@ -147,6 +147,7 @@ def test_inhibition_is_counted_and_means_the_others(tmp_path):
     assert inhibition.against("/joystick") == ["/path", "/me"] and inhibition.against("/path") == ["/me"]
     assert (inhibition.let_go("/path"), inhibition.let_go("/path")) == (2, 1)
     assert WalkInhibition(kept).owners == ["/me"]  # of a node that was killed and started again
+    assert WalkInhibition(kept, own="/me").owners == [], "a part of the same process died with it"
     assert inhibition.let_go("/rosservice_2") == 0  # whoever has no hold takes off the first
     with pytest.raises(NotInhibited):
         inhibition.let_go("/path")
