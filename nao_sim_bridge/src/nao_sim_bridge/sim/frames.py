@@ -13,7 +13,7 @@ from typing import Mapping, Sequence
 import numpy as np
 
 from nao_sim_bridge.sim.errors import UnknownName
-from nao_sim_bridge.sim.kinematics import axis_matrix, link_transforms, rpy_matrix, transform
+from nao_sim_bridge.sim.kinematics import LinkPoses, axis_matrix, rpy_matrix, transform
 from nao_sim_bridge.sim.model import Place, RobotModel
 
 TORSO, WORLD, ROBOT = 0, 1, 2
@@ -76,7 +76,7 @@ class Placement:
 
 def commanded(model: RobotModel, commands: Sequence[float], measured: Placement) -> Placement:
     """The placement that `commands` (26, rad) ask for, on the lower foot of the `measured` one."""
-    links = link_transforms(model, commands)
+    links = LinkPoses(model, commands)
     feet = [frame_of(model, name) for name in FEET]
     heights = [(measured.torso_in_world @ measured.in_torso(foot))[2, 3] for foot in feet]
     foot = feet[1] if heights[1] < heights[0] - EVEN else feet[0]

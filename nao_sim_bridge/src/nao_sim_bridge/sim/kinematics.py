@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Dict
 
 import numpy as np
 
@@ -105,6 +106,28 @@ def link_transforms(model: RobotModel, angles: Sequence[float]) -> dict[str, np.
             step = transform(axis_matrix(joint.axis, float(angle)), joint.origin)
             poses[joint.child_link] = poses[joint.parent_link] @ step
     return poses
+
+
+class LinkPoses(Dict[str, np.ndarray]):
+    """As `link_transforms`, each pose worked out when it is asked for; to be looked up, not gone through.
+
+    Args:
+        model: The robot.
+        angles: (26,) in Body order, rad; hands do not matter.
+    """
+
+    def __init__(self, model: RobotModel, angles: Sequence[float]) -> None:
+        super().__init__(Torso=np.eye(4))
+        self._model = model
+        self._angles = angles
+
+    def __missing__(self, link: str) -> np.ndarray:
+        for joint, angle in zip(self._model.joints, self._angles):
+            if joint.child_link == link:
+                step = transform(axis_matrix(joint.axis, float(angle)), joint.origin)
+                pose = self[link] = self[joint.parent_link] @ step
+                return pose
+        raise KeyError(link)
 
 
 def finger_transforms(model: RobotModel, opening: float) -> dict[str, np.ndarray]:

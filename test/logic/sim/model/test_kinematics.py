@@ -14,6 +14,7 @@ from nao_sim_bridge.sim.config import read_json
 from nao_sim_bridge.sim.frames import frame_of
 from nao_sim_bridge.sim.glide import Glide, slerp
 from nao_sim_bridge.sim.kinematics import (
+    LinkPoses,
     axis_matrix,
     center_of_mass,
     finger_transforms,
@@ -51,6 +52,17 @@ def test_the_zero_posture_meets_the_published_positions():
         else:
             found = poses[name][:3, 3]
         assert found == pytest.approx(expected, abs=1e-5), name
+
+
+def test_poses_that_are_worked_out_when_asked_for_are_the_same():
+    angles = [0.03 * number for number in range(26)]
+    poses = link_transforms(MODEL, angles)
+    for first in ("LAnkleRoll", "HeadPitch"):
+        asked = LinkPoses(MODEL, angles)
+        for link in (first, *poses):
+            np.testing.assert_array_equal(asked[link], poses[link])
+    with pytest.raises(KeyError):
+        LinkPoses(MODEL, angles)["Tail"]
 
 
 def test_fingers_are_straight_when_open_and_curl_towards_the_thumb():

@@ -161,14 +161,16 @@ class NaoJointStates:
             stamp = Time.from_sec(now)
             changes = velocities.add(now, reading.positions)
             self._joint_states.publish(messages.joint_state(stamp, sensors.joints, reading, changes))
-            self._imu.publish(messages.imu(stamp, self._base, reading))
+            if self._imu.get_num_connections() > 0:
+                self._imu.publish(messages.imu(stamp, self._base, reading))
             if self._stiffness.get_num_connections() > 0:
                 stiffnesses = sensors.read_stiffnesses()
                 self._stiffness.publish(messages.joint_stiffness(stamp, sensors.joints, stiffnesses))
             transforms = self._foot_transforms(stamp, sensors, reading)
             if self._odometry is not None and reading.torso is not None:
                 speed = speeds.add(now, reading.torso[:3])
-                self._odometry.publish(messages.odometry(stamp, self._odom, self._base, reading, speed))
+                if self._odometry.get_num_connections() > 0:
+                    self._odometry.publish(messages.odometry(stamp, self._odom, self._base, reading, speed))
                 transforms.insert(0, messages.odometry_transform(stamp, self._odom, self._base, reading))
             if transforms:
                 self._frames.sendTransform(transforms)

@@ -11,7 +11,7 @@ import numpy as np
 
 from nao_sim_bridge.services.motion.cartesian_arguments import as_position
 from nao_sim_bridge.sim.frames import ROBOT, Placement, space_in_torso
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.sim.kinematics import LinkPoses, quaternion_matrix, transform
 from nao_sim_bridge.sim.simulation import Simulation
 from nao_sim_bridge.sim.snapshot import Snapshot
 
@@ -66,7 +66,7 @@ class HeadTrack:
     def _pose(self, snapshot: Snapshot) -> HeadPose:
         model = self._simulation.model
         odometry = transform(quaternion_matrix(snapshot.odometry.orientation), snapshot.odometry.position)
-        placement = Placement(link_transforms(model, snapshot.positions), odometry)
+        placement = Placement(LinkPoses(model, snapshot.positions), odometry)
         head = placement.links[self._link.parent_link]
         in_robot = np.linalg.inv(space_in_torso(model, ROBOT, placement)) @ head
         up = (quaternion_matrix(snapshot.torso.orientation) @ head[:3, :3])[2]

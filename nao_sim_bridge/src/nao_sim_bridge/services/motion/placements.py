@@ -6,7 +6,7 @@ from typing import Any
 
 from nao_sim_bridge.sim.errors import BadValue
 from nao_sim_bridge.sim.frames import ROBOT, TORSO, WORLD, Placement, commanded
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.sim.kinematics import LinkPoses, quaternion_matrix, transform
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.robot import SimulatedRobot
 from nao_sim_bridge.sim.snapshot import Snapshot
@@ -26,5 +26,5 @@ def space_of(value: Any) -> int:
 def placement(model: RobotModel, robot: SimulatedRobot, now: Snapshot, use_sensors: bool) -> Placement:
     """Where the links are measured to be, or commanded to be."""
     torso = transform(quaternion_matrix(now.odometry.orientation), now.odometry.position)
-    measured = Placement(link_transforms(model, now.positions), torso)
+    measured = Placement(LinkPoses(model, now.positions), torso)
     return measured if use_sensors else commanded(model, robot.joints.commands, measured)

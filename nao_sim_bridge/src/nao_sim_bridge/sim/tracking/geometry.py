@@ -8,7 +8,7 @@ from typing import Sequence, Tuple
 import numpy as np
 
 from nao_sim_bridge.sim.frames import ROBOT, WORLD, Placement, robot_in_world, space_in_torso
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
+from nao_sim_bridge.sim.kinematics import LinkPoses, quaternion_matrix, rpy_matrix, transform
 from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.snapshot import Snapshot
 
@@ -26,7 +26,7 @@ ABOVE = 1e-6
 def placement(model: RobotModel, now: Snapshot) -> Placement:
     """Where the links are by the sensors, and the torso in the world of the robot's odometry."""
     torso = transform(quaternion_matrix(now.odometry.orientation), now.odometry.position)
-    return Placement(link_transforms(model, now.positions), torso)
+    return Placement(LinkPoses(model, now.positions), torso)
 
 
 def in_torso(model: RobotModel, placed: Placement, point: Sequence[float], frame: int) -> Point:
