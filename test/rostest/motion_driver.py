@@ -41,6 +41,7 @@ class MotionDriver(unittest.TestCase):
         client = robot.action_client("own/NaoMotion", NaoMotionAction, limit=LIMIT)
         brought = launched_nodes(DRIVER, "", 0, "/own/")
         wait_until(lambda: brought <= set(rosnode.get_node_names()), LIMIT, "all nodes of the driver")
+        rospy.wait_for_service("/own/wakeup", LIMIT)  # of the part that moves joints
         news = News()
         with news.messages("/own/joint_trajectory/result", JointTrajectoryActionResult) as ends:
             turn = motion("angleInterpolation", names=["HeadYaw"], angles=[0.3], times=[0.5], stiffness=1.0)
