@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from types import SimpleNamespace
 
-from edge import Edge
+from recorded_node import RecordedNode
 from simulator import PATIENCE
 
 from nao_library_modules.robot.robot import Robot
@@ -114,13 +114,15 @@ class ModuleGoals:
     """
 
     def __init__(self, kind, goal, simulator, parameters=None, **options):
-        self.edge = Edge(SimpleNamespace(now=simulator.lockstep.time, wait=simulator.lockstep.wait, simulated=True))
-        self.edge.parameters.update(parameters or {})
+        self.node = RecordedNode(
+            SimpleNamespace(now=simulator.lockstep.time, wait=simulator.lockstep.wait, simulated=True)
+        )
+        self.node.parameters.update(parameters or {})
         self._simulator = simulator
         self._goal = goal
         robot = WatchedRobot(*simulator.address, simulator.lockstep)
         robot.connection.connect(PATIENCE)
-        self.module = kind(*simulator.address, robot=robot, edge=self.edge, **options)
+        self.module = kind(*simulator.address, robot=robot, node=self.node, **options)
 
     def send(self, *functions, **fields):
         """A goal that has begun; let time pass with `robot.advance`, `goal.finish()` or `goal.cancel()`."""

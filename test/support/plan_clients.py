@@ -7,7 +7,7 @@ import threading
 from actionlib_msgs.msg import GoalStatus
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.base.interrupt import Interrupt
+from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.functions.check_service import CHECK, check_request, read_response
 from nao_library_modules.process_modules.robot.action_client import ActionEnd
 from naoqi.errors import NaoError
@@ -30,7 +30,7 @@ class PlanClient:
         return p.retry_after_suspension(lambda: self._once(goal, on_feedback, on_end))
 
     def _once(self, goal, on_feedback, on_end):
-        interrupt, end = Interrupt(), p.Fluent("end", None)
+        interrupt, end = CancellationToken(), p.Fluent("end", None)
 
         def run():
             try:
@@ -68,6 +68,6 @@ def client_of(goals, simulator):
         return ActionEnd(STATES[server.end], server.text, server.result)
 
     def check(asked):
-        return read_response(goals.edge.services[goals.module.chain.server + CHECK](check_request(asked)))
+        return read_response(goals.node.services[goals.module.chain.server + CHECK](check_request(asked)))
 
     return PlanClient(work, check)

@@ -10,8 +10,8 @@ import pytest
 from actionlib_msgs.msg import GoalStatus
 from set_clock import SetClock
 
+from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.clock import WallClock
-from nao_library_modules.base.interrupt import Interrupt
 from nao_library_modules.behaviors import bind, read
 from nao_library_modules.behaviors.language.errors import NoSuchBehavior
 from nao_library_modules.behaviors.language.servers import FunctionTables
@@ -107,7 +107,7 @@ class Run:
     """A program that runs in a thread of its own."""
 
     def __init__(self, program, clients, clock):
-        self.events, self.error, self.interrupt = [], None, Interrupt()
+        self.events, self.error, self.interrupt = [], None, CancellationToken()
         self.execution = Execution(program, clients, clock, self.events.append)
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()

@@ -8,8 +8,8 @@ import pytest
 
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.behaviors import BehaviorError, check, read
-from nao_library_modules.behaviors.language.outlook import outlook_of, waits_of
-from nao_library_modules.behaviors.language.program import Goal, InOrder, Pause, servers_in, walk
+from nao_library_modules.behaviors.language.preview import preview_of, waits_of
+from nao_library_modules.behaviors.language.program import Goal, Pause, SequenceNode, servers_in, walk
 from nao_library_modules.behaviors.language.servers import FunctionTables, NotDescribed
 from nao_library_msgs.msg import ArgumentDescription, FunctionDescription
 from nao_library_msgs.srv import DescribeFunctionsResponse
@@ -119,15 +119,15 @@ def test_steps_and_boxes_are_told_with_their_paths(program, tables, texts):
     texts["inner"] = "help: x\ndo: [{wait: 1}, {behavior: innermost}]"
     texts["innermost"] = "help: x\ndo: [{nao_audio_out.say: {str_param: hi}}]"
     made = program("- {behavior: inner}\n- {repeat: 2, do: [{wait: 0.5}]}")
-    outlook = outlook_of(made, tables)
-    assert outlook.steps == (
+    preview = preview_of(made, tables)
+    assert preview.steps == (
         "1 behavior inner", "1/1 wait 1 s", "1/2 behavior innermost", "1/2/1 nao_audio_out.say: str_param hi",
         "2 repeat 2 times", "2#1.1 wait 0.5 s",
     )  # fmt: skip
-    assert outlook.boxes == ("inner", "innermost")
+    assert preview.boxes == ("inner", "innermost")
     # A box is known by what it is and not by its text.
     told, other = replace(made.parts[0], what="the inner"), replace(made.parts[0], what="behavior of a kind", box="")
-    assert outlook_of(InOrder((), "test", "", "test", nodes=(told, other)), tables).boxes == ("inner", "innermost")
+    assert preview_of(SequenceNode((), "test", "", "test", nodes=(told, other)), tables).boxes == ("inner", "innermost")
 
 
 def others(server, functions):
@@ -148,7 +148,7 @@ def test_servers_and_functions_of_ones_own_may_be_used_where_they_run(library):
         )
         (goal,) = goals(made)
         assert (goal.server, goal.goal.functions[0].lights) == (name, ["FaceLeds"])
-        assert outlook_of(made, running).unchecked == (f"1 {name}.blink: lights [FaceLeds]",)
+        assert preview_of(made, running).unchecked == (f"1 {name}.blink: lights [FaceLeds]",)
 
 
 @pytest.mark.parametrize(

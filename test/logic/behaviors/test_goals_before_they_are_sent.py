@@ -97,7 +97,7 @@ do:
 def test_a_step_that_may_fail_ends_nothing_and_is_told(shipped, tables):
     text = "help: x\ndo:\n- {do: [{NaoLights.on: {lights: [FaceLed]}}, {wait: 0}], on_error: retry 1 skip}"
     facts = outlook_facts("mine", lambda: read(text, "mine"), shipped.load, tables, (), ask_nobody)
-    (told,) = facts.outlook.unchecked
+    (told,) = facts.preview.unchecked
     assert facts.problem == "" and told.startswith("1.1 NaoLights.on: it would be skipped: field lights: unknown light")
 
 

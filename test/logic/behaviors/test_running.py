@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from nao_library_actions.msg import NaoLedFeedback
+from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import RobotLost
-from nao_library_modules.base.interrupt import Interrupt
 from nao_library_modules.behaviors import StepFailed
 from nao_library_modules.behaviors.language.servers import NAMES
 from nao_library_modules.behaviors.run.execution import Execution
@@ -165,7 +165,7 @@ def test_an_interrupt_ends_all_goals_and_one_that_came_before_lets_nothing_begin
     run.interrupt.trigger()
     assert run.states() == {**dict.fromkeys(["1", "1.1", "1.2", "1.3"], "preempted"), "2": "not run"}
     assert isinstance(run.error, PlanFailure) and not clients.running()
-    interrupt = Interrupt()
+    interrupt = CancellationToken()
     interrupt.trigger(RobotLost("10.0.0.7:9559", "gone"))
     execution = Execution(program("- NaoLights.x: {str_param: a}"), clients, WallClock(), lambda event: None)
     with pytest.raises(PlanFailure):

@@ -8,9 +8,9 @@ import pytest
 import rospy
 from rospy import rostime
 
+from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import Preempted, RobotLost
-from nao_library_modules.base.interrupt import Interrupt
 from nao_library_modules.ros.ros_clock import RosClock
 
 LIMIT = 15.0
@@ -19,7 +19,7 @@ LOST = "10.0.0.7:9559", "no answer"
 
 @pytest.fixture
 def interrupt():
-    return Interrupt()
+    return CancellationToken()
 
 
 def test_the_first_reason_counts_until_it_is_cleared_and_stop_outlives_that(interrupt):

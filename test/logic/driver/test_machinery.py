@@ -7,13 +7,13 @@ from unittest.mock import MagicMock
 
 import pytest
 
+from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import BadGoal, Preempted, RobotLost
-from nao_library_modules.base.interrupt import Interrupt
 from nao_library_modules.driver.base import reconfigure
-from nao_library_modules.driver.base.pacer import Pacer
+from nao_library_modules.driver.base.rate import Rate
 from nao_library_modules.driver.base.reconfigure import Field
-from nao_library_modules.ros.goal_crowd import FULL, GoalCrowd, Outcome
+from nao_library_modules.ros.concurrent_action_server import FULL, ConcurrentActionServer, Outcome
 from naoqi.errors import NaoError
 
 PATIENCE = 10.0
@@ -73,44 +73,44 @@ def work():
 
 
 @pytest.fixture
-def crowd(work):
-    return GoalCrowd(frozenset, work)
+def server(work):
+    return ConcurrentActionServer(frozenset, work)
 
 
-def send(crowd, *joints):
+def send(server, *joints):
     handle = Handle(*joints)
-    crowd.on_goal(handle)
+    server.on_goal(handle)
     assert handle.accepted
     return handle
 
 
-def test_goals_for_different_joints_run_side_by_side_and_are_cancelled_apart(crowd, work):
-    head, arm, leg = (send(crowd, joint) for joint in ("HeadYaw", "LArm", "LLeg"))
+def test_goals_for_different_joints_run_side_by_side_and_are_cancelled_apart(server, work):
+    head, arm, leg = (send(server, joint) for joint in ("HeadYaw", "LArm", "LLeg"))
     for joint in ("HeadYaw", "LLeg"):
         work.begun(joint)
     work.begun("LArm").set()
     assert arm.wait() == ("succeeded", "done ('LArm',)", "")
-    assert crowd.counter.report().values["succeeded"] == "1"
-    crowd.on_cancel(head)
+    assert server.counter.report().values["succeeded"] == "1"
+    server.on_cancel(head)
     assert head.wait() == ("canceled", "Preempted ('HeadYaw',)", "canceled")
     assert leg.end is None
-    crowd.interrupt_all(RobotLost("nao:9559", "silence"))
+    server.interrupt_all(RobotLost("nao:9559", "silence"))
     assert leg.wait() == ("aborted", None, "the robot at nao:9559 went away: silence")
 
 
-def test_a_goal_for_the_same_joint_ends_the_older_one_first(crowd, work):
-    old = send(crowd, "HeadYaw", "HeadPitch")
+def test_a_goal_for_the_same_joint_ends_the_older_one_first(server, work):
+    old = send(server, "HeadYaw", "HeadPitch")
     work.begun("HeadYaw", "HeadPitch")
-    new = send(crowd, "HeadYaw")
+    new = send(server, "HeadYaw")
     finish = work.begun("HeadYaw")
     assert old.end == ("canceled", "Replaced ('HeadYaw', 'HeadPitch')", "a newer goal needs HeadYaw")
     finish.set()
     assert new.wait()[0] == "succeeded"
-    last = send(crowd, "HeadYaw", "LArm")
+    last = send(server, "HeadYaw", "LArm")
     work.begun("HeadYaw", "LArm")
-    crowd.close(PATIENCE)
+    server.close(PATIENCE)
     assert last.end == ("canceled", "Preempted ('HeadYaw', 'LArm')", "canceled")
-    assert send(crowd, "HeadYaw").wait() == ("canceled", None, "canceled")  # it takes no more
+    assert send(server, "HeadYaw").wait() == ("canceled", None, "canceled")  # it takes no more
 
 
 def test_goals_that_will_not_do_abort_with_their_text_and_feedback_goes_to_its_goal(work):
@@ -121,18 +121,18 @@ def test_goals_that_will_not_do_abort_with_their_text_and_feedback_goes_to_its_g
         publish(f"half of {joints[0]}")
         return Outcome("done")
 
-    assert send(GoalCrowd(claims, work), "Tail").wait()[0] == "aborted"
-    assert "division by zero" in send(GoalCrowd(frozenset, lambda *_: 1 / 0), "HeadYaw").wait()[2]
-    handle = send(GoalCrowd(frozenset, execute, with_feedback=True), "HeadYaw")
+    assert send(ConcurrentActionServer(claims, work), "Tail").wait()[0] == "aborted"
+    assert "division by zero" in send(ConcurrentActionServer(frozenset, lambda *_: 1 / 0), "HeadYaw").wait()[2]
+    handle = send(ConcurrentActionServer(frozenset, execute, with_feedback=True), "HeadYaw")
     assert handle.wait()[0] == "succeeded" and handle.feedback == ["half of HeadYaw"]
 
 
-def test_goals_that_are_too_many_are_aborted_with_what_is_allowed(crowd, work):
-    goals = [send(crowd, f"joint {n}") for n in range(100)]
-    assert send(crowd, "HeadYaw").wait() == ("aborted", None, FULL) and "100 goals" in FULL
+def test_goals_that_are_too_many_are_aborted_with_what_is_allowed(server, work):
+    goals = [send(server, f"joint {n}") for n in range(100)]
+    assert send(server, "HeadYaw").wait() == ("aborted", None, FULL) and "100 goals" in FULL
     work.begun("joint 0").set()
     goals[0].wait()
-    crowd.close(PATIENCE)
+    server.close(PATIENCE)
     assert all(goal.wait()[0] == "canceled" for goal in goals[1:])
 
 
@@ -151,7 +151,7 @@ class PassingClock:
 
 def test_work_and_delays_do_not_add_up_and_a_long_round_is_made_up_for_once():
     clock = PassingClock()
-    pacer, moments = Pacer(clock, 0.02, 0.0, Interrupt()), []
+    pacer, moments = Rate(clock, 0.02, 0.0, CancellationToken()), []
     for work in (0.0, 0.013, 0.004, 0.019, 0.03, 0.0, 0.0):
         assert pacer.wait()
         moments.append(clock.time - 100.0)

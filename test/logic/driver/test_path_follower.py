@@ -11,8 +11,8 @@ import tf2_ros
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from nav_msgs.msg import Path
 
+from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.errors import BadGoal, Preempted
-from nao_library_modules.base.interrupt import Interrupt
 from nao_library_modules.base.places import ORIGIN, Place
 from nao_library_modules.driver.base.rotation import from_roll_pitch_yaw
 from nao_library_modules.driver.joints import planar_frames
@@ -198,7 +198,7 @@ def point(monkeypatch):
 
 
 def walk(point, course, control, interrupt=None, report=lambda place, aim: None):
-    lead(course, point, lambda: point.place, point, control, interrupt or Interrupt(), report)
+    lead(course, point, lambda: point.place, point, control, interrupt or CancellationToken(), report)
 
 
 def target(*place):
@@ -278,7 +278,7 @@ def test_a_robot_that_does_not_get_there_says_why(point, control, monkeypatch):
 
 
 def test_an_interrupt_ends_it_and_leaves_the_legs_as_they_are(point):
-    interrupt = Interrupt()
+    interrupt = CancellationToken()
 
     def trigger(place, aim):
         if point.time > 2.0:

@@ -30,7 +30,7 @@ from nao_library_modules.driver.walk.footsteps_walk import Step
 from nao_library_modules.driver.walk.gait_config import read_gait_config, read_share
 from nao_library_modules.driver.walk.walk_commands import Target, Velocity
 from nao_library_modules.driver.walk.walk_inhibition import NotInhibited, WalkInhibition
-from nao_library_modules.driver.walk.walk_orders import Order, OrderBox, Stop, WalkEnded
+from nao_library_modules.driver.walk.walk_orders import Mailbox, Order, Stop, WalkEnded
 from nao_library_modules.driver.walk.walk_pace import PACE, REFRESH, WalkPace
 from nao_library_modules.driver.walk.walk_report import WalkJournal
 from nao_library_modules.driver.walk.walk_watchdog import WalkWatchdog
@@ -87,7 +87,7 @@ def test_a_velocity_is_forward_left_and_turning_and_clamped_when_out_of_range():
 
 
 def test_a_stop_is_never_left_out_and_leaves_steps_out_which_queue_up():
-    box, step = OrderBox(), commands.Step("LLeg", 0.02, 0.1, 0.0)
+    box, step = Mailbox(), commands.Step("LLeg", 0.02, 0.1, 0.0)
     wanted = (FORWARD, step, step, Stop(), STAND, FORWARD)
     orders = [Order(command, f"source {n}") for n, command in enumerate(wanted)]
     assert [order.halts for order in orders] == [False, False, False, True, True, False]
@@ -103,7 +103,7 @@ def test_a_stop_is_never_left_out_and_leaves_steps_out_which_queue_up():
 
 
 def test_steps_that_wait_have_a_bound_and_a_stop_comes_through_all_the_same():
-    box, step = OrderBox(), commands.Step("LLeg", 0.02, 0.1, 0.0)
+    box, step = Mailbox(), commands.Step("LLeg", 0.02, 0.1, 0.0)
     orders = [Order(step, "") for _ in range(1001)]
     for order in orders:
         box.put(order)

@@ -21,7 +21,7 @@ from nao_library_modules.process_modules.language.space import head_angles
 from nao_library_modules.process_modules.language.trace_picture import COLORS, draw, main
 from nao_library_modules.process_modules.robot.action_client import PlanActionClient
 from nao_library_modules.process_modules.robot.chains import Chain
-from nao_library_modules.ros.goal_watch import GoalWatch
+from nao_library_modules.ros.goal_tracker import GoalTracker
 from nao_sim_bridge.paths import urdf_file
 from naoqi.errors import NaoError
 
@@ -100,6 +100,6 @@ def test_a_goal_that_takes_too_long_is_cancelled_when_the_server_knows_it_or_has
 
 
 def test_a_goal_of_which_the_server_never_tells_is_cancelled_all_the_same():
-    watch = GoalWatch()
+    watch = GoalTracker()
     goal = FakeGoal(watch.look)
     assert watch.cancel(goal.handle, limit=0.01) and goal.cancelled == [CommState.WAITING_FOR_GOAL_ACK]

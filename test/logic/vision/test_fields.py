@@ -7,8 +7,8 @@ import pytest
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.functions.chain import declared_fields, fields_taken
 from nao_library_modules.vision.capture.settings import SettingFunctions
+from nao_library_modules.vision.capture.snapshots import PictureFunctions
 from nao_library_modules.vision.capture.streaming import StreamingFunctions
-from nao_library_modules.vision.capture.takes import PictureFunctions
 from nao_library_modules.vision.detection.faces import FaceFunctions
 from nao_library_modules.vision.detection.things import DetectionFunctions
 from nao_library_modules.vision.detection.track import TrackingFunctions

@@ -14,17 +14,17 @@ from nao_library_modules.vision.detection.events import (
     FACE,
     MOVEMENT,
     NOTHING,
+    Detection,
     Lens,
     Region,
-    Sight,
-    ball_look,
-    code_sights,
-    face_look,
-    landmark_look,
-    movement_look,
+    ball_detections,
+    code_detections,
+    face_detections,
+    landmark_detections,
+    movement_detections,
 )
 from nao_library_modules.vision.detection.results import seen_messages
-from nao_library_modules.vision.detection.space import Sighting, located, merged
+from nao_library_modules.vision.detection.space import LocalizedDetection, located, merged
 from nao_library_modules.vision.detection.track_plan import aim, fraction, off_axis, search_angles, the_one, travel_time
 
 HFOV, VFOV = math.radians(56.3), math.radians(43.7)
@@ -42,18 +42,18 @@ def face(number, name="", score=0.0, alpha=0.0):
 
 
 def test_what_was_seen_has_its_angles_time_camera_and_poses():
-    look = ball_look(value([0.1, -0.2, 0.03, 0.04], 1))
+    look = ball_detections(value([0.1, -0.2, 0.03, 0.04], 1))
     assert (look.time, look.camera, look.in_robot) == (100.3, 1, (1.0, 2.0, 3.0, 0.0, 0.0, 0.5))
-    (ball,) = look.sights
+    (ball,) = look.detections
     assert (ball.kind, ball.alpha, ball.beta, ball.size_x, ball.size_y) == (BALL, 0.1, -0.2, 0.06, 0.08)
     marks = [[[1, 0.1, 0.2, 0.05, 0.09, 0.3], [114]], [[1, 0, 0, 0.1, 0.1], [64.0]]]
-    look = landmark_look(value(marks, "CameraBottom"))
+    look = landmark_detections(value(marks, "CameraBottom"))
     assert look.camera == 1
-    assert [(s.name, s.alpha, s.beta, s.size_x, s.size_y, s.heading) for s in look.sights] == [
+    assert [(s.name, s.alpha, s.beta, s.size_x, s.size_y, s.heading) for s in look.detections] == [
         ("114", 0.1, 0.2, 0.05, 0.09, 0.3), ("64", 0.0, 0.0, 0.1, 0.1, 0.0),
     ]  # fmt: skip
     clusters = [[[0.2, 0.1], [0.1, -0.1, 0.2, 0.3], share, 0.0] for share in ([0.01, 0.5], 0.4)]
-    assert [(s.kind, s.alpha, s.confidence) for s in movement_look(value(clusters)).sights] == [
+    assert [(s.kind, s.alpha, s.confidence) for s in movement_detections(value(clusters)).detections] == [
         (MOVEMENT, 0.2, 0.5), (MOVEMENT, 0.2, 0.4),
     ]  # fmt: skip
 
@@ -70,7 +70,7 @@ def test_what_was_seen_has_its_angles_time_camera_and_poses():
     ],
 )
 def test_faces_have_the_names_that_are_told_of_them(content, told):
-    assert [(sight.name, sight.confidence) for sight in face_look(value(content)).sights] == told
+    assert [(detection.name, detection.confidence) for detection in face_detections(value(content)).detections] == told
 
 
 def corners(x, y, side, turn=0.0):
@@ -80,7 +80,7 @@ def corners(x, y, side, turn=0.0):
 
 def test_codes_say_something_and_are_somewhere():
     codes = [["hello", corners(160, 120, 30)], ["400", corners(80, 60, 20, math.pi / 4)]]
-    hello, number = code_sights(codes, 320, 240, LENS)
+    hello, number = code_detections(codes, 320, 240, LENS)
     focal = 160 / math.tan(HFOV / 2)
     assert (hello.name, hello.region[:3]) == ("hello", pytest.approx((0.5, 0.5, 30 / 320)))
     assert number.region.width == pytest.approx(20 * math.sqrt(2) / 320)
@@ -95,7 +95,7 @@ def test_codes_say_something_and_are_somewhere():
     assert (unknown.distance, unknown.in_optical) == (None, pytest.approx((0.0, 0.0, 1.0)))
 
 
-@pytest.mark.parametrize("read", [ball_look, landmark_look, face_look, movement_look])
+@pytest.mark.parametrize("read", [ball_detections, landmark_detections, face_detections, movement_detections])
 def test_nothing_is_nothing_and_what_cannot_be_is_told(read):
     assert read([]) == NOTHING
     for wrong in ([1, 2], value([0.1, math.nan, 0, 0]), value([math.nan, 0, 0, 0], 7), value(5)):
@@ -103,11 +103,11 @@ def test_nothing_is_nothing_and_what_cannot_be_is_told(read):
             read(wrong)
     for wrong in ([["x", [[1, 2]] * 3]], [[5, corners(1, 1, 1)]]):
         with pytest.raises(ValueError, match="no code"):
-            code_sights(wrong, 320, 240, LENS)
+            code_detections(wrong, 320, 240, LENS)
 
 
 def test_what_is_wanted():
-    anna, ball = Sight(FACE, "anna", "1", 0.5, 0, 0, 1, 1), Sight(BALL, "", BALL, 0.5, 0, 0, 1, 1)
+    anna, ball = Detection(FACE, "anna", "1", 0.5, 0, 0, 1, 1), Detection(BALL, "", BALL, 0.5, 0, 0, 1, 1)
     assert Wanted(FACE, confidence=0.4).picks(anna) is anna
     assert Wanted(FACE, confidence=0.6).picks(anna).name == "", "with less than asked for it is somebody"
     assert Wanted(FACE, "anna", 0.6).picks(anna) is Wanted(FACE, "ben").picks(anna) is None
@@ -121,7 +121,7 @@ def test_a_ball_is_where_it_is_wherever_it_is_in_the_picture(offset, yaw, down):
     pose = (0.06, 0.01, 0.18, 0.0, down, yaw)
     region = Region(0.5 - left / ahead / math.tan(HFOV / 2) / 2, 0.5 - up / ahead / math.tan(VFOV / 2) / 2, 0.1, 0.1)
     size = 2 * math.asin(0.03 / math.hypot(*offset))
-    seen = located(Sight(BALL, "", BALL, 1.0, 0, 0, size, size), 1, 9.5, region, LENS, 0.03, HERE, pose)
+    seen = located(Detection(BALL, "", BALL, 1.0, 0, 0, size, size), 1, 9.5, region, LENS, 0.03, HERE, pose)
     flat, height = ahead * math.cos(down) + up * math.sin(down), up * math.cos(down) - ahead * math.sin(down)
     c, s = math.cos(yaw), math.sin(yaw)
     place = (0.06 + flat * c - left * s, 0.01 + flat * s + left * c, 0.18 + height)
@@ -139,12 +139,14 @@ def test_a_ball_is_where_it_is_wherever_it_is_in_the_picture(offset, yaw, down):
 def seen(key, name="", x=1.0, y=0.0, alpha=0.0, size=0.1):
     """A face: its number, what it is called, and where it is, m from the feet."""
     where = (x, y, 1.0)
-    sight = Sight(FACE, name, key, 0.9, alpha, 0.0, 0.1, 0.1)
-    return Sighting(sight, 0, 1.0, Region(0.5, 0.5, size, size), 1.0, where, where, where, (0.0, 0.0, 0.5))
+    detection = Detection(FACE, name, key, 0.9, alpha, 0.0, 0.1, 0.1)
+    return LocalizedDetection(
+        detection, 0, 1.0, Region(0.5, 0.5, size, size), 1.0, where, where, where, (0.0, 0.0, 0.5)
+    )
 
 
 def told(pictures):
-    return [(each.sight.name, each.looks) for each in merged(pictures)]
+    return [(each.detection.name, each.looks) for each in merged(pictures)]
 
 
 def test_looks_at_the_same_are_put_together_the_known_first_then_the_most_often_seen():
@@ -156,7 +158,7 @@ def test_looks_at_the_same_are_put_together_the_known_first_then_the_most_often_
     order = [[seen("1", x=3.0)], [seen("2", x=2.0)], [seen("2", x=2.0)], [seen("3", "anna")]]
     assert told(order) == [("anna", 1), ("", 2), ("", 1)]
     (one,) = merged([[seen("1", alpha=alpha)] for alpha in (0.1, 0.4, 0.12)])
-    assert (one.sight.alpha, one.looks) == (0.12, 3)
+    assert (one.detection.alpha, one.looks) == (0.12, 3)
 
 
 def test_the_one_that_is_followed_is_the_largest_first_and_then_the_same():

@@ -122,7 +122,7 @@ def test_recognition_outlives_its_goal_and_its_words_are_published(robot, ears, 
     robot.advance(1.0)
     robot.advance(says(robot, "yes") + 1.5)
     robot.proxy("ALMemory").ping()
-    assert [name for name, value in ears.edge.events if value[:1] == ["yes"]] == [WORDS]
+    assert [name for name, value in ears.node.events if value[:1] == ["yes"]] == [WORDS]
     assert "the recognition is paused: resume comes first" in ears.refused(f("pause"), LISTEN)
     assert robot.value("ALSpeechRecognition/IsRunning") is True
     ears.succeed(f("startRecognition", vocabulary=["stop"], word_spotting=True))
@@ -138,9 +138,9 @@ def test_recognition_outlives_its_goal_and_its_words_are_published(robot, ears, 
     goal = begun(robot, ears, f("listen", timeout=5.0), subscribers)
     told(robot, WORDS, ["now!", 0.7])
     assert goal.finish().result.words == ["now!"]
-    published = len(ears.edge.events)
+    published = len(ears.node.events)
     told(robot, WORDS, ["yes", 0.6])
-    assert len(ears.edge.events) == published
+    assert len(ears.node.events) == published
 
 
 def test_the_end_of_the_server_ends_what_goals_have_left_and_so_does_the_next_of_its_name(
@@ -196,7 +196,7 @@ def test_what_goals_left_going_goes_on_in_the_next_server_when_theirs_died(robot
     assert (file.path, file.rate) == ("left-2.wav", 48000) and file.duration == pytest.approx(1.0, abs=0.1)
     robot.advance(says(robot, "yes") + 1.5)
     robot.proxy("ALMemory").ping()
-    assert [value[0] for name, value in ears.edge.events if name == WORDS] == ["yes"]
+    assert [value[0] for name, value in ears.node.events if name == WORDS] == ["yes"]
     ears.succeed(f("stopRecognition"))
     restored()
 

@@ -89,11 +89,11 @@ def to_lights(behaviors):
     """Somebody sends a goal to the lights, so many s ago; it has ended already if there is a status."""
 
     def send(goal, number, ago=0.0, status=None):
-        id_, edge = GoalID(id=str(number)), behaviors.edge
-        header = Header(stamp=rospy.Time.from_sec(edge.clock.now() - ago))
-        edge.subscribers["NaoLights/goal"](NaoLedActionGoal(header=header, goal_id=id_, goal=goal))
+        id_, node = GoalID(id=str(number)), behaviors.node
+        header = Header(stamp=rospy.Time.from_sec(node.clock.now() - ago))
+        node.subscribers["NaoLights/goal"](NaoLedActionGoal(header=header, goal_id=id_, goal=goal))
         if status is not None:
-            edge.subscribers["NaoLights/result"](NaoLedActionResult(status=GoalStatus(goal_id=id_, status=status)))
+            node.subscribers["NaoLights/result"](NaoLedActionResult(status=GoalStatus(goal_id=id_, status=status)))
 
     return send
 
@@ -265,7 +265,7 @@ def test_behaviours_are_listed_described_and_checked(behaviors):
     assert (n.name, n.type, n.default, n.unit) == ("n", "number", "1", "times")
     assert shown["hello"].shipped and behaviors.succeed(f("describeBehavior", "lights")).memList == [TEXTS["lights"]]
     behaviors.module.store.save("broken", "help: x\ndo: [{wat: 1}]")
-    listed = lambda name: behaviors.edge.services["NaoBehavior/list"](ListBehaviorsRequest(name=name)).behaviors  # noqa: E731
+    listed = lambda name: behaviors.node.services["NaoBehavior/list"](ListBehaviorsRequest(name=name)).behaviors  # noqa: E731
     problems = {info.name: info.problem for info in listed("") if not info.steps}
     assert "did you mean 'wait'" in problems["broken"] and problems["lights"] == ""
     assert list(listed("lights")[0].steps)[0] == "1 repeat 1 times"

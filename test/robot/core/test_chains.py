@@ -182,7 +182,7 @@ def test_a_call_that_fails_cancels_those_beside_it(robot, goals):
 def test_the_end_of_the_node_interrupts_and_cleans_up_before_it_returns(robot, goals, done):
     goal = goals.send(f("borrow", "a", 60.0))
     robot.advance(0.2)
-    for action in goals.edge.shutdown_actions:
+    for action in goals.node.shutdown_actions:
         action()
     assert done == ["borrow a", "return a"]
     assert goal.finish().state == "preempted"

@@ -12,7 +12,7 @@ from nao_library_msgs.srv import DescribeFunctionsRequest
 @pytest.fixture
 def ask(lights):
     def ask(*functions, **fields):
-        return lights.edge.descriptions["NaoLights"](DescribeFunctionsRequest(functions=list(functions), **fields))
+        return lights.node.descriptions["NaoLights"](DescribeFunctionsRequest(functions=list(functions), **fields))
 
     return ask
 

@@ -75,13 +75,13 @@ def events_until(robot, events, last):
 def test_micro_events_are_passed_on_as_well(robot, lights):
     ask(lights, ("subscribeToMicroEvent", "Test/Micro"), ("subscribeToEvent", "Last"))
     robot.ALMemory.raiseMicroEvent("Test/Micro", 1)
-    assert events_until(robot, lights.edge.events, "Last") == [("Test/Micro", 1)]
+    assert events_until(robot, lights.node.events, "Last") == [("Test/Micro", 1)]
 
 
 def test_events_are_passed_on_from_subscription_to_its_end(robot, lights):
     ask(lights, ("subscribeToEvent", "Test/Event"), ("subscribeToEvent", "Test/Event"), ("subscribeToEvent", "Last"))
     robot.ALMemory.raiseEvent("Test/Event", [1, "a"])
-    events = lights.edge.events
+    events = lights.node.events
     assert events_until(robot, events, "Last") == [("Test/Event", [1, "a"])]
     ask(lights, ("unsubscribeToEvent", "Test/Event"), ("unsubscribeToEvent", "Nobody"))
     assert lights.module.events.names == ["Last"]

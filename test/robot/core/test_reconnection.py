@@ -79,7 +79,7 @@ def test_what_a_lost_robot_ends_and_one_that_comes_back_is_told(mortal, tmp_path
     server = lights.module.server
     assert server.end == "aborted" and server.text.startswith("function 1 (on): the robot at 127.0.0.1:")
     assert " went away: " in server.text
-    report = lights.edge.reports["NaoLights robot"]()
+    report = lights.node.reports["NaoLights robot"]()
     assert report.message.startswith("lost: ")
 
     connection = lights.module.robot.connection
@@ -89,7 +89,7 @@ def test_what_a_lost_robot_ends_and_one_that_comes_back_is_told(mortal, tmp_path
     lights.succeed(LedFunction(function="on", lights=["Brain0"]))
     assert "unknown light 'Theirs'" in lights.refused(LedFunction(function="on", lights=["Theirs"]))
     comes(lambda: len(sonar.getSubscribersInfo()) == 1, "the sonars' subscription")
-    comes(lambda: memory.raise_event("A", 1) or ("A", 1) in lights.edge.events, "the event")
+    comes(lambda: memory.raise_event("A", 1) or ("A", 1) in lights.node.events, "the event")
     mortal.server.press(["ChestBoard/Button"])
     mortal.advance(0.3)
     assert runner.started.wait(PATIENCE)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from nao_library_modules.driver.base import demand
+from nao_library_modules.driver.base import lazy_subscription
 from nao_library_modules.driver.camera import camera_stream
 from nao_library_modules.driver.camera.camera_stream import CameraStream
 from nao_library_modules.driver.camera.camera_subscriber import StreamSettings
@@ -23,7 +23,7 @@ NAME = "ros_nao_camera_top"
 def _impatient(monkeypatch):
     """What runs on demand is looked after at once."""
     for name, seconds in (("RETRY", 0.02), ("FIRST_RETRY", 0.02), ("LOOK_PERIOD", 0.02)):
-        monkeypatch.setattr(demand, name, seconds)
+        monkeypatch.setattr(lazy_subscription, name, seconds)
     monkeypatch.setattr(camera_stream, "FAILURE_PAUSE", 0.02)
 
 

@@ -8,9 +8,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.errors import BadGoal, Preempted
-from nao_library_modules.base.interrupt import Interrupt
-from nao_library_modules.driver.base import demand
+from nao_library_modules.driver.base import lazy_subscription
 from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.joints.joint_sensors import JointSensors
 from nao_library_modules.driver.life.blinking import Blinks, blink, fade
@@ -21,7 +21,7 @@ from nao_library_modules.driver.sensors.sonars import Sonars
 from nao_library_modules.driver.sensors.touch_sensors import BUMPER, FEET, HAND, HEAD, TouchSensors
 from nao_library_modules.functions.joint_trajectory import H25_BODY
 from nao_library_modules.nao.body_devices import SONARS as SONAR_KEYS
-from nao_library_modules.ros.goal_crowd import Replaced
+from nao_library_modules.ros.concurrent_action_server import Replaced
 from naoqi.errors import NaoError
 
 CHARGE = "Device/SubDeviceList/Battery/Charge/Sensor/Value"
@@ -59,11 +59,11 @@ def test_angles_are_set_changed_and_moved_to_until_an_interrupt(joints, robot, u
         with pytest.raises(BadGoal) as caught:
             joints.set_angles(names, values, speed, False)
         assert caught.value.field == field
-    move = begin(joints.move, ["Head"], [-0.2, 0.1], 0.5, True, Interrupt())
+    move = begin(joints.move, ["Head"], [-0.2, 0.1], 0.5, True, CancellationToken())
     until(move.done)
     assert move.result().values == pytest.approx([0.2, -0.1], abs=0.03) and not move.result().preempted
     assert tuple(joints.names.body) == tuple(H25_BODY) and joints.joints_of(["Head"]) == ("HeadYaw", "HeadPitch")
-    interrupt = Interrupt()
+    interrupt = CancellationToken()
     move = begin(joints.move, ["HeadYaw"], [1.5], 0.1, False, interrupt)
     until(lambda: angles(robot, "HeadYaw")[0] > 0.4)
     interrupt.trigger()
@@ -81,10 +81,10 @@ def test_stiffnesses_have_a_range_and_trajectories(joints, robot, until, begin):
     with pytest.raises(BadGoal, match="HeadYaw is to be -0.1"):
         joints.stiffness_trajectory(trajectory(["HeadYaw"], (1, [-0.1], ())))
     frames = joints.stiffness_trajectory(trajectory(["Head"], (0.5, [0.25], ())))
-    stiffen = begin(joints.stiffen, frames, Interrupt())
+    stiffen = begin(joints.stiffen, frames, CancellationToken())
     until(stiffen.done, limit=1.0)
     assert stiffen.result().values == pytest.approx([0.25, 0.25]) and not stiffen.result().preempted
-    interrupt = Interrupt()
+    interrupt = CancellationToken()
     stiffen = begin(joints.stiffen, joints.stiffness_trajectory(trajectory(["HeadYaw"], (9, [1.0], ()))), interrupt)
     until(lambda: robot.ALMotion.getStiffnesses("HeadYaw")[0] > 0.4)
     interrupt.trigger()
@@ -103,7 +103,7 @@ def test_a_trajectory_ends_at_its_last_point_counted_from_the_command_and_tells_
     frames = joints.trajectory(
         trajectory(["Head"], (0.5, [0.4, 0.0], velocities), (1, [0.2, -0.2], velocities)), relative=True
     )
-    follow, yaws = begin(joints.follow, frames, Interrupt()), []
+    follow, yaws = begin(joints.follow, frames, CancellationToken()), []
     until(lambda: yaws.append(angles(robot, "HeadYaw")[0]) or follow.done(), limit=4.0, step=0.02)
     assert max(yaws) == pytest.approx(0.5, abs=0.06)
     assert follow.result().values == pytest.approx([0.3, -0.1], abs=0.03)
@@ -143,7 +143,7 @@ def test_a_reading_is_what_the_robot_says_of_joints_inertial_unit_and_odometry(j
 def test_what_is_wanted_is_tried_again_until_it_works_and_started_anew_when_it_died(
     driver_robot, closing, eventually, monkeypatch
 ):
-    monkeypatch.setattr(demand, "LOOK_PERIOD", 0.02)
+    monkeypatch.setattr(lazy_subscription, "LOOK_PERIOD", 0.02)
     calls, failures, alive = [], [NaoError("not yet"), ValueError("a mistake"), NaoError("not yet")], [True]
 
     def start():
@@ -151,7 +151,12 @@ def test_what_is_wanted_is_tried_again_until_it_works_and_started_anew_when_it_d
         if failures:
             raise failures.pop()
 
-    made = closing(demand.Demand(driver_robot, "thing", start, lambda: calls.append("stop"), lambda: alive[0]), 5.0)
+    made = closing(
+        lazy_subscription.LazySubscription(
+            driver_robot, "thing", start, lambda: calls.append("stop"), lambda: alive[0]
+        ),
+        5.0,
+    )
     with pytest.raises(NaoError, match="not yet"):
         made.start_now()
     assert not made.wanted and not made.running
@@ -303,7 +308,7 @@ def test_unwatching_closes_topics_and_too_many_are_refused(robot, driver_robot, 
 
 def test_every_change_of_every_touch_sensor_is_told_once(robot, driver_robot, closing, eventually, monkeypatch):
     told, memory = [], robot.server.memory
-    monkeypatch.setattr(demand, "LOOK_PERIOD", 0.02)
+    monkeypatch.setattr(lazy_subscription, "LOOK_PERIOD", 0.02)
     robot.server.press(["Head/Touch/Front"])
     robot.advance(0.1)
     sensors = closing(TouchSensors(driver_robot, lambda s, now: told.append((s.place, s.number, now)), told.append))
@@ -347,7 +352,7 @@ def eye(robot):
 def test_a_newer_goal_takes_the_eyes_as_they_are_and_a_fade_ends_with_the_interrupt(
     robot, driver_robot, clock, until, begin
 ):
-    interrupt = Interrupt()
+    interrupt = CancellationToken()
     blinks = Blinks([RED], BLACK, 3.0, 0.5, 0.0)
     blinking = begin(blink, driver_robot, blinks, clock, interrupt, lambda colour: None, random.Random(1))
     robot.advance(0.5)
@@ -356,7 +361,7 @@ def test_a_newer_goal_takes_the_eyes_as_they_are_and_a_fade_ends_with_the_interr
     assert blinking.result() is True
     before = eye(robot)
     assert 0.2 < before[1] < 0.8  # on the way from white to red
-    interrupt = Interrupt()
+    interrupt = CancellationToken()
     interrupt.trigger()
     with pytest.raises(Preempted):
         fade(driver_robot, "FaceLeds", GREEN, 10.0, interrupt)

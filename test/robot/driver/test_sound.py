@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.errors import Preempted
-from nao_library_modules.base.interrupt import Interrupt
 from nao_library_modules.driver.audio.audio_directions import SoundDirections
 from nao_library_modules.driver.audio.audio_player import AudioPlayer
 from nao_library_modules.driver.audio.audio_requests import read_recording
@@ -16,7 +16,7 @@ from nao_library_modules.driver.audio.microphone import Microphone
 from nao_library_modules.driver.audio.speech import LONGEST_QUEUE, Speech
 from nao_library_modules.driver.audio.speech_recognition import Heard, Recognition, RecognitionInUse
 from nao_library_modules.driver.audio.speech_settings import SpeechSettings
-from nao_library_modules.driver.base import demand
+from nao_library_modules.driver.base import lazy_subscription
 from naoqi.errors import NaoError, RobotError
 
 LIMIT = 15.0
@@ -27,7 +27,7 @@ BLOCK = 0.17
 def _impatient(monkeypatch):
     """What runs on demand is looked after at once."""
     for name, seconds in (("RETRY", 0.02), ("FIRST_RETRY", 0.02), ("LOOK_PERIOD", 0.02)):
-        monkeypatch.setattr(demand, name, seconds)
+        monkeypatch.setattr(lazy_subscription, name, seconds)
 
 
 def test_blocks_come_while_somebody_listens_with_samples_times_and_places(
@@ -67,7 +67,7 @@ def recording(seconds, name="driver/tone.wav"):
 
 
 def test_a_recording_takes_its_time_of_the_robot_and_plays_as_long(driver_robot, clock, robot, until, begin):
-    player = AudioPlayer(driver_robot, clock, Interrupt())
+    player = AudioPlayer(driver_robot, clock, CancellationToken())
     start = robot.now.time
     record = begin(player.record, recording(2))
     robot.advance(0.5)
@@ -88,7 +88,7 @@ def test_a_recording_takes_its_time_of_the_robot_and_plays_as_long(driver_robot,
 
 
 def test_an_interrupt_ends_what_is_played_and_completes_what_is_recorded(driver_robot, clock, robot, until, begin):
-    interrupt = Interrupt()
+    interrupt = CancellationToken()
     player = AudioPlayer(driver_robot, clock, interrupt)
     record = begin(player.record, recording(20, "cut.wav"))
     robot.advance(1.0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.base.interrupt import Interrupt
 from nao_library_modules.base.places import Place
 from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.walk.footsteps_walk import FootstepWalk
@@ -13,7 +13,7 @@ from nao_library_modules.driver.walk.footsteps_walk import Step as Footstep
 from nao_library_modules.driver.walk.head_scan import AFTERWARDS, DOWN, UP, HeadScan
 from nao_library_modules.driver.walk.moveto_walk import Goal, MoveToWalk
 from nao_library_modules.driver.walk.walk_commands import Step, Target, Velocity
-from nao_library_modules.driver.walk.walk_orders import Overtaken, Stop, WalkEnded
+from nao_library_modules.driver.walk.walk_orders import Stop, Superseded, WalkEnded
 from nao_library_modules.driver.walk.walker import Walker
 from nao_library_modules.ros.health import Level
 from naoqi.errors import NaoError
@@ -115,7 +115,7 @@ def test_a_stop_or_a_newer_command_overtakes_a_target(walker, robot, until):
     target = walker.order(Target(3.0, 0.0, 0.0), "cmd_pose from /me")
     until(lambda: walking(robot), limit=2.0)
     walker.order(FORWARD, "cmd_vel from /you")
-    with pytest.raises(Overtaken, match="cmd_vel from /you came after it"):
+    with pytest.raises(Superseded, match="cmd_vel from /you came after it"):
         done(target)
     robot.advance(0.3)
     assert walking(robot)
@@ -130,7 +130,7 @@ def test_a_robot_that_others_stop_on_the_way_is_told_and_left_alone(walker, robo
     robot.handed_over("ALMotion")
     with pytest.raises(WalkEnded, match="another client or a protection") as caught:
         done(target)
-    assert not isinstance(caught.value, Overtaken)
+    assert not isinstance(caught.value, Superseded)
     robot.advance(1.0)
     assert walking(robot) and walker.watchdog_stops == 0
 
@@ -204,7 +204,7 @@ def footsteps(standing, driver_robot, clock):
 def test_footsteps_that_end_too_early_are_told_and_single_ones_are_added_to_those_before(
     footsteps, robot, driver_robot, until, begin
 ):
-    walk = begin(footsteps.walk, STEPS * 2, 0.25, Interrupt(), lambda made: None)
+    walk = begin(footsteps.walk, STEPS * 2, 0.25, CancellationToken(), lambda made: None)
     until(lambda: walking(robot), limit=2.0)
     stop = robot.post("ALMotion", "stopMove")
     until(walk.done)
@@ -227,7 +227,7 @@ def test_sequences_are_of_left_and_right_in_turn_and_refusals_are_told(footsteps
         footsteps.prepared([STEPS[0], STEPS[0]])
     robot.ALMotion.setStiffnesses("Body", 0.0)
     with pytest.raises(NaoError, match="stiff"):
-        footsteps.walk(STEPS, 0.25, Interrupt(), lambda made: None)
+        footsteps.walk(STEPS, 0.25, CancellationToken(), lambda made: None)
 
 
 @pytest.fixture

@@ -87,7 +87,7 @@ def test_targets_in_the_world_and_in_frames_of_tf(robot, motion, walked):
     robot.finish("ALMotion", "moveTo", 0.05, 0.0, 0.4, after=6.0)
     motion.succeed(f("walkTarget", values=list(start), frame=1))
     walked(0.0)
-    motion.edge.frames["table"] = Place(0.1, 0.05, math.pi / 2)
+    motion.node.frames["table"] = Place(0.1, 0.05, math.pi / 2)
     motion.succeed(f("walk_target", values=[0.05, 0.1, -math.pi / 2], str_param="table"))
     walked(0.0, 0.1)
     points = [start.then(Place(*point)) for point in ((0.05, 0.1, 0.0), (0.05, 0.05, 0.0))]
@@ -198,7 +198,7 @@ def test_who_stops_it_on_the_way_is_not_taken_for_an_arrival(robot, motion, angl
 def test_a_walk_that_a_goal_left_going_ends_with_the_node(robot, motion):
     motion.succeed(f("move", values=[0.05, 0, 0]))
     robot.advance(0.5)
-    ends = threading.Thread(target=lambda: [action() for action in motion.edge.shutdown_actions], daemon=True)
+    ends = threading.Thread(target=lambda: [action() for action in motion.node.shutdown_actions], daemon=True)
     ends.start()
     robot.advance_until(lambda: not ends.is_alive(), 5.0)
     assert robot.ALMotion.moveIsActive() is False

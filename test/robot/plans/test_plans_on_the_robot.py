@@ -51,7 +51,7 @@ class Link:
     def __init__(self, simulator, lights):
         robot = WatchedRobot(*simulator.address, simulator.lockstep)
         self.settings = load_settings()
-        self.clock = lights.edge.clock
+        self.clock = lights.node.clock
         self.answers, self.goals, self.held = {}, {}, {}
         self._motion = robot.proxy("ALMotion")
         self._joints = JointController(robot)

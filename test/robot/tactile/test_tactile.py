@@ -210,7 +210,7 @@ def test_results_and_feedback_have_the_times_of_contact(robot, tactile, press, t
     assert [*first, *times] == pytest.approx([truth[REAR][0], truth[CHEST][0], truth[REAR][0], 0.0], abs=0.010)
 
 
-def test_a_touch_that_began_before_the_wait_has_its_first_contact(robot, tactile, press, truth):
+def test_a_touch_that_began_before_the_wait_has_its_startup_grace(robot, tactile, press, truth):
     press(FRONT, duration=0.6)
     before = truth[FRONT][0]
     (since,) = seconds(*tactile.succeed(f("getTouched")).touch_times)

@@ -14,7 +14,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_modules.functions.server_types import server_type
-from nao_library_modules.ros.goal_watch import GoalWatch
+from nao_library_modules.ros.goal_tracker import GoalTracker
 
 from .random_goals import RandomGoals
 
@@ -82,8 +82,8 @@ class Client:
             return "hung", f"no end within {limit:g} s"
         return NAMES.get(handle.get_terminal_state(), "?"), handle.get_goal_status_text()
 
-    def _send(self, goal: Any) -> tuple[Any, GoalWatch]:
-        watch = GoalWatch()
+    def _send(self, goal: Any) -> tuple[Any, GoalTracker]:
+        watch = GoalTracker()
         return self._client.send_goal(goal, watch.look), watch
 
     def _run(self) -> None:

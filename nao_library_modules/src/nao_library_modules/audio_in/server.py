@@ -99,10 +99,10 @@ class NaoAudioInput(
         super().__init__(ip, port, autostart, launchpath, **options)
         self.heard = Heard()
         self.robot_home = Path(robot_home).expanduser().absolute() if robot_home else None
-        self.speech_onset_delay = self._edge.seconds("speech_onset_delay", 0.0)
-        self.speech_end_delay = self._edge.seconds("speech_end_delay", 0.0)
-        self.subscriber = subscriber_name(str(self._edge.namespace))
-        self.frame_prefix = self._edge.frame_prefix()
+        self.speech_onset_delay = self._node.seconds("speech_onset_delay", 0.0)
+        self.speech_end_delay = self._node.seconds("speech_end_delay", 0.0)
+        self.subscriber = subscriber_name(str(self._node.namespace))
+        self.frame_prefix = self._node.frame_prefix()
         self.saved_sets = set()
         self._took_over = False
         self._left = self.kept.load()

@@ -11,7 +11,7 @@ from typing import Any
 from naoqi.errors import CallCanceled, NaoError
 
 from ..audio.sound_card import NaoAudio
-from ..base.interrupt import Interrupt
+from ..base.cancellation import CancellationToken
 from ..robot.robot import QUICK_ANSWER
 from ..robot.robot_clock import RobotClock
 from ..robot.robot_task import end_call, wait_for_call
@@ -48,7 +48,7 @@ class Sounds(NaoAudio):
     The thread that executes goals begins sounds; the end of the node silences them from another.
     """
 
-    interrupt: Interrupt  # of NaoBasic
+    interrupt: CancellationToken  # of NaoBasic
     clock: Any  # of NaoBasic
     happened: tuple[float, float]  # of NaoBasic
     robot_clock: RobotClock  # of NaoBasic
@@ -167,7 +167,7 @@ class Sounds(NaoAudio):
         if duration <= 0.0:
             wait_for_call(call, self.interrupt)
             return
-        news = Interrupt()
+        news = CancellationToken()
         call.add_done_callback(lambda _: news.trigger())
         with self.interrupt.waking(news.trigger):
             left = began + duration - self.clock.now()

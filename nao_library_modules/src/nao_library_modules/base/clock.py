@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from .interrupt import Interrupt
+from .cancellation import CancellationToken
 
 
 class WallClock:
@@ -20,7 +20,7 @@ class WallClock:
         """Seconds since some fixed moment; never goes backwards."""
         return time.monotonic()
 
-    def wait(self, duration: float, interrupt: Interrupt) -> bool:
+    def wait(self, duration: float, interrupt: CancellationToken) -> bool:
         """Wait, unless interrupted.
 
         Args:

@@ -19,9 +19,9 @@ from .language.reader import NAME
 from .language.servers import NAMES, FunctionTables
 from .language.store import BehaviorStore
 from .run.clients import Clients, GoalLog, describe, running
-from .run.keeping import KeepingFunctions
-from .run.noting import NotingFunctions
+from .run.library_functions import KeepingFunctions
 from .run.recording import Recording
+from .run.recording_functions import NotingFunctions
 from .run.report import Event, Record
 from .run.running import RunningFunctions, info_message, step_message
 
@@ -78,13 +78,13 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
         self.store = BehaviorStore(Path(behavior_dir).expanduser(), config_file(SHIPPED))
         self.tables = FunctionTables(describe, running)
         self.clients = clients or Clients(self.tables.server)
-        self.goals = GoalLog(self._edge, map(self.tables.server, NAMES))
+        self.goals = GoalLog(self._node, map(self.tables.server, NAMES))
         self.recording: Recording | None = None
         self.steps: list[Record] = []
         self.shown: list[Facts] = []
         self.cut_short: list[FunctionResult] = []
         self.replaced = self.ended_behavior = ""
-        self._edge.serve("NaoBehavior/list", ListBehaviors, self.answer_list)
+        self._node.serve("NaoBehavior/list", ListBehaviors, self.answer_list)
         self.serve("NaoBehavior", NaoBehaviorAction)
 
     # The life of a goal
@@ -142,7 +142,7 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
         if request.name or request.text:
             there = request.text or request.name in self.store.names()
             asked = (request.name, request.text, request.file, request.parameters, request.validate)
-            facts = [self.outlook(*asked)] if there else []
+            facts = [self.preview(*asked)] if there else []
         else:
             facts = [facts_of(name, self.store.load, self.tables) for name in self.store.names()]
         return ListBehaviorsResponse(

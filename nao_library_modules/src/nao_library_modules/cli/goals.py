@@ -126,9 +126,9 @@ class GoalRun:
         self._relative = self._name[len(settings.stack.namespace) :]
         kind = settings.stack.describe(server, brief=True).action
         self._action, self._goal = message_class(f"{kind}Action"), message_class(f"{kind}Goal")
-        from ..ros.goal_watch import GoalWatch
+        from ..ros.goal_tracker import GoalTracker
 
-        self._watch = GoalWatch()
+        self._watch = GoalTracker()
         self.last: GoalEnd | None = None
 
     def run(self, functions: Sequence[Any]) -> GoalEnd:

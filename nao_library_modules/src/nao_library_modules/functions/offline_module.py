@@ -14,7 +14,7 @@ from .known_robot import KnownRobot
 
 def offline_module(kind: type) -> Any:
     """A module of a class of this package; it connects to nothing and serves nothing."""
-    return kind("127.0.0.1", 9559, robot=KnownRobot(), edge=_OfflineEdge())
+    return kind("127.0.0.1", 9559, robot=KnownRobot(), node=_OfflineNode())
 
 
 class _OfflineServer:
@@ -24,8 +24,8 @@ class _OfflineServer:
         """There is nothing to start."""
 
 
-class _OfflineEdge:
-    """Takes the place of `RosEdge`: what is published goes nowhere, what is served is never asked."""
+class _OfflineNode:
+    """Takes the place of `ServerNode`: what is published goes nowhere, what is served is never asked."""
 
     namespace = "/"
 

@@ -11,8 +11,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ..base.cancellation import CancellationToken
 from ..base.errors import BadGoal
-from ..base.interrupt import Interrupt
 from ..robot.robot import CLEAN_UP_LIMIT, wait_for_calls
 from .chain import FunctionChain, seconds
 
@@ -36,7 +36,7 @@ class FunctionRunner:
             clock: WallClock or RosClock.
         """
         self.clock = clock
-        self.interrupt = Interrupt()
+        self.interrupt = CancellationToken()
         self.chain = FunctionChain(function_table)
         # Of each thread its own, so that functions may also be run outside of a goal.
         self._clean_up = threading.local()
@@ -45,7 +45,7 @@ class FunctionRunner:
     @contextmanager
     def asking(self) -> Iterator[None]:
         """In this thread, let calls to the robot go on whatever becomes of the goal that runs: they ask for facts."""
-        self._asking.interrupt = Interrupt()
+        self._asking.interrupt = CancellationToken()
         try:
             yield
         finally:

@@ -8,8 +8,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ..base.cancellation import CancellationToken
 from ..base.errors import MotionStopped
-from ..base.interrupt import Interrupt
 from .facts import MOTION, MotionAccess
 from .plan import MotionPlan
 from .walk_plan import ARMS
@@ -33,7 +33,7 @@ class MotionBase:
     """
 
     robot: Any  # Robot
-    interrupt: Interrupt
+    interrupt: CancellationToken
     call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts
     call_now: Callable[..., Any]  # of NaoBasic: a call that it does not
     access: MotionAccess

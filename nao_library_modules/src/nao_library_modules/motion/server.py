@@ -112,7 +112,7 @@ class NaoMotion(
             options: As NaoBasic takes them.
         """
         super().__init__(ip, port, autostart, launchpath or DRIVER, **options)
-        driver = self._edge.driver() if by_driver else None
+        driver = self._node.driver() if by_driver else None
         if driver is not None:
             self.robot = RobotByDriver(self.robot, driver)
             self.driver_poses, self.take_driver_pose = driver.poses, driver.take_pose
@@ -153,7 +153,7 @@ class NaoMotion(
 
     def locate(self, frame: str) -> Place:
         """Where a frame of /tf is, seen from the robot."""
-        return self._edge.locate(frame)
+        return self._node.locate(frame)
 
     def begin_chain(self) -> None:
         """Forget what the last chain did."""

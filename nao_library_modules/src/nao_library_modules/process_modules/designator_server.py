@@ -11,11 +11,11 @@ from std_msgs.msg import String
 from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorFeedback, PerformDesignatorResult
 
 from ..base.answers import json_of
-from ..base.interrupt import Interrupt
+from ..base.cancellation import CancellationToken
 from ..base.yaml_values import Budget
 from ..processes.closing import close_all
 from ..ros.action_server import ActionServer
-from ..ros.goal_crowd import GoalCrowd, Outcome
+from ..ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from .core.registry import perform, start_process_modules, stop_process_modules
 from .designators.designator import Designator, designator, read_yaml, require_short, text_budget
 from .language.control import do, top_level
@@ -45,17 +45,17 @@ class DesignatorServer:
     def __init__(self) -> None:
         """Start the modules and offer the action."""
         self._robot = this_robot()
-        self._closing = Interrupt()
+        self._closing = CancellationToken()
         start_process_modules(*make_process_modules(self._robot))
-        self._crowd = GoalCrowd(lambda _: frozenset(), self._perform_goal, with_feedback=True)
-        ActionServer(ACTION, PerformDesignatorAction, self._crowd.on_goal, self._crowd.on_cancel, False).start()
+        self._server = ConcurrentActionServer(lambda _: frozenset(), self._perform_goal, with_feedback=True)
+        ActionServer(ACTION, PerformDesignatorAction, self._server.on_goal, self._server.on_cancel, False).start()
         rospy.Subscriber(TOPIC, String, self._on_text, queue_size=100)
 
     def close(self) -> None:
         """End what is done, and the modules."""
-        close_all(self._closing.trigger, lambda: self._crowd.close(SHUTDOWN_LIMIT), stop_process_modules)
+        close_all(self._closing.trigger, lambda: self._server.close(SHUTDOWN_LIMIT), stop_process_modules)
 
-    def _perform_goal(self, goal: Any, interrupt: Interrupt, publish: Callable[[Any], None]) -> Outcome:
+    def _perform_goal(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> Outcome:
         def tell(task: Task) -> None:
             publish(PerformDesignatorFeedback(task=task.path, state=task.state.value))
 
@@ -67,7 +67,7 @@ class DesignatorServer:
         told = answer.told() if isinstance(answer, Grip) else answer
         return Outcome(PerformDesignatorResult(result=json_of(told)))
 
-    def _perform(self, desig: Designator, interrupt: Interrupt, tell: Callable[[Task], None]) -> Any:
+    def _perform(self, desig: Designator, interrupt: CancellationToken, tell: Callable[[Task], None]) -> Any:
         roots: list[Task] = []
 
         def see(task: Task) -> None:

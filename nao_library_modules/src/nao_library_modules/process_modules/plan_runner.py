@@ -14,7 +14,7 @@ from std_srvs.srv import Empty
 
 from ..base.whole_file import NoPlaceForFile, require_new, write_whole
 from ..owners.line import OwnerLine
-from ..ros.goal_watch import GoalWatch
+from ..ros.goal_tracker import GoalTracker
 from ..ros.node import own_goals, robot_address, robot_beside
 from .core.registry import with_process_modules_running
 from .language.control import Branch, top_level
@@ -64,7 +64,7 @@ class PlanRun:
         Raises:
             PlanFailure: What it failed with.
         """
-        if GoalWatch.owners is None:
+        if GoalTracker.owners is None:
             ip, port = robot_address(argparse.Namespace(pip=None, pport=None), robot_beside)
             own_goals(OwnerLine(f"{ip}:{port}"))
         topic = PlanTopic()

@@ -9,7 +9,7 @@ from typing import Any
 import naoqi
 from naoqi.errors import NaoError
 
-from ..base.interrupt import Interrupt
+from ..base.cancellation import CancellationToken
 from ..owners.line import OwnerLine
 
 # A cancelled call ends at once on a robot that knows cancellation. One that does not must not hold up
@@ -82,7 +82,7 @@ def _error_of(call: Any) -> NaoError | None:
     return None
 
 
-def wait_for_calls(calls: Sequence[Any], interrupt: Interrupt) -> list[Any]:
+def wait_for_calls(calls: Sequence[Any], interrupt: CancellationToken) -> list[Any]:
     """Wait until all calls are done, one fails, or an interrupt comes; then cancel those still running.
 
     Args:

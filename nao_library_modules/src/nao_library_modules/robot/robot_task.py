@@ -9,7 +9,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..base.interrupt import Interrupt
+from ..base.cancellation import CancellationToken
 from .robot import CANCEL_LIMIT, QUICK_ANSWER
 
 log = logging.getLogger(__name__)
@@ -18,7 +18,7 @@ CANCEL_PATIENCE = 0.1
 """s that a cancelled call has to end by itself, as it does on a robot that knows cancellation."""
 
 
-def run_task(call: Any, interrupt: Interrupt, stop: Callable[[], None]) -> Any:
+def run_task(call: Any, interrupt: CancellationToken, stop: Callable[[], None]) -> Any:
     """Wait for a call; an interrupt cancels it, and stops what it started if that is not enough.
 
     Args:
@@ -56,7 +56,7 @@ def end_call(call: Any, stop: Callable[[], None]) -> None:
         log.warning("what was interrupted goes on: the robot did not end it within %g s", CANCEL_LIMIT)
 
 
-def wait_for_call(call: Any, interrupt: Interrupt, limit: float | None = None) -> bool:
+def wait_for_call(call: Any, interrupt: CancellationToken, limit: float | None = None) -> bool:
     """Wait until a call is over or an interrupt comes; the call goes on in any case.
 
     Args:

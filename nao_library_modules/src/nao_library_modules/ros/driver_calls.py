@@ -14,7 +14,7 @@ import rospy
 
 from naoqi.errors import NaoError
 
-from .goal_watch import GoalWatch, server_connection
+from .goal_tracker import GoalTracker, server_connection
 
 LOOK_PERIOD = 0.005
 """s of this computer between two looks whether a server is connected."""
@@ -120,7 +120,7 @@ class GoalCall(DriverCall):
         self.server = server_connection(action.client)
         self._action = action
         self._read = read
-        self._watch = GoalWatch()
+        self._watch = GoalTracker()
         self._handle: Any = None
 
     def send(self, goal: Any) -> None:

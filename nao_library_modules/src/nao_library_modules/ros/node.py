@@ -15,11 +15,11 @@ from naoqi.errors import NaoError
 from ..owners.host import watch_owners
 from ..owners.line import OwnerLine
 from ..processes.closing import exit_in_time
-from .first_contact import require_patience
-from .goal_watch import GoalWatch
+from .goal_tracker import GoalTracker
 from .master_watch import MasterWatch
 from .node_place import TAKEN, NodePlace, wait_for_name
-from .ros_edge import forward_logs
+from .server_node import forward_logs
+from .startup_grace import require_patience
 
 DEFAULT_IP = "127.0.0.1"
 DEFAULT_PORT = 9559
@@ -167,7 +167,7 @@ def own_as_node(robot: Any, watches: bool) -> None:
 def own_goals(owners: OwnerLine) -> None:
     """Own the goals that this process sends, under the name of its node: they are cancelled if it dies."""
     owners.name = rospy.get_name()
-    GoalWatch.owners = owners
+    GoalTracker.owners = owners
 
 
 def end_in_time() -> None:

@@ -116,7 +116,7 @@ class NodeInterface:
         Args:
             name: Name of the action.
             kind: Its type.
-            goals: Takes goals and cancels: a GoalCrowd.
+            goals: Takes goals and cancels: a ConcurrentActionServer.
         """
         server = ActionServer(self.resolve(name), kind, goals.on_goal, goals.on_cancel, auto_start=False)
         server.start()

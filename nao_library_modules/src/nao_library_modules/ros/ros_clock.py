@@ -5,7 +5,7 @@ from __future__ import annotations
 import rospy
 from rospy.rostime import get_rostime_cond, is_wallclock
 
-from ..base.interrupt import Interrupt
+from ..base.cancellation import CancellationToken
 
 
 class RosClock:
@@ -20,7 +20,7 @@ class RosClock:
         """ROS time in s."""
         return rospy.get_time()
 
-    def wait(self, duration: float, interrupt: Interrupt) -> bool:
+    def wait(self, duration: float, interrupt: CancellationToken) -> bool:
         """Wait, unless interrupted.
 
         Args:
@@ -35,7 +35,7 @@ class RosClock:
         return self._wait_for_clock_messages(duration, interrupt)
 
     @staticmethod
-    def _wait_for_clock_messages(duration: float, interrupt: Interrupt) -> bool:
+    def _wait_for_clock_messages(duration: float, interrupt: CancellationToken) -> bool:
         # rospy notifies its condition on every message of /clock. Nobody calls actionlib while holding its
         # lock, so an interrupt that comes under actionlib's lock may notify it as well.
         condition = get_rostime_cond()

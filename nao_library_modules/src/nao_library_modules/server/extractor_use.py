@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from naoqi.errors import NaoError
 
-from ..base.interrupt import Interrupt
+from ..base.cancellation import CancellationToken
 from ..functions.memory_functions import MEMORY
 from ..robot.event_relay import EventRelay
 from ..robot.robot import CLEAN_UP_LIMIT
@@ -42,7 +42,7 @@ class Events:
     Told from threads of libqi, asked from the one that executes goals.
     """
 
-    def __init__(self, clock: Any, interrupt: Interrupt) -> None:
+    def __init__(self, clock: Any, interrupt: CancellationToken) -> None:
         """Nothing has happened yet.
 
         Args:
@@ -51,7 +51,7 @@ class Events:
         """
         self._clock = clock
         self._interrupt = interrupt
-        self._news = Interrupt()
+        self._news = CancellationToken()
         self._events: deque[Event] = deque()
 
     def tell(self, name: str, value: Any) -> None:
@@ -92,7 +92,7 @@ class ExtractorUse:
 
     robot: Any  # Robot
     robot_clock: RobotClock
-    interrupt: Interrupt
+    interrupt: CancellationToken
     clock: Any  # WallClock or RosClock
     call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts
     call_now: Callable[..., Any]  # of NaoBasic: a call that it does not

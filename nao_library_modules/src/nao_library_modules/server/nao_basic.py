@@ -31,8 +31,8 @@ from ..processes.supervisor import Supervisor
 from ..robot.event_relay import EventRelay
 from ..robot.robot import Robot
 from ..robot.robot_clock import RobotClock
-from ..ros.first_contact import PATIENCE, FirstContact
 from ..ros.health import GoalCounter, connection_report, launch_report
+from ..ros.startup_grace import PATIENCE, StartupGrace
 
 log = logging.getLogger(__name__)
 
@@ -107,7 +107,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         autostart: bool = False,
         launchpath: LaunchPath | None = None,
         robot: Any = None,
-        edge: Any = None,
+        node: Any = None,
         patience: float = PATIENCE,
         kept: Any = None,
     ) -> None:
@@ -119,7 +119,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             autostart: Whether to start the launch file at once.
             launchpath: `(package, launchfile)` that belongs to the module; the attribute may be set at any time.
             robot: Proxies and connection, where not those of ip and port.
-            edge: ROS side, where not that of this process's node.
+            node: ROS side, where not that of this process's node.
             patience: s from now on for which goals wait for a robot that has never been reached.
             kept: Where what goals set up is kept beyond the death of the node, where not in the file of the node.
 
@@ -128,10 +128,10 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         """
         if not isinstance(autostart, bool):
             raise NaoError(f"autostart is {autostart!r}: True or False")
-        if edge is None:
-            from ..ros.ros_edge import RosEdge
+        if node is None:
+            from ..ros.server_node import ServerNode
 
-            edge = RosEdge()
+            node = ServerNode()
         self.ip = ip
         self.port = port
         self.launchpath = launchpath
@@ -139,16 +139,16 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         self.server: Any = None
         self._served: Any = None  # the server that `serve` made
         self._heeded: Any = None  # the server of the module's own whose preemption ends waits
-        super().__init__(self.function_table, edge.clock)
-        self.robot_clock = RobotClock(self.robot, edge.clock)
+        super().__init__(self.function_table, node.clock)
+        self.robot_clock = RobotClock(self.robot, node.clock)
         self.happened = (0.0, 0.0)
         self._remarks: list[str] = []
-        self.events = EventRelay(lambda: self.robot.proxy(MEMORY), edge.event_sink())
+        self.events = EventRelay(lambda: self.robot.proxy(MEMORY), node.event_sink())
         self._failures: list[Outcome] = []
-        self._edge = edge
-        self.kept = kept or edge.kept()
+        self._node = node
+        self.kept = kept or node.kept()
         self._goals = GoalCounter()
-        self._first_contact = FirstContact(self.robot, patience)
+        self._startup_grace = StartupGrace(self.robot, patience)
         self._progress = (0, "", 0)  # index of the function that began last, its name, how many the chain has
         self._running: tuple[tuple[str, ...], int] = ((), 0)  # functions of the goal that runs, and the one that does
         self._idle = threading.Event()
@@ -158,7 +158,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         self._launched: LaunchPath | None = None
         self._diagnostics: Any = None
         self.robot.connection.add_listener(self._connection_changed)
-        edge.on_shutdown(self.shut_down)
+        node.on_shutdown(self.shut_down)
         if autostart:
             self.start_launch()
 
@@ -200,7 +200,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         """
         self.chain.server = name
         self._feedback_type = type(action().action_feedback.feedback)
-        self.server = self._served = self._edge.action_server(name, action, self._execute, self.interrupt.trigger)
+        self.server = self._served = self._node.action_server(name, action, self._execute, self.interrupt.trigger)
         self.server.start()
         reports = {
             f"{name} robot": lambda: connection_report(self.robot.address, self.robot.connection),
@@ -208,10 +208,10 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         }
         if self.launchpath is not None:
             reports[f"{name} launch file"] = lambda: launch_report(self._launch)
-        self._diagnostics = self._edge.publish_diagnostics(self.robot.address, reports)
+        self._diagnostics = self._node.publish_diagnostics(self.robot.address, reports)
         description = DescribeService(lambda: self._description(action), self.robot, lambda: self._running)
-        self._edge.serve_description(name, description.answer)
-        self._edge.serve(name + CHECK, CheckGoals, CheckService(self, action).answer)
+        self._node.serve_description(name, description.answer)
+        self._node.serve(name + CHECK, CheckGoals, CheckService(self, action).answer)
         self._tell_ready()
 
     def _description(self, action: type) -> Description:
@@ -232,7 +232,7 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             BadLaunchPath: If `launchpath` names no launch file; what runs goes on.
         """
         if self._launch is None or self._launched != self.launchpath:
-            new = launch_supervisor(self.launchpath, self.ip, self.port, self._edge.namespace)
+            new = launch_supervisor(self.launchpath, self.ip, self.port, self._node.namespace)
             self.stop_launch()
             self._launch, self._launched = new, self.launchpath
         self._launch.start()
@@ -436,14 +436,14 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         """Wait for a robot that has never been there; a goal that is wrong in any case is not kept waiting."""
         messages = getattr(goal, goal.__slots__[0])
         names = tuple(message.function for message in messages)
-        if self.without_robot.issuperset(names) or not self._first_contact.expected:
+        if self.without_robot.issuperset(names) or not self._startup_grace.expected:
             return
         try:
             self.chain.bind(messages)
         except NaoError:
             return  # the chain is read once more, and then it is told
         self._running = (names, 0)
-        self._first_contact.wait(self.interrupt, lambda awaited: self._tell_wait(awaited, len(messages)))
+        self._startup_grace.wait(self.interrupt, lambda awaited: self._tell_wait(awaited, len(messages)))
 
     def _run_chain(self, goal: Any, outcomes: list[Outcome]) -> tuple[str, str]:
         messages = getattr(goal, goal.__slots__[0])

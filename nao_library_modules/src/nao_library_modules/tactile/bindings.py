@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 from naoqi.errors import NaoError
 
-from ..base.interrupt import Interrupt
+from ..base.cancellation import CancellationToken
 from ..nao.touch_names import BY_EVENT, Sensor, names_of
 from ..robot.event_relay import EventRelay
 from ..server.extractor_use import Event
@@ -108,7 +108,7 @@ class TouchBindings:
         self._lock = threading.Lock()
         self._entries: dict[str, _Entry] = {}
         self._touches: deque[Event] = deque()
-        self._news = Interrupt()
+        self._news = CancellationToken()
         self._thread: threading.Thread | None = None
         self._closed = False
 

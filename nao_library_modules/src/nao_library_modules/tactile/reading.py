@@ -29,8 +29,8 @@ from ..nao.body_devices import (
 )
 from ..nao.touch_names import Sensor, sensors_of
 from ..server.extractor_use import Event, ExtractorUse
-from .felt import Felt
 from .fields import FEET, Bumpers, Enable, Feet, Revert, Sensors, Sonars, Warm, words_of
+from .measurements import Measurements
 from .touch import Contact
 
 SONAR = "ALSonar"
@@ -54,17 +54,17 @@ class ReadingFunctions(ExtractorUse):
         sonar_on: Whether a goal has switched the sonars on for longer.
     """
 
-    felt: Felt
+    felt: Measurements
     sonar_on: bool
     after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
 
     def get_touched(self, sensors: Sensors) -> list[str]:
         """Which sensors are touched now."""
-        return self.felt.touch(self.contacts(sensors_of(sensors)))
+        return self.measurements.touch(self.contacts(sensors_of(sensors)))
 
     def get_bumpers(self, sensors: Bumpers) -> list[str]:
         """Which bumpers are pressed now."""
-        return self.felt.touch(self.contacts(sensors_of(sensors or ["bumpers"])))
+        return self.measurements.touch(self.contacts(sensors_of(sensors or ["bumpers"])))
 
     def get_sonar(self, sensors: Sonars) -> list[float]:
         """How far away what the sonars hear is, m, infinite if they hear nothing; they are switched on for it."""
@@ -75,7 +75,7 @@ class ReadingFunctions(ExtractorUse):
             with self.subscribed(SONAR, "read"):
                 self.wait(SONAR_START)
                 distances = self.sonar(sides)
-        self.felt.sonars += zip(sides, distances)
+        self.measurements.sonars += zip(sides, distances)
         return distances
 
     def get_fsr(self, sensors: Feet) -> list[float]:
@@ -85,7 +85,7 @@ class ReadingFunctions(ExtractorUse):
             names += [f"{foot} {_words(corner)}" for corner in CORNERS] + [foot]
             keys += weight_keys(foot.split()[0])
         weights = [_number(value) for value in self._values(keys)]
-        self.felt.weights += zip(names, weights)
+        self.measurements.weights += zip(names, weights)
         return weights
 
     def get_battery(self) -> float:
@@ -99,7 +99,7 @@ class ReadingFunctions(ExtractorUse):
         state.design_capacity = math.nan
         state.power_supply_technology = BatteryState.POWER_SUPPLY_TECHNOLOGY_LION
         state.power_supply_status = _supply(status, state.current)
-        self.felt.batteries.append(state)
+        self.measurements.batteries.append(state)
         return _number(charge)
 
     def get_temperatures(self, sensors: Warm) -> list[float]:
@@ -109,7 +109,9 @@ class ReadingFunctions(ExtractorUse):
         devices = [{HEAD: "Head", PACK: "Battery"}.get(name, name) for name in names]
         warmths = [_number(value) for value in self._values([temperature_key(device) for device in devices])]
         states = self._values([sensor_key(f"{device}/Temperature", "Status") for device in devices])
-        self.felt.heat += [(name, warmth, int(state or 0)) for name, warmth, state in zip(names, warmths, states)]
+        self.measurements.heat += [
+            (name, warmth, int(state or 0)) for name, warmth, state in zip(names, warmths, states)
+        ]
         return warmths
 
     def set_sonar_enabled(self, enable: Enable, revert: Revert) -> None:

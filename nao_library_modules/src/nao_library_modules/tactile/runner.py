@@ -14,7 +14,7 @@ from nao_library_actions.msg import NaoBehaviorAction, NaoBehaviorGoal
 from nao_library_msgs.msg import BehaviorFunction
 from naoqi.errors import NaoError
 
-from ..ros.goal_watch import GoalWatch
+from ..ros.goal_tracker import GoalTracker
 
 SERVER = "NaoBehavior"
 SERVER_LIMIT = 5.0
@@ -52,7 +52,7 @@ class BehaviorClient:
         if not client.wait_for_server(rospy.Duration(SERVER_LIMIT)):
             raise NaoError(f"there is no server {rospy.resolve_name(self._name)}: nobody can run {behavior}")
         function = BehaviorFunction(function="runBehavior", str_param=behavior, parameters=list(parameters))
-        watch = GoalWatch()
+        watch = GoalTracker()
         key = object()
 
         def changed(handle: Any) -> None:

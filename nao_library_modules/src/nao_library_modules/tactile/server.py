@@ -23,7 +23,6 @@ from ..server.extractor_use import subscriber_name
 from ..server.nao_basic import NaoBasic
 from .bindings import Binding, BindingState, TouchBindings
 from .checks import check_binding, check_removal
-from .felt import Felt
 from .fields import (
     BehaviorName,
     Cooldown,
@@ -36,6 +35,7 @@ from .fields import (
     TouchTime,
     wanted_of,
 )
+from .measurements import Measurements
 from .reading import ReadingFunctions
 from .touch import Wanted
 from .waiting import WaitingFunctions
@@ -89,9 +89,9 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
             runner = BehaviorClient()
         self._restoring = threading.Lock()
         super().__init__(ip, port, autostart, launchpath, **options)
-        self.felt = Felt()
+        self.measurements = Measurements()
         self.sonar_on = False
-        self.subscriber = subscriber_name("NaoTactile", str(self._edge.namespace))
+        self.subscriber = subscriber_name("NaoTactile", str(self._node.namespace))
         event_time = lambda event: self.robot_clock.event_time(self.call_now, *event)  # noqa: E731
         self.bindings = TouchBindings(lambda: self.robot.proxy(MEMORY), runner, self.clock, event_time)
         self._unrestored = self.kept.load() or ()
@@ -122,13 +122,13 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
         self._restore()
         self.bindings.bind(binding, self.contacts(wanted))
         self._keep()
-        self.felt.bindings += [_message(*each) for each in self.bindings.states() if each[0].name == name]
+        self.measurements.bindings += [_message(*each) for each in self.bindings.states() if each[0].name == name]
         return name
 
     def list_on_touch(self) -> list[str]:
         """Names of the links between touches and behaviours; what they are is in the result."""
         self._restore()
-        self.felt.bindings += [_message(*each) for each in self.bindings.states()]
+        self.measurements.bindings += [_message(*each) for each in self.bindings.states()]
         return self.bindings.names
 
     @checked_by(check_removal)
@@ -144,7 +144,7 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
 
     def begin_chain(self) -> None:
         """Forget what the last chain felt."""
-        self.felt = Felt()
+        self.measurements = Measurements()
 
     def tell(
         self, status: str, touched: Sequence[str] = (), sonar: Sequence[float] = (), stamp: float | None = None
@@ -162,7 +162,7 @@ class NaoTactile(NaoBasic, WaitingFunctions, ReadingFunctions):
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add what was felt."""
         super().fill_result(result, outcomes)
-        self.felt.fill(result)
+        self.measurements.fill(result)
 
     def argument_choices(self, function: str, field: str) -> Sequence[str]:
         """Names of the links that can be removed, for the description of the functions."""

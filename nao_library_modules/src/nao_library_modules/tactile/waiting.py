@@ -85,7 +85,7 @@ class WaitingFunctions(ReadingFunctions):
             min((contact.begin for contact in contacts), default=0.0),
             max(ends) if ends and all(ends) else 0.0,
         )
-        return self.felt.touch(contacts)
+        return self.measurements.touch(contacts)
 
     def wait_for_chest_button(self, count: Clicks, timeout: Timeout) -> list[str]:
         """Wait until the chest button is clicked once, twice or three times; answers chest."""
@@ -122,7 +122,7 @@ class WaitingFunctions(ReadingFunctions):
                 self.tell(WAITING, sonar=[distances.get(side, math.inf) for side in SIDES])
                 near = {side: metres for side, metres in distances.items() if metres < limit}
                 if near or self.clock.now() >= end:
-                    self.felt.sonars += near.items()
+                    self.measurements.sonars += near.items()
                     self.happened = (now if near else 0.0, 0.0)
                     if not near:
                         self.remark(f"nothing nearer than {limit:g} m within {timeout_of(timeout):g} s")
@@ -137,7 +137,7 @@ class WaitingFunctions(ReadingFunctions):
             for event in events.until(end):
                 if event.value:
                     self.happened = (self.event_time(event), 0.0)
-                    self.felt.fell = True
+                    self.measurements.fell = True
                     return True
         self.remark(f"no fall within {timeout_of(timeout):g} s")
         return False

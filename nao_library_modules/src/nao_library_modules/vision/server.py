@@ -16,9 +16,9 @@ from ..server.nao_basic import NaoBasic
 from .capture.files import DEFAULT_RECORD_DIR, VisionFiles
 from .capture.jobs import VisionThreads
 from .capture.settings import SettingFunctions
+from .capture.snapshots import PictureFunctions
 from .capture.streaming import StreamingFunctions
 from .capture.taken import Taken
-from .capture.takes import PictureFunctions
 from .detection.faces import FaceFunctions
 from .detection.results import Seen
 from .detection.things import TYPED, DetectionFunctions
@@ -118,8 +118,8 @@ class NaoVision(
         self.active_camera = "top"
         self.seen = Seen()
         self.taken = Taken()
-        self.subscriber = subscriber_name("NaoVision", str(self._edge.namespace))
-        self.frame_prefix = self._edge.frame_prefix()
+        self.subscriber = subscriber_name("NaoVision", str(self._node.namespace))
+        self.frame_prefix = self._node.frame_prefix()
         self._took_over = False
         self._brought: Any = None  # the launch file that nodes and images here are of
         self._nodes: frozenset[str] = frozenset()
@@ -140,7 +140,7 @@ class NaoVision(
         if tuple(self.launchpath) == CAMERAS or topic != PARAMETERS[f"camera_{camera}"]:
             return topic
         if self._brought != self.launchpath:
-            self._nodes = launched_nodes(self.launchpath, self.ip, self.port, str(self._edge.namespace))
+            self._nodes = launched_nodes(self.launchpath, self.ip, self.port, str(self._node.namespace))
             self._brought, self._images = self.launchpath, []
         place, give_up = list(self.camera_topics).index(camera), time.monotonic() + IMAGES_LIMIT
         while True:

@@ -28,7 +28,7 @@ from .model import (
     path_text,
 )
 from .parameters import arguments
-from .program import AllAtOnce, Goal, InOrder, Meeting, Node, OnTimeline, Pause, Rounds, servers_in
+from .program import BarrierNode, Goal, Node, OnTimeline, ParallelNode, Pause, RepeatNode, SequenceNode, servers_in
 from .servers import FunctionTables
 from .times import At
 
@@ -43,7 +43,7 @@ Library = Callable[[str], Behavior]
 
 def bind(
     behavior: Behavior, values: Mapping[str, Any], library: Library, tables: FunctionTables | None = None
-) -> InOrder:
+) -> SequenceNode:
     """Make a program of a behaviour. Nothing is asked of servers or robot.
 
     Args:
@@ -64,7 +64,7 @@ def bind(
 
 def bind_what_can_be(
     behavior: Behavior, values: Mapping[str, Any], library: Library, tables: FunctionTables | None = None
-) -> tuple[InOrder, list[Problem]]:
+) -> tuple[SequenceNode, list[Problem]]:
     """As `bind`: the program of all steps that could be read, and what is wrong with them and the others.
 
     Raises:
@@ -105,7 +105,7 @@ class _Binder:
         self._loaded: dict[str, Behavior] = {}
         self._nodes = 0
 
-    def behavior(self, behavior: Behavior, values: Mapping[str, Any], prefix: PathParts, *boxes: str) -> InOrder:
+    def behavior(self, behavior: Behavior, values: Mapping[str, Any], prefix: PathParts, *boxes: str) -> SequenceNode:
         """The program of a behaviour, on its own or in a box.
 
         Args:
@@ -116,7 +116,7 @@ class _Binder:
         """
         scope = _Scope(behavior.name, behavior.file, values, prefix, boxes)
         body = behavior.body
-        return InOrder(
+        return SequenceNode(
             scope.path(body.path),
             behavior.name,
             "",
@@ -174,7 +174,7 @@ class _Binder:
             return Pause(**common, duration=_seconds("wait", step.duration, scope.values))
         if isinstance(step, Barrier):
             where, branch = home or (None, 0)
-            return Meeting(**common, name=step.name, home=where, branch=branch)
+            return BarrierNode(**common, name=step.name, home=where, branch=branch)
         if isinstance(step, Box):
             return self._box(step, scope, common)
         if isinstance(step, Repeat):
@@ -183,7 +183,7 @@ class _Binder:
             return self._parallel(step, scope, common)
         if isinstance(step, Timeline):
             return OnTimeline(**common, nodes=self._all(step, scope))
-        return InOrder(**common, nodes=self._all(step, scope, home))
+        return SequenceNode(**common, nodes=self._all(step, scope, home))
 
     def _goal(self, step: Functions, scope: _Scope, common: dict[str, Any]) -> Node | None:
         server = self._tables.server(step.server)
@@ -219,7 +219,7 @@ class _Binder:
             behavior.parameters, {name: _or_unknown(each, scope) for name, each in step.arguments.items()}
         )
         inside = self.behavior(behavior, values, common["path"], *scope.boxes, step.name)
-        return InOrder(**common, nodes=inside.nodes, box=step.name)
+        return SequenceNode(**common, nodes=inside.nodes, box=step.name)
 
     def _parallel(self, step: Parallel, scope: _Scope, common: dict[str, Any]) -> Node:
         nodes = []
@@ -237,7 +237,7 @@ class _Binder:
                     )
                     self._note(step, scope, f"{text} at a time: {remedy}")
                 users.setdefault(server, node)
-        return AllAtOnce(**common, nodes=tuple(nodes))
+        return ParallelNode(**common, nodes=tuple(nodes))
 
     def _rounds(self, step: Repeat, scope: _Scope, common: dict[str, Any]) -> Node:
         count = substitute(step.count, scope.values)
@@ -246,7 +246,7 @@ class _Binder:
             raise BadGoal("repeat", count, f"a whole number 0..{MOST_ROUNDS}")
         path: PathParts = common["path"]
 
-        def one(number: int, binder: _Binder) -> InOrder:
+        def one(number: int, binder: _Binder) -> SequenceNode:
             values = {**scope.values, step.variable: number} if step.variable else scope.values
             # Steps of a round stand at 4#2.1: the path of the repetition makes way for the one with the round.
             inside = _Scope(scope.behavior, scope.file, values, (*path, ("#", number)), scope.boxes)
@@ -255,15 +255,15 @@ class _Binder:
                 node = binder._guarded(_moved(part, len(step.path)), inside, None)
                 if node is not None:
                     nodes.append(node)
-            return InOrder((*path, ("#", number)), scope.behavior, "", "round", nodes=tuple(nodes))
+            return SequenceNode((*path, ("#", number)), scope.behavior, "", "round", nodes=tuple(nodes))
 
         if not count:
-            return Rounds(**common, count=0)
+            return RepeatNode(**common, count=0)
         first = one(1, self)
         if step.variable and count > 1:
             one(int(count), self)
 
-        def round_(number: int) -> InOrder:
+        def round_(number: int) -> SequenceNode:
             if number == 1:
                 return first
             binder = _Binder(self._library, self._tables, checks=False)
@@ -272,7 +272,7 @@ class _Binder:
                 raise BehaviorError(scope.behavior, binder.problems)
             return bound
 
-        return Rounds(**common, count=int(count), round=round_)
+        return RepeatNode(**common, count=int(count), round=round_)
 
 
 def _moved(step: Step, depth: int) -> Step:

@@ -11,9 +11,9 @@ from naoqi.errors import NaoError
 from .binder import Library, bind, bind_what_can_be
 from .errors import BehaviorError, Problem
 from .model import Behavior
-from .outlook import Outlook, outlook_of
 from .parameters import given_as_text
-from .program import InOrder, servers_in
+from .preview import Preview, preview_of
+from .program import SequenceNode, servers_in
 from .servers import FunctionTables
 from .validation import Ask, Validation, ask_nobody, validate
 
@@ -23,7 +23,7 @@ def check(
     library: Library,
     values: Mapping[str, Any] | None = None,
     tables: FunctionTables | None = None,
-) -> InOrder:
+) -> SequenceNode:
     """Check a behaviour as a whole, without servers: functions, fields, boxes, times, and names that all robots have.
 
     Args:
@@ -52,7 +52,7 @@ def check_given(
     tables: FunctionTables,
     ask: Ask | None = None,
     read_wrong: Sequence[Problem] = (),
-) -> tuple[InOrder, Validation]:
+) -> tuple[SequenceNode, Validation]:
     """What would run with values as "name=value", if nothing is wrong.
 
     Args:
@@ -129,7 +129,7 @@ class Facts:
         servers: Names of the actions that it uses.
         problem: What is wrong with it, in one text that may be cut; empty if it can be run.
         problems: All that is wrong with it, one by one; none if it can be run.
-        outlook: What it would do; empty where nobody asked for that.
+        preview: What it would do; empty where nobody asked for that.
         unvalidated: Servers that did not check their goals, and why.
     """
 
@@ -138,7 +138,7 @@ class Facts:
     servers: tuple[str, ...]
     problem: str
     problems: tuple[Problem, ...] = ()
-    outlook: Outlook = Outlook()
+    preview: Preview = Preview()
     unvalidated: tuple[str, ...] = ()
 
 
@@ -183,9 +183,9 @@ def outlook_facts(
         program, validation = check_given(readable, library, given, tables, ask, wrong)
     except NaoError as error:
         return Facts(name, behavior, (), str(error), _problems(error))
-    outlook = outlook_of(program, tables)
+    preview = preview_of(program, tables)
     if ask is not None:
-        outlook = replace(outlook, unchecked=tuple(validation.unchecked))
+        preview = replace(preview, unchecked=tuple(validation.unchecked))
     return Facts(
-        name, behavior, tuple(servers_in(program)), "", outlook=outlook, unvalidated=tuple(validation.unvalidated)
+        name, behavior, tuple(servers_in(program)), "", preview=preview, unvalidated=tuple(validation.unvalidated)
     )

@@ -64,7 +64,7 @@ class Pause(Node):
 
 
 @dataclass(frozen=True)
-class Meeting(Node):
+class BarrierNode(Node):
     """A barrier.
 
     Attributes:
@@ -91,7 +91,7 @@ class Group(Node):
 
 
 @dataclass(frozen=True)
-class InOrder(Group):
+class SequenceNode(Group):
     """One after the other.
 
     Attributes:
@@ -101,7 +101,7 @@ class InOrder(Group):
     box: str = ""
 
 
-class AllAtOnce(Group):
+class ParallelNode(Group):
     """All at the same time."""
 
 
@@ -110,7 +110,7 @@ class OnTimeline(Group):
 
 
 @dataclass(frozen=True)
-class Rounds(Node):
+class RepeatNode(Node):
     """A sequence several times.
 
     Attributes:
@@ -146,7 +146,7 @@ def walk_rounds(
     """
     here = _in_rounds(node, rounds)
     yield here
-    if not isinstance(node, Rounds):
+    if not isinstance(node, RepeatNode):
         for part in node.parts:
             yield from walk_rounds(part, left_out, rounds)
     elif not left_out(here.path):
@@ -174,4 +174,4 @@ def servers_in(node: Node) -> dict[str, None]:
 
 def name_of(node: Node) -> str:
     """What times on a timeline may refer to."""
-    return node.name if isinstance(node, Meeting) else node.label
+    return node.name if isinstance(node, BarrierNode) else node.label

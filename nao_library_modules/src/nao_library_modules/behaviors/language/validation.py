@@ -9,8 +9,8 @@ from typing import Any
 from ...functions.check_service import NotValidated
 from ...functions.goal_checks import GoalCheck, GoalProblem
 from .errors import Problem
-from .outlook import in_order_of_time
-from .program import Goal, Node, Rounds
+from .preview import in_order_of_time
+from .program import Goal, Node, RepeatNode
 from .servers import FunctionTables
 
 Ask = Callable[[str, Sequence[Any]], GoalCheck]
@@ -96,7 +96,7 @@ def goals_of(node: Node, skipped: bool = False) -> Iterator[tuple[Goal, bool]]:
         return
     first = [pair for part in in_order_of_time(node) for pair in goals_of(part, skipped)]
     yield from first
-    if isinstance(node, Rounds) and node.count > 1:
+    if isinstance(node, RepeatNode) and node.count > 1:
         for goal, of_last in goals_of(node.round(node.count), skipped):
             if all(goal.goal != each.goal for each, _ in first):
                 yield goal, of_last

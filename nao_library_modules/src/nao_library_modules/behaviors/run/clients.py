@@ -92,13 +92,13 @@ class GoalLog:
         Subscribes to `SERVER/goal` and `SERVER/result` of all servers that it listens to.
 
     Args:
-        edge: With `subscribe` and `clock`, see `ros_edge`.
+        node: With `subscribe` and `clock`, see `server_node`.
         servers: The servers that it listens to from the beginning.
     """
 
-    def __init__(self, edge: Any, servers: Iterable[ServerType]) -> None:
-        self._edge = edge
-        self._clock = edge.clock
+    def __init__(self, node: Any, servers: Iterable[ServerType]) -> None:
+        self._node = node
+        self._clock = node.clock
         self._heard: set[str] = set()
         self._last: dict[str, Any] = {}
         self._recording: Recording | None = None
@@ -113,8 +113,8 @@ class GoalLog:
                 return
             self._heard.add(server.name)
         action = server.action()
-        self._edge.subscribe(f"{server.name}/goal", type(action.action_goal), partial(self._sent, server.name))
-        self._edge.subscribe(f"{server.name}/result", type(action.action_result), self._ended)
+        self._node.subscribe(f"{server.name}/goal", type(action.action_goal), partial(self._sent, server.name))
+        self._node.subscribe(f"{server.name}/result", type(action.action_result), self._ended)
 
     def last(self, server: str) -> Any:
         """The goal that a server got last; None if it got none."""

@@ -12,7 +12,7 @@ from actionlib_msgs.msg import GoalStatus
 
 from naoqi.errors import NaoError
 
-from ...base.interrupt import Interrupt
+from ...base.cancellation import CancellationToken
 from ...process_modules.language.control import do, par, pursue, top_level
 from ...process_modules.language.failures import PlanFailure
 from ...process_modules.language.flow import Evaporated, sleep, wait_until
@@ -20,10 +20,10 @@ from ...process_modules.language.fluents import Fluent
 from ...process_modules.language.tasks import current_task
 from ..language.errors import StepFailed
 from ..language.model import PathParts
-from ..language.program import AllAtOnce, Goal, Meeting, Node, OnTimeline, Pause, Rounds, servers_in, walk
+from ..language.program import BarrierNode, Goal, Node, OnTimeline, ParallelNode, Pause, RepeatNode, servers_in, walk
+from .fifo_lock import FifoLock
 from .report import ENDED, FAILED, LATE, PREEMPTED, RETRIED, SKIPPED, TOLD, Event, Record, Report
 from .timeline import Timeline
-from .turns import Turns
 
 NOTED_LATE = 0.05
 """s after its time from which on it is told that a step is late."""
@@ -49,11 +49,11 @@ class Execution:
         self._program = program
         self._clients = {server: clients(server) for server in servers_in(program)}
         self._clock = clock
-        self._turns = Turns(self._clients)
+        self._turns = FifoLock(self._clients)
         self._meetings: dict[PathParts, tuple[Node, Fluent]] = {}
         self.report = Report(clock, tell)
 
-    def run(self, interrupt: Interrupt) -> None:
+    def run(self, interrupt: CancellationToken) -> None:
         """Run it; a trigger of `interrupt` ends it.
 
         Raises:
@@ -65,7 +65,7 @@ class Execution:
         finally:
             self.report.close()
 
-    def _all(self, interrupt: Interrupt) -> None:
+    def _all(self, interrupt: CancellationToken) -> None:
         root = current_task()
         with interrupt.waking(lambda: root.evaporate("preempted")):
             try:
@@ -153,13 +153,13 @@ class Execution:
         record = begin()
         if isinstance(node, Pause):
             sleep(node.duration)
-        elif isinstance(node, Meeting):
+        elif isinstance(node, BarrierNode):
             self._meet(node)
         elif isinstance(node, OnTimeline):
             Timeline(node, self.report, self._step, record.tried).run()
-        elif isinstance(node, AllAtOnce):
+        elif isinstance(node, ParallelNode):
             self._at_once(node)
-        elif isinstance(node, Rounds):
+        elif isinstance(node, RepeatNode):
             for number in range(1, node.count + 1):
                 self._in_order(node.round(number))
         else:
@@ -199,7 +199,7 @@ class Execution:
                     self.report.not_run(other)
                 raise
 
-    def _at_once(self, node: AllAtOnce) -> None:
+    def _at_once(self, node: ParallelNode) -> None:
         met = Fluent(f"met in {node.where}", frozenset())
         self._meetings[node.path] = (node, met)
         branches = []
@@ -213,7 +213,7 @@ class Execution:
             branches.append(do(branch, name=part.what))
         par(*branches)
 
-    def _meet(self, node: Meeting) -> None:
+    def _meet(self, node: BarrierNode) -> None:
         if node.home is None:
             return  # a barrier of a timeline has waited for its time, and that was all
         home, met = self._meetings[node.home]
@@ -221,7 +221,7 @@ class Execution:
         expected = {
             number
             for number, branch in enumerate(home.parts, start=1)
-            if any(isinstance(e, Meeting) and e.home == node.home and e.name == node.name for e in walk(branch))
+            if any(isinstance(e, BarrierNode) and e.home == node.home and e.name == node.name for e in walk(branch))
         }
         wait_until(lambda: all((n, node.name) in met.value or (n, "") in met.value for n in expected), [met])
 

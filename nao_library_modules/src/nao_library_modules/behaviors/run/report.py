@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Callable
 
 from ..language.model import PathParts
-from ..language.program import Node, Rounds, walk, walk_rounds
+from ..language.program import Node, RepeatNode, walk, walk_rounds
 
 BEGAN, ENDED, FAILED, SKIPPED, PREEMPTED = "began", "ended", "failed", "skipped", "preempted"
 RETRIED, LATE, TOLD, NOT_RUN = "retried", "late", "told", "not run"
@@ -125,7 +125,7 @@ class Report:
             for each in _outermost_rounds(node):
                 self._list_rounds(each)
 
-    def _list_rounds(self, repetition: Rounds) -> None:
+    def _list_rounds(self, repetition: RepeatNode) -> None:
         listed = 0
         for each in walk_rounds(repetition, self._had_enough):
             if each.path in self._records:
@@ -160,9 +160,9 @@ class Report:
             return sorted(self._records.values(), key=lambda record: [number for _, number in record.node.path])
 
 
-def _outermost_rounds(node: Node) -> Iterator[Rounds]:
+def _outermost_rounds(node: Node) -> Iterator[RepeatNode]:
     """Repetitions that are in no other one."""
-    if isinstance(node, Rounds):
+    if isinstance(node, RepeatNode):
         yield node
         return
     for part in node.parts:

@@ -8,8 +8,8 @@ from typing import Any
 
 from nao_library_msgs.msg import BehaviorInfo, BehaviorParameter, BehaviorProblem, BehaviorStep
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
-from ...base.interrupt import Interrupt
 from ...functions.chain import checked_by
 from ...functions.check_service import NotValidated
 from ...functions.goal_checks import GoalCheck
@@ -85,7 +85,7 @@ class RunningFunctions:
     replaced: str
     ended_behavior: str
     clients: Any  # Clients
-    interrupt: Interrupt  # of NaoBasic
+    interrupt: CancellationToken  # of NaoBasic
     clock: Any  # of NaoBasic
     tell: Callable[[Event], None]  # of NaoBehavior
 
@@ -124,17 +124,17 @@ class RunningFunctions:
     def describe_behavior(self, str_param: Name) -> str:
         """The text of a behaviour; what it does, its parameters and servers are in the result as well."""
         text = self.store.text(str_param)
-        self.shown.append(self.outlook(str_param))
+        self.shown.append(self.preview(str_param))
         return text
 
     @checked_by(check_what)
     def check_behavior(self, str_param: NameOrNone, text: Text, file: File, parameters: Values) -> list[str]:
         """What is wrong with a behaviour, stored or in `text`; nothing if it can be run; then the result tells more."""
-        facts = self.outlook(str_param.strip(), text, file, parameters, validate=True)
+        facts = self.preview(str_param.strip(), text, file, parameters, validate=True)
         self.shown.append(facts)
         return list(map(str, facts.problems))
 
-    def outlook(
+    def preview(
         self, name: str, text: str = "", file: str = "", parameters: Sequence[str] = (), validate: bool = False
     ) -> Facts:
         """All there is to know about a behaviour, stored or in a text. Any thread may ask.
@@ -207,9 +207,9 @@ def info_message(facts: Facts, shipped: bool) -> BehaviorInfo:
     if facts.behavior is not None:
         info.help, info.tags = facts.behavior.help, list(facts.behavior.tags)
         info.parameters = [_parameter_message(each) for each in facts.behavior.parameters.values()]
-    outlook = facts.outlook
-    info.steps, info.boxes, info.unchecked = list(outlook.steps), list(outlook.boxes), list(outlook.unchecked)
-    info.waits = outlook.waits
+    preview = facts.preview
+    info.steps, info.boxes, info.unchecked = list(preview.steps), list(preview.boxes), list(preview.unchecked)
+    info.waits = preview.waits
     info.unvalidated = list(facts.unvalidated)
     info.problems = [BehaviorProblem(each.file, each.line, each.where, each.text) for each in facts.problems]
     return info

@@ -7,7 +7,7 @@ from typing import Any, Callable
 from ...process_modules.language.control import do, par
 from ...process_modules.language.flow import sleep, wait_until
 from ...process_modules.language.fluents import Fluent
-from ..language.program import Meeting, Node, OnTimeline, name_of, servers_in
+from ..language.program import BarrierNode, Node, OnTimeline, name_of, servers_in
 from .report import Report
 
 
@@ -59,7 +59,7 @@ class Timeline:
 
     def _due(self, i: int, entry: Node) -> float:
         """When an entry is to begin, s from the beginning of the behaviour; waits until that is known."""
-        if isinstance(entry, Meeting):
+        if isinstance(entry, BarrierNode):
             return max(self._known(moments.over) for moments in self._moments[:i])
         if not entry.at.label:
             return self._zero + entry.at.offset
@@ -70,7 +70,7 @@ class Timeline:
         """Of entries at the same time that need the same server, those above go first."""
         servers = servers_in(entry)
         for other, moments in zip(self._entries[:i], self._moments):
-            if other.at != entry.at or isinstance(other, Meeting):
+            if other.at != entry.at or isinstance(other, BarrierNode):
                 continue
             if not servers.keys().isdisjoint(servers_in(other)):
                 self._known(moments.begun)

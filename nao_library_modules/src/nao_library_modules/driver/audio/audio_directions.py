@@ -11,7 +11,7 @@ from naoqi.errors import NaoError, UnknownModule
 
 from ...robot.event_relay import EventRelay
 from ...ros.health import Level, Report
-from ..base.demand import Demand
+from ..base.lazy_subscription import LazySubscription
 
 log = logging.getLogger(__name__)
 
@@ -75,7 +75,7 @@ class SoundDirections:
         self._sink = sink
         self._module = MODULES[0]
         self._relay = EventRelay(lambda: robot.proxy("ALMemory"), self._on_event)
-        self._locating = Demand(robot, "sound localisation", self._begin, self._end)
+        self._locating = LazySubscription(robot, "sound localisation", self._begin, self._end)
 
     def want(self, wanted: bool) -> None:
         """Locate sounds, or not, from now on."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ...base.interrupt import Interrupt
+from ...base.cancellation import CancellationToken
 from ...robot.robot_task import run_task
 from .audio_requests import RecordingRequest
 
@@ -23,7 +23,7 @@ FILE_LIMIT = 10.0
 class AudioPlayer:
     """Sound files and volume of one robot. Any thread may call; all of it ends with `interrupt`."""
 
-    def __init__(self, robot: Any, clock: Any, interrupt: Interrupt) -> None:
+    def __init__(self, robot: Any, clock: Any, interrupt: CancellationToken) -> None:
         """Do nothing yet; the robot need not be there.
 
         Args:
@@ -75,7 +75,7 @@ class AudioPlayer:
 
     def _wait(self, seconds: float) -> None:
         """Let the robot's time pass, unless it is lost meanwhile."""
-        ended = Interrupt()
+        ended = CancellationToken()
         connection = self._robot.connection
 
         def on_state(state: Any) -> None:

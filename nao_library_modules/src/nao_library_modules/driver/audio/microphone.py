@@ -13,7 +13,7 @@ from naoqi import ALBroker, ALModule
 from naoqi.errors import NaoError, UnknownModule
 
 from ...ros.health import Level, Report
-from ..base.demand import Demand
+from ..base.lazy_subscription import LazySubscription
 from .microphone_blocks import FORMATS, RATES, BlockClock, BlockTime, channel_map, read_samples
 
 log = logging.getLogger(__name__)
@@ -98,7 +98,7 @@ class Microphone:
         self._count = 0
         self._last = (0.0, 0.0)
         self._silent = False
-        self._hearing = Demand(robot, "microphones", self._begin, self._end, self._is_alive)
+        self._hearing = LazySubscription(robot, "microphones", self._begin, self._end, self._is_alive)
 
     def want(self, wanted: bool) -> None:
         """Hear, or not, from now on."""

@@ -17,16 +17,16 @@ from nao_library_msgs.srv import (
     SetAudioMasterVolume,
 )
 
+from ...base.cancellation import CancellationToken
 from ...base.field_checks import number_parameter
-from ...base.interrupt import Interrupt
 from ...base.limits import limit
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
+from ..base.lazy_topic import LazyTopic
 from ..base.node import name_for_robot, publish
 from ..base.rotation import from_roll_pitch_yaw
-from ..base.topic_demand import TopicDemand
 from .audio_directions import Direction, SoundDirections
 from .audio_player import AudioPlayer
 from .audio_requests import CHANNELS, file_on_robot, read_recording, read_volume
@@ -65,13 +65,13 @@ class NaoAudioServices:
         self._node = node
         sensitivity = self._node.param("~sensitivity", ROBOTS_OWN)
         sensitivity = number_parameter("~sensitivity", sensitivity, limit("share"), also=ROBOTS_OWN)
-        self._interrupt = Interrupt()
+        self._interrupt = CancellationToken()
         self._frame = tf_prefix() + TORSO
         self._player = AudioPlayer(robot, RosClock(), self._interrupt)
         self._directions = SoundDirections(robot, name_for_robot(self._node.name), sensitivity, self._publish)
         name = "nao_audio/audio_source_localization"
         self._topic = self._node.publisher(name, AudioSourceLocalization, queue_size=10)
-        self._demand = TopicDemand(self._topic, self._directions.want)
+        self._lazy = LazyTopic(self._topic, self._directions.want)
         self._node.offer("nao_audio/play_file", AudioPlayback, self._play)
         self._node.offer("nao_audio/record", AudioRecorder, self._record)
         self._node.offer("nao_audio/master_volume", SetAudioMasterVolume, self._set_volume)

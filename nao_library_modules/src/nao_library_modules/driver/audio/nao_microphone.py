@@ -14,9 +14,9 @@ from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
+from ..base.lazy_topic import LazyTopic
 from ..base.node import name_for_robot, publish
 from ..base.reconfigure import Field, serve
-from ..base.topic_demand import TopicDemand
 from .microphone import Block, Microphone
 from .microphone_blocks import FORMATS, RATES
 
@@ -55,7 +55,7 @@ class NaoMicrophone:
         )
         self._server = serve(node, fields, self._changed)
         self._audio = self._node.publisher("~audio_raw", AudioBuffer, queue_size=QUEUE)
-        self._demand = TopicDemand(self._audio, self._microphone.want)
+        self._lazy = LazyTopic(self._audio, self._microphone.want)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""

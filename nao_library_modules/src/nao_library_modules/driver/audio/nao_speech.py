@@ -21,10 +21,10 @@ from nao_library_actions.msg import (
 from nao_library_msgs.msg import WordRecognized
 from naoqi.errors import NaoError, UnknownModule
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal
-from ...base.interrupt import Interrupt
 from ...base.suggestion import of_those
-from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface, node_that_offers
 from ...ros.ros_clock import RosClock
@@ -103,11 +103,11 @@ class NaoSpeech:
         self._recognition = Recognition(robot, name_for_robot(self._node.name), lambda: self._settings, self._publish)
         self._server = serve(node, PARAMETERS, self._changed)
         self._goals = {
-            "speech_action": GoalCrowd(lambda _: VOICE, self._say, with_feedback=True, robot=robot),
-            "speech_vocabulary_action": GoalCrowd(lambda _: VOCABULARY, self._set_vocabulary, robot=robot),
+            "speech_action": ConcurrentActionServer(lambda _: VOICE, self._say, with_feedback=True, robot=robot),
+            "speech_vocabulary_action": ConcurrentActionServer(lambda _: VOCABULARY, self._set_vocabulary, robot=robot),
         }
-        for (name, crowd), action in zip(self._goals.items(), (SpeechWithFeedbackAction, SetSpeechVocabularyAction)):
-            self._node.action(name, action, crowd)
+        for (name, server), action in zip(self._goals.items(), (SpeechWithFeedbackAction, SetSpeechVocabularyAction)):
+            self._node.action(name, action, server)
         robot.connection.add_listener(self._connection_changed)
         self._node.subscriber("speech", String, self._on_text, queue_size=100)
         self._node.offer("stop_recognition", Empty, lambda _: self._recognition.stop())
@@ -116,14 +116,14 @@ class NaoSpeech:
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
-        goals = {f"goals {name}": crowd.counter.report for name, crowd in self._goals.items()}
+        goals = {f"goals {name}": server.counter.report for name, server in self._goals.items()}
         return {"speech": self._speech.report, "recognition": self._recognition.report, **goals}
 
     def close(self) -> None:
         """Be silent and listen no longer."""
         self._robot.connection.remove_listener(self._connection_changed)
-        for crowd in self._goals.values():
-            crowd.close(SHUTDOWN_LIMIT / len(self._goals))
+        for server in self._goals.values():
+            server.close(SHUTDOWN_LIMIT / len(self._goals))
         self._speech.close()
         self._recognition.close()
 
@@ -139,7 +139,9 @@ class NaoSpeech:
         except NaoError as error:
             _complain(text, error)
 
-    def _say(self, goal: SpeechWithFeedbackGoal, interrupt: Interrupt, feedback: Callable[[Any], None]) -> Outcome:
+    def _say(
+        self, goal: SpeechWithFeedbackGoal, interrupt: CancellationToken, feedback: Callable[[Any], None]
+    ) -> Outcome:
         if not goal.say.strip():
             raise BadGoal("say", goal.say, "a text", "it is empty")
         utterance = self._speech.say(goal.say, on_start=lambda: feedback(SpeechWithFeedbackFeedback()))
@@ -151,7 +153,7 @@ class NaoSpeech:
 
     # --- recognition ----------------------------------------------------------------------------------------------
 
-    def _set_vocabulary(self, goal: SetSpeechVocabularyGoal, _interrupt: Interrupt) -> Outcome:
+    def _set_vocabulary(self, goal: SetSpeechVocabularyGoal, _interrupt: CancellationToken) -> Outcome:
         if not goal.words:
             raise BadGoal("words", goal.words, "at least one word", "it is empty")
         update(self._server, {"vocabulary": join_vocabulary(goal.words)})

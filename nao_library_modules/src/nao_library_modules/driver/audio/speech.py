@@ -11,8 +11,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import Preempted, RobotLost
-from ...base.interrupt import Interrupt
 from ...base.limits import limit
 from ...robot.event_relay import EventRelay
 from ...robot.robot_task import end_call
@@ -59,7 +59,7 @@ class Utterance:
         self.text = text
         self.ended = threading.Event()
         self.error: Exception | None = None
-        self.interrupt = Interrupt()
+        self.interrupt = CancellationToken()
         self.arrived = time.monotonic()
         self._on_start = on_start
         self._on_failure = on_failure
@@ -259,9 +259,9 @@ class Speech:
             except NaoError as error:
                 log.debug("event %s: %s", name, error)  # the text is said all the same
 
-    def _wait(self, call: Any, interrupt: Interrupt) -> None:
+    def _wait(self, call: Any, interrupt: CancellationToken) -> None:
         """Wait for the end of a call, an interrupt, or a robot that says nothing."""
-        news = Interrupt()
+        news = CancellationToken()
         call.add_done_callback(lambda _: news.trigger())
         with interrupt.waking(news.trigger):
             while not news.is_set():

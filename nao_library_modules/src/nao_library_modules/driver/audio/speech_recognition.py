@@ -12,7 +12,7 @@ from naoqi.errors import NaoError
 
 from ...robot.event_relay import EventRelay
 from ...ros.health import Level, Report
-from ..base.demand import Demand
+from ..base.lazy_subscription import LazySubscription
 from .speech_settings import SpeechSettings
 
 RECOGNITION = "ALSpeechRecognition"
@@ -71,8 +71,8 @@ class Recognition:
         self._lock = threading.Lock()
         self._former_audio: bool | None = None
         self._relay = EventRelay(lambda: robot.proxy("ALMemory"), self._on_event)
-        self._listening = Demand(robot, "recognition of words", self._begin, self._end)
-        self._hearing = Demand(robot, f"event {HEARD}", self._hear, lambda: self._relay.unsubscribe(HEARD))
+        self._listening = LazySubscription(robot, "recognition of words", self._begin, self._end)
+        self._hearing = LazySubscription(robot, f"event {HEARD}", self._hear, lambda: self._relay.unsubscribe(HEARD))
         self._hearing.want(True)
 
     @property

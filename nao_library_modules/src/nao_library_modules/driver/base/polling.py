@@ -9,9 +9,9 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
-from ...base.interrupt import Interrupt
+from ...base.cancellation import CancellationToken
 from ...ros.health import Level, Report
-from .pacer import Pacer
+from .rate import Rate
 
 log = logging.getLogger(__name__)
 
@@ -39,7 +39,7 @@ class Polling:
         self._period = 1.0 / rate
         self._clock = clock
         self._read = read
-        self._interrupt = Interrupt()  # ends a wait when nobody wants readings any more, or for good
+        self._interrupt = CancellationToken()  # ends a wait when nobody wants readings any more, or for good
         self._condition = threading.Condition()
         self._wanted = False
         self._closed = False
@@ -105,9 +105,9 @@ class Polling:
 
     def _read_on(self) -> None:
         """Read until it is no longer wanted or fails."""
-        pacer = Pacer(self._clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
+        rate = Rate(self._clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
         last = None
-        while pacer.wait() and self._robot.connection.state == "connected":
+        while rate.wait() and self._robot.connection.state == "connected":
             now = self._clock.now()
             if now == last:
                 continue  # a step of simulated time may be longer than the wait

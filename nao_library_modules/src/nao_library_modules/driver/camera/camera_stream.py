@@ -11,13 +11,13 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import Preempted
-from ...base.interrupt import Interrupt
 from ...nao.camera_facts import CAMERA_NAMES
 from ...robot.image_clock import ImageClock
 from ...robot.robot import wait_for_calls
 from ...ros.health import Level, Report
-from ..base.demand import Demand
+from ..base.lazy_subscription import LazySubscription
 from .camera_formats import RESOLUTIONS, SPACES, Picture, read_picture
 from .camera_rate import RateMeter
 from .camera_subscriber import DEVICE, CameraSubscriber, StreamSettings
@@ -40,7 +40,7 @@ class Subscription:
     """One subscription at the robot; its interrupt ends whatever waits for its pictures."""
 
     handle: str
-    interrupt: Interrupt = field(default_factory=Interrupt)
+    interrupt: CancellationToken = field(default_factory=CancellationToken)
 
 
 class CameraStream:
@@ -89,7 +89,7 @@ class CameraStream:
         self._last = (0.0, 0.0)
         self._shows = False
         self._problem = ""
-        self._demand = Demand(robot, f"pictures for {name}", self._begin, self._end, self._is_alive)
+        self._lazy = LazySubscription(robot, f"pictures for {name}", self._begin, self._end, self._is_alive)
         self._thread = threading.Thread(target=self._run, name=f"pictures {name}", daemon=True)
         self._thread.start()
 
@@ -101,11 +101,11 @@ class CameraStream:
     @property
     def running(self) -> bool:
         """Whether the robot sends pictures."""
-        return self._demand.running
+        return self._lazy.running
 
     def want(self, wanted: bool) -> None:
         """Have pictures, or not, from now on."""
-        self._demand.want(wanted)
+        self._lazy.want(wanted)
 
     def change(self, settings: StreamSettings) -> None:
         """Ask for something else. Pictures go on to come meanwhile, but for another camera.
@@ -115,10 +115,10 @@ class CameraStream:
         """
         with self._changing:
             before, subscription = self._settings, self._subscription
-            if subscription is None or not self._demand.running or settings.camera != before.camera:
+            if subscription is None or not self._lazy.running or settings.camera != before.camera:
                 self._settings = settings
                 if settings.camera != before.camera:
-                    self._demand.restart()
+                    self._lazy.restart()
                 return
             try:
                 self._subscriber.change(subscription.handle, before, settings)
@@ -134,7 +134,7 @@ class CameraStream:
             self._subscriber.change(handle, tried, before)
         except NaoError as error:  # what went wrong first is what is told
             log.debug("%s: %s", self._name, error)
-            self._demand.restart()
+            self._lazy.restart()
 
     def report(self) -> Report:
         """Whether pictures come, and how many."""
@@ -147,12 +147,12 @@ class CameraStream:
             "rate reached (1/s)": "" if rate is None else f"{rate:.1f}",
             "pictures": str(self._rate.count),
             "missed pictures": str(self._rate.missed),
-            "last error": self._demand.problem or self._problem,
+            "last error": self._lazy.problem or self._problem,
         }
-        if not self._demand.wanted:
+        if not self._lazy.wanted:
             return Report(Level.OK, "nobody looks", values)
-        if not self._demand.running or self._problem:
-            problem = self._demand.problem or self._problem or "the robot is not connected"
+        if not self._lazy.running or self._problem:
+            problem = self._lazy.problem or self._problem or "the robot is not connected"
             return Report(Level.ERROR, f"no pictures: {problem}", values)
         if rate is not None and rate < SLOW * settings.frame_rate:
             return Report(Level.WARN, f"only {rate:.1f} of {settings.frame_rate} pictures a second", values)
@@ -160,7 +160,7 @@ class CameraStream:
 
     def close(self) -> None:
         """Look no more; the robot is told."""
-        self._demand.close(CLOSE_LIMIT)
+        self._lazy.close(CLOSE_LIMIT)
         with self._news:
             self._closed = True
             self._news.notify_all()
@@ -227,7 +227,7 @@ class CameraStream:
                 log.exception("%s failed", self._name)
                 self._problem = f"unexpected error: {error!r}"
             if not subscription.interrupt.wait(FAILURE_PAUSE):
-                self._demand.restart()
+                self._lazy.restart()
 
     def _look(self, subscription: Subscription) -> None:
         """Hand on pictures until something goes wrong.

@@ -22,9 +22,9 @@ from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
+from ..base.lazy_topic import LazyTopic
 from ..base.node import name_for_robot, publish
 from ..base.reconfigure import Field, serve, update
-from ..base.topic_demand import TopicDemand
 from .camera_formats import Picture
 from .camera_info_files import camera_name
 from .camera_infos import CameraInfos
@@ -99,7 +99,7 @@ class CameraTopics:
         self._info = self._offer(f"{folder}camera_info", CameraInfo)
         self._compressed = self._offer(compressed, CompressedImage)
         publishers = {"image": self._image, "info": self._info, "compressed": self._compressed}
-        self._demands = [TopicDemand(each, partial(self._on_listeners, name)) for name, each in publishers.items()]
+        self._lazys = [LazyTopic(each, partial(self._on_listeners, name)) for name, each in publishers.items()]
         node.service(f"{folder}set_camera_info", SetCameraInfo, self._set_camera_info)
 
     @property

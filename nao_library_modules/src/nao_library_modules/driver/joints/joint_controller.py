@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
 from ...base.field_checks import require_within
-from ...base.interrupt import Interrupt
 from ...base.limits import limit
 from ...functions.joint_trajectory import KeyFrames, check_range, expand_names, one_each, read_trajectory
 from ...nao.joint_names import MOTION, JointNames
@@ -119,7 +119,7 @@ class JointController:
         """
         return expand_names(names, self.names.chains)
 
-    def follow(self, frames: KeyFrames, interrupt: Interrupt, tell: Tell | None = None) -> Reached:
+    def follow(self, frames: KeyFrames, interrupt: CancellationToken, tell: Tell | None = None) -> Reached:
         """Move joints along key frames, to the end or to the interrupt.
 
         Args:
@@ -142,7 +142,7 @@ class JointController:
             self._tell_until_over(call, joints, interrupt, tell)
         return self._motion_ended(call, joints, interrupt)
 
-    def _tell_until_over(self, call: Any, joints: list[str], interrupt: Interrupt, tell: Tell) -> None:
+    def _tell_until_over(self, call: Any, joints: list[str], interrupt: CancellationToken, tell: Tell) -> None:
         over = threading.Event()
         call.add_done_callback(lambda _: over.set())
         try:
@@ -153,7 +153,7 @@ class JointController:
             log.warning("%s: nothing more is told of the motion: %s", ", ".join(joints), error)
 
     def move(
-        self, names: Sequence[str], angles: Sequence[float], speed: float, relative: bool, interrupt: Interrupt
+        self, names: Sequence[str], angles: Sequence[float], speed: float, relative: bool, interrupt: CancellationToken
     ) -> Reached:
         """Move joints to angles, to the end or to the interrupt.
 
@@ -174,7 +174,7 @@ class JointController:
         call = motion.call_async("angleInterpolationWithSpeed", list(joints), list(values), speed)
         return self._motion_ended(call, list(joints), interrupt)
 
-    def stiffen(self, frames: KeyFrames, interrupt: Interrupt) -> Reached:
+    def stiffen(self, frames: KeyFrames, interrupt: CancellationToken) -> Reached:
         """Bring stiffnesses along key frames, to the end or to the interrupt.
 
         Raises:
@@ -221,12 +221,12 @@ class JointController:
         values = one_each(angles, names, chains, "joint_angles")
         return joints, values, require_within("speed", speed, FRACTION)
 
-    def _motion_ended(self, call: Any, joints: list[str], interrupt: Interrupt) -> Reached:
+    def _motion_ended(self, call: Any, joints: list[str], interrupt: CancellationToken) -> Reached:
         preempted = self._ended(call, interrupt, lambda: self._quick("killTasksUsingResources", joints))
         return Reached(self._quick("getAngles", joints, True), preempted)
 
     @staticmethod
-    def _ended(call: Any, interrupt: Interrupt, stop: Callable[[], Any]) -> bool:
+    def _ended(call: Any, interrupt: CancellationToken, stop: Callable[[], Any]) -> bool:
         try:
             run_task(call, interrupt, stop)
         except Preempted:

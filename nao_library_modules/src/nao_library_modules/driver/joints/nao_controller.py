@@ -20,11 +20,11 @@ from nao_library_actions.msg import (
 from nao_library_msgs.msg import JointAnglesWithSpeed
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import RobotLost
 from ...base.field_checks import number_parameter
-from ...base.interrupt import Interrupt
 from ...base.limits import limit
-from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from .joint_controller import JointController, Reached
@@ -88,15 +88,15 @@ class NaoController:
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
-        return {f"goals {name}": crowd.counter.report for name, crowd in zip(self._names, self._crowds)}
+        return {f"goals {name}": server.counter.report for name, server in zip(self._names, self._crowds)}
 
     _names = ("joint_trajectory", "joint_stiffness_trajectory", "joint_angles_action")
 
     def close(self) -> None:
         """End all goals."""
         self._robot.connection.remove_listener(self._connection_changed)
-        for crowd in self._crowds:
-            crowd.close(SHUTDOWN_LIMIT / len(self._crowds))
+        for server in self._crowds:
+            server.close(SHUTDOWN_LIMIT / len(self._crowds))
 
     # --- actions --------------------------------------------------------------------------------------------------
 
@@ -107,10 +107,10 @@ class NaoController:
         claims: Callable[[Any], frozenset[str]],
         execute: Callable[..., Outcome],
         with_feedback: bool = False,
-    ) -> GoalCrowd:
-        crowd = GoalCrowd(claims, execute, with_feedback, self._robot)
-        self._node.action(name, action, crowd)
-        return crowd
+    ) -> ConcurrentActionServer:
+        server = ConcurrentActionServer(claims, execute, with_feedback, self._robot)
+        self._node.action(name, action, server)
+        return server
 
     def _trajectory_joints(self, goal: Any) -> frozenset[str]:
         return frozenset(self._joints.joints_of(goal.trajectory.joint_names))
@@ -118,7 +118,7 @@ class NaoController:
     def _angles_joints(self, goal: Any) -> frozenset[str]:
         return frozenset(self._joints.joints_of(goal.joint_angles.joint_names))
 
-    def _trajectory(self, goal: Any, interrupt: Interrupt, publish: Callable[[Any], None]) -> Outcome:
+    def _trajectory(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> Outcome:
         began = rospy.Time.now()
 
         def tell(joints: Sequence[str], desired: Sequence[float], actual: Sequence[float]) -> None:
@@ -133,12 +133,12 @@ class NaoController:
         reached = self._joints.follow(frames, interrupt, tell)
         return _outcome(JointTrajectoryResult(), goal.trajectory.joint_names, reached)
 
-    def _stiffness(self, goal: Any, interrupt: Interrupt) -> Outcome:
+    def _stiffness(self, goal: Any, interrupt: CancellationToken) -> Outcome:
         frames = self._joints.stiffness_trajectory(goal.trajectory)
         reached = self._joints.stiffen(frames, interrupt)
         return _outcome(JointTrajectoryResult(), goal.trajectory.joint_names, reached)
 
-    def _angles(self, goal: Any, interrupt: Interrupt) -> Outcome:
+    def _angles(self, goal: Any, interrupt: CancellationToken) -> Outcome:
         asked = goal.joint_angles
         names, angles = asked.joint_names, asked.joint_angles
         reached = self._joints.move(names, angles, asked.speed, asked.relative != 0, interrupt)
@@ -177,8 +177,8 @@ class NaoController:
         connection = self._robot.connection
         if connection.state == "lost":
             lost = RobotLost(self._robot.address, connection.last_error or "no answer")
-            for crowd in self._crowds:
-                crowd.interrupt_all(lost)
+            for server in self._crowds:
+                server.interrupt_all(lost)
         elif connection.state == "connected" and self._init_stiffness > 0.0:
             stiffness, self._init_stiffness = self._init_stiffness, 0.0  # once: a robot that restarts stays limp
             try:

@@ -16,16 +16,16 @@ from tf2_ros import TransformBroadcaster
 
 from naoqi.errors import NaoError, RobotUnreachable
 
+from ...base.cancellation import CancellationToken
 from ...base.clock import WallClock
 from ...base.field_checks import number_parameter
-from ...base.interrupt import Interrupt
 from ...base.limits import limit
 from ...nao.joint_names import JointNames
 from ...ros.health import Level, Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
-from ..base.pacer import Pacer
+from ..base.rate import Rate
 from . import state_messages as messages
 from .feet import LEG_JOINTS, footprint
 from .joint_sensors import JointSensors, Reading
@@ -94,7 +94,7 @@ class NaoJointStates:
         if self._use_odometry:
             offer_odometry_services(node, self._offset)
         self._frames = TransformBroadcaster()
-        self._interrupt = Interrupt()
+        self._interrupt = CancellationToken()
         self._problem = "nothing was read yet"
         self._wall = WallClock()
         self._last_read = self._wall.now()
@@ -142,10 +142,10 @@ class NaoJointStates:
     def _read_on(self, sensors: JointSensors) -> None:
         """Read and publish until the robot cannot be read, or the node ends."""
         clock = RosClock()
-        pacer = Pacer(clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
+        rate = Rate(clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
         velocities, speeds = SlopeEstimator(), SlopeEstimator()
         last, jumps = None, 0
-        while pacer.wait():
+        while rate.wait():
             before = clock.now()
             if before == last:
                 continue  # a step of simulated time may be longer than the wait: frames come once for a moment

@@ -18,13 +18,13 @@ from nao_library_actions.msg import (
 )
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import RobotLost
 from ...base.field_checks import require_within
-from ...base.interrupt import Interrupt
 from ...nao.joint_names import MOTION
 from ...nao.pose_tables import Pose, UnknownPose, built_in, library, pose_table
 from ...robot.robot_task import run_task
-from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from .joint_controller import FRACTION, QUICK_LIMIT, STIFFEN_TIME
@@ -60,26 +60,26 @@ class PoseManager:
         self._trajectory = TrajectoryClient()
         self._stop_walk = self._node.caller(STOP_WALK, Empty)
         self._crowds = {
-            "body_pose": GoalCrowd(lambda _: BODY, self._take_pose, robot=robot),
-            "body_pose_naoqi": GoalCrowd(lambda _: BODY, self._take_posture, robot=robot),
+            "body_pose": ConcurrentActionServer(lambda _: BODY, self._take_pose, robot=robot),
+            "body_pose_naoqi": ConcurrentActionServer(lambda _: BODY, self._take_posture, robot=robot),
         }
-        for (name, crowd), action in zip(self._crowds.items(), (BodyPoseAction, BodyPoseWithSpeedAction)):
-            self._node.action(name, action, crowd)
+        for (name, server), action in zip(self._crowds.items(), (BodyPoseAction, BodyPoseWithSpeedAction)):
+            self._node.action(name, action, server)
         robot.connection.add_listener(self._connection_changed)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
-        return {f"goals {name}": crowd.counter.report for name, crowd in self._crowds.items()}
+        return {f"goals {name}": server.counter.report for name, server in self._crowds.items()}
 
     def close(self) -> None:
         """End all goals."""
         self._robot.connection.remove_listener(self._connection_changed)
-        for crowd in self._crowds.values():
-            crowd.close(SHUTDOWN_LIMIT / len(self._crowds))
+        for server in self._crowds.values():
+            server.close(SHUTDOWN_LIMIT / len(self._crowds))
 
     # --- poses of the tables --------------------------------------------------------------------------------------
 
-    def _take_pose(self, goal: BodyPoseGoal, interrupt: Interrupt) -> Outcome:
+    def _take_pose(self, goal: BodyPoseGoal, interrupt: CancellationToken) -> Outcome:
         pose = self._pose(goal.pose_name)
         self._end_walk()
         self._trajectory.take(pose, interrupt)
@@ -110,7 +110,7 @@ class PoseManager:
 
     # --- postures of the robot ------------------------------------------------------------------------------------
 
-    def _take_posture(self, goal: BodyPoseWithSpeedGoal, interrupt: Interrupt) -> Outcome:
+    def _take_posture(self, goal: BodyPoseWithSpeedGoal, interrupt: CancellationToken) -> Outcome:
         require_within("speed", goal.speed, FRACTION)
         posture = self._robot.proxy(POSTURE)
         known = posture.call_async("getPostureList").result(timeout=QUICK_LIMIT)

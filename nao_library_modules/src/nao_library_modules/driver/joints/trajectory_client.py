@@ -10,9 +10,9 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
 from naoqi.errors import NaoError
 
-from ...base.interrupt import Interrupt
+from ...base.cancellation import CancellationToken
 from ...nao.pose_tables import Pose
-from ...ros.goal_watch import GoalWatch
+from ...ros.goal_tracker import GoalTracker
 from ...ros.ros_clock import RosClock
 
 ACTION = "joint_trajectory"
@@ -36,7 +36,7 @@ class TrajectoryClient:
         self._client = actionlib.ActionClient(ACTION, JointTrajectoryAction)
         self._clock = RosClock()
 
-    def take(self, pose: Pose, interrupt: Interrupt) -> None:
+    def take(self, pose: Pose, interrupt: CancellationToken) -> None:
         """Have a pose taken.
 
         Args:
@@ -49,8 +49,8 @@ class TrajectoryClient:
         """
         if not self._client.wait_for_server(rospy.Duration(SERVER_LIMIT)):
             raise NaoError(f"there is no server for {rospy.resolve_name(ACTION)}: is nao_controller running?")
-        wake = Interrupt()
-        goal = GoalWatch(wake.trigger)
+        wake = CancellationToken()
+        goal = GoalTracker(wake.trigger)
         handle = self._client.send_goal(_goal(pose), goal.look)
         with interrupt.waking(wake.trigger):
             # The motion has a margin in its own time, and messages have one in real time: simulated time may be faster.

@@ -10,7 +10,7 @@ from naoqi.errors import UnknownModule
 
 from ...robot.event_relay import EventRelay
 from ...ros.health import Level, Report
-from ..base.demand import Demand
+from ..base.lazy_subscription import LazySubscription
 
 LIFE, MEMORY = "ALAutonomousLife", "ALMemory"
 STATE = "AutonomousLife/State"
@@ -62,7 +62,7 @@ class AutonomousLife:
         self._tell = tell
         self._state = ""
         self._relay = EventRelay(lambda: robot.proxy(MEMORY), lambda _, state: self._note(state))
-        self._listening = Demand(robot, "state of autonomous life", self._begin, self._relay.close)
+        self._listening = LazySubscription(robot, "state of autonomous life", self._begin, self._relay.close)
         self._listening.want(True)
 
     def set_state(self, state: str) -> None:

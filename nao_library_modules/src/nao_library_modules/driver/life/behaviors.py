@@ -7,8 +7,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
-from ...base.interrupt import Interrupt
 from ...base.suggestion import did_you_mean
 from ...robot.robot import CLEAN_UP_LIMIT
 from ...robot.robot_task import run_task
@@ -38,7 +38,7 @@ class Behaviors:
         """
         return [str(name) for name in self._ask("getInstalledBehaviors")]
 
-    def run(self, name: str, interrupt: Interrupt) -> None:
+    def run(self, name: str, interrupt: CancellationToken) -> None:
         """Run one, to its end or to the interrupt, which stops it.
 
         Raises:

@@ -9,13 +9,13 @@ from typing import Any, Tuple
 
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
 from ...base.field_checks import require_within, require_zero_or
-from ...base.interrupt import Interrupt
 from ...base.limits import limit
 from ...robot.robot import CLEAN_UP_LIMIT
 from ...robot.robot_task import run_task
-from ...ros.goal_crowd import Replaced
+from ...ros.concurrent_action_server import Replaced
 
 LEDS = "ALLeds"
 EYES = "FaceLeds"
@@ -67,7 +67,7 @@ class Blinks:
         return min(max(chance.gauss(self.mean_pause, self.deviation), 0.0), longest)
 
 
-def fade(robot: Any, light: str, colour: Colour, duration: float, interrupt: Interrupt) -> None:
+def fade(robot: Any, light: str, colour: Colour, duration: float, interrupt: CancellationToken) -> None:
     """Fade a light or a group to a colour, and wait for the end.
 
     Args:
@@ -89,7 +89,7 @@ def blink(
     robot: Any,
     blinks: Blinks,
     clock: Any,
-    interrupt: Interrupt,
+    interrupt: CancellationToken,
     tell: Callable[[Colour], None],
     chance: random.Random,
 ) -> bool:

@@ -8,9 +8,9 @@ from typing import Any
 from nao_library_actions.msg import RunBehaviorAction, RunBehaviorResult
 from nao_library_msgs.srv import GetInstalledBehaviors, GetInstalledBehaviorsResponse
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import RobotLost
-from ...base.interrupt import Interrupt
-from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from .behaviors import Behaviors
@@ -39,25 +39,25 @@ class NaoBehaviors:
         self._node = node
         self._robot = robot
         self._behaviors = Behaviors(robot)
-        self._crowd = GoalCrowd(lambda _: ROBOT, self._run, robot=robot)
+        self._server = ConcurrentActionServer(lambda _: ROBOT, self._run, robot=robot)
         name = "run_behavior"
-        self._node.action(name, RunBehaviorAction, self._crowd)
+        self._node.action(name, RunBehaviorAction, self._server)
         robot.connection.add_listener(self._connection_changed)
         self._node.offer("get_installed_behaviors", GetInstalledBehaviors, self._installed)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
-        return {"goals run_behavior": self._crowd.counter.report}
+        return {"goals run_behavior": self._server.counter.report}
 
     def close(self) -> None:
         """Stop what runs."""
         self._robot.connection.remove_listener(self._connection_changed)
-        self._crowd.close(SHUTDOWN_LIMIT)
+        self._server.close(SHUTDOWN_LIMIT)
 
     def _installed(self, _request: Any) -> GetInstalledBehaviorsResponse:
         return GetInstalledBehaviorsResponse(self._behaviors.installed())
 
-    def _run(self, goal: Any, interrupt: Interrupt) -> Outcome:
+    def _run(self, goal: Any, interrupt: CancellationToken) -> Outcome:
         self._behaviors.run(goal.behavior, interrupt)
         return Outcome(RunBehaviorResult())
 
@@ -65,4 +65,4 @@ class NaoBehaviors:
         """Called from the thread that the connection has for its listeners."""
         if state == "lost":
             reason = self._robot.connection.last_error or "no answer"
-            self._crowd.interrupt_all(RobotLost(self._robot.address, reason))
+            self._server.interrupt_all(RobotLost(self._robot.address, reason))

@@ -13,10 +13,10 @@ from nao_library_actions.msg import BlinkAction, BlinkFeedback, BlinkResult
 from nao_library_msgs.msg import FadeRGB
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted, RobotLost
 from ...base.field_checks import require_zero_or
-from ...base.interrupt import Interrupt
-from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
@@ -47,21 +47,21 @@ class NaoLeds:
         self._robot = robot
         self._clock = RosClock()
         self._chance = random.Random()
-        self._interrupt = Interrupt()
-        self._crowd = GoalCrowd(lambda _: frozenset({EYES}), self._blink, with_feedback=True, robot=robot)
-        self._node.action("blink", BlinkAction, self._crowd)
+        self._interrupt = CancellationToken()
+        self._server = ConcurrentActionServer(lambda _: frozenset({EYES}), self._blink, with_feedback=True, robot=robot)
+        self._node.action("blink", BlinkAction, self._server)
         robot.connection.add_listener(self._connection_changed)
         self._node.subscriber("fade_rgb", FadeRGB, self._fade, queue_size=QUEUE)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
-        return {"goals blink": self._crowd.counter.report}
+        return {"goals blink": self._server.counter.report}
 
     def close(self) -> None:
         """End fades and goals."""
         self._robot.connection.remove_listener(self._connection_changed)
         self._interrupt.stop()
-        self._crowd.close(SHUTDOWN_LIMIT)
+        self._server.close(SHUTDOWN_LIMIT)
 
     def _fade(self, message: FadeRGB) -> None:
         colour, duration = _rgb(message.color), message.fade_duration.to_sec()
@@ -75,7 +75,7 @@ class NaoLeds:
         except NaoError as error:
             rospy.logerr_throttle(COMPLAINT_PERIOD, f"fade_rgb: {error}")
 
-    def _blink(self, goal: Any, interrupt: Interrupt, publish: Callable[[Any], None]) -> Outcome:
+    def _blink(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> Outcome:
         blinks = Blinks(
             [_rgb(color) for color in goal.colors],
             _rgb(goal.bg_color),
@@ -95,7 +95,7 @@ class NaoLeds:
         """Called from the thread that the connection has for its listeners."""
         if state == "lost":
             reason = self._robot.connection.last_error or "no answer"
-            self._crowd.interrupt_all(RobotLost(self._robot.address, reason))
+            self._server.interrupt_all(RobotLost(self._robot.address, reason))
 
 
 def _rgb(color: ColorRGBA) -> tuple[float, float, float]:

@@ -10,8 +10,8 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal
-from ...base.interrupt import Interrupt
 from ...robot.event_relay import EventRelay
 from ...ros.health import Level, Report
 from ..base.polling import FASTEST, RETRY
@@ -57,9 +57,9 @@ class MemoryWatch:
         self._stale = True
         self._generation: int | None = None
         self._problem = self._overflow = ""
-        self._news = Interrupt()
+        self._news = CancellationToken()
         self._closed = False
-        self._rest = Interrupt()
+        self._rest = CancellationToken()
         robot.connection.add_listener(self._wake)
         self._thread = threading.Thread(target=self._run, name="memory", daemon=True)
         self._thread.start()

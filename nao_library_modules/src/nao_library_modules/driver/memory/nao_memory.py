@@ -39,9 +39,9 @@ from ...base.suggestion import did_you_mean
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
-from ...ros.ros_edge import node_file
+from ...ros.server_node import node_file
+from ..base.lazy_topic import LazyTopic
 from ..base.node import publish
-from ..base.topic_demand import TopicDemand
 from .memory_access import MemoryAccess, check_pattern
 from .memory_names import is_pattern, matching
 from .memory_rules import Rule, read_rules
@@ -174,7 +174,7 @@ class NaoMemory:
         return self._node.resolve(f"~{topic}") if topic else ""
 
 
-class MemoryTopic(TopicDemand):
+class MemoryTopic(LazyTopic):
     """The topic of a key. Who begins to listen after others gets the last message first."""
 
     def __init__(self, node: NodeInterface, name: str, kind: str, tell: Callable[[bool], None]) -> None:

@@ -11,7 +11,7 @@ from std_srvs.srv import Empty
 
 from naoqi.errors import NaoError, RobotError
 
-from ...base.interrupt import Interrupt
+from ...base.cancellation import CancellationToken
 from ...base.places import Place
 from ...nao.joint_names import MOTION
 from ...owners.line import SERVICE
@@ -68,7 +68,7 @@ class WalkTopics:
         self._failed_before: list = []
         self._let_go = node.caller(LET_GO, Empty)
 
-    def prepare(self, interrupt: Interrupt) -> None:
+    def prepare(self, interrupt: CancellationToken) -> None:
         """Get ready to walk: the robot takes the pose for it, if it does not walk already.
 
         Raises:

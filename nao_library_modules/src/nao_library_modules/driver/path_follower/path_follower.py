@@ -20,10 +20,10 @@ from nao_library_actions.msg import (
 )
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import RobotLost
-from ...base.interrupt import Interrupt
 from ...base.places import Place
-from ...ros.goal_crowd import GoalCrowd, Outcome, Replaced
+from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome, Replaced
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
@@ -85,9 +85,9 @@ class NaoPathFollower:
         self._touching = True
         self._aims = self._node.publisher("~target_pose", PoseStamped, queue_size=1, latch=True)
         self._paths = self._node.publisher("~path", Path, queue_size=1, latch=True)
-        self._crowd = GoalCrowd(self._claims, self._execute, with_feedback=True, robot=robot)
+        self._server = ConcurrentActionServer(self._claims, self._execute, with_feedback=True, robot=robot)
         for name, action in (("walk_target", MoveBaseAction), ("walk_path", FollowPathAction)):
-            self._node.action(name, action, self._crowd)
+            self._node.action(name, action, self._server)
         self._target_goals = self._node.publisher("walk_target/goal", MoveBaseActionGoal, queue_size=1)
         self._path_goals = self._node.publisher("walk_path/goal", FollowPathActionGoal, queue_size=1)
         robot.connection.add_listener(self._connection_changed)
@@ -97,13 +97,13 @@ class NaoPathFollower:
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
-        return {"goals": self._crowd.counter.report}
+        return {"goals": self._server.counter.report}
 
     def close(self) -> None:
         """End the goal that runs; the robot stands then."""
         self._robot.connection.remove_listener(self._connection_changed)
-        self._crowd.interrupt_all(NaoError(NODE_KILLED))
-        self._crowd.close(SHUTDOWN_LIMIT)
+        self._server.interrupt_all(NaoError(NODE_KILLED))
+        self._server.close(SHUTDOWN_LIMIT)
 
     # --- goals ----------------------------------------------------------------------------------------------------
 
@@ -116,7 +116,7 @@ class NaoPathFollower:
         return LEGS
 
     def _execute(
-        self, goal: MoveBaseGoal | FollowPathGoal, interrupt: Interrupt, publish: Callable[[Any], None]
+        self, goal: MoveBaseGoal | FollowPathGoal, interrupt: CancellationToken, publish: Callable[[Any], None]
     ) -> Outcome:
         self._legs.reserve()
         try:
@@ -130,7 +130,7 @@ class NaoPathFollower:
             self._legs.release()
 
     def _walk(
-        self, goal: MoveBaseGoal | FollowPathGoal, interrupt: Interrupt, publish: Callable[[Any], None]
+        self, goal: MoveBaseGoal | FollowPathGoal, interrupt: CancellationToken, publish: Callable[[Any], None]
     ) -> Outcome:
         if self._settings.use_foot_contact_protection and not self._touching:
             raise NaoError(f"{FOOT_CONTACT}: put the robot on its feet")
@@ -195,10 +195,10 @@ class NaoPathFollower:
     def _on_foot_contact(self, contact: Bool) -> None:
         self._touching = contact.data
         if not contact.data and self._settings.use_foot_contact_protection:
-            self._crowd.interrupt_all(NaoError(FOOT_CONTACT))
+            self._server.interrupt_all(NaoError(FOOT_CONTACT))
 
     def _connection_changed(self, *_: Any) -> None:
         """Called from the thread that the connection has for its listeners."""
         connection = self._robot.connection
         if connection.state == "lost":
-            self._crowd.interrupt_all(RobotLost(self._robot.address, connection.last_error or "no answer"))
+            self._server.interrupt_all(RobotLost(self._robot.address, connection.last_error or "no answer"))

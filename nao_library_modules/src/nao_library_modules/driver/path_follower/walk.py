@@ -8,10 +8,10 @@ from typing import Any, Protocol
 
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.clock import WallClock
-from ...base.interrupt import Interrupt
 from ...base.places import ORIGIN, Place
-from ..base.pacer import Pacer
+from ..base.rate import Rate
 from .courses import Aim, reached
 from .settings import Settings
 from .steering import StuckWatch, velocity
@@ -29,7 +29,7 @@ FASTEST_ROUND = 0.008
 class Legs(Protocol):
     """What carries the robot."""
 
-    def prepare(self, interrupt: Interrupt) -> None:
+    def prepare(self, interrupt: CancellationToken) -> None:
         """Get ready to walk.
 
         Raises:
@@ -63,7 +63,7 @@ def _check_stop(legs: Legs) -> None:
 class _Poses:
     """Leads by poses: the robot plans its steps to each aim, and is told again when the aim has moved."""
 
-    def __init__(self, legs: Legs, settings: Settings, now: Callable[[], float], interrupt: Interrupt) -> None:
+    def __init__(self, legs: Legs, settings: Settings, now: Callable[[], float], interrupt: CancellationToken) -> None:
         self._legs = legs
         self._interrupt = interrupt
         self._settings = settings
@@ -114,7 +114,7 @@ class _Poses:
 class _Velocities:
     """Leads by velocities, each round anew."""
 
-    def __init__(self, legs: Legs, settings: Settings, now: Callable[[], float], interrupt: Interrupt) -> None:
+    def __init__(self, legs: Legs, settings: Settings, now: Callable[[], float], interrupt: CancellationToken) -> None:
         self._legs = legs
         self._interrupt = interrupt
         self._settings = settings
@@ -147,7 +147,7 @@ def lead(
     locate: Callable[[], Place],
     clock: Any,
     settings: Settings,
-    interrupt: Interrupt,
+    interrupt: CancellationToken,
     report: Callable[[Place, Aim], None] = lambda robot, aim: None,
 ) -> None:
     """Walk until the course ends. The legs are not stopped when it does not come to that.
@@ -165,11 +165,11 @@ def lead(
         NaoError: If the robot cannot walk, cannot be located or is stuck.
         Preempted: Or whatever reason the interrupt has.
     """
-    pacer = Pacer(clock, 1.0 / settings.controller_frequency, FASTEST_ROUND, interrupt)
+    rate = Rate(clock, 1.0 / settings.controller_frequency, FASTEST_ROUND, interrupt)
     stuck = StuckWatch(settings.stuck_time)
     mode = (_Velocities if settings.use_vel_ctrl else _Poses)(legs, settings, clock.now, interrupt)
     prepared = False
-    while pacer.wait():
+    while rate.wait():
         robot = locate()
         aim = course.aim(robot)
         report(robot, aim)

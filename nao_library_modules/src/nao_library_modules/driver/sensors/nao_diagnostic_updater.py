@@ -15,8 +15,8 @@ from nao_library_msgs.srv import GetRobotInfo, GetRobotInfoResponse
 from naoqi.errors import NaoError, UnknownMethod, UnknownModule
 
 from ...base.answers import json_of
+from ...base.cancellation import CancellationToken
 from ...base.field_checks import number_parameter
-from ...base.interrupt import Interrupt
 from ...base.limits import Limit, limit
 from ...nao.joint_names import JointNames
 from ...ros.health import Report
@@ -82,7 +82,7 @@ class NaoDiagnosticUpdater:
         self._hardware = robot.address
         self._last: dict[str, Report] = {}
         self._told_facts: dict[str, str] = {}
-        self._interrupt = Interrupt()
+        self._interrupt = CancellationToken()
         self._diagnostics = self._node.publisher("/diagnostics", DiagnosticArray, queue_size=10)
         self._info = self._node.publisher("info", StringStamped, queue_size=1, latch=True)
         self._connection = self._node.publisher("connection", ConnectionState, queue_size=10, latch=True)

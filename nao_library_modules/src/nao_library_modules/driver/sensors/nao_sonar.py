@@ -14,8 +14,8 @@ from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
+from ..base.lazy_topic import LazyTopic
 from ..base.node import name_for_robot, publish, rate_parameter
-from ..base.topic_demand import TopicDemand
 from .sonars import CONE, Sonars
 
 QUEUE = 10
@@ -53,8 +53,8 @@ class NaoSonar:
             for side in SONARS
             for name in (f"nao_robot/sonar/{side}", f"nao_robot/sonar/{side}/sonar")
         }
-        self._demands = [
-            TopicDemand(topic, lambda wanted, name=name: self._want(name, wanted))
+        self._lazys = [
+            LazyTopic(topic, lambda wanted, name=name: self._want(name, wanted))
             for name, (_, topic) in self._topics.items()
         ]
 

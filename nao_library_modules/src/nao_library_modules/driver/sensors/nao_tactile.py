@@ -15,9 +15,9 @@ from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
+from ..base.lazy_topic import LazyTopic
 from ..base.node import publish, rate_parameter
 from ..base.polling import Polling
-from ..base.topic_demand import TopicDemand
 from .foot_pressure import SIDES, FootPressure, read_feet
 from .touch_sensors import BUMPER, CHEST, FEET, HAND, HEAD, Sensor, TouchSensors
 
@@ -65,8 +65,8 @@ class NaoTactile:
             robot, "foot pressure", rate_parameter(node, "~fsr_rate", DEFAULT_RATE), RosClock(), self._read
         )
         self._feet = {side: self._node.publisher(f"nao_robot/fsr/{side}", Fsr, queue_size=QUEUE) for side in SIDES}
-        self._demands = [
-            TopicDemand(topic, lambda wanted, side=side: self._want(side, wanted)) for side, topic in self._feet.items()
+        self._lazys = [
+            LazyTopic(topic, lambda wanted, side=side: self._want(side, wanted)) for side, topic in self._feet.items()
         ]
         self._sensors = TouchSensors(robot, self._on_touch, self._on_clicks)
 

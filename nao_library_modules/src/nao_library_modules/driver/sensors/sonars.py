@@ -10,7 +10,7 @@ from naoqi.errors import NaoError
 
 from ...nao.body_devices import NEAREST, SONARS, echo_of
 from ...ros.health import Level, Report
-from ..base.demand import Demand
+from ..base.lazy_subscription import LazySubscription
 from ..base.polling import Polling
 
 SONAR, MEMORY = "ALSonar", "ALMemory"
@@ -53,7 +53,9 @@ class Sonars:
         self._robot = robot
         self._subscriber = subscriber
         self._sink = sink
-        self._measuring = Demand(robot, "sonars", lambda: self._ask("subscribe"), lambda: self._ask("unsubscribe"))
+        self._measuring = LazySubscription(
+            robot, "sonars", lambda: self._ask("subscribe"), lambda: self._ask("unsubscribe")
+        )
         self._polling = Polling(robot, "sonars", rate, clock, self._read)
 
     def want(self, wanted: bool) -> None:

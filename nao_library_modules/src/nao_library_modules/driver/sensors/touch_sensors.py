@@ -14,7 +14,7 @@ from ...nao.body_devices import FOOT_CONTACT
 from ...nao.touch_names import BY_EVENT
 from ...robot.event_relay import EventRelay
 from ...ros.health import Level, Report
-from ..base.demand import Demand
+from ..base.lazy_subscription import LazySubscription
 
 log = logging.getLogger(__name__)
 
@@ -98,7 +98,7 @@ class TouchSensors:
         self._touched: dict[str, bool | None] = {s.event: None if s.place == FEET else False for s in sensors}
         self._heard: set[str] = set()
         self._relay = EventRelay(lambda: robot.proxy(MEMORY), self._on_event)
-        self._listening = Demand(robot, "touch sensors", self._begin, self._relay.close, self._look_again)
+        self._listening = LazySubscription(robot, "touch sensors", self._begin, self._relay.close, self._look_again)
         self._listening.want(True)
 
     def report(self) -> Report:

@@ -11,7 +11,7 @@ from naoqi.errors import NaoError
 
 from ...robot.event_relay import EventRelay
 from ...ros.health import Level, Report
-from ..base.demand import Demand
+from ..base.lazy_subscription import LazySubscription
 
 log = logging.getLogger(__name__)
 
@@ -76,7 +76,7 @@ class Detection:
         self._sink = sink
         self._prepare = prepare
         self._relay = EventRelay(lambda: robot.proxy(MEMORY), self._on_event)
-        self._looking = Demand(robot, kind.name, self._begin, self._end)
+        self._looking = LazySubscription(robot, kind.name, self._begin, self._end)
 
     def enable(self) -> None:
         """Look from now on. No effect if it does.

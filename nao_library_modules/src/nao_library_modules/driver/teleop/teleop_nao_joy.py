@@ -10,12 +10,12 @@ from sensor_msgs.msg import Joy
 
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.clock import WallClock
 from ...base.field_checks import number_parameter
-from ...base.interrupt import Interrupt
 from ...base.limits import limit
 from ...ros.health import Level, Report
-from ..base.pacer import Pacer
+from ..base.rate import Rate
 from .joy_control import JoyControl, JoySettings, Request
 from .teleop_clients import TeleopClients
 
@@ -53,7 +53,7 @@ class TeleopNaoJoy:
         self._moving = False
         self._told_missing = False
         self._clients = TeleopClients(lambda text: rospy.loginfo("%s", text))
-        self._interrupt = Interrupt()
+        self._interrupt = CancellationToken()
         self._joy = rospy.Subscriber("joy", Joy, self._on_joy, queue_size=10)
         self._thread = threading.Thread(target=self._run, args=(1.0 / rate,), name="gamepad", daemon=True)
         self._thread.start()
@@ -103,8 +103,8 @@ class TeleopNaoJoy:
             self._clients.take_pose(request.value)
 
     def _run(self, period: float) -> None:
-        pacer = Pacer(self._wall, period, period / 2, self._interrupt)
-        while pacer.wait():
+        rate = Rate(self._wall, period, period / 2, self._interrupt)
+        while rate.wait():
             with self._lock:
                 if self._heard is not None and self._is_lost():
                     rospy.logwarn("the gamepad went away")

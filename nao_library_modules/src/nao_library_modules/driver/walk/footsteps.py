@@ -17,12 +17,12 @@ from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import ClipFootstep, ClipFootstepResponse, StepTargetService, StepTargetServiceResponse
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, RobotLost
 from ...base.field_checks import number_parameter, require_length, require_within
-from ...base.interrupt import Interrupt
 from ...base.limits import limit
 from ...base.places import Place
-from ...ros.goal_crowd import GoalCrowd, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
@@ -67,9 +67,9 @@ class NaoFootsteps:
             f"~{START_STIFFNESS}", self._node.param(f"~{START_STIFFNESS}", 0.0), limit("share")
         )
         self._walk = FootstepWalk(robot, RosClock())
-        self._crowd = GoalCrowd(self._claims, self._execute, with_feedback=True, robot=robot)
+        self._server = ConcurrentActionServer(self._claims, self._execute, with_feedback=True, robot=robot)
         name = "footsteps_execution"
-        self._node.action(name, ExecFootstepsAction, self._crowd)
+        self._node.action(name, ExecFootstepsAction, self._server)
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
         self._node.service("footstep_srv", StepTargetService, self._on_step_service)
@@ -78,12 +78,12 @@ class NaoFootsteps:
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         """Reports for /diagnostics, by name."""
-        return {"goals footsteps_execution": self._crowd.counter.report}
+        return {"goals footsteps_execution": self._server.counter.report}
 
     def close(self) -> None:
         """End the goal that runs; the robot stands then."""
         self._robot.connection.remove_listener(self._connection_changed)
-        self._crowd.close(SHUTDOWN_LIMIT)
+        self._server.close(SHUTDOWN_LIMIT)
 
     # --- the action -----------------------------------------------------------------------------------------------
 
@@ -93,7 +93,9 @@ class NaoFootsteps:
         self._walk.prepared(read_steps(goal.footsteps))
         return frozenset({"the legs"})
 
-    def _execute(self, goal: ExecFootstepsGoal, interrupt: Interrupt, publish: Callable[[Any], None]) -> Outcome:
+    def _execute(
+        self, goal: ExecFootstepsGoal, interrupt: CancellationToken, publish: Callable[[Any], None]
+    ) -> Outcome:
         steps = self._walk.prepared(read_steps(goal.footsteps))
 
         def report(made: tuple[Step, ...]) -> None:
@@ -128,7 +130,7 @@ class NaoFootsteps:
         """Called from the thread that the connection has for its listeners; they may call the robot."""
         connection = self._robot.connection
         if connection.state == "lost":
-            self._crowd.interrupt_all(RobotLost(self._robot.address, connection.last_error or "no answer"))
+            self._server.interrupt_all(RobotLost(self._robot.address, connection.last_error or "no answer"))
         elif connection.state == "connected" and self._init_stiffness > 0.0:
             stiffness, self._init_stiffness = self._init_stiffness, 0.0  # once: a robot that restarts stays limp
             try:

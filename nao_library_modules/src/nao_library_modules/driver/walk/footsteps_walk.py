@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 from naoqi.errors import NaoError
 
+from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
-from ...base.interrupt import Interrupt
 from ...base.places import Place
 from ...nao.joint_names import MOTION
 from ..joints.joint_controller import QUICK_LIMIT
@@ -102,7 +102,7 @@ class FootstepWalk:
         self,
         steps: Sequence[Step],
         period: float,
-        interrupt: Interrupt,
+        interrupt: CancellationToken,
         report: Callable[[tuple[Step, ...]], None],
     ) -> Walked:
         """Make steps, to the end or to the interrupt; the robot stands then.
@@ -120,7 +120,7 @@ class FootstepWalk:
         began = self._clock.now()
         self._send(steps, clear=True)
         ended = self._motion("waitUntilMoveIsFinished")
-        wake = Interrupt()
+        wake = CancellationToken()
         ended.add_done_callback(lambda _: wake.trigger())
         made = None  # until the robot has planned them
         with interrupt.waking(wake.trigger):
@@ -138,7 +138,7 @@ class FootstepWalk:
         report(steps)
         return Walked(steps)
 
-    def _stopped(self, steps: tuple[Step, ...], made: int | None, interrupt: Interrupt) -> Walked:
+    def _stopped(self, steps: tuple[Step, ...], made: int | None, interrupt: CancellationToken) -> Walked:
         """Stop the robot; steps that it cannot take back any more are made."""
         try:
             made = self._made(len(steps), made, taken_back=True)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from naoqi.errors import NaoError
 
-from ...base.interrupt import Interrupt
+from ...base.cancellation import CancellationToken
 from ...functions.joint_trajectory import KeyFrames
 from ..joints.joint_controller import JointController
 
@@ -30,7 +30,7 @@ class HeadScan:
         """Scan nothing yet."""
         self.speed = speed
         self._controller = controller
-        self._closed = Interrupt()
+        self._closed = CancellationToken()
         self._scanning = threading.Lock()
 
     @property

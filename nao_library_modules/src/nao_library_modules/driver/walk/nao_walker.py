@@ -21,13 +21,13 @@ from ...nao.joint_names import MOTION
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
-from ...ros.ros_edge import node_file
+from ...ros.server_node import node_file
 from ..joints.joint_controller import QUICK_LIMIT, JointController
 from .gait_config import read_gait_config, read_share
 from .head_scan import HeadScan
 from .walk_commands import Velocity, read_step, read_target, read_velocity
 from .walk_inhibition import WalkInhibition
-from .walk_orders import Command, Order, Overtaken, Stop
+from .walk_orders import Command, Order, Stop, Superseded
 from .walk_report import IS_ACTIVE, WalkJournal
 from .walker import Walker
 
@@ -141,7 +141,7 @@ class NaoWalker:
 
     def _note_end(self, topic: str, answer: Any) -> None:
         error = answer.exception()
-        if isinstance(error, Overtaken):
+        if isinstance(error, Superseded):
             rospy.logdebug("%s: %s", topic, error)
         elif error is not None:
             self._journal.failed(topic, error)

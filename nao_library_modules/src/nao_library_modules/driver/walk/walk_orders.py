@@ -40,7 +40,7 @@ class WalkEnded(NaoError):
         self.reason = reason
 
 
-class Overtaken(WalkEnded):
+class Superseded(WalkEnded):
     """Something newer came in the way of a command."""
 
 
@@ -89,10 +89,10 @@ class Order:
 
     def overtaken(self, reason: str) -> None:
         """Something newer came in its way."""
-        self.fail(Overtaken(self.command, reason))
+        self.fail(Superseded(self.command, reason))
 
 
-class OrderBox:
+class Mailbox:
     """Orders that wait. The newest replaces those before it; only steps queue up, and a stop is never left out.
 
     Any thread may put orders in.

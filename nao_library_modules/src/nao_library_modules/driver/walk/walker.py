@@ -11,15 +11,15 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
+from ...base.cancellation import CancellationToken
 from ...base.clock import WallClock
 from ...base.errors import Preempted
-from ...base.interrupt import Interrupt
 from ...nao.joint_names import MOTION
 from ...robot.robot_task import run_task
 from ..joints.joint_controller import QUICK_LIMIT
 from .gait_config import GaitConfig
 from .walk_commands import Step, Target, Velocity
-from .walk_orders import Command, Order, OrderBox, Overtaken, Stop, WalkEnded
+from .walk_orders import Command, Mailbox, Order, Stop, Superseded, WalkEnded
 from .walk_pace import WalkPace
 from .walk_watchdog import WalkWatchdog
 
@@ -61,8 +61,8 @@ class Walker:
         self._clock = clock
         self._wall = WallClock()
         self._watchdog = WalkWatchdog(cmd_vel_timeout)
-        self._box = OrderBox()
-        self._news, self._halt = Interrupt(), Interrupt()
+        self._box = Mailbox()
+        self._news, self._halt = CancellationToken(), CancellationToken()
         self._closed = threading.Event()
         self._lock = threading.Lock()
         self._running: list[Order] = []
@@ -332,5 +332,5 @@ class Walker:
 
 def _log_failure(answer: Any) -> None:
     error = answer.exception()
-    if error is not None and not isinstance(error, Overtaken):
+    if error is not None and not isinstance(error, Superseded):
         log.error("the robot cannot be stopped: %s", error)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from ...base.interrupt import Interrupt
+from ...base.cancellation import CancellationToken
 from .failures import PlanError
 from .fluents import AnyFluent
 
@@ -52,7 +52,7 @@ class Flow:
         self.tasks: list[Any] = []
         self.deaf = 0
         self.restarting = 0
-        self._signal = Interrupt()
+        self._signal = CancellationToken()
 
     def wake(self) -> None:
         """Have it look again at what it waits for; any thread may call this."""

@@ -14,7 +14,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from ...base.suggestion import of_those
-from ...ros.goal_watch import GoalWatch, server_connection
+from ...ros.goal_tracker import GoalTracker, server_connection
 from ..language.control import Step, subtask
 from ..language.failures import ActionlibActionTimedOut, LowLevelFailure
 from ..language.flow import retry_after_suspension, uninterrupted, wait_until
@@ -145,7 +145,7 @@ class PlanActionClient:
         def end() -> None:
             done.value = True
 
-        watch, cancelled = GoalWatch(end), False
+        watch, cancelled = GoalTracker(end), False
         connection = server_connection(self._client)
         told = None if on_feedback is None else lambda _, feedback: on_feedback(feedback)
         handle = self._client.send_goal(goal, watch.look, told)

@@ -20,7 +20,7 @@ from ..language.settings import Settings, load_settings
 from ..language.space import Point3, turned
 from .action_client import PlanActionClient
 from .chains import Chain
-from .told_topic import ToldTopic
+from .latched_topic import LatchedTopic
 
 STATE_LIMIT = 5.0
 """s to wait for the first joint states, and for frames."""
@@ -49,7 +49,7 @@ class RobotLink:
         self.joints = Fluent("joint states", {})
         self.held: dict[str, float] = {}
         self._clients: dict[str, PlanActionClient] = {}
-        self._topics: dict[str, ToldTopic] = {}
+        self._topics: dict[str, LatchedTopic] = {}
         self._lock = threading.Lock()
         self._known_since = 0.0
         self._chains: dict[str, Chain] = {}
@@ -64,11 +64,11 @@ class RobotLink:
                 self._clients[name] = PlanActionClient(name, kind)
             return self._clients[name]
 
-    def topic(self, name: str, kind: type) -> ToldTopic:
+    def topic(self, name: str, kind: type) -> LatchedTopic:
         """A topic to publish on; there is one for each."""
         with self._lock:
             if name not in self._topics:
-                self._topics[name] = ToldTopic(name, kind)
+                self._topics[name] = LatchedTopic(name, kind)
             return self._topics[name]
 
     def angles(self) -> Mapping[str, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ...base.interrupt import Interrupt
+from ...base.cancellation import CancellationToken
 from .cameras import camera_name
 from .files import VisionFiles
 from .jobs import VisionThreads
@@ -26,7 +26,7 @@ class VisionBase:
     """
 
     robot: Any  # Robot
-    interrupt: Interrupt
+    interrupt: CancellationToken
     clock: Any  # WallClock or RosClock
     kept: Any  # Kept, of NaoBasic
     call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts

@@ -22,16 +22,16 @@ from .events import (
     LANDMARK,
     MOVEMENT,
     NOTHING,
-    Look,
-    Sight,
-    ball_look,
-    code_sights,
-    face_look,
-    landmark_look,
-    movement_look,
+    Detection,
+    DetectionArray,
+    ball_detections,
+    code_detections,
+    face_detections,
+    landmark_detections,
+    movement_detections,
 )
 from .results import Seen, seen_messages
-from .space import DEFAULT_SIZES, Sighting, located
+from .space import DEFAULT_SIZES, LocalizedDetection, located
 
 log = logging.getLogger(__name__)
 
@@ -50,13 +50,13 @@ class Detector:
 
     module: str
     event: str
-    read: Callable[[Any], Look] | None = None
+    read: Callable[[Any], DetectionArray] | None = None
 
 
 DETECTORS = {
-    BALL: Detector("ALRedBallDetection", "redBallDetected", ball_look),
-    FACE: Detector("ALFaceDetection", "FaceDetected", face_look),
-    LANDMARK: Detector("ALLandMarkDetection", "LandmarkDetected", landmark_look),
+    BALL: Detector("ALRedBallDetection", "redBallDetected", ball_detections),
+    FACE: Detector("ALFaceDetection", "FaceDetected", face_detections),
+    LANDMARK: Detector("ALLandMarkDetection", "LandmarkDetected", landmark_detections),
     CODE: Detector("ALBarcodeReader", "BarcodeReader/BarcodeDetected"),
     MOVEMENT: Detector("ALMovementDetection", "MovementDetection/MovementDetected"),
 }
@@ -80,13 +80,13 @@ class Wanted:
     size: float = 0.0
     camera: int | None = None
 
-    def picks(self, sight: Sight) -> Sight | None:
-        """A sight as it counts; None if it does not."""
-        if sight.kind == FACE and sight.confidence < self.confidence:
-            sight = replace(sight, name="")
-        elif sight.confidence < self.confidence:
+    def picks(self, detection: Detection) -> Detection | None:
+        """A detection as it counts; None if it does not."""
+        if detection.kind == FACE and detection.confidence < self.confidence:
+            detection = replace(detection, name="")
+        elif detection.confidence < self.confidence:
             return None
-        return None if self.name and sight.name != self.name else sight
+        return None if self.name and detection.name != self.name else detection
 
 
 class Watch:
@@ -106,7 +106,7 @@ class Watch:
         self._events = events
         self._camera = camera
 
-    def until(self, end: float) -> Iterator[list[Sighting]]:
+    def until(self, end: float) -> Iterator[list[LocalizedDetection]]:
         """What pictures show, as they come: one list for each picture with something that counts.
 
         Args:
@@ -117,11 +117,11 @@ class Watch:
             NaoError: If the robot cannot be asked.
         """
         for event in self._events.until(end):
-            sightings = self._base.placed(self._wanted, self._camera, event)
-            if sightings:
-                first, seen = self._base.happened[0], sightings[0].time
+            detections = self._base.placed(self._wanted, self._camera, event)
+            if detections:
+                first, seen = self._base.happened[0], detections[0].time
                 self._base.happened = (first or seen, seen)
-                yield sightings
+                yield detections
 
 
 class DetectionBase(CameraAccess):
@@ -146,17 +146,17 @@ class DetectionBase(CameraAccess):
             with self.subscribed(detector.module, wanted.kind):
                 yield Watch(self, wanted, events, camera)
 
-    def note(self, sightings: Sequence[Sighting]) -> list[str]:
+    def note(self, detections: Sequence[LocalizedDetection]) -> list[str]:
         """Put what was seen into the result; answers what it is called, one text each."""
-        self.seen.objects += seen_messages(sightings, self.frame_prefix)
-        return [sighting.label for sighting in sightings]
+        self.seen.objects += seen_messages(detections, self.frame_prefix)
+        return [detection.label for detection in detections]
 
-    def tell_seen(self, status: str, sightings: Sequence[Sighting] = ()) -> None:
-        """Publish what is seen now, or was in the picture of these sightings."""
-        stamp = sightings[0].time if sightings else None
-        self.tell(status, seen_messages(sightings, self.frame_prefix), stamp=stamp)
+    def tell_seen(self, status: str, detections: Sequence[LocalizedDetection] = ()) -> None:
+        """Publish what is seen now, or was in the picture of these detections."""
+        stamp = detections[0].time if detections else None
+        self.tell(status, seen_messages(detections, self.frame_prefix), stamp=stamp)
 
-    def placed(self, wanted: Wanted, camera: int, event: Event) -> list[Sighting]:
+    def placed(self, wanted: Wanted, camera: int, event: Event) -> list[LocalizedDetection]:
         """What counts of an event, and where it is.
 
         Args:
@@ -174,9 +174,9 @@ class DetectionBase(CameraAccess):
         lens, time = self.lens(camera), self._time(look, event)
         size = wanted.size or DEFAULT_SIZES.get(wanted.kind, 0.0)
         found = []
-        for sight in filter(None, map(wanted.picks, look.sights)):
-            region = sight.region or self.region(camera, sight)
-            found.append(located(sight, camera, time, region, lens, size, look.in_torso, look.in_robot))
+        for detection in filter(None, map(wanted.picks, look.detections)):
+            region = detection.region or self.region(camera, detection)
+            found.append(located(detection, camera, time, region, lens, size, look.in_torso, look.in_robot))
         return found
 
     def end_leftover_detections(self) -> bool:
@@ -191,19 +191,21 @@ class DetectionBase(CameraAccess):
                 log.debug("%s may work for nobody: %s", detector.module, error)
         return self.robot.connection.state == "connected"
 
-    def _look(self, kind: str, camera: int, value: Any) -> Look:
+    def _look(self, kind: str, camera: int, value: Any) -> DetectionArray:
         read = DETECTORS[kind].read
         if read is not None:
             return read(value)
         if kind == MOVEMENT:
-            return movement_look(self.call(self.robot.proxy(MEMORY), "getData", MOVEMENT_KEY))
+            return movement_detections(self.call(self.robot.proxy(MEMORY), "getData", MOVEMENT_KEY))
         if not value:
             return NOTHING
         resolution = int(self.call(self.robot.proxy(DETECTORS[CODE].module), "getResolution"))
-        sights = code_sights(value, *_size(resolution), self.lens(camera))
-        return Look(None, camera, self.camera_pose(camera, TORSO), self.camera_pose(camera, ROBOT), sights)
+        detections = code_detections(value, *_size(resolution), self.lens(camera))
+        return DetectionArray(
+            None, camera, self.camera_pose(camera, TORSO), self.camera_pose(camera, ROBOT), detections
+        )
 
-    def _time(self, look: Look, event: Event) -> float:
+    def _time(self, look: DetectionArray, event: Event) -> float:
         """ROS time of a picture, s; of one whose time is not told that at which its event was raised."""
         if look.time is None:
             return self.event_time(event)

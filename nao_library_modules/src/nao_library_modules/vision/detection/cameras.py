@@ -11,7 +11,7 @@ from ...motion.facts import MOTION
 from ...nao.camera_facts import CAMERA_NAMES
 from ...server.extractor_use import ExtractorUse
 from ..capture.cameras import CAMERAS, VIDEO
-from .events import Lens, Pose, Region, Sight
+from .events import Detection, Lens, Pose, Region
 
 TORSO, ROBOT = 0, 2
 """NAOqi's FRAME_TORSO and FRAME_ROBOT."""
@@ -95,8 +95,8 @@ class CameraAccess(ExtractorUse):
             self._lenses[key] = Lens(*(float(self.call(proxy, method, camera)) for method in methods))
         return self._lenses[key]
 
-    def region(self, camera: int, sight: Sight) -> Region:
-        """Where a sight is in the picture, as the robot itself has it: angles of others are not all geometry's."""
-        angles = [sight.alpha, sight.beta, sight.size_x, sight.size_y]
+    def region(self, camera: int, detection: Detection) -> Region:
+        """Where a detection is in the picture, as the robot itself has it: angles of others are not all geometry's."""
+        angles = [detection.alpha, detection.beta, detection.size_x, detection.size_y]
         numbers = self.call(self.robot.proxy(VIDEO), "getImageInfoFromAngularInfo", camera, angles)
         return Region(*map(float, numbers))

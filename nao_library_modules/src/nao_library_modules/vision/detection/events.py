@@ -35,7 +35,7 @@ class Region(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Sight:
+class Detection:
     """Something in a picture.
 
     Attributes:
@@ -64,7 +64,7 @@ class Sight:
 
 
 @dataclass(frozen=True)
-class Look:
+class DetectionArray:
     """What an event says about a picture.
 
     Attributes:
@@ -72,20 +72,20 @@ class Look:
         camera: Index of the camera; None if it is not told.
         in_torso: Where the camera was in the torso frame; None if it is not told.
         in_robot: Where it was in NAOqi's FRAME_ROBOT; None if it is not told.
-        sights: What is in it.
+        detections: What is in it.
     """
 
     time: float | None
     camera: int | None
     in_torso: Pose | None
     in_robot: Pose | None
-    sights: tuple[Sight, ...]
+    detections: tuple[Detection, ...]
 
 
-NOTHING = Look(None, None, None, None, ())
+NOTHING = DetectionArray(None, None, None, None, ())
 
 
-def ball_look(value: Any) -> Look:
+def ball_detections(value: Any) -> DetectionArray:
     """A picture with a ball, from redBallDetected.
 
     Args:
@@ -97,7 +97,7 @@ def ball_look(value: Any) -> Look:
     return _read(value, "red ball", _ball)
 
 
-def landmark_look(value: Any) -> Look:
+def landmark_detections(value: Any) -> DetectionArray:
     """A picture with landmarks, from LandmarkDetected.
 
     Args:
@@ -110,7 +110,7 @@ def landmark_look(value: Any) -> Look:
     return _read(value, "landmarks", _landmarks)
 
 
-def face_look(value: Any) -> Look:
+def face_detections(value: Any) -> DetectionArray:
     """A picture with faces, from FaceDetected.
 
     Who was recognised for some time already and has no name in this picture keeps it, if the face is the only one.
@@ -125,7 +125,7 @@ def face_look(value: Any) -> Look:
     return _read(value, "faces", _faces)
 
 
-def movement_look(value: Any) -> Look:
+def movement_detections(value: Any) -> DetectionArray:
     """A picture with movements, from the key MovementDetection/MovementInfo.
 
     Args:
@@ -138,7 +138,7 @@ def movement_look(value: Any) -> Look:
     return _read(value, "movements", _movements)
 
 
-def code_sights(value: Any, width: int, height: int, lens: Lens) -> tuple[Sight, ...]:
+def code_detections(value: Any, width: int, height: int, lens: Lens) -> tuple[Detection, ...]:
     """Codes, from BarcodeReader/BarcodeDetected.
 
     Args:
@@ -158,12 +158,12 @@ def code_sights(value: Any, width: int, height: int, lens: Lens) -> tuple[Sight,
         raise ValueError(f"no codes that were read: {value!r}") from error
 
 
-def _read(value: Any, what: str, read: Any) -> Look:
+def _read(value: Any, what: str, read: Any) -> DetectionArray:
     if not value:
         return NOTHING
     try:
         (seconds, microseconds), content, in_torso, in_robot, camera, *_ = value
-        return Look(
+        return DetectionArray(
             float(seconds) + 1e-6 * float(microseconds),
             _camera(camera),
             _pose(in_torso),
@@ -193,26 +193,26 @@ def _finite(values: Sequence[Any]) -> list[float]:
     return numbers
 
 
-def _ball(content: Any) -> list[Sight]:
+def _ball(content: Any) -> list[Detection]:
     alpha, beta, radius_x, radius_y = _finite(content)
-    return [Sight(BALL, "", BALL, 1.0, alpha, beta, 2.0 * radius_x, 2.0 * radius_y)]
+    return [Detection(BALL, "", BALL, 1.0, alpha, beta, 2.0 * radius_x, 2.0 * radius_y)]
 
 
-def _landmarks(content: Any) -> list[Sight]:
-    sights = []
+def _landmarks(content: Any) -> list[Detection]:
+    detections = []
     for shape, (number, *_) in content:
         _, alpha, beta, width, height, *heading = _finite(shape)
         turn = heading[0] if heading else 0.0
         name = str(int(number))
-        sights.append(Sight(LANDMARK, name, name, 1.0, alpha, beta, width, height, turn))
-    return sights
+        detections.append(Detection(LANDMARK, name, name, 1.0, alpha, beta, width, height, turn))
+    return detections
 
 
-def _faces(content: Any) -> list[Sight]:
+def _faces(content: Any) -> list[Detection]:
     shapes = [entry for entry in content if len(entry) == 2 and isinstance(entry[0], (list, tuple))]
     known = _recognised(content[-1]) if content and len(shapes) < len(content) else []
     numbers = [int(extra[0]) for _, extra in shapes]
-    sights = []
+    detections = []
     for place, (shape, extra) in enumerate(shapes):
         _, alpha, beta, width, height, *_ = _finite(shape)
         score, name = float(extra[1]), str(extra[2])
@@ -220,8 +220,8 @@ def _faces(content: Any) -> list[Sight]:
             name = known[0]
         # Numbers tell faces apart from picture to picture, unless the robot gives all the same.
         key = f"#{numbers[place]}" if numbers.count(numbers[place]) == 1 else name or f"face {place}"
-        sights.append(Sight(FACE, name, key, min(max(score, 0.0), 1.0), alpha, beta, width, height))
-    return sights
+        detections.append(Detection(FACE, name, key, min(max(score, 0.0), 1.0), alpha, beta, width, height))
+    return detections
 
 
 def _recognised(entry: Any) -> list[str]:
@@ -231,18 +231,18 @@ def _recognised(entry: Any) -> list[str]:
     return []
 
 
-def _movements(content: Any) -> list[Sight]:
-    sights = []
+def _movements(content: Any) -> list[Detection]:
+    detections = []
     for place, (centre, region, share, *_) in enumerate(content):
         alpha, beta = _finite(centre)
         *_, width, height = _finite(region)
         of_region = share[-1] if isinstance(share, (list, tuple)) else share
         confidence = min(max(float(of_region), 0.0), 1.0)
-        sights.append(Sight(MOVEMENT, "", f"{place}", confidence, alpha, beta, abs(width), abs(height)))
-    return sights
+        detections.append(Detection(MOVEMENT, "", f"{place}", confidence, alpha, beta, abs(width), abs(height)))
+    return detections
 
 
-def _code(text: Any, corners: list[list[float]], picture: tuple[int, int], lens: Lens) -> Sight:
+def _code(text: Any, corners: list[list[float]], picture: tuple[int, int], lens: Lens) -> Detection:
     if not isinstance(text, str) or len(corners) != 4 or any(len(corner) != 2 for corner in corners):
         raise ValueError(f"{text!r} with {len(corners)} corners is no code")
     xs, ys = [x / picture[0] for x, _ in corners], [y / picture[1] for _, y in corners]
@@ -252,7 +252,7 @@ def _code(text: Any, corners: list[list[float]], picture: tuple[int, int], lens:
     plane = [((x - 0.5) * across, (y - 0.5) * down) for x, y in zip(xs, ys)]
     upper = (plane[1][0] - plane[0][0], plane[1][1] - plane[0][1])
     sides = [math.dist(plane[a], plane[b]) for a, b in ((0, 1), (3, 2), (0, 3), (1, 2))]
-    return Sight(
+    return Detection(
         CODE,
         text,
         text,

@@ -72,12 +72,12 @@ class FaceFunctions(DetectionFunctions):
         proxy = self.robot.proxy(FACES)
         self.tell_seen("looking")
         with self.watching(Wanted(FACE, camera=camera_index(camera))) as watch:
-            for sightings in watch.until(self.clock.now() + timeout_of(timeout)):
-                self.tell_seen("looking", sightings)
+            for detections in watch.until(self.clock.now() + timeout_of(timeout)):
+                self.tell_seen("looking", detections)
                 # Of several the robot could not tell which is meant.
-                if len(sightings) == 1 and self.call(proxy, method, name):
-                    (face,) = sightings
-                    self.note([replace(face, sight=replace(face.sight, name=name))])
+                if len(detections) == 1 and self.call(proxy, method, name):
+                    (face,) = detections
+                    self.note([replace(face, detection=replace(face.detection, name=name))])
                     return [True]
         return [False]
 

@@ -12,7 +12,7 @@ from std_msgs.msg import Header
 from nao_library_msgs.msg import SeenObject
 
 from ..capture.cameras import CAMERAS, OPTICAL_FRAMES
-from .space import Sighting
+from .space import LocalizedDetection
 
 BASE = "base_footprint"
 """Frame of the robot on the floor between its feet, as its description and nao_joint_states name it."""
@@ -34,40 +34,40 @@ class Seen:
         result.objects = self.objects
 
 
-def seen_message(sighting: Sighting, prefix: str) -> SeenObject:
-    """A sighting as a message.
+def seen_message(detection: LocalizedDetection, prefix: str) -> SeenObject:
+    """A detection as a message.
 
     Args:
-        sighting: What was seen.
+        detection: What was seen.
         prefix: That of the robot's frames, with its slash; may be empty.
     """
-    sight, region = sighting.sight, sighting.region
-    camera = next(name for name, number in CAMERAS.items() if number == sighting.camera)
+    detection, region = detection.detection, detection.region
+    camera = next(name for name, number in CAMERAS.items() if number == detection.camera)
     return SeenObject(
-        header=Header(stamp=Time.from_sec(sighting.time), frame_id=prefix + OPTICAL_FRAMES[camera]),
-        kind=sight.kind,
-        name=sight.name,
-        confidence=sight.confidence,
+        header=Header(stamp=Time.from_sec(detection.time), frame_id=prefix + OPTICAL_FRAMES[camera]),
+        kind=detection.kind,
+        name=detection.name,
+        confidence=detection.confidence,
         camera=camera,
-        looks=sighting.looks,
-        alpha=sight.alpha,
-        beta=sight.beta,
-        size_x=sight.size_x,
-        size_y=sight.size_y,
-        heading=sight.heading,
+        looks=detection.looks,
+        alpha=detection.alpha,
+        beta=detection.beta,
+        size_x=detection.size_x,
+        size_y=detection.size_y,
+        heading=detection.heading,
         x=region.x,
         y=region.y,
         width=region.width,
         height=region.height,
-        located=sighting.distance is not None,
-        distance=sighting.distance or 0.0,
-        camera_position=Point(*sighting.in_optical),
+        located=detection.distance is not None,
+        distance=detection.distance or 0.0,
+        camera_position=Point(*detection.in_optical),
         base_frame=prefix + BASE,
-        position=Point(*sighting.in_robot),
-        camera_origin=Point(*sighting.camera_in_robot),
+        position=Point(*detection.in_robot),
+        camera_origin=Point(*detection.camera_in_robot),
     )
 
 
-def seen_messages(sightings: Sequence[Sighting], prefix: str) -> list[SeenObject]:
+def seen_messages(detections: Sequence[LocalizedDetection], prefix: str) -> list[SeenObject]:
     """Sightings as messages."""
-    return [seen_message(sighting, prefix) for sighting in sightings]
+    return [seen_message(detection, prefix) for detection in detections]

@@ -13,7 +13,7 @@ from statistics import median
 from typing import List, Tuple
 
 from ...audio_in.events import turned
-from .events import BALL, CODE, FACE, LANDMARK, Lens, Pose, Region, Sight
+from .events import BALL, CODE, FACE, LANDMARK, Detection, Lens, Pose, Region
 
 Vector = Tuple[float, float, float]
 
@@ -22,11 +22,11 @@ DEFAULT_SIZES = {BALL: 0.03, LANDMARK: 0.092, FACE: 0.16}
 
 
 @dataclass(frozen=True)
-class Sighting:
+class LocalizedDetection:
     """Something that was seen, and where it is.
 
     Attributes:
-        sight: What is in the picture.
+        detection: What is in the picture.
         camera: Index of the camera.
         time: ROS time of the picture, s.
         region: Where it is in the picture.
@@ -38,7 +38,7 @@ class Sighting:
         looks: In how many pictures it was seen.
     """
 
-    sight: Sight
+    detection: Detection
     camera: int
     time: float
     region: Region
@@ -52,7 +52,7 @@ class Sighting:
     @property
     def label(self) -> str:
         """What it is called: its name, else its kind."""
-        return self.sight.name or self.sight.kind
+        return self.detection.name or self.detection.kind
 
     @property
     def in_optical(self) -> Vector:
@@ -62,12 +62,19 @@ class Sighting:
 
 
 def located(
-    sight: Sight, camera: int, time: float, region: Region, lens: Lens, size: float, in_torso: Pose, in_robot: Pose
-) -> Sighting:
-    """Find where in space a sight is.
+    detection: Detection,
+    camera: int,
+    time: float,
+    region: Region,
+    lens: Lens,
+    size: float,
+    in_torso: Pose,
+    in_robot: Pose,
+) -> LocalizedDetection:
+    """Find where in space a detection is.
 
     Args:
-        sight: What is seen.
+        detection: What is seen.
         camera: Index of the camera.
         time: ROS time of the picture, s.
         region: Where it is in the picture.
@@ -79,12 +86,12 @@ def located(
     across, down = 2.0 * math.tan(lens.width / 2.0), 2.0 * math.tan(lens.height / 2.0)
     ray = (1.0, (0.5 - region.x) * across, (0.5 - region.y) * down)
     stretch = math.hypot(*ray)
-    known = size > 0.0 and sight.size_x > 0.0 and sight.size_y > 0.0
-    distance = _distance(sight, size, ray, region.width * across, region.height * down) if known else None
+    known = size > 0.0 and detection.size_x > 0.0 and detection.size_y > 0.0
+    distance = _distance(detection, size, ray, region.width * across, region.height * down) if known else None
     scale = (1.0 if distance is None else distance) / stretch
     place = (ray[0] * scale, ray[1] * scale, ray[2] * scale)
-    return Sighting(
-        sight,
+    return LocalizedDetection(
+        detection,
         camera,
         time,
         region,
@@ -96,24 +103,24 @@ def located(
     )
 
 
-def _distance(sight: Sight, size: float, ray: Vector, width: float, height: float) -> float:
+def _distance(detection: Detection, size: float, ray: Vector, width: float, height: float) -> float:
     """How far away something is, m.
 
     Args:
-        sight: What is seen.
+        detection: What is seen.
         size: Real size, m.
         ray: To its centre, 1 along the axis.
         width: In the picture, in units of the focal length.
         height: Likewise.
     """
     stretch = math.hypot(*ray)
-    if sight.kind == BALL:  # its size is the angle in which it is seen, wherever in the picture
-        return size / math.sin((sight.size_x + sight.size_y) / 4.0)
-    if sight.kind == CODE:  # it may be turned in the picture, and is larger then
-        return stretch * size / (2.0 * math.tan(sight.size_x / 2.0))
+    if detection.kind == BALL:  # its size is the angle in which it is seen, wherever in the picture
+        return size / math.sin((detection.size_x + detection.size_y) / 4.0)
+    if detection.kind == CODE:  # it may be turned in the picture, and is larger then
+        return stretch * size / (2.0 * math.tan(detection.size_x / 2.0))
     # Away from the axis everything is drawn larger than the angle in which it is seen.
     across = width * math.hypot(1.0, ray[2]) / stretch**2
-    if sight.kind == LANDMARK:  # a disc that is seen from the side is narrower one way only
+    if detection.kind == LANDMARK:  # a disc that is seen from the side is narrower one way only
         return size / max(across, height * math.hypot(1.0, ray[1]) / stretch**2)
     return size / across
 
@@ -127,10 +134,10 @@ def moved(point: Vector, pose: Pose) -> Vector:
 NEAR = 0.3
 """m; what was seen so near to the same place, but never twice in one picture, is one thing: detectors begin to count
 anew when the head turns."""
-Group = List[Tuple[int, Sighting]]
+Group = List[Tuple[int, LocalizedDetection]]
 
 
-def merged(pictures: Sequence[Sequence[Sighting]]) -> list[Sighting]:
+def merged(pictures: Sequence[Sequence[LocalizedDetection]]) -> list[LocalizedDetection]:
     """What several pictures show, each thing once: the median of all numbers, the name that it had most often.
 
     Args:
@@ -142,8 +149,8 @@ def merged(pictures: Sequence[Sequence[Sighting]]) -> list[Sighting]:
     """
     things: dict[tuple[str, str], Group] = {}
     for number, picture in enumerate(pictures):
-        for sighting in picture:
-            things.setdefault((sighting.sight.kind, sighting.sight.key), []).append((number, sighting))
+        for detection in picture:
+            things.setdefault((detection.detection.kind, detection.detection.key), []).append((number, detection))
     groups: list[Group] = []
     for group in things.values():
         known = next((other for other in groups if _one_thing(other, group)), None)
@@ -151,42 +158,44 @@ def merged(pictures: Sequence[Sequence[Sighting]]) -> list[Sighting]:
             groups.append(group)
         else:
             known[:] = sorted([*known, *group], key=lambda entry: entry[0])
-    found = [_middle([sighting for _, sighting in group]) for group in groups]
-    return sorted(found, key=lambda each: (not each.sight.name, -each.looks))
+    found = [_middle([detection for _, detection in group]) for group in groups]
+    return sorted(found, key=lambda each: (not each.detection.name, -each.looks))
 
 
 def _one_thing(one: Group, other: Group) -> bool:
-    """Whether two groups of sightings are of one thing."""
-    if one[0][1].sight.kind != other[0][1].sight.kind or {n for n, _ in one} & {n for n, _ in other}:
+    """Whether two groups of detections are of one thing."""
+    if one[0][1].detection.kind != other[0][1].detection.kind or {n for n, _ in one} & {n for n, _ in other}:
         return False
-    first, second = ({s.sight.name for _, s in group if s.sight.name} for group in (one, other))
+    first, second = ({s.detection.name for _, s in group if s.detection.name} for group in (one, other))
     if first and second and not first & second:
         return False
     places = [_vector([s.in_robot for _, s in group]) for group in (one, other)]
     return math.dist(*places) < NEAR
 
 
-def _middle(sightings: list[Sighting]) -> Sighting:
-    last = sightings[-1]
-    if len(sightings) == 1:
+def _middle(detections: list[LocalizedDetection]) -> LocalizedDetection:
+    last = detections[-1]
+    if len(detections) == 1:
         return last
-    names = Counter(s.sight.name for s in sightings if s.sight.name)
+    names = Counter(s.detection.name for s in detections if s.detection.name)
     name = names.most_common(1)[0][0] if names else ""
     numbers = ("confidence", "alpha", "beta", "size_x", "size_y", "heading")
-    sight = replace(
-        last.sight, name=name, **{field: median(getattr(s.sight, field) for s in sightings) for field in numbers}
+    detection = replace(
+        last.detection,
+        name=name,
+        **{field: median(getattr(s.detection, field) for s in detections) for field in numbers},
     )
-    distances = [s.distance for s in sightings if s.distance is not None]
+    distances = [s.distance for s in detections if s.distance is not None]
     return replace(
         last,
-        sight=sight,
-        region=Region(*_medians([s.region for s in sightings])),
+        detection=detection,
+        region=Region(*_medians([s.region for s in detections])),
         distance=median(distances) if distances else None,
-        in_camera=_vector([s.in_camera for s in sightings]),
-        in_torso=_vector([s.in_torso for s in sightings]),
-        in_robot=_vector([s.in_robot for s in sightings]),
-        camera_in_robot=_vector([s.camera_in_robot for s in sightings]),
-        looks=len(sightings),
+        in_camera=_vector([s.in_camera for s in detections]),
+        in_torso=_vector([s.in_torso for s in detections]),
+        in_robot=_vector([s.in_robot for s in detections]),
+        camera_in_robot=_vector([s.camera_in_robot for s in detections]),
+        looks=len(detections),
     )
 
 

@@ -69,9 +69,9 @@ class DetectionFunctions(DetectionBase):
         pictures = []
         self.tell_seen("looking")
         with self.watching(wanted) as watch:
-            for sightings in watch.until(self.clock.now() + timeout_of(timeout)):
-                pictures.append(sightings)
-                self.tell_seen("looking", sightings)
+            for detections in watch.until(self.clock.now() + timeout_of(timeout)):
+                pictures.append(detections)
+                self.tell_seen("looking", detections)
                 if len(pictures) >= max(count, 1):
                     break
         if not pictures:

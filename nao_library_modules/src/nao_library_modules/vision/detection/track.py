@@ -27,7 +27,7 @@ from .fields import (
     ThingSize,
 )
 from .goals import camera_index, wanted_thing
-from .space import Sighting, merged
+from .space import LocalizedDetection, merged
 from .track_head import HeadUse, Neck
 from .track_plan import MIDDLE, off_axis, search_angles, the_one
 
@@ -92,15 +92,15 @@ class TrackingFunctions(HeadUse):
         kind, name = wanted_thing(str_param)
         wanted = Wanted(kind, name, confidence, size, camera_index(camera))
         limit = timeout or SEARCH_TIMEOUT
-        pictures: list[list[Sighting]] = []
+        pictures: list[list[LocalizedDetection]] = []
         found: float | None = None
         with self.head(speed, revert) as neck, self.watching(wanted) as watch:
             chase = Chase(self, neck, watch, kind, search=True)
-            for sighting, at_limit in chase.sightings(self.clock.now() + limit, limit):
+            for detection, at_limit in chase.detections(self.clock.now() + limit, limit):
                 now = self.clock.now()
                 found = now if found is None else found
-                if off_axis(sighting) <= MIDDLE or at_limit or now - found > SETTLING:
-                    pictures.append([sighting])
+                if off_axis(detection) <= MIDDLE or at_limit or now - found > SETTLING:
+                    pictures.append([detection])
                     if len(pictures) >= max(count, 1):
                         break
         return self.note(merged(pictures))
@@ -108,15 +108,15 @@ class TrackingFunctions(HeadUse):
     def _track(
         self, wanted: Wanted, timeout: float, duration: float, search: bool, speed: float, revert: bool
     ) -> list[float]:
-        last: Sighting | None = None
+        last: LocalizedDetection | None = None
         in_view = 0.0
         end = self.clock.now() + duration if duration > 0.0 else math.inf
         try:
             with self.head(speed, revert) as neck, self.watching(wanted) as watch:
                 chase = Chase(self, neck, watch, wanted.kind, search)
                 before = -math.inf
-                for sighting, _ in chase.sightings(end, timeout_of(timeout)):
-                    last, now = sighting, self.clock.now()
+                for detection, _ in chase.detections(end, timeout_of(timeout)):
+                    last, now = detection, self.clock.now()
                     in_view += now - before if now - before <= LOST else 0.0
                     before = now
         finally:  # who preempts it wants to know where it was last
@@ -148,9 +148,9 @@ class Chase:
         self._neck = neck
         self._watch = watch
         self._places = search_angles(kind, neck.ranges) if search else None
-        self._last: Sighting | None = None
+        self._last: LocalizedDetection | None = None
 
-    def sightings(self, end: float, patience: float) -> Iterator[tuple[Sighting, bool]]:
+    def detections(self, end: float, patience: float) -> Iterator[tuple[LocalizedDetection, bool]]:
         """Each time that it is seen, and whether the head is as far as it can turn.
 
         Args:
@@ -162,12 +162,12 @@ class Chase:
         self._base.tell_seen(status)
         seen, glance = clock.now(), clock.now() + GLANCE
         while clock.now() < min(end, seen + patience):
-            sighting = self._next(min(end, seen + patience, glance))
-            if sighting is not None:
+            detection = self._next(min(end, seen + patience, glance))
+            if detection is not None:
                 status, seen = "following", clock.now()
-                at_limit = self._neck.follow(sighting)
-                self._base.tell_seen(status, [sighting])
-                yield sighting, at_limit
+                at_limit = self._neck.follow(detection)
+                self._base.tell_seen(status, [detection])
+                yield detection, at_limit
                 glance = seen + LOST
             elif clock.now() >= glance:
                 if status == "following":
@@ -179,8 +179,8 @@ class Chase:
                     self._base.tell_seen(status)
                     glance = clock.now() + self._neck.search(next(self._places)) + GLANCE
 
-    def _next(self, end: float) -> Sighting | None:
-        for sightings in self._watch.until(end):
-            self._last = the_one(sightings, self._last)
+    def _next(self, end: float) -> LocalizedDetection | None:
+        for detections in self._watch.until(end):
+            self._last = the_one(detections, self._last)
             return self._last
         return None

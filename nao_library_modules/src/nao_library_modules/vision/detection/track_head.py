@@ -12,7 +12,7 @@ from naoqi.errors import NaoError
 from ...motion.facts import MOTION, JointLimits
 from ...motion.look_at import HEAD
 from .base import DetectionBase
-from .space import Sighting
+from .space import LocalizedDetection
 from .track_plan import STILL, Angles, aim, fraction, off_axis, travel_time, within
 
 log = logging.getLogger(__name__)
@@ -47,18 +47,18 @@ class Neck:
         """Begin to turn the head; it goes on by itself."""
         self._motion("setAngles", list(HEAD), list(angles), share)
 
-    def follow(self, sighting: Sighting) -> bool:
+    def follow(self, detection: LocalizedDetection) -> bool:
         """Turn towards what was seen; tells whether that is as far as the head can go.
 
         The aim is where the thing was, not how far off it was seen: it stays the same while the head is on its way,
         so that an old picture does no harm.
         """
         try:
-            wanted = aim(sighting)
+            wanted = aim(detection)
         except ValueError as error:
             log.debug("%s: the head stays where it is", error)
             return True
-        angle = off_axis(sighting)
+        angle = off_axis(detection)
         yaw, pitch = (within(joint, value) for joint, value in zip(self.ranges, wanted))
         if angle > STILL:
             self.turn((yaw, pitch), fraction(angle, self.ranges, self.speed))

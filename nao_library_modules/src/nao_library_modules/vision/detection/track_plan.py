@@ -11,7 +11,7 @@ from ...motion.facts import JointLimits
 from ...nao.camera_facts import CAMERA_NAMES
 from ...nao.gaze import load_head, look_at
 from .events import BALL, FACE
-from .space import Sighting
+from .space import LocalizedDetection
 
 Angles = Tuple[float, float]
 """HeadYaw and HeadPitch, rad."""
@@ -30,14 +30,14 @@ MIDDLE = math.radians(3.0)
 """rad off the middle of the picture that still is the middle."""
 
 
-def aim(sighting: Sighting) -> Angles:
+def aim(detection: LocalizedDetection) -> Angles:
     """Head angles that bring what was seen into the middle of the camera's picture, whether the head can or not.
 
     Raises:
         ValueError: If it is in the head.
     """
     head = load_head()
-    return look_at(head, head.cameras[CAMERA_NAMES[sighting.camera]], sighting.in_torso)
+    return look_at(head, head.cameras[CAMERA_NAMES[detection.camera]], detection.in_torso)
 
 
 def within(joint: JointLimits, angle: float) -> float:
@@ -45,9 +45,9 @@ def within(joint: JointLimits, angle: float) -> float:
     return min(max(angle, joint.lower), joint.upper)
 
 
-def off_axis(sighting: Sighting) -> float:
+def off_axis(detection: LocalizedDetection) -> float:
     """How far off the camera's axis it was seen, rad."""
-    x, y, z = sighting.in_camera
+    x, y, z = detection.in_camera
     return math.atan2(math.hypot(y, z), x)
 
 
@@ -91,11 +91,11 @@ def search_angles(kind: str, ranges: Sequence[JointLimits]) -> Iterator[Angles]:
     return cycle(places)
 
 
-def the_one(sightings: Sequence[Sighting], last: Sighting | None) -> Sighting:
+def the_one(detections: Sequence[LocalizedDetection], last: LocalizedDetection | None) -> LocalizedDetection:
     """Which of several things is followed: the one that was, else the nearest to where it was, else the largest."""
     if last is None:
-        return max(sightings, key=lambda s: s.region.width * s.region.height)
-    same = [s for s in sightings if s.sight.key == last.sight.key]
+        return max(detections, key=lambda s: s.region.width * s.region.height)
+    same = [s for s in detections if s.detection.key == last.detection.key]
     if len(same) == 1:
         return same[0]
-    return min(sightings, key=lambda s: math.dist(s.in_robot, last.in_robot))
+    return min(detections, key=lambda s: math.dist(s.in_robot, last.in_robot))

@@ -13,8 +13,8 @@ from ..language.model import PathParts
 Ticket = Tuple[float, Tuple[int, ...], object]
 
 
-class Turns:
-    """Turns with each of several servers; who came first is first, at the same time by the order of the file.
+class FifoLock:
+    """A turn with each of several servers; who came first is first, at the same time by the order of the file.
 
     Args:
         servers: Their names.

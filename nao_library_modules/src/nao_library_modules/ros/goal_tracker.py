@@ -18,7 +18,7 @@ ACKNOWLEDGEMENT_LIMIT = 5.0
 """s that a server may take to tell of a goal before it is cancelled all the same."""
 
 
-class GoalWatch:
+class GoalTracker:
     """Sees what becomes of one goal.
 
     While it goes on it is noted as owned by this process, so that it is cancelled if the process dies.

@@ -13,7 +13,7 @@ from nao_library_msgs.msg import TouchBinding
 from .touch import Contact
 
 
-class Felt:
+class Measurements:
     """What the functions of one chain felt."""
 
     def __init__(self) -> None:

@@ -17,7 +17,7 @@ LOOK_PERIOD = 1.0
 """s between two looks whether what runs is alive."""
 
 
-class Demand:
+class LazySubscription:
     """Starts and stops, in a thread of its own.
 
     Any thread may say what is wanted. One lock keeps starts and stops apart; the condition guards the rest, and is not

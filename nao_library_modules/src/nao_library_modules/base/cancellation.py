@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from .errors import Preempted
 
 
-class Interrupt:
+class CancellationToken:
     """Tells whoever waits to stop waiting.
 
     Triggering wakes the wait of this object and calls the wakers, so that a thread may wait on something else

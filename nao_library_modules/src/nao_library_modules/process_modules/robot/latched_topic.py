@@ -14,7 +14,7 @@ OTHERS_LIMIT = 2.0
 """s to wait, when the first listener is there, for others that the master knows: one that was killed never comes."""
 
 
-class ToldTopic:
+class LatchedTopic:
     """Publishes when the listeners are connected, which takes a moment after the publisher has been made.
 
     Args:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...base.cancellation import CancellationToken
 from ...base.clock import WallClock
-from ...base.interrupt import Interrupt
 
 
-class Pacer:
+class Rate:
     """Waits for the next moment of a cycle. For one thread.
 
     On simulated time that runs faster than real time, rounds do not follow each other faster than `rest` allows in
     real time: the program would do nothing else.
     """
 
-    def __init__(self, clock: Any, period: float, rest: float, interrupt: Interrupt) -> None:
+    def __init__(self, clock: Any, period: float, rest: float, interrupt: CancellationToken) -> None:
         """Begin the cycle with the first wait.
 
         Args:

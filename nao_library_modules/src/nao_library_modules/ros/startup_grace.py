@@ -8,8 +8,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from ..base.cancellation import CancellationToken
 from ..base.field_checks import number_parameter
-from ..base.interrupt import Interrupt
 from ..base.limits import limit
 
 log = logging.getLogger(__name__)
@@ -27,7 +27,7 @@ def require_patience(value: Any) -> float:
     return number_parameter("~patience", value, limit("wait"))
 
 
-class FirstContact:
+class StartupGrace:
     """Waits for a robot that has never been reached; for one that went away nobody waits.
 
     Any thread may wait. Time is that of the computer, for simulated time may not have begun.
@@ -48,7 +48,7 @@ class FirstContact:
         never = connection.generation == 0 and connection.state == "connecting"
         return never and time.monotonic() < self._deadline
 
-    def wait(self, interrupt: Interrupt, tell: Callable[[str], None]) -> None:
+    def wait(self, interrupt: CancellationToken, tell: Callable[[str], None]) -> None:
         """Wait until the robot is there, the time is over, or something interrupts.
 
         Args:

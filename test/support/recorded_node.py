@@ -49,7 +49,7 @@ class ActionServer:
         self._set("preempted", result, text)
 
 
-class Edge:
+class RecordedNode:
     """What a module has of a ROS node, for a test to look at.
 
     Attributes:

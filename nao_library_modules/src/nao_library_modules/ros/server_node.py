@@ -32,7 +32,7 @@ EVENT_TOPIC = "memory_events"
 LONGEST_SECONDS = 1.0
 
 
-class RosEdge:
+class ServerNode:
     """The ROS side of a module. Needs `rospy.init_node` before.
 
     Attributes:

@@ -9,7 +9,7 @@ from typing import Any
 import rospy
 
 
-class TopicDemand(rospy.SubscribeListener):
+class LazyTopic(rospy.SubscribeListener):
     """Calls a function when the first one begins to listen, and when the last one stops.
 
     Callbacks come from threads of rospy, sometimes out of order: so each looks how many there are, under a lock.

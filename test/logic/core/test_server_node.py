@@ -12,7 +12,7 @@ import tf2_ros
 from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import TransformStamped
 
-from nao_library_modules.ros import diagnostics, robot_frames, ros_edge
+from nao_library_modules.ros import diagnostics, robot_frames, server_node
 from nao_library_modules.ros.action_server import publish_status
 from nao_library_modules.ros.health import Level, Report
 from naoqi.errors import NaoError
@@ -26,9 +26,9 @@ def test_events_are_published_with_name_value_and_type(monkeypatch):
             assert (topic, queue_size > 0) == ("memory_events", True)
             self.publish = published.append
 
-    monkeypatch.setattr(ros_edge.rospy, "Publisher", Publisher)
-    monkeypatch.setattr(ros_edge.rospy.Time, "now", lambda: ros_edge.rospy.Time(5))
-    tell = ros_edge.RosEdge().event_sink()
+    monkeypatch.setattr(server_node.rospy, "Publisher", Publisher)
+    monkeypatch.setattr(server_node.rospy.Time, "now", lambda: server_node.rospy.Time(5))
+    tell = server_node.ServerNode().event_sink()
     types = {
         "null": None, "bool": True, "int": 7, "float": 0.5, "string": "text", "list": [1.0, "x"], "object": {"a": 1},
     }  # fmt: skip

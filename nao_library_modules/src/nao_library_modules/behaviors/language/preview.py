@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .messages import fields_of
-from .program import AllAtOnce, Goal, InOrder, Meeting, Node, OnTimeline, Pause, Rounds, name_of, walk
+from .program import BarrierNode, Goal, Node, OnTimeline, ParallelNode, Pause, RepeatNode, SequenceNode, name_of, walk
 from .servers import FunctionTables
 from .yaml_text import dump_line
 
@@ -18,7 +18,7 @@ LONGEST = 200
 
 
 @dataclass(frozen=True)
-class Outlook:
+class Preview:
     """What there is to know of a program.
 
     Attributes:
@@ -34,7 +34,7 @@ class Outlook:
     unchecked: tuple[str, ...] = ()
 
 
-def outlook_of(program: InOrder, tables: FunctionTables) -> Outlook:
+def preview_of(program: SequenceNode, tables: FunctionTables) -> Preview:
     """Look at a program.
 
     Args:
@@ -42,8 +42,8 @@ def outlook_of(program: InOrder, tables: FunctionTables) -> Outlook:
         tables: Functions of the servers.
     """
     nodes = [node for part in program.parts for node in walk(part)]
-    boxes = dict.fromkeys(node.box for node in nodes if isinstance(node, InOrder) and node.box)
-    return Outlook(
+    boxes = dict.fromkeys(node.box for node in nodes if isinstance(node, SequenceNode) and node.box)
+    return Preview(
         _few([_told(node) for node in nodes]),
         tuple(boxes),
         waits_of(program),
@@ -62,9 +62,9 @@ def _waits_inside(node: Node) -> float:
         return node.duration
     if isinstance(node, Goal):
         return sum(message.time.to_sec() for message in _messages(node))
-    if isinstance(node, Rounds):
+    if isinstance(node, RepeatNode):
         return node.count * sum(map(waits_of, node.parts))
-    if isinstance(node, AllAtOnce):
+    if isinstance(node, ParallelNode):
         return max(map(waits_of, node.parts), default=0.0)
     if isinstance(node, OnTimeline):
         return max(_times_of(node)[1].values(), default=0.0)
@@ -93,7 +93,7 @@ def _times_of(timeline: OnTimeline) -> tuple[dict[int, float], dict[int, float]]
             other = named.get(entry.at.label) if entry.at.label else None
             if i in ends or not (other is None or other in ends):
                 continue
-            if isinstance(entry, Meeting):
+            if isinstance(entry, BarrierNode):
                 if any(above not in ends for above in range(i)):
                     continue
                 begins[i] = max((ends[above] for above in range(i)), default=0.0)
@@ -108,7 +108,7 @@ def _told(node: Node) -> str:
     text = f"{node.where} {node.what}"
     if isinstance(node, Pause):
         text += f" {node.duration:g} s"
-    elif isinstance(node, Rounds):
+    elif isinstance(node, RepeatNode):
         text += f" {node.count} times"
     elif isinstance(node, Goal):
         told = [_fields(message) for message in _messages(node)]

@@ -6,11 +6,11 @@ import threading
 from types import SimpleNamespace
 
 import pytest
-from edge import Edge
 from genpy import Duration
+from recorded_node import RecordedNode
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_modules.ros.first_contact import require_patience
+from nao_library_modules.ros.startup_grace import require_patience
 from nao_library_modules.server import nao_basic
 from nao_library_modules.server.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
@@ -49,8 +49,8 @@ class Module(NaoBasic):
 
     def __init__(self, connection, **options):
         robot = SimpleNamespace(address=ADDRESS, connection=connection, proxy=lambda name: None)
-        self.edge = Edge()
-        super().__init__("10.0.0.7", 9559, robot=robot, edge=self.edge, **options)
+        self.node = RecordedNode()
+        super().__init__("10.0.0.7", 9559, robot=robot, node=self.node, **options)
         self.chains = 0
         self.function_table["look"] = self.look
         self.serve("Module", NaoLedAction)
@@ -100,7 +100,7 @@ def test_the_first_goal_waits_for_the_robot_and_says_so(absent, caplog):
     module = Module(absent, patience=LIMIT)
     end = module.start("look")
     assert (module.chains, module.server.end) == (0, None)
-    told = module.edge.descriptions["Module"](DescribeFunctionsRequest())
+    told = module.node.descriptions["Module"](DescribeFunctionsRequest())
     assert (list(told.running), told.connected) == (["look"], False)
     assert f"a goal waits for {AWAITED}, which was not reached yet" in caplog.text
     absent.become("connected")
@@ -147,8 +147,8 @@ def test_a_launch_file_is_started_at_once_or_when_asked_for_and_stopped_with_the
     path = ("nao_library", "nao.launch")
     module = Module(Connection("connected", 1), autostart=True, launchpath=path)
     assert (made, done) == ([(path, "10.0.0.7", 9559, "/robot1/")], ["start"])
-    assert set(module.edge.reports) == {"Module robot", "Module goals", "Module launch file"}
-    for action in module.edge.shutdown_actions:
+    assert set(module.node.reports) == {"Module robot", "Module goals", "Module launch file"}
+    for action in module.node.shutdown_actions:
         action()
     assert done == ["start", "stop"]
     module = Module(Connection("connected", 1), launchpath=path)

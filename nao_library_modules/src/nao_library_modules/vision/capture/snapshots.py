@@ -10,7 +10,7 @@ from typing import Any
 from nao_library_msgs.msg import PictureFile
 from naoqi.errors import NaoError
 
-from ...base.interrupt import Interrupt
+from ...base.cancellation import CancellationToken
 from ...functions.chain import checked_by
 from .base import VisionBase
 from .cameras import camera_name
@@ -61,7 +61,7 @@ class NoPicture(NaoError):  # noqa: N818  named like the errors of the proxy lay
 class Frames:
     """The newest frame of a topic, for one function that waits for it."""
 
-    def __init__(self, topic: str, clock: Any, interrupt: Interrupt) -> None:
+    def __init__(self, topic: str, clock: Any, interrupt: CancellationToken) -> None:
         """Nothing has come yet.
 
         Args:
@@ -72,7 +72,7 @@ class Frames:
         self._topic = topic
         self._clock = clock
         self._interrupt = interrupt
-        self._news = Interrupt()
+        self._news = CancellationToken()
         self._newest: Frame | None = None
         self._old = 0
 

@@ -11,12 +11,12 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ..base.cancellation import CancellationToken
 from ..base.errors import Preempted
-from ..base.interrupt import Interrupt
 from ..base.limits import limit
-from .first_contact import FirstContact
 from .health import GoalCounter
 from .soonest_end import let_the_client_note_the_goal
+from .startup_grace import StartupGrace
 
 log = logging.getLogger(__name__)
 
@@ -52,13 +52,13 @@ class _Member:
     """A goal under way."""
 
     handle: Any
-    interrupt: Interrupt = field(default_factory=Interrupt)
+    interrupt: CancellationToken = field(default_factory=CancellationToken)
     ended: threading.Event = field(default_factory=threading.Event)
     claims: frozenset[str] = frozenset()
     reason: str = CANCELED
 
 
-class GoalCrowd:
+class ConcurrentActionServer:
     """Carries out every goal in a thread of its own; one that claims what older ones have ends these first.
 
     A client of nao_robot that sends a goal for the same joints ends its goal before, as ever. Clients that move
@@ -86,7 +86,7 @@ class GoalCrowd:
         self._claims = claims
         self._execute = execute
         self._with_feedback = with_feedback
-        self._first_contact = None if robot is None else FirstContact(robot, PATIENCE)
+        self._startup_grace = None if robot is None else StartupGrace(robot, PATIENCE)
         self._lock = threading.Lock()
         self._members: list[_Member] = []
         self._closed = False
@@ -159,8 +159,8 @@ class GoalCrowd:
     def _carry_out(self, member: _Member) -> tuple[str, Any, str]:
         """End state, result and text."""
         try:
-            if self._first_contact is not None:
-                self._first_contact.wait(member.interrupt, lambda _: None)
+            if self._startup_grace is not None:
+                self._startup_grace.wait(member.interrupt, lambda _: None)
             member.interrupt.check()
             goal = member.handle.get_goal()
             self._make_room(member, self._claims(goal))
