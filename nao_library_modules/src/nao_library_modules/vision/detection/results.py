@@ -41,20 +41,20 @@ def seen_message(detection: LocalizedDetection, prefix: str) -> SeenObject:
         detection: What was seen.
         prefix: That of the robot's frames, with its slash; may be empty.
     """
-    detection, region = detection.detection, detection.region
+    seen, region = detection.detection, detection.region
     camera = next(name for name, number in CAMERAS.items() if number == detection.camera)
     return SeenObject(
         header=Header(stamp=Time.from_sec(detection.time), frame_id=prefix + OPTICAL_FRAMES[camera]),
-        kind=detection.kind,
-        name=detection.name,
-        confidence=detection.confidence,
+        kind=seen.kind,
+        name=seen.name,
+        confidence=seen.confidence,
         camera=camera,
         looks=detection.looks,
-        alpha=detection.alpha,
-        beta=detection.beta,
-        size_x=detection.size_x,
-        size_y=detection.size_y,
-        heading=detection.heading,
+        alpha=seen.alpha,
+        beta=seen.beta,
+        size_x=seen.size_x,
+        size_y=seen.size_y,
+        heading=seen.heading,
         x=region.x,
         y=region.y,
         width=region.width,
