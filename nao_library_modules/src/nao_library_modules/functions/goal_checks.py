@@ -70,7 +70,8 @@ def check_goals(module: Any, goals: Sequence[Any], elsewhere: bool = False) -> G
     """
     view = module.view_for_checks()
     if elsewhere:
-        _forget(view)
+        for owner in view.copies.values():
+            _forget(owner)
     cannot_tell = (Exception,) if elsewhere else CANNOT_TELL
     context: dict[str, Any] = {}
     problems: list[GoalProblem] = []
@@ -83,7 +84,7 @@ def check_goals(module: Any, goals: Sequence[Any], elsewhere: bool = False) -> G
                     getattr(goal, goal.__slots__[0]),
                     view.begin_check,
                     context,
-                    lambda owner: view if owner is module else owner,
+                    lambda owner: view.copies.get(id(owner), owner),
                 )
             except BadGoal as error:
                 problems.append(GoalProblem(number, -1, "", error.field, cut(str(error))))
@@ -94,14 +95,15 @@ def check_goals(module: Any, goals: Sequence[Any], elsewhere: bool = False) -> G
     return GoalCheck(tuple(problems), tuple(unchecked))
 
 
-def _forget(view: Any) -> None:
+def _forget(owner: Any) -> None:
     """See that a check which asks for what goals have left does not get an answer."""
 
-    def unknown(_view: Any) -> Any:
+    def unknown(_: Any) -> Any:
         raise NotKnownHere("only the server knows what its goals have left")
 
-    kind = type(view)
-    view.__class__ = type(kind.__name__, (kind,), dict.fromkeys(view.left_by_goals, property(unknown)))
+    kind = type(owner)
+    if kind.left_by_goals:
+        owner.__class__ = type(kind.__name__, (kind,), dict.fromkeys(kind.left_by_goals, property(unknown)))
 
 
 def _problem(goal: int, failed: FunctionFailed) -> GoalProblem:

@@ -8,6 +8,7 @@ from typing import Any
 from ..base.answers import value_of_json
 from ..base.errors import BadGoal
 from .fields import Annotated, free, text
+from .parts import Part
 
 MEMORY = "ALMemory"
 ASSIGNMENT = "'key=value', the value as JSON or plain text"
@@ -80,19 +81,27 @@ Keys = Annotated[str, free(KEYS, allowed=KEYS, check=_require_keys)]
 Assignment = Annotated[str, free(ASSIGNMENT, allowed=ASSIGNMENT, check=lambda _, text: parse_assignment(text))]
 Pairs = Annotated[str, free("keys and their values", allowed=PAIRS, check=lambda _, text: parse_pairs(text))]
 Mapping = Annotated[str, free("signal and event", allowed=MAPPING, check=lambda _, text: parse_mapping(text))]
-Part = Annotated[str, free("part of the names; empty: all")]
+PartOfName = Annotated[str, free("part of the names; empty: all")]
 SomeKeys = Annotated[str, free(f"{KEYS}; empty: all that have a description")]
 
 
-class MemoryFunctions:
-    """Functions of ALMemory. To be mixed into a class with `robot`, `call` and `events`."""
+class MemoryFunctions(Part):
+    """Functions of ALMemory, and its events as messages."""
 
-    robot: Any  # Robot
-    call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts
-    events: Any  # EventRelay
+    def __init__(self, memory: Callable[[], Any], call: Callable[..., Any], events: Any) -> None:
+        """Keep what the functions need.
+
+        Args:
+            memory: Gives the proxy of ALMemory.
+            call: Calls a method of a proxy; preemption interrupts it.
+            events: The EventRelay that republishes events.
+        """
+        self._proxy = memory
+        self._call = call
+        self._events = events
 
     def _memory(self, method: str, *args: Any) -> Any:
-        return self.call(self.robot.proxy(MEMORY), method, *args)
+        return self._call(self._proxy(), method, *args)
 
     def get_data(self, str_param: Key) -> list[Any]:
         """The value of one key."""
@@ -102,7 +111,7 @@ class MemoryFunctions:
         """The values of several keys, in order; None for a key that is not there."""
         return list(self._memory("getListData", parse_keys(str_param)))
 
-    def get_data_list(self, str_param: Part) -> list[str]:
+    def get_data_list(self, str_param: PartOfName) -> list[str]:
         """The keys whose name contains a text; all keys for an empty text."""
         return list(self._memory("getDataList", str_param))
 
@@ -190,11 +199,11 @@ class MemoryFunctions:
 
     def subscribe_to_event(self, str_param: Key) -> None:
         """Republish an event, or a micro event, on the topic `memory_events` from now on."""
-        self.events.subscribe(str_param.strip())
+        self._events.subscribe(str_param.strip())
 
     def unsubscribe_to_event(self, str_param: Key) -> None:
         """Stop republishing an event."""
-        self.events.unsubscribe(str_param.strip())
+        self._events.unsubscribe(str_param.strip())
 
     def ping(self) -> list[bool]:
         """Whether the robot's memory answers."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import logging
 import threading
 from collections.abc import Callable, Mapping, MutableMapping, Sequence
@@ -24,6 +23,7 @@ from ..functions.describe_choices import Choices
 from ..functions.describe_service import DescribeService
 from ..functions.goal_checks import GoalCheck, check_goals
 from ..functions.memory_functions import MEMORY, MemoryFunctions
+from ..functions.parts import Part, bound, copied, joined
 from ..functions.runner import FunctionRunner
 from ..processes.closing import close_all
 from ..processes.launcher import LaunchPath, launch_supervisor
@@ -40,7 +40,7 @@ SHUTDOWN_LIMIT = 3.0
 """s that the end of the node waits for the running function to be interrupted and cleaned up."""
 
 
-class NaoBasic(FunctionRunner, MemoryFunctions):
+class NaoBasic(FunctionRunner):
     """Base of the modules: carries out goals that are chains of function messages.
 
     A module fills `function_table` and has an action server: it ends its constructor with `self.serve(...)`, or makes
@@ -77,7 +77,9 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
     left_by_goals: frozenset[str] = frozenset()
     """Attributes that checks look at and goals change: what is stored, loaded, running."""
     functions: ClassVar[Mapping[str, Callable[..., Any]]] = {}
-    """NAOqi function name -> function of the class, of each class that a module inherits from."""
+    """NAOqi function name -> function of the class: the table that it declares."""
+    part_types: ClassVar[tuple[type[Part], ...]] = ()
+    """Classes of the parts that have functions; the constructor gives one of each to `add_parts`."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         """Take over the table that a class declares."""
@@ -88,17 +90,19 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
             del cls.function_table  # the property is in its place again
 
     @classmethod
-    def declared_functions(cls) -> dict[str, Callable[..., Any]]:
-        """The functions that the class and those that it inherits from declare, without those of the robot's memory.
-
-        Of two of the same name the one counts that Python's order of inheritance has first.
-        """
-        declared: dict[str, Callable[..., Any]] = {}
+    def own_functions(cls) -> dict[str, Callable[..., Any]]:
+        """The functions that the class declares, and those that it inherits from before NaoBasic."""
+        own: dict[str, Callable[..., Any]] = {}
         for kind in cls.__mro__:
-            if kind is not MemoryFunctions:
-                for name, function in vars(kind).get("functions", {}).items():
-                    declared.setdefault(name, function)
-        return declared
+            for name, function in vars(kind).get("functions", {}).items():
+                own.setdefault(name, function)
+        return own
+
+    @classmethod
+    def declared_functions(cls) -> dict[str, Callable[..., Any]]:
+        """The functions of the class and of its parts, without those of the robot's memory."""
+        own = cls.own_functions()
+        return {**own, **{name: each for name, each in joined(cls.part_types).items() if name not in own}}
 
     def __init__(
         self,
@@ -144,6 +148,9 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         self.happened = (0.0, 0.0)
         self._remarks: list[str] = []
         self.events = EventRelay(lambda: self.robot.proxy(MEMORY), node.event_sink())
+        self.parts: tuple[Part, ...] = ()
+        memory = MemoryFunctions(lambda: self.robot.proxy(MEMORY), self.call, self.events)
+        self.function_table.maps[1].update(bound(memory, memory.functions))
         self._failures: list[Outcome] = []
         self._node = node
         self.kept = kept or node.kept()
@@ -169,8 +176,8 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
         """The module's own functions, over those of the robot's memory."""
         table = self.__dict__.get("_function_table")
         if table is None:
-            table = self._function_table = FunctionTable({}, self._bound(MemoryFunctions.functions))
-            table.update(self._bound(self.declared_functions()))
+            table = self._function_table = FunctionTable({}, {})
+            table.update(bound(self, self.own_functions()))
         return table
 
     @function_table.setter
@@ -180,16 +187,16 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
                 require_callable(name, function)
             self.function_table.maps[0] = table
 
-    def _bound(self, functions: Mapping[str, Any]) -> dict[str, Callable[..., Any]]:
-        """Functions of the class as methods of this module, any others as they are."""
-        members: dict[int, str] = {}
-        for kind in type(self).__mro__:
-            for name, member in vars(kind).items():
-                members.setdefault(id(member), name)
-        return {
-            name: getattr(self, members[id(function)]) if id(function) in members else function
-            for name, function in functions.items()
-        }
+    def add_parts(self, *parts: Part) -> None:
+        """Take in parts: their functions, and what checks without a goal must copy. Before `serve`.
+
+        Args:
+            parts: One of each class in `part_types`, and those without functions that they share.
+        """
+        self.parts += parts
+        for part in parts:
+            for name, function in bound(part, part.functions).items():
+                self.function_table.maps[0].setdefault(name, function)
 
     def serve(self, name: str, action: type) -> None:
         """Start the action server, its services and the diagnostics: the last line of a module's constructor.
@@ -369,7 +376,12 @@ class NaoBasic(FunctionRunner, MemoryFunctions):
 
     def view_for_checks(self) -> Any:
         """This module as the checks see it that belong to no goal: what they note does not reach the goal that runs."""
-        return copy.copy(self)
+        copies = copied((self, *self.parts))
+        for part in self.parts:
+            copies[id(part)].prepare_for_checks()
+        view = copies[id(self)]
+        view.copies = copies
+        return view
 
     def begin_goal_check(self, now: bool) -> None:
         """Called for such a view before the chain of each goal is checked.
