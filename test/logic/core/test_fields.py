@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+from types import SimpleNamespace
 from typing import List
 
 import pytest
 import readme_tables
+from genpy import Duration
 
 from nao_library_actions.msg import NaoLedAction
 from nao_library_modules.base.errors import BadGoal, FunctionFailed
@@ -13,9 +16,9 @@ from nao_library_modules.behaviors.language.servers import FunctionTables
 from nao_library_modules.cli import offline
 from nao_library_modules.cli.offline import described_by_code
 from nao_library_modules.functions import fields
-from nao_library_modules.functions.chain import FunctionChain, checked_by
+from nao_library_modules.functions.chain import Binding, FunctionChain, checked_by, declared_fields
 from nao_library_modules.functions.describe import Description
-from nao_library_modules.functions.fields import Annotated, fields_of
+from nao_library_modules.functions.fields import Annotated, Field, fields_of
 from nao_library_modules.functions.server_types import server_type
 from nao_library_modules.lights.server import NaoLights
 from nao_library_msgs.msg import LedFunction
@@ -69,6 +72,52 @@ def test_what_is_declared_is_read_from_the_names_of_annotations_of_function_and_
     assert fields_of(lambda lights: lights, names) == {}
     binding = FunctionChain({"blink": blink.__get__(object())}).bind_one(LedFunction(function="blink", times=[1.0]))
     assert list(binding.fields) == ["lights", "times", "angle"]
+
+
+class Blinker:
+    def __call__(self, times: Times, *, angle: Angle = 0):
+        pass
+
+
+def dotted(lights: fields.Angle, times: "Times"):
+    pass
+
+
+def unnamed(times: Annotated[List[float], fields.flag("")]):
+    pass
+
+
+@pytest.mark.parametrize(
+    ("function", "declared"),
+    [(partial(blink, None, []), ["times"]), (Blinker(), ["times"]), (dotted, ["lights", "times"]), (unnamed, [])],
+)
+def test_declarations_of_any_callable_are_read(function, declared, monkeypatch, caplog):
+    monkeypatch.setattr(fields, "Angle", Angle, raising=False)
+    assert list(fields_of(function, LedFunction.__slots__)) == declared
+    assert [record.args[0] for record in caplog.records] == ([] if declared else ["times"]), (
+        "what cannot be read is told"
+    )
+
+
+def test_what_a_function_declares_counts_before_what_its_check_does():
+    def check(self, times: Angle):
+        pass
+
+    assert declared_fields(checked_by(check)(dotted), LedFunction.__slots__)["times"].unit == "s"
+
+
+def test_a_duration_is_checked_in_seconds():
+    def glow(self, time_on: Times):
+        pass
+
+    message = SimpleNamespace(function="glow", time=0.0, on_error="")
+    kind = type("Message", (), {"__slots__": ["function", "time_on"], "_type": ""})
+    told = []
+    glow.__annotations__["time_on"] = Annotated[float, Field("", check=lambda name, value: told.append(value))]
+    binding = Binding(glow.__get__(object()), kind)
+    message.time_on = Duration(1.5)
+    binding.check_fields(message)
+    assert told == [1.5]
 
 
 def test_a_derived_field_differs_in_what_was_changed():

@@ -111,7 +111,8 @@ def declared_fields(function: Callable[..., Any], names: Collection[str]) -> dic
     """
     check = getattr(function, CHECK_ATTRIBUTE, None)
     of_check = {} if check is None else fields_of(check, names)
-    return {**fields_of(function, names), **of_check}
+    own = fields_of(function, names)
+    return {**own, **{name: field for name, field in of_check.items() if name not in own}}
 
 
 def _takes_rest(parameter: inspect.Parameter) -> bool:
@@ -198,7 +199,8 @@ class Binding:
             BadGoal: Names the first field that does not.
         """
         for name, field in self.fields.items():
-            field.require(name, getattr(message, name))
+            value = getattr(message, name)
+            field.require(name, seconds(value) if hasattr(value, "to_sec") else value)
 
     def run_check(self, message: Any, context: dict[str, Any], stand_in: StandIn = lambda owner: owner) -> None:
         """Run the check, if there is one.

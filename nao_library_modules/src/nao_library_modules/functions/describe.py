@@ -116,14 +116,20 @@ class Description:
         return Argument(
             name,
             known.type,
-            unit or (NO_UNIT if known.numeric else ""),
+            unit or (NO_UNIT if known.numeric and declared else ""),
             default_text(getattr(self._defaults, name)),
             field.help,
             field.allowed,
-            tuple(field.choices) or tuple(self.choices(function, name, field.asked)),
+            tuple(field.choices) or tuple(self.choices(function, name, field.asked if declared else self._asked(name))),
             field.minimum,
             field.maximum,
         )
+
+    def _asked(self, name: str) -> Sequence[Question]:
+        """What a field of this name asks the robot in the first function that declares it so."""
+        functions = (each for each in self.table.values() if callable(each))
+        fields = (declared_fields(each, (name,)).get(name) for each in functions)
+        return next((field.asked for field in fields if field and field.asked), ())
 
 
 def message_class(goal: Any) -> type:

@@ -38,7 +38,7 @@ class Choices:
         self._own = own
         self._robot = robot
         self._lock = threading.Lock()
-        self._known: dict[Question, tuple[str, ...]] = {}
+        self._known: dict[str, tuple[str, ...]] = {}  # answers by the question's text: arguments may be lists
         self._generation: int | None = None
 
     def of(self, function: str, field: str, asked: Sequence[Question]) -> tuple[str, ...]:
@@ -64,12 +64,13 @@ class Choices:
             if generation != self._generation:  # the robot behind a new connection may be another one
                 self._known.clear()
                 self._generation = generation
-            if question not in self._known:
+            key = repr(question)
+            if key not in self._known:
                 module, method, *arguments = question
                 try:
                     answer = self._robot.proxy(module).call_async(method, *arguments).result(timeout=LIMIT)
                 except NaoError as error:
                     log.debug("%s.%s cannot be asked: %s", module, method, error)
                     return ()
-                self._known[question] = tuple(map(str, answer))
-            return self._known[question]
+                self._known[key] = tuple(map(str, answer))
+            return self._known[key]

@@ -10,6 +10,7 @@ from .chain import FunctionTable
 from .describe import Description
 from .describe_service import DescribeService
 from .memory_functions import MemoryFunctions
+from .offline_module import offline_module
 from .server_types import ACTIONS, server_type
 
 
@@ -41,5 +42,10 @@ def _declared(name: str) -> OfflineServer:
     server = server_type(name)
     kind, action = server.module, server.action
     table = FunctionTable(kind.declared_functions(), MemoryFunctions.functions)
-    service = DescribeService(lambda: Description(table, kind, action), None, lambda: ((), 0))
-    return OfflineServer(name, action, kind, table, service)
+
+    def describe() -> Description:
+        description = Description(table, kind, action)
+        description.choices = lambda function, field, _: offline_module(kind).argument_choices(function, field)
+        return description
+
+    return OfflineServer(name, action, kind, table, DescribeService(describe, None, lambda: ((), 0)))

@@ -13,8 +13,9 @@ fields, or on the robot, is said by the check beside the function (`chain.checke
 from __future__ import annotations
 
 import inspect
+import logging
 import math
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Tuple, Union
@@ -33,6 +34,8 @@ from ..base.field_checks import (
 from ..base.limits import Limit, limit
 
 __all__ = ["Annotated", "Field", "fields_of", "flag", "free", "moments", "number", "numbers", "text", "whole", "word"]
+
+log = logging.getLogger(__name__)
 
 Bounds = Union[str, Limit, Tuple[float, float]]
 """A kind of number in config/limits.json, its limit, or the least and the greatest number."""
@@ -192,18 +195,39 @@ def fields_of(function: Callable[..., Any], names: Collection[str]) -> dict[str,
     """What a callable declares of fields, in the order of its parameters.
 
     Args:
-        function: A function or method, wrapped or not.
+        function: A function, method or other callable, wrapped or not, also with some arguments given (`partial`).
         names: The fields that its message has; parameters of other names are none.
     """
     return {name: field for name, field in _declared(function) if name in names}
 
 
 def _declared(function: Callable[..., Any]) -> Iterator[tuple[str, Field]]:
-    function = inspect.unwrap(getattr(function, "__func__", function))
-    scope = getattr(function, "__globals__", {})
-    for name, annotation in getattr(function, "__annotations__", {}).items():
-        # With annotations as texts, those that declare something are the names of what stands in the module.
-        kind = scope.get(annotation) if isinstance(annotation, str) else annotation
+    scope = _scope(function)
+    for name, parameter in inspect.signature(function).parameters.items():
+        if parameter.kind is parameter.KEYWORD_ONLY:  # it has its default, whatever the message says
+            continue
+        kind = parameter.annotation
+        if isinstance(kind, str):
+            kind = _named(kind.strip("\"'"), scope, name)
         for told in getattr(kind, "__metadata__", ()):
             if isinstance(told, Field):
                 yield name, told
+
+
+def _scope(function: Any) -> Mapping[str, Any]:
+    """Names that the annotations of a callable refer to."""
+    while isinstance(function, partial):
+        function = function.func
+    function = inspect.unwrap(getattr(function, "__func__", function))
+    return getattr(function if inspect.isfunction(function) else type(function).__call__, "__globals__", {})
+
+
+def _named(annotation: str, scope: Mapping[str, Any], parameter: str) -> Any:
+    """What an annotation that is a text names; None where it names nothing that declares a field."""
+    if "Annotated[" in annotation:
+        log.warning("the declaration of %s is not read: give %s a name of its own in the module", parameter, annotation)
+    first, *others = annotation.split(".")
+    named = scope.get(first)
+    for other in others:
+        named = getattr(named, other, None)
+    return named

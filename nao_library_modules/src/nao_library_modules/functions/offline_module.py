@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from ..base.clock import WallClock
-from ..base.kept import Kept
 from .known_robot import KnownRobot
 
 
@@ -22,6 +19,18 @@ class _OfflineServer:
 
     def start(self) -> None:
         """There is nothing to start."""
+
+
+class _NothingKept:
+    """Takes the place of `Kept`: what belongs to no node outlives nothing."""
+
+    def load(self) -> None:
+        """Nothing was kept."""
+
+    def save(self, _value: Any) -> None:
+        """Nothing is kept."""
+
+    forget = load
 
 
 class _OfflineNode:
@@ -44,8 +53,8 @@ class _OfflineNode:
     def frame_prefix(self) -> str:
         return ""
 
-    def kept(self) -> Kept:
-        return Kept(Path(tempfile.gettempdir()) / "nao_library" / "no_node.json", "")
+    def kept(self) -> _NothingKept:
+        return _NothingKept()
 
     def on_shutdown(self, _action: Callable[[], None]) -> None:
         """It does not end."""
