@@ -17,7 +17,7 @@ class HasLeds(Protocol):
     leds: LedAccess
 
 
-def _names(lights_module: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> LightNames:
+def _names(module: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> LightNames:
     """The names as a check sees them: the robot's, and groups that earlier functions of the chain make."""
 
     def with_new_groups(names: LightNames) -> LightNames:
@@ -25,40 +25,40 @@ def _names(lights_module: HasLeds, lights: Sequence[str], context: dict[str, Any
             names = names.with_group(group, members)
         return names
 
-    names = with_new_groups(lights_module.leds.names)
+    names = with_new_groups(module.leds.names)
     if all(names.knows(light) for light in lights) or context.get("names read again"):
         return names
     # Another program may have made a group since the names were read; one look a chain is enough.
     context["names read again"] = True
-    return with_new_groups(lights_module.leds.read_names())
+    return with_new_groups(module.leds.read_names())
 
 
-def check_lights(self: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> None:
+def check_lights(module: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> None:
     """Known lights, at least one."""
-    require_lights(_names(self, lights, context), lights)
+    require_lights(_names(module, lights, context), lights)
 
 
-def check_intensities(self: HasLeds, lights: Sequence[str], i_values: Sequence[float], context: dict[str, Any]) -> None:
+def check_intensities(module: HasLeds, lights: Sequence[str], i_values: Sequence[float], context: dict[str, Any]) -> None:
     """Known lights, one intensity for all or one each."""
-    check_lights(self, lights, context)
+    check_lights(module, lights, context)
     intensities(lights, i_values)
 
 
 def check_colours(
-    self: HasLeds, lights: Sequence[str], i_values: Sequence[float], str_param: str, context: dict[str, Any]
+    module: HasLeds, lights: Sequence[str], i_values: Sequence[float], str_param: str, context: dict[str, Any]
 ) -> None:
     """Coloured lights, one colour for all or one each."""
-    require_coloured(_names(self, lights, context), lights)
+    require_coloured(_names(module, lights, context), lights)
     colours(lights, i_values, str_param)
 
 
-def check_readable_colours(self: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> None:
+def check_readable_colours(module: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> None:
     """Coloured lights."""
-    require_coloured(_names(self, lights, context), lights)
+    require_coloured(_names(module, lights, context), lights)
 
 
 def check_fade_list(
-    self: HasLeds,
+    module: HasLeds,
     lights: Sequence[str],
     i_values: Sequence[float],
     str_param: str,
@@ -66,7 +66,7 @@ def check_fade_list(
     context: dict[str, Any],
 ) -> None:
     """Coloured lights, one colour a time."""
-    require_coloured(_names(self, lights, context), lights)
+    require_coloured(_names(module, lights, context), lights)
     colour_steps(times, i_values, str_param)
 
 
@@ -75,16 +75,16 @@ def check_rotation(_self: object, i_values: Sequence[float], str_param: str) -> 
     one_colour(i_values, str_param)
 
 
-def check_new_group(self: HasLeds, str_param: str, lights: Sequence[str], context: dict[str, Any]) -> None:
+def check_new_group(module: HasLeds, str_param: str, lights: Sequence[str], context: dict[str, Any]) -> None:
     """A free name and known lights; later functions of the chain may use the group."""
     name = str_param.strip()
-    names = _names(self, lights, context)
+    names = _names(module, lights, context)
     if name in names.lights:
         raise BadGoal("str_param", name, "a name that is no single light", problem=f"{name!r} is a light")
     require_lights(names, lights)
     context.setdefault("groups", {})[name] = tuple(names.expand(lights))
 
 
-def check_group(self: HasLeds, str_param: str, context: dict[str, Any]) -> None:
+def check_group(module: HasLeds, str_param: str, context: dict[str, Any]) -> None:
     """A known group or light."""
-    check_lights(self, [str_param.strip()], context)
+    check_lights(module, [str_param.strip()], context)
