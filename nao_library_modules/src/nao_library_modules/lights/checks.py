@@ -38,7 +38,9 @@ def check_lights(module: HasLeds, lights: Sequence[str], context: dict[str, Any]
     require_lights(_names(module, lights, context), lights)
 
 
-def check_intensities(module: HasLeds, lights: Sequence[str], i_values: Sequence[float], context: dict[str, Any]) -> None:
+def check_intensities(
+    module: HasLeds, lights: Sequence[str], i_values: Sequence[float], context: dict[str, Any]
+) -> None:
     """Known lights, one intensity for all or one each."""
     check_lights(module, lights, context)
     intensities(lights, i_values)
