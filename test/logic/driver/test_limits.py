@@ -16,14 +16,13 @@ from nao_library_modules.base.field_checks import number_parameter
 from nao_library_modules.base.limits import limit
 from nao_library_modules.base.places import Place
 from nao_library_modules.driver.base import reconfigure
-from nao_library_modules.driver.joints.odometry_services import read_transform
-from nao_library_modules.driver.joints.planar_frames import read_place
+from nao_library_modules.driver.joints.planar_frames import read_place, read_transform
 from nao_library_modules.driver.life.blinking import Blinks
 from nao_library_modules.driver.memory.memory_rules import Rule
 from nao_library_modules.driver.path_follower.courses import TargetCourse
 from nao_library_modules.driver.path_follower.settings import Settings
 from nao_library_modules.driver.teleop.joy_control import JoyControl, JoySettings
-from nao_library_modules.driver.walk.footsteps import read_step as read_footstep
+from nao_library_modules.driver.walk.footsteps import read_steps
 from nao_library_modules.driver.walk.gait_config import read_gait_config
 from nao_library_modules.driver.walk.walk_commands import read_step, read_target, read_velocity
 from nao_library_modules.functions.joint_trajectory import read_trajectory
@@ -51,7 +50,7 @@ READERS = {
     "cmd_vel": (read_velocity, Twist(), "linear.x linear.y angular.z", math.isnan),
     "cmd_pose": (read_target, Pose2D(), "x y theta", None),
     "cmd_step": (read_step, StepTarget(leg=1), "pose.x pose.y pose.theta", None),
-    "footstep": (read_footstep, StepTarget(leg=1), "pose.x pose.y pose.theta", None),
+    "footstep": (lambda m: read_steps([m]), StepTarget(leg=1), "pose.x pose.y pose.theta", None),
     "move_base": (lambda m: read_place("goal", m), target(), "pose.position.x pose.position.y", None),
     "odometry": (read_transform, Transform(Vector3(), Quaternion(w=1.0)), "translation.x translation.y", None),
     "trajectory": (

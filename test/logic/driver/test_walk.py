@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from types import SimpleNamespace
+from unittest.mock import MagicMock, call
 
 import pytest
 from geometry_msgs.msg import Quaternion, Transform, Vector3
@@ -19,21 +20,20 @@ from nao_library_modules.base.places import Place
 from nao_library_modules.driver.base.rotation import from_roll_pitch_yaw, product, rotate, yaw_of
 from nao_library_modules.driver.joints import state_messages as messages
 from nao_library_modules.driver.joints.feet import LEG_JOINTS, footprint, sole
+from nao_library_modules.driver.joints.joint_controller import InitialStiffness
 from nao_library_modules.driver.joints.joint_sensors import Reading
 from nao_library_modules.driver.joints.odometry_offset import OdometryOffset
-from nao_library_modules.driver.joints.odometry_services import read_transform
+from nao_library_modules.driver.joints.planar_frames import read_transform
 from nao_library_modules.driver.joints.slope import SlopeEstimator
 from nao_library_modules.driver.walk import walk_commands as commands
-from nao_library_modules.driver.walk.footsteps import read_step, read_steps, step_target
+from nao_library_modules.driver.walk.footsteps import read_steps, step_target
 from nao_library_modules.driver.walk.footsteps_clipping import LEFT_BOX, RIGHT_BOX, check_legs, clip
-from nao_library_modules.driver.walk.footsteps_walk import Step
-from nao_library_modules.driver.walk.gait_config import read_gait_config, read_share
-from nao_library_modules.driver.walk.walk_commands import Target, Velocity
+from nao_library_modules.driver.walk.gait_config import read_gait_config
+from nao_library_modules.driver.walk.walk_commands import Step, Target, Velocity, read_step
 from nao_library_modules.driver.walk.walk_inhibition import NotInhibited, WalkInhibition
 from nao_library_modules.driver.walk.walk_orders import Mailbox, Order, Stop, WalkEnded
-from nao_library_modules.driver.walk.walk_pace import PACE, REFRESH, WalkPace
 from nao_library_modules.driver.walk.walk_report import WalkJournal
-from nao_library_modules.driver.walk.walk_watchdog import WalkWatchdog
+from nao_library_modules.driver.walk.walk_timing import PACE, REFRESH, WalkPace, WalkWatchdog
 from nao_library_modules.ros.health import Level
 from nao_library_msgs.msg import StepTarget
 from naoqi.errors import NaoError
@@ -72,13 +72,13 @@ def test_a_velocity_is_forward_left_and_turning_and_clamped_when_out_of_range():
     assert velocity == Velocity(1.0, 0.2, -1.0)
     assert clamped == "linear.x is 1.5, taken as 1, angular.z is -3, taken as -1"
     assert commands.read_target(pose(1, -0.5, 3.1)) == Target(1.0, -0.5, 3.1)
-    step = commands.read_step(SimpleNamespace(leg=1, pose=pose(0.04, 0.1, 0.2)))
-    assert step == commands.Step("LLeg", 0.04, 0.1, 0.2)
+    step = read_step(SimpleNamespace(leg=1, pose=pose(0.04, 0.1, 0.2)))
+    assert step == Step("LLeg", 0.04, 0.1, 0.2)
     for read, message, field in (
         (commands.read_velocity, twist(NAN, 0, 0), "linear.x"),
         (commands.read_velocity, twist(0, 0, -INFINITE), "angular.z"),
         (commands.read_target, pose(1.0, 0.0, NAN), "pose.theta"),
-        (commands.read_step, SimpleNamespace(leg=2, pose=pose(0.0, 0.1, 0.0)), "leg"),
+        (read_step, SimpleNamespace(leg=2, pose=pose(0.0, 0.1, 0.0)), "leg"),
     ):
         with pytest.raises(BadGoal) as caught:
             read(message)
@@ -87,7 +87,7 @@ def test_a_velocity_is_forward_left_and_turning_and_clamped_when_out_of_range():
 
 
 def test_a_stop_is_never_left_out_and_leaves_steps_out_which_queue_up():
-    box, step = Mailbox(), commands.Step("LLeg", 0.02, 0.1, 0.0)
+    box, step = Mailbox(), Step("LLeg", 0.02, 0.1, 0.0)
     wanted = (FORWARD, step, step, Stop(), STAND, FORWARD)
     orders = [Order(command, f"source {n}") for n, command in enumerate(wanted)]
     assert [order.halts for order in orders] == [False, False, False, True, True, False]
@@ -103,7 +103,7 @@ def test_a_stop_is_never_left_out_and_leaves_steps_out_which_queue_up():
 
 
 def test_steps_that_wait_have_a_bound_and_a_stop_comes_through_all_the_same():
-    box, step = Mailbox(), commands.Step("LLeg", 0.02, 0.1, 0.0)
+    box, step = Mailbox(), Step("LLeg", 0.02, 0.1, 0.0)
     orders = [Order(step, "") for _ in range(1001)]
     for order in orders:
         box.put(order)
@@ -172,20 +172,28 @@ def test_gaits_are_pairs_or_dictionaries_and_the_rest_is_told():
     for value in ([["MaxStepX", 0.03], ["StepHeight", 1]], {"MaxStepX": 0.03, "StepHeight": 1}):
         assert read_gait_config("~gait", value) == [["MaxStepX", 0.03], ["StepHeight", 1.0]]
     assert read_gait_config("~gait", ()) == []
-    assert [read_share("~step_frequency", value) for value in (0, 0.5, 1.0)] == [0, 0.5, 1.0]
     refused("~gait is 'MaxStepX'", read_gait_config, "~gait", "MaxStepX")
     refused("~gait.*entry 'MaxStepX'", read_gait_config, "~gait", ["MaxStepX", 0.03])
     for value in ("far", True, NAN):
         refused(f"~gait.*MaxStepX is .?{value}", read_gait_config, "~gait", [["MaxStepX", value]])
+
+
+def test_the_initial_stiffness_is_a_share_and_set_once():
+    joints = MagicMock()
     for share in (-0.1, 1.1, NAN, True, "fast"):
-        refused("~step_frequency is .*: 0 to 1", read_share, "~step_frequency", share)
+        refused("~init_stiffness is .*: 0 to 1", InitialStiffness, joints, lambda *_, share=share: share)
+    for share in (0, 0.5, 1.0):
+        stiffness = InitialStiffness(joints, lambda *_, share=share: share)
+        stiffness.apply()
+        stiffness.apply()
+    assert joints.set_body_stiffness.call_args_list == [call(0.5), call(1.0)]
 
 
 SIDES = pytest.mark.parametrize("leg, side", [("LLeg", 1.0), ("RLeg", -1.0)])
 
 
 def test_a_step_is_the_same_there_and_back_and_the_first_that_will_not_do_is_named():
-    step = Step("RLeg", Place(0.04, -0.1, 0.2))
+    step = Step("RLeg", 0.04, -0.1, 0.2)
     assert (read_step(step_target(step)), step_target(step).leg) == (step, StepTarget.right)
     good, bad = StepTarget(leg=1), StepTarget(leg=0)
     bad.pose.theta = NAN

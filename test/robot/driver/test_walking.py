@@ -9,7 +9,6 @@ from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.places import Place
 from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.walk.footsteps_walk import FootstepWalk
-from nao_library_modules.driver.walk.footsteps_walk import Step as Footstep
 from nao_library_modules.driver.walk.head_scan import AFTERWARDS, DOWN, UP, HeadScan
 from nao_library_modules.driver.walk.moveto_walk import Goal, MoveToWalk
 from nao_library_modules.driver.walk.walk_commands import Step, Target, Velocity
@@ -191,9 +190,7 @@ def test_without_a_limit_a_velocity_lasts_until_the_end_which_takes_no_orders(st
         done(steer(walker, FORWARD))
 
 
-STEPS = [
-    Footstep(leg, Place(0.04, side * 0.1, 0.0)) for leg, side in (("LLeg", 1), ("RLeg", -1), ("LLeg", 1), ("RLeg", -1))
-]
+STEPS = [Step(leg, 0.04, side * 0.1, 0.0) for leg, side in (("LLeg", 1), ("RLeg", -1), ("LLeg", 1), ("RLeg", -1))]
 
 
 @pytest.fixture

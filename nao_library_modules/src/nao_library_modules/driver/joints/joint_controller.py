@@ -10,7 +10,7 @@ from typing import Any
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
-from ...base.field_checks import require_within
+from ...base.field_checks import number_parameter, require_within
 from ...base.limits import limit
 from ...functions.joint_trajectory import KeyFrames, check_range, expand_names, one_each, read_trajectory
 from ...nao.joint_names import MOTION, JointNames
@@ -21,6 +21,7 @@ log = logging.getLogger(__name__)
 Tell = Callable[[Sequence[str], Sequence[float], Sequence[float]], None]
 FRACTION = limit("fraction")
 LIFE = "ALAutonomousLife"
+INIT_STIFFNESS = "~init_stiffness"
 STIFFEN_TIME = 0.5
 """s in which the whole body gets stiff or limp."""
 TELL_PERIOD = 0.1
@@ -238,3 +239,21 @@ class JointController:
 
     def _service(self, module: str, method: str, *arguments: Any) -> Any:
         return self._robot.proxy(module).call_async(method, *arguments).result(timeout=SERVICE_LIMIT)
+
+
+class InitialStiffness:
+    """The parameter `~init_stiffness`: stiffness that the body gets when the robot is first reached, if above 0.
+
+    Raises:
+        NaoError: If it is no share.
+    """
+
+    def __init__(self, joints: JointController, get_param: Callable[[str, Any], Any]) -> None:
+        self._joints = joints
+        self._stiffness = number_parameter(INIT_STIFFNESS, get_param(INIT_STIFFNESS, 0.0), limit("share"))
+
+    def apply(self) -> None:
+        """Set it, once: a robot that restarts stays limp. Raises NaoError if the robot refuses."""
+        if self._stiffness > 0.0:
+            stiffness, self._stiffness = self._stiffness, 0.0
+            self._joints.set_body_stiffness(stiffness)

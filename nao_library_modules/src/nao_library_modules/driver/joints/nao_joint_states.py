@@ -12,8 +12,10 @@ import rospy
 from nav_msgs.msg import Odometry
 from rospy import Time
 from sensor_msgs.msg import Imu, JointState
+from std_srvs.srv import Empty
 from tf2_ros import TransformBroadcaster
 
+from nao_library_msgs.srv import SetTransform
 from naoqi.errors import NaoError, RobotUnreachable
 
 from ...base.cancellation import CancellationToken
@@ -30,7 +32,7 @@ from . import state_messages as messages
 from .feet import LEG_JOINTS, footprint
 from .joint_sensors import JointSensors, Reading
 from .odometry_offset import OdometryOffset
-from .odometry_services import offer_odometry_services
+from .planar_frames import read_transform
 from .slope import SlopeEstimator
 
 log = logging.getLogger(__name__)
@@ -92,7 +94,11 @@ class NaoJointStates:
         self._odometry = self._node.publisher("odom", Odometry, queue_size=10) if self._use_odometry else None
         self._offset = OdometryOffset()
         if self._use_odometry:
-            offer_odometry_services(node, self._offset)
+            place_in = lambda request: read_transform(request.offset)  # noqa: E731
+            node.offer("pause_odometry", Empty, lambda _: self._offset.pause())
+            node.offer("resume_odometry", Empty, lambda _: self._offset.resume())
+            node.offer("odometry_offset", SetTransform, lambda request: self._offset.move_by(place_in(request)))
+            node.offer("set_odometry_pose", SetTransform, lambda request: self._offset.set(place_in(request)))
         self._frames = TransformBroadcaster()
         self._interrupt = CancellationToken()
         self._problem = "nothing was read yet"

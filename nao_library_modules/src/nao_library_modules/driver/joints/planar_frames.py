@@ -9,7 +9,7 @@ from typing import Any
 import rospy
 import tf2_ros
 import yaml
-from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped
+from geometry_msgs.msg import PoseStamped, Quaternion, Transform, TransformStamped
 from nav_msgs.msg import Path
 
 from naoqi.errors import NaoError
@@ -172,6 +172,22 @@ def read_path(path: Path) -> tuple[list[Place], str]:
         along = math.atan2(places[-1].y - before.y, places[-1].x - before.x)
         places[-1] = places[-1]._replace(yaw=along if yaw is None else yaw)
     return places, frame
+
+
+def read_transform(transform: Transform) -> Place:
+    """What of a transform lies in the plane of the floor.
+
+    Raises:
+        BadGoal: If a coordinate is no number, or the rotation is no rotation.
+    """
+    move, turn = transform.translation, transform.rotation
+    for name in ("x", "y"):
+        require_within(f"offset.translation.{name}", getattr(move, name), PLACE)
+    yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
+    if yaw is None:
+        given = (turn.x, turn.y, turn.z, turn.w)
+        raise BadGoal("offset.rotation", given, "a rotation; w: 1 and the others 0 turns nothing")
+    return Place(move.x, move.y, yaw)
 
 
 def _text(turn: Quaternion) -> str:

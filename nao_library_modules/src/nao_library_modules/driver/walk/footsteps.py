@@ -18,24 +18,20 @@ from nao_library_msgs.srv import ClipFootstep, ClipFootstepResponse, StepTargetS
 from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
-from ...base.errors import BadGoal, RobotLost
-from ...base.field_checks import number_parameter, require_length, require_within
+from ...base.errors import RobotLost
+from ...base.field_checks import require_length, require_within
 from ...base.limits import limit
-from ...base.places import Place
 from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
-from ..joints.joint_controller import JointController
-from .footsteps_clipping import LEFT, RIGHT
-from .footsteps_walk import FootstepWalk, Step
-from .walk_commands import ANGLE, WAY
+from ..joints.joint_controller import INIT_STIFFNESS, InitialStiffness, JointController
+from .footsteps_walk import FootstepWalk
+from .walk_commands import LEGS, Step, read_step
 
-START_STIFFNESS = "init_stiffness"
 FEEDBACK, FOOTSTEPS = limit("feedback rate"), limit("footsteps")
 COMPLAINT_PERIOD = 5.0
 SHUTDOWN_LIMIT = 4.0
-LEGS = {StepTarget.left: LEFT, StepTarget.right: RIGHT}
 CODES = {leg: code for code, leg in LEGS.items()}
 
 
@@ -52,24 +48,13 @@ class NaoFootsteps:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
+        """Raises NaoError if a parameter is wrong; the robot need not be there yet."""
         self._node = node
         self._robot = robot
-        self._init_stiffness = number_parameter(
-            f"~{START_STIFFNESS}", self._node.param(f"~{START_STIFFNESS}", 0.0), limit("share")
-        )
+        self._init_stiffness = InitialStiffness(JointController(robot), node.param)
         self._walk = FootstepWalk(robot, RosClock())
         self._server = ConcurrentActionServer(self._claims, self._execute, with_feedback=True, robot=robot)
-        name = "footsteps_execution"
-        self._node.action(name, ExecFootstepsAction, self._server)
+        self._node.action("footsteps_execution", ExecFootstepsAction, self._server)
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
         self._node.service("footstep_srv", StepTargetService, self._on_step_service)
@@ -77,7 +62,6 @@ class NaoFootsteps:
         self._node.subscriber("footstep", StepTarget, self._on_step, queue_size=50)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"goals footsteps_execution": self._server.counter.report}
 
     def close(self) -> None:
@@ -131,44 +115,24 @@ class NaoFootsteps:
         connection = self._robot.connection
         if connection.state == "lost":
             self._server.interrupt_all(RobotLost(self._robot.address, connection.last_error or "no answer"))
-        elif connection.state == "connected" and self._init_stiffness > 0.0:
-            stiffness, self._init_stiffness = self._init_stiffness, 0.0  # once: a robot that restarts stays limp
+        elif connection.state == "connected":
             try:
-                JointController(self._robot).set_body_stiffness(stiffness)
+                self._init_stiffness.apply()
             except NaoError as error:
-                rospy.logerr("~%s: %s", START_STIFFNESS, error)
-
-
-def read_step(target: StepTarget, field: str = "") -> Step:
-    """A step from its message.
-
-    Args:
-        target: The message.
-        field: Where it stands in a goal, for texts.
-
-    Raises:
-        BadGoal: If it has no such leg, or a number is none.
-    """
-    if target.leg not in LEGS:
-        raise BadGoal(f"{field}leg", target.leg, "0 (right) or 1 (left)")
-    place = Place(target.pose.x, target.pose.y, target.pose.theta)
-    for name, value, limit_ in zip(("x", "y", "theta"), place, (WAY, WAY, ANGLE)):
-        require_within(f"{field}pose.{name}", value, limit_)
-    return Step(LEGS[target.leg], place)
+                rospy.logerr("%s: %s", INIT_STIFFNESS, error)
 
 
 def read_steps(targets: list[StepTarget]) -> list[Step]:
     """Steps from their messages.
 
     Raises:
-        BadGoal: With the first one that will not do, or if they are too many.
+        BadGoal: If one will not do, or they are too many.
     """
     require_length("footsteps", len(targets), FOOTSTEPS)
     return [read_step(target, f"footsteps[{index}].") for index, target in enumerate(targets)]
 
 
 def step_target(step: Step) -> StepTarget:
-    """A step as a message."""
     target = StepTarget(leg=CODES[step.leg])
     target.pose.x, target.pose.y, target.pose.theta = step.place
     return target

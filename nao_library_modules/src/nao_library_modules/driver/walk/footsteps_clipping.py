@@ -14,8 +14,8 @@ from naoqi.errors import NaoError
 
 from ...base.errors import BadGoal
 from ...base.places import Place
+from .walk_commands import LEFT, RIGHT
 
-LEFT, RIGHT = "LLeg", "RLeg"
 MIN_X, MAX_X = -0.04, 0.08
 MIN_Y, MAX_Y = 0.088, 0.16
 """m: from the middle of the standing foot to that of the other one, to its own side."""
@@ -26,11 +26,7 @@ RIGHT_BOX = [Position2D(corner.x, -corner.y) for corner in reversed(LEFT_BOX)]
 
 
 def clip(step: Place, leg: str) -> Place:
-    """The nearest step of its kind that the robot can make.
-
-    Args:
-        step: Where the moving foot goes, in the frame of the standing one.
-        leg: The foot that moves: LLeg or RLeg.
+    """The nearest step of its kind that the robot can make: place of the moving foot `leg` in the frame of the other.
 
     Raises:
         NaoError: If a number of the step is none, or the leg is unknown.
@@ -56,7 +52,7 @@ def check_legs(legs: Sequence[str]) -> None:
     """Check that each step is made by the other foot than the one before.
 
     Raises:
-        BadGoal: With the first one that is not.
+        BadGoal
     """
     for index, (before, leg) in enumerate(zip(legs, legs[1:]), start=1):
         if leg == before:

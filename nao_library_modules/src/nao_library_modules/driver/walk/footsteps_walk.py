@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
-from ...base.places import Place
 from ...nao.joint_names import MOTION
 from ..joints.joint_controller import QUICK_LIMIT
 from .footsteps_clipping import check_legs, clip
+from .walk_commands import Step
 
 STEP_TIME = 0.5
 """s from step to step."""
@@ -23,41 +23,18 @@ TOO_EARLY = 0.6
 """Share of the time of all steps: a walk that ends before was stopped."""
 
 
-class Step(NamedTuple):
-    """A step.
-
-    Attributes:
-        leg: LLeg or RLeg: the foot that moves.
-        place: Where it goes, in the frame of the other foot.
-    """
-
-    leg: str
-    place: Place
-
-
 @dataclass(frozen=True)
 class Walked:
-    """What came of footsteps.
-
-    Attributes:
-        steps: Those that were made, in order, as the robot can make them.
-        preempted: Whether they were ended before time.
-    """
+    """The steps that were made, in order, as the robot can make them; whether they were ended before time."""
 
     steps: tuple[Step, ...]
     preempted: bool = False
 
 
 class FootstepWalk:
-    """Has one robot make footsteps. Any thread may ask; that only one walks at a time is the callers' business."""
+    """Has one robot make footsteps. Any thread may ask; callers see to it that only one walks at a time."""
 
     def __init__(self, robot: Any, clock: Any) -> None:
-        """Keep robot and clock.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            clock: ROS time.
-        """
         self._robot = robot
         self._clock = clock
 
@@ -68,7 +45,7 @@ class FootstepWalk:
         Raises:
             NaoError: If it is no step.
         """
-        return Step(step.leg, clip(step.place, step.leg))
+        return Step(step.leg, *clip(step.place, step.leg))
 
     def prepared(self, steps: Sequence[Step]) -> tuple[Step, ...]:
         """Steps as the robot can make them, one after the other.
@@ -105,13 +82,9 @@ class FootstepWalk:
         interrupt: CancellationToken,
         report: Callable[[tuple[Step, ...]], None],
     ) -> Walked:
-        """Make steps, to the end or to the interrupt; the robot stands then.
+        """Make steps that `prepared` gave, to the end or to the interrupt; the robot stands then.
 
-        Args:
-            steps: What `prepared` gave.
-            period: s from report to report.
-            interrupt: Ends it.
-            report: Told which steps were made.
+        Every `period` s `report` gets the steps that are made.
 
         Raises:
             NaoError: If the robot refuses them, is lost or stops by itself.
@@ -139,7 +112,7 @@ class FootstepWalk:
         return Walked(steps)
 
     def _stopped(self, steps: tuple[Step, ...], made: int | None, interrupt: CancellationToken) -> Walked:
-        """Stop the robot; steps that it cannot take back any more are made."""
+        """Stop the robot; steps that can no longer be taken back are made."""
         try:
             made = self._made(len(steps), made, taken_back=True)
             self._motion("stopMove").result(timeout=STOP_LIMIT)
@@ -159,15 +132,10 @@ class FootstepWalk:
         self._motion("setFootSteps", legs, places, times, clear).result(timeout=QUICK_LIMIT)
 
     def _made(self, count: int, before: int | None, taken_back: bool = False) -> int | None:
-        """How many steps are behind the robot, by those that are before it.
+        """How many of `count` steps are made, by those that are left.
 
-        Args:
-            count: Of all steps.
-            before: How many were when it was asked the last time; None: it had not planned them yet.
-            taken_back: Whether those that can still be taken back are all that will not be made.
-
-        Returns:
-            None if it has not planned them yet: it takes the pose for walking first, with no step before it.
+        None while the robot has not planned them: it takes the pose for walking first, with no step left. `before` is
+        the last answer. With `taken_back`, only the steps that can still be taken back will not be made.
         """
         _, fixed, changeable = self._motion("getFootSteps").result(timeout=QUICK_LIMIT)
         if before is None and not fixed and not changeable:

@@ -16,14 +16,10 @@ FORM = "a list like [[MaxStepX, 0.03], [StepHeight, 0.02]], or a dictionary"
 
 
 def read_gait_config(name: str, value: Any) -> GaitConfig:
-    """Gait parameters from a ROS parameter. Names and ranges are the robot's to judge.
-
-    Args:
-        name: Name of the parameter, for texts.
-        value: Pairs of name and value, or a dictionary.
+    """Gait parameters from pairs of name and value, or a dictionary. Names and ranges are the robot's to judge.
 
     Raises:
-        NaoError: If it is something else.
+        NaoError: If it is something else; `name` is the parameter's, for its text.
     """
     pairs = list(value.items()) if isinstance(value, Mapping) else value
     if not isinstance(pairs, (list, tuple)):
@@ -32,22 +28,6 @@ def read_gait_config(name: str, value: Any) -> GaitConfig:
     for pair in pairs:
         if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not isinstance(pair[0], str):
             raise NaoError(f"{name} has the entry {pair!r}: {FORM}")
-        config.append([pair[0], _number(name, *pair)])
+        key, number = pair
+        config.append([key, number_parameter(f"{name}: {key}", number, limit("setting"))])
     return config
-
-
-def read_share(name: str, value: Any) -> float:
-    """A share from 0 to 1: of the step frequencies, of the stiffness.
-
-    Args:
-        name: Name of the parameter, for texts.
-        value: Its value.
-
-    Raises:
-        NaoError: If it is something else.
-    """
-    return number_parameter(name, value, limit("share"))
-
-
-def _number(name: str, key: str, value: Any) -> float:
-    return number_parameter(f"{name}: {key}", value, limit("setting"))

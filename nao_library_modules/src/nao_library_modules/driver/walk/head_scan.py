@@ -20,14 +20,12 @@ SWEEP_SPEED = math.radians(3.3)
 
 
 class HeadScan:
-    """The head of one robot. A scan is asked for from any thread, and carried out in that thread.
+    """The head of one robot. A scan runs in the thread that asks for it, which may be any.
 
-    Attributes:
-        speed: Fraction of the joints' top speed on the way to the sweep, and from it.
+    `speed` is the fraction of the joints' top speed on the way to the sweep, and from it.
     """
 
     def __init__(self, controller: JointController, speed: float) -> None:
-        """Scan nothing yet."""
         self.speed = speed
         self._controller = controller
         self._closed = CancellationToken()
@@ -35,14 +33,10 @@ class HeadScan:
 
     @property
     def active(self) -> bool:
-        """Whether a scan is under way."""
         return self._scanning.locked()
 
     def run(self, prepare: Callable[[], None] = lambda: None) -> None:
-        """Look down, sweep up, look at the ground before the feet.
-
-        Args:
-            prepare: Called before the head moves, and counts as a part of the scan.
+        """Look down, sweep up, look at the ground before the feet; `prepare` is called first, as a part of it.
 
         Raises:
             NaoError: A scan is under way; the robot refuses or is lost; the node ends.

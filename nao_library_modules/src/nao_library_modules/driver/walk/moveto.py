@@ -31,12 +31,6 @@ class NaoqiMoveTo:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Listen; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-        """
         self._node = node
         prefix = tf_prefix()
         self._base = prefix + self._node.param("~base_frame_id", "base_footprint").lstrip("/")
@@ -47,11 +41,9 @@ class NaoqiMoveTo:
         self._node.subscriber("move_base_simple/cancel", Empty, lambda _: self._walk.cancel(), queue_size=1)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"walk": self._walk.report}
 
     def close(self) -> None:
-        """Stop a walk that goes on."""
         self._walk.close()
 
     def _on_goal(self, goal: PoseStamped) -> None:
@@ -64,6 +56,6 @@ class NaoqiMoveTo:
         self._walk.go(Goal(name, lambda: self._way(goal)))
 
     def _way(self, goal: PoseStamped) -> Place:
-        """The way from where the robot is now; a goal in its own frame was told where it was then."""
+        """The way from where the robot is now; a goal in its own frame is where it was when the goal came."""
         place = self._frames.place_in(self._odom, goal)
         return require_way("goal", place.seen_from(self._frames.locate(self._base, self._odom)))

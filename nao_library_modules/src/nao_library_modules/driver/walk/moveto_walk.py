@@ -23,11 +23,9 @@ END_LIMIT = 1.0
 
 @dataclass(frozen=True)
 class Goal:
-    """A place to walk to.
+    """A place to walk to; `name` is for the log.
 
-    Attributes:
-        name: For the log.
-        way: Tells, when the robot sets out, where the place is in its frame. May take a moment, and raise NaoError.
+    `way` gives, when the robot sets out, the place in its frame. It may take a moment, and raise NaoError.
     """
 
     name: str
@@ -42,11 +40,6 @@ class MoveToWalk:
     """
 
     def __init__(self, robot: Any) -> None:
-        """Wait for goals.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-        """
         self._robot = robot
         self._lock = threading.Condition()
         self._asked: Goal | None = None
@@ -70,7 +63,6 @@ class MoveToWalk:
             self._lock.notify()
 
     def report(self) -> Report:
-        """What it does, for /diagnostics."""
         return self._state
 
     def close(self) -> None:
@@ -116,7 +108,7 @@ class MoveToWalk:
         self._tell(Level.OK, "the robot was stopped")
 
     def _ended(self, goal: Goal, call: Any) -> None:
-        """A walk ended; a thread of libqi tells. One that was replaced or stopped is no longer the newest."""
+        """Report how a walk ended, in a thread of libqi. One that was replaced or stopped is no longer the newest."""
         if call is not self._newest:
             return
         try:

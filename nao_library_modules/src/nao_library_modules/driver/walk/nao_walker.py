@@ -22,8 +22,8 @@ from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
-from ..joints.joint_controller import QUICK_LIMIT, JointController
-from .gait_config import read_gait_config, read_share
+from ..joints.joint_controller import QUICK_LIMIT, InitialStiffness, JointController
+from .gait_config import read_gait_config
 from .head_scan import HeadScan
 from .walk_commands import Velocity, read_step, read_target, read_velocity
 from .walk_inhibition import WalkInhibition
@@ -64,20 +64,13 @@ class NaoWalker:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
+        """Raises NaoError if a parameter is wrong; the robot need not be there yet."""
         self._node = node
         self._robot = robot
         timeout = number_parameter("~cmd_vel_timeout", self._node.param("~cmd_vel_timeout", 0.5), limit("timeout"))
-        self._init_stiffness = read_share("~init_stiffness", self._node.param("~init_stiffness", 0.0))
-        frequency = read_share("~step_frequency", self._node.param("~step_frequency", 0.5))
+        joints = JointController(robot)
+        self._init_stiffness = InitialStiffness(joints, node.param)
+        frequency = number_parameter("~step_frequency", self._node.param("~step_frequency", 0.5), limit("share"))
         gait = self._gait()
         head_speed = number_parameter("~max_head_speed", self._node.param("~max_head_speed", 0.2), limit("fraction"))
         self._kept = node_file(self._node.name)
@@ -87,7 +80,7 @@ class NaoWalker:
         self._walker.frequency = frequency
         self._walker.gait = gait
         self._walker.needs_walk_pose = bool(self._node.param("~use_walk_pose", False))
-        self._scan = HeadScan(JointController(robot), head_speed)
+        self._scan = HeadScan(joints, head_speed)
         self._speech = self._node.publisher("speech", String, queue_size=10, latch=True)
         self._online = False
         robot.connection.add_listener(self._connection_changed)
@@ -99,7 +92,6 @@ class NaoWalker:
         self._node.subscriber("start_scan", std_msgs.msg.Empty, self._on_scan, queue_size=1)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"walk": self._report}
 
     def close(self) -> None:
@@ -127,7 +119,7 @@ class NaoWalker:
             self._journal.failed("start_scan", error)
 
     def _take(self, topic: str, message: Any, read: Callable[[], Command], watched: bool = False) -> None:
-        """Take a command from a topic; what goes wrong goes to the log."""
+        """Take a command from a topic; errors go to the log."""
         caller = _caller(message)
         try:
             command = read()
@@ -153,11 +145,7 @@ class NaoWalker:
         return velocity
 
     def _order(self, name: str, caller: str, command: Command, **options: bool) -> Order:
-        """Pass a command on.
-
-        Raises:
-            NaoError: If walking is inhibited.
-        """
+        """Raises NaoError if walking is inhibited, or a head scan is under way."""
         owners = self._inhibition.against(caller)
         if owners:
             raise NaoError(f"refused from {caller}: walking is inhibited by {', '.join(owners)}")
@@ -244,9 +232,7 @@ class NaoWalker:
             if protect is not None:
                 config = [[CONTACT_PROTECTION, bool(protect)]]
                 self._robot.proxy(MOTION).call_async("setMotionConfig", config).result(timeout=QUICK_LIMIT)
-            if self._init_stiffness > 0.0:
-                stiffness, self._init_stiffness = self._init_stiffness, 0.0  # once: a robot that restarts stays limp
-                JointController(self._robot).set_body_stiffness(stiffness)
+            self._init_stiffness.apply()
         except NaoError as error:
             rospy.logerr("the robot does not take the parameters of the walk: %s", error)
         if not self._online:
@@ -272,7 +258,7 @@ def _is_zero(command: Command) -> bool:
 
 
 def _wait(order: Order) -> None:
-    """Wait for the end of an order; for ever if need be, for the proxy layer ends calls to a lost robot.
+    """Wait for the end of an order without a limit, for the proxy layer ends calls to a lost robot.
 
     Raises:
         NaoError: If it was not carried out.

@@ -1,4 +1,4 @@
-"""What a walking robot can be told: a velocity, a target, a step. Messages become checked values. No ROS."""
+"""Commands to walk: a velocity, a target, a step. Messages become checked values. No ROS."""
 
 from __future__ import annotations
 
@@ -14,19 +14,14 @@ from ...base.places import Place
 WAY, ANGLE = limit("way"), limit("angle")
 STANDSTILL = 1e-3
 """A velocity below this (fraction of the top speed) in all directions is none."""
-LEGS = {0: "RLeg", 1: "LLeg"}
+LEFT, RIGHT = "LLeg", "RLeg"
+LEGS = {0: RIGHT, 1: LEFT}
 """Legs of nao_library_msgs/StepTarget, as ALMotion names them."""
 
 
 @dataclass(frozen=True)
 class Velocity:
-    """A walking velocity, as fractions (-1..1) of the top speed in the robot's frame.
-
-    Attributes:
-        x: Forward.
-        y: To the left.
-        theta: Turning, to the left.
-    """
+    """A walking velocity forward, to the left and turning to the left: fractions -1..1 of the top speed."""
 
     x: float
     y: float
@@ -55,25 +50,24 @@ class Target:
 
 @dataclass(frozen=True)
 class Step:
-    """One step: a leg, and where its foot goes in the frame of the other foot, x and y in m, theta in rad."""
+    """The leg that moves, and where its foot goes in the frame of the other foot: x and y in m, theta in rad."""
 
     leg: str
     x: float
     y: float
     theta: float
 
+    @property
+    def place(self) -> Place:
+        """Where the foot goes."""
+        return Place(self.x, self.y, self.theta)
+
     def __str__(self) -> str:
         return f"the step of {self.leg} by ({self.x:.3f} m, {self.y:.3f} m, {self.theta:.2f} rad)"
 
 
 def read_velocity(twist: Any) -> tuple[Velocity, str]:
-    """The velocity of a geometry_msgs/Twist, each part clamped to -1..1.
-
-    Args:
-        twist: The message; its linear.x, linear.y and angular.z are fractions of the top speed.
-
-    Returns:
-        The velocity, and which parts were clamped, in words (empty: none).
+    """The velocity of a geometry_msgs/Twist, and in words which of its parts were clamped to -1..1 (empty: none).
 
     Raises:
         BadGoal: If a part is not a finite number.
@@ -102,19 +96,19 @@ def read_target(pose: Any) -> Target:
     return Target(*_pose(pose))
 
 
-def read_step(step: Any) -> Step:
-    """The step of a nao_library_msgs/StepTarget.
+def read_step(step: Any, field: str = "") -> Step:
+    """The step of a nao_library_msgs/StepTarget; `field` is where it stands in a goal, for texts.
 
     Raises:
         BadGoal: If it names no leg, or a part is out of its bounds.
     """
     if step.leg not in LEGS:
-        raise BadGoal("leg", step.leg, "0 (right) or 1 (left)")
-    return Step(LEGS[step.leg], *_pose(step.pose))
+        raise BadGoal(f"{field}leg", step.leg, "0 (right) or 1 (left)")
+    return Step(LEGS[step.leg], *_pose(step.pose, field))
 
 
 def require_way(field: str, way: Place) -> Place:
-    """A way that a robot can be sent, seen from where it is.
+    """The way to a target, seen from the robot.
 
     Raises:
         BadGoal: If it is too far.
@@ -124,7 +118,7 @@ def require_way(field: str, way: Place) -> Place:
     return way
 
 
-def _pose(pose: Any) -> tuple[float, float, float]:
+def _pose(pose: Any, field: str = "") -> tuple[float, float, float]:
     for name, limit_ in (("x", WAY), ("y", WAY), ("theta", ANGLE)):
-        require_within(f"pose.{name}", getattr(pose, name), limit_)
+        require_within(f"{field}pose.{name}", getattr(pose, name), limit_)
     return float(pose.x), float(pose.y), float(pose.theta)

@@ -1,4 +1,4 @@
-"""Who keeps the robot from walking. Counted: it walks again when everybody has let go."""
+"""Nodes that keep the robot from walking. Counted: it walks again when all of them have let go."""
 
 from __future__ import annotations
 
@@ -11,22 +11,19 @@ from ...base.kept import Kept
 
 
 class NotInhibited(NaoError):
-    """Somebody lets walking go that nobody inhibits."""
-
     def __init__(self) -> None:
-        """Compose the text."""
         super().__init__("walking is not inhibited, so there is nothing to let go")
 
 
 class WalkInhibition:
-    """Holds on walking, by who put them on. Every method may be called from any thread.
+    """Holds on walking, by the node that put them on. Every method may be called from any thread.
+
+    A node that inhibits walking means the others: one that follows a path keeps a joystick from interfering, and walks
+    itself.
 
     Args:
         kept: Where they are kept for the time after the death of this node.
         own: Name of this node: holds of parts that died with it are gone.
-
-    Whoever inhibits walking means the others: a node that follows a path keeps a joystick from interfering, and
-    walks itself.
     """
 
     def __init__(self, kept: Kept, own: str = "") -> None:
@@ -36,28 +33,15 @@ class WalkInhibition:
         self._holds.pop(own, None)
 
     def inhibit(self, owner: str) -> int:
-        """Put a hold on walking.
-
-        Args:
-            owner: Name of the node that does.
-
-        Returns:
-            How many there are now.
-        """
+        """Put a hold on walking; how many there are now."""
         with self._lock:
             self._holds[owner] += 1
             return self._keep()
 
     def let_go(self, owner: str) -> int:
-        """Take a hold off: one of the node's own if it has any, else the first that was put on.
+        """Take a hold off, one of the node's own if it has any, else the first that was put on; how many are left.
 
         A person who lets go at a command line has another name each time.
-
-        Args:
-            owner: Name of the node that does.
-
-        Returns:
-            How many are left.
 
         Raises:
             NotInhibited: If there is none.
@@ -72,16 +56,14 @@ class WalkInhibition:
             return self._keep()
 
     def _keep(self) -> int:
-        """Keep what there is; its number."""
         self._kept.save(self._holds)
         return sum(self._holds.values())
 
     @property
     def owners(self) -> list[str]:
-        """Who inhibits walking."""
         with self._lock:
             return list(self._holds)
 
     def against(self, node: str) -> list[str]:
-        """Who else keeps a node from walking."""
+        """The other nodes that keep a node from walking."""
         return [owner for owner in self.owners if owner != node]

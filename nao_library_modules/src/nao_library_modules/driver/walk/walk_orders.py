@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from concurrent.futures import Future, InvalidStateError
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Union
 
@@ -26,69 +27,49 @@ Command = Union[Velocity, Target, Step, Stop]
 
 
 class WalkEnded(NaoError):
-    """A command to walk did not come to its end: the robot did not get there.
-
-    Attributes:
-        command: What was asked for.
-        reason: Why.
-    """
+    """A command to walk did not come to its end: the robot did not get there."""
 
     def __init__(self, command: Command, reason: str) -> None:
-        """Compose the text."""
         super().__init__(f"{command} ended before time: {reason}")
         self.command = command
         self.reason = reason
 
 
 class Superseded(WalkEnded):
-    """Something newer came in the way of a command."""
+    """A newer command ended it."""
 
 
 @dataclass(eq=False)
 class Order:
     """A command, on its way to the robot and until it is carried out.
 
-    Attributes:
-        command: What to do.
-        source: Where it came from, for texts: "cmd_vel from /teleop".
-        watched: Whether the robot has to stop when no further command of this kind comes.
-        to_the_end: Whether steps count as carried out when they are made, and not when the robot has taken them.
-        arrived: Time in s when it came.
-        replaces: Whether the robot walked by an older order when this one's turn came.
-        stopped_by: What stops it on its way, once something does.
-        answer: Done when it was carried out, failed, or was overtaken by another one.
+    `answer` is done when it was carried out, failed, or was superseded.
     """
 
     command: Command
-    source: str
-    watched: bool = False
-    to_the_end: bool = False
-    arrived: float = 0.0
-    replaces: bool = False
+    source: str  # for texts: "cmd_vel from /teleop"
+    watched: bool = False  # the robot has to stop when no further command of this kind comes
+    to_the_end: bool = False  # a step counts as carried out when it is made, not when the robot has taken it
+    arrived: float = 0.0  # s
+    replaces: bool = False  # the robot walked by an older order when this one's turn came
     stopped_by: str = ""
     answer: Future = field(default_factory=Future)
 
     @property
     def halts(self) -> bool:
-        """Whether the robot is to stand."""
         return isinstance(self.command, Stop) or (isinstance(self.command, Velocity) and self.command.is_zero)
 
     def succeed(self) -> None:
         """It was carried out; later ends do not count."""
-        try:
+        with suppress(InvalidStateError):
             self.answer.set_result(None)
-        except InvalidStateError:
-            pass  # it has ended already
 
     def fail(self, error: Exception) -> None:
         """It was not carried out; later ends do not count."""
-        try:
+        with suppress(InvalidStateError):
             self.answer.set_exception(error)
-        except InvalidStateError:
-            pass  # it has ended already
 
-    def overtaken(self, reason: str) -> None:
-        """Something newer came in its way."""
+    def superseded(self, reason: str) -> None:
         self.fail(Superseded(self.command, reason))
 
 
@@ -99,7 +80,6 @@ class Mailbox:
     """
 
     def __init__(self) -> None:
-        """Begin empty."""
         self._lock = threading.Lock()
         self._orders: list[Order] = []
 
@@ -117,7 +97,7 @@ class Mailbox:
                 self._orders = [waiting for waiting in self._orders if isinstance(waiting.command, Stop)]
             self._orders.append(order)
         for old in replaced:
-            old.overtaken(f"{order.source} came after it")
+            old.superseded(f"{order.source} came after it")
 
     @property
     def first(self) -> Order | None:
@@ -126,7 +106,6 @@ class Mailbox:
             return self._orders[0] if self._orders else None
 
     def take(self) -> Order | None:
-        """The order whose turn it is, out of the box."""
         with self._lock:
             return self._orders.pop(0) if self._orders else None
 

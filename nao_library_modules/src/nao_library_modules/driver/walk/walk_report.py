@@ -1,4 +1,4 @@
-"""What nao_walker has to tell: complaints for the log, and its line of diagnostics."""
+"""The log and the line of diagnostics of nao_walker: commands and failures."""
 
 from __future__ import annotations
 
@@ -22,7 +22,6 @@ class WalkJournal:
     """Remembers commands and failures. Every method may be called from any thread."""
 
     def __init__(self) -> None:
-        """Begin with nothing."""
         self._lock = threading.Lock()
         self._complained: dict[str, float] = {}
         self._command = ""
@@ -32,32 +31,17 @@ class WalkJournal:
         self._failing = ""  # what failed last, and has not succeeded since
 
     def commanded(self, source: str, now: float) -> None:
-        """A command was taken.
-
-        Args:
-            source: Where it came from.
-            now: Time in s.
-        """
         with self._lock:
             self._command, self._commanded_at = source, now
 
     def succeeded(self, name: str) -> None:
-        """The robot carried a command out, or answered.
-
-        Args:
-            name: Topic, service or method; a command ends what is told of any failure, a method of its own.
-        """
+        """The robot carried a command out, or answered: a command clears any failure, a method of QUESTIONS its own."""
         with self._lock:
             if name not in QUESTIONS or self._failing == name:
                 self._failing = ""
 
     def failed(self, name: str, error: BaseException) -> None:
-        """A command failed or was refused; the log tells it, but not all the time.
-
-        Args:
-            name: Topic, service or method.
-            error: Why.
-        """
+        """A command failed or was refused; logged, but not all the time."""
         with self._lock:
             self._failures += 1
             self._failing = name
@@ -66,12 +50,7 @@ class WalkJournal:
             log.error("%s: %s", name, error)
 
     def warn(self, key: str, text: str) -> None:
-        """Put a warning into the log, but not all the time.
-
-        Args:
-            key: What it is about.
-            text: The warning.
-        """
+        """Log a warning, but not all the time about the same `key`."""
         if self._is_due(key):
             log.warning("%s", text)
 
@@ -79,10 +58,10 @@ class WalkJournal:
         """The line of diagnostics.
 
         Args:
-            now: Time in s.
+            now: ROS time, s.
             doing: What the node has the robot do.
             active: Whether the robot says that it walks; None if it was not asked.
-            owners: Who inhibits walking.
+            owners: The nodes that inhibit walking.
             watchdog_stops: How often the watchdog stopped it.
         """
         with self._lock:

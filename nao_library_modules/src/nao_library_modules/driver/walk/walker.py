@@ -20,8 +20,7 @@ from ..joints.joint_controller import QUICK_LIMIT
 from .gait_config import GaitConfig
 from .walk_commands import Step, Target, Velocity
 from .walk_orders import Command, Mailbox, Order, Stop, Superseded, WalkEnded
-from .walk_pace import WalkPace
-from .walk_watchdog import WalkWatchdog
+from .walk_timing import WalkPace, WalkWatchdog
 
 log = logging.getLogger(__name__)
 
@@ -34,15 +33,16 @@ STANDS, CLOSED = "nothing", "the node ends"
 class Walker:
     """The one thread through which walking commands reach the robot.
 
-    Orders come from any thread, as fast as they like. This thread takes the newest, keeps the pace, and starts what
-    takes its time without waiting for the end: so a newer order always gets through. Ends are noted in threads of the
-    proxy layer. The lock guards `_running`, `_doing` and `_owes_stop`; what else changes belongs to the one thread.
+    Orders come from any thread, as fast as they like. This thread takes the newest, keeps the pace, and starts calls
+    that take long without waiting for their end, so that a newer order always gets through. Their ends are handled in
+    threads of the proxy layer. The lock guards `_running`, `_doing` and `_owes_stop`; all other state belongs to the
+    one thread.
 
     Attributes:
         frequency: Step frequency of velocities, 0 to 1.
         gait: Further gait parameters.
         needs_walk_pose: Whether the next walk begins with the pose for walking (ALMotion.moveInit).
-        watchdog_stops: How often commands ceased and the robot was told to stop.
+        watchdog_stops: How often commands ceased and the robot was stopped.
     """
 
     def __init__(self, robot: Any, clock: Any, cmd_vel_timeout: float) -> None:
@@ -50,7 +50,7 @@ class Walker:
 
         Args:
             robot: Its proxies and connection, see `nao_library_modules.robot`.
-            clock: Tells when commands have ceased.
+            clock: The time in which commands cease.
             cmd_vel_timeout: s after which a watched velocity that is not renewed ends; 0: never.
         """
         self.frequency = 1.0
@@ -75,12 +75,12 @@ class Walker:
 
     @property
     def doing(self) -> str:
-        """What it does at the moment, as far as its orders tell."""
+        """What it does at the moment, by its orders."""
         with self._lock:
             return self._doing
 
     def order(self, command: Command, source: str, watched: bool = False, to_the_end: bool = False) -> Order:
-        """Have something done, instead of what is done now. Returns at once; `answer` of the order tells how it ends.
+        """Have something done, instead of what is done now. Returns at once; `answer` of the order is its end.
 
         Args:
             command: What to do.
@@ -90,17 +90,13 @@ class Walker:
         """
         order = Order(command, source, watched, to_the_end, self._clock.now())
         if self._closed.is_set():
-            order.overtaken(CLOSED)
+            order.superseded(CLOSED)
         else:
             self._put(order)
         return order
 
     def close(self, limit: float) -> None:
-        """Stop the walk, wait until the robot stands, and take no orders any more.
-
-        Args:
-            limit: s of real time to wait for it.
-        """
+        """Stop the walk, wait up to `limit` s of real time until the robot stands, and take no orders any more."""
         self._robot.connection.remove_listener(self._connection_changed)
         self._closed.set()
         last = Order(Stop(), CLOSED)
@@ -133,7 +129,7 @@ class Walker:
                 log.exception("an order to walk failed")
 
     def _turn(self) -> None:
-        """One thing: carry out the order whose turn it is, or wait for news."""
+        """Carry out the order whose turn it is, or wait for news."""
         order = self._box.first
         if order is not None:
             hasty = order.halts or isinstance(order.command, Step)
@@ -177,9 +173,9 @@ class Walker:
 
     def _steer(self, order: Order, velocity: Velocity) -> None:
         if order.halts and self._stopping():
-            order.succeed()  # whoever lets go of a key and calls for a stop gets both answers
+            order.succeed()  # a client that lets go of a key and calls for a stop gets both answers
             return
-        # Only of a stream of velocities the same ones may be left out: who commands once wants an answer of the robot.
+        # Equal velocities are left out of a stream only: a client that commands once wants an answer of the robot.
         if not self._pace.is_news(velocity, self._wall.now()) and order.watched:
             if not order.halts:
                 self._watchdog.feed(order.arrived)
@@ -226,14 +222,10 @@ class Walker:
             return any(isinstance(old.command, Stop) and not old.answer.done() for old in self._running)
 
     def _begin(self, order: Order, velocity: Velocity | None = None) -> list[Order]:
-        """Note what is done from now on. What was done before ends: at once, or if it is stopped when the robot stands.
+        """Note what is done from now on, with the velocity that the robot gets; returns what is being stopped.
 
-        Args:
-            order: What is done. Steps add up, everything else replaces what was before.
-            velocity: The velocity that the robot gets.
-
-        Returns:
-            What is being stopped.
+        Steps add up, everything else replaces what was before: that ends at once, or if it is stopped when the robot
+        stands.
         """
         self._watchdog.rest()
         self._pace.sent(velocity, self._wall.now())
@@ -249,11 +241,10 @@ class Walker:
                 old.stopped_by = order.source
             return ending
         for old in ending:
-            old.overtaken(f"{order.source} came after it")
+            old.superseded(f"{order.source} came after it")
         return []
 
     def _take_walk_pose(self) -> None:
-        """Take the pose for walking if it has to be taken; an order to halt interrupts it."""
         if not self.needs_walk_pose:
             return
         self._halt.clear()
@@ -274,7 +265,6 @@ class Walker:
     # --- ends, in threads of the proxy layer, which must not wait -----------------------------------------------
 
     def _walked(self, order: Order, call: Any) -> None:
-        """A walk ended."""
         try:
             arrived = call.result(timeout=0)
         except NaoError as error:
@@ -282,7 +272,7 @@ class Walker:
             return
         if order.stopped_by and arrived is not True:
             return  # it ends when the robot stands: see `_stopped`
-        if arrived is None or arrived is True:  # robots differ in whether they tell
+        if arrived is None or arrived is True:  # robots differ in whether they return it
             self._ended(order, arrived=arrived is True)
         else:
             self._ended(order, WalkEnded(order.command, NOT_THERE))
@@ -309,7 +299,7 @@ class Walker:
                 self._running.remove(order)
                 self._doing = self._doing if self._running else STANDS
         if order.stopped_by and not arrived and not isinstance(order.command, Stop):
-            order.overtaken(f"{order.stopped_by} stopped it")
+            order.superseded(f"{order.stopped_by} stopped it")
         elif error is not None:
             order.fail(error)
             if order.replaces and not order.halts and not isinstance(error, WalkEnded):
@@ -323,7 +313,6 @@ class Walker:
         self._put(stop)
 
     def _connection_changed(self, *_: Any) -> None:
-        """Called from the thread that the connection has for its listeners."""
         with self._lock:
             owed = self._owes_stop
         if owed and self._robot.connection.state == "connected":
