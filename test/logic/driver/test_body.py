@@ -12,8 +12,7 @@ import pytest
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.driver.base.robot_facts import KEYS, facts_of, info_fields
-from nao_library_modules.driver.joints.joint_sensors import JointSensors
-from nao_library_modules.driver.joints.motors import read_motors, torque_per_ampere
+from nao_library_modules.driver.joints.joint_sensors import JointSensors, read_motors, torque_per_ampere
 from nao_library_modules.driver.life.blinking import Blinks
 from nao_library_modules.driver.sensors import body_reports as reports
 from nao_library_modules.driver.sensors.body_reports import BATTERY_FLAGS, Thresholds, battery_report, network_reports

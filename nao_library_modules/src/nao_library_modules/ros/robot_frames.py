@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import rospy
 import tf2_ros
 
@@ -38,9 +40,13 @@ class RobotFrames:
             found = self._buffer.lookup_transform(robot, frame.lstrip("/"), rospy.Time(), patience).transform
         except (tf2_ros.TransformException, tf2_ros.InvalidArgumentException) as error:
             raise NaoError(f"the frame {frame} cannot be found from {robot}: {error}") from error
-        turn = found.rotation
-        yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
-        return Place(found.translation.x, found.translation.y, 0.0 if yaw is None else yaw)
+        return seen_from_above(found)
+
+
+def seen_from_above(transform: Any) -> Place:
+    """Place and heading of a geometry_msgs/Transform on the floor; heading 0 where its rotation is none."""
+    move, turn = transform.translation, transform.rotation
+    return Place(move.x, move.y, yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w) or 0.0)
 
 
 def tf_prefix() -> str:

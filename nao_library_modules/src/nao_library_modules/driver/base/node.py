@@ -19,6 +19,7 @@ from ...ros.health import connection_report
 from ...ros.node import own_as_node, robot_address, start_node
 from ...ros.node_interface import AlreadyOffered, NodeInterface
 from ...ros.node_place import NodePlace
+from ...ros.robot_frames import tf_prefix
 
 RETRY = 1.0
 """s between two looks whether the services of a node that has to wait are free."""
@@ -102,6 +103,11 @@ def publish(publisher: rospy.Publisher, message: Any) -> None:
         publisher.publish(message)
     except rospy.ROSException as error:
         rospy.logdebug("%s: %s", publisher.name, error)
+
+
+def frame_parameter(node: NodeInterface, name: str, default: str) -> str:
+    """A parameter that names a frame, with the prefix of the robot's frames before it."""
+    return tf_prefix() + node.param(name, default).lstrip("/")
 
 
 def rate_parameter(node: NodeInterface, name: str, default: float) -> float:

@@ -45,10 +45,7 @@ def sole(side: str, angles: Sequence[float]) -> tuple[Vector, Vector]:
 def footprint(angles: Mapping[str, float], roll: float, pitch: float) -> Pose:
     """The frame base_footprint in the torso frame: between the soles, level, on the ground, heading like the feet.
 
-    Args:
-        angles: Joint -> measured angle in rad; those of the legs are needed.
-        roll: Of the torso, in rad.
-        pitch: Of the torso, in rad.
+    Joint angles are those measured, roll and pitch those of the torso, all in rad.
 
     Raises:
         KeyError: If a joint of the legs is missing, as on a robot without legs.

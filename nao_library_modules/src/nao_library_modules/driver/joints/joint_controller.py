@@ -18,13 +18,13 @@ from ...robot.robot_task import run_task
 
 log = logging.getLogger(__name__)
 
-Tell = Callable[[Sequence[str], Sequence[float], Sequence[float]], None]
+Report = Callable[[Sequence[str], Sequence[float], Sequence[float]], None]
 FRACTION = limit("fraction")
 LIFE = "ALAutonomousLife"
 INIT_STIFFNESS = "~init_stiffness"
 STIFFEN_TIME = 0.5
 """s in which the whole body gets stiff or limp."""
-TELL_PERIOD = 0.1
+REPORT_PERIOD = 0.1
 """s of this computer between two reports of a motion under way."""
 QUICK_LIMIT = 2.0
 """s that a call which does not wait for motion may take."""
@@ -35,12 +35,7 @@ ALIVE, LIFELESS = "solitary", "disabled"
 
 @dataclass(frozen=True)
 class Reached:
-    """What a motion came to.
-
-    Attributes:
-        values: Measured angles in rad (stiffnesses: 0..1), one for each joint behind the names.
-        preempted: Whether it was ended before time.
-    """
+    """Measured angles in rad (stiffnesses: 0..1), one for each joint, and whether the motion was ended before time."""
 
     values: list[float]
     preempted: bool
@@ -49,15 +44,13 @@ class Reached:
 class JointController:
     """Joint motion of one robot. Every method may be called from any thread.
 
-    What concerns no goal (`set_angles` and the like) returns when the robot has taken it.
+    They raise NaoError if an argument is wrong, or the robot refuses or is lost.
+
+    Names are those of joints and chains; values are one for each joint, or one for all. `set_angles` and
+    `set_stiffnesses` return when the robot has taken the command.
     """
 
     def __init__(self, robot: Any) -> None:
-        """Keep the robot; it need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-        """
         self._robot = robot
         self.names = JointNames(robot)
 
@@ -68,22 +61,15 @@ class JointController:
 
         Args:
             names: Joints and chains.
-            angles: One for each joint, or one for all, in rad.
+            angles: rad.
             speed: Fraction of the top speed, above 0 to 1.
             relative: Whether angles are added to where the joints are heading.
-
-        Raises:
-            NaoError: If an argument is wrong or the robot refuses.
         """
         joints, values, speed = self._angles(names, angles, speed)
         self._quick("changeAngles" if relative else "setAngles", list(joints), list(values), speed)
 
     def set_stiffnesses(self, names: Sequence[str], stiffnesses: Sequence[float]) -> None:
-        """Set stiffnesses (0..1), one for each joint or one for all.
-
-        Raises:
-            NaoError: If an argument is wrong or the robot refuses.
-        """
+        """Set stiffnesses, 0..1."""
         chains = self.names.chains
         joints = expand_names(names, chains, "name")
         values = one_each(stiffnesses, names, chains, "effort")
@@ -95,41 +81,21 @@ class JointController:
     # --- goals ----------------------------------------------------------------------------------------------------
 
     def trajectory(self, trajectory: Any, relative: bool) -> KeyFrames:
-        """Check a trajectory of angles.
-
-        Raises:
-            NaoError: If it will not do, or the robot cannot be asked for its joints.
-        """
         return read_trajectory(trajectory, self.names.chains, relative)
 
     def stiffness_trajectory(self, trajectory: Any) -> KeyFrames:
-        """Check a trajectory of stiffnesses; velocities in it are not looked at.
-
-        Raises:
-            NaoError: If it will not do, or the robot cannot be asked for its joints.
-        """
+        """Check a trajectory of stiffnesses; velocities in it are ignored."""
         frames = read_trajectory(trajectory, self.names.chains)
         check_range(frames, 0.0, 1.0)
         return frames
 
     def joints_of(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Joints behind names.
-
-        Raises:
-            NaoError: If a name is unknown, or the robot cannot be asked.
-        """
         return expand_names(names, self.names.chains)
 
-    def follow(self, frames: KeyFrames, interrupt: CancellationToken, tell: Tell | None = None) -> Reached:
+    def follow(self, frames: KeyFrames, interrupt: CancellationToken, report: Report | None = None) -> Reached:
         """Move joints along key frames, to the end or to the interrupt.
 
-        Args:
-            frames: Where they go.
-            interrupt: Ends it.
-            tell: Called ten times a second meanwhile with the joints, where they are to be and where they are, rad.
-
-        Raises:
-            NaoError: If the robot refuses or is lost.
+        Ten times a second meanwhile `report` gets the joints, their commanded and their measured angles, rad.
         """
         motion = self._robot.proxy(MOTION)
         joints = list(frames.joints)
@@ -139,19 +105,19 @@ class JointController:
             # From the commands, as the robot counts relative angles, and not from what a loaded joint sags to.
             start = self._quick("getAngles", joints, False) if frames.relative else ()
             call = motion.call_async("angleInterpolationBezier", *frames.absolute(start).bezier_arguments())
-        if tell is not None:
-            self._tell_until_over(call, joints, interrupt, tell)
+        if report is not None:
+            self._report_until_over(call, joints, interrupt, report)
         return self._motion_ended(call, joints, interrupt)
 
-    def _tell_until_over(self, call: Any, joints: list[str], interrupt: CancellationToken, tell: Tell) -> None:
+    def _report_until_over(self, call: Any, joints: list[str], interrupt: CancellationToken, report: Report) -> None:
         over = threading.Event()
         call.add_done_callback(lambda _: over.set())
         try:
             with interrupt.waking(over.set):
-                while not over.wait(TELL_PERIOD):
-                    tell(joints, *(self._quick("getAngles", joints, measured) for measured in (False, True)))
-        except Exception as error:  # whoever moves joints sees them to their end, told or not
-            log.warning("%s: nothing more is told of the motion: %s", ", ".join(joints), error)
+                while not over.wait(REPORT_PERIOD):
+                    report(joints, *(self._quick("getAngles", joints, measured) for measured in (False, True)))
+        except Exception as error:  # the motion is seen to its end, reported or not
+            log.warning("%s: the motion is no longer reported: %s", ", ".join(joints), error)
 
     def move(
         self, names: Sequence[str], angles: Sequence[float], speed: float, relative: bool, interrupt: CancellationToken
@@ -160,13 +126,10 @@ class JointController:
 
         Args:
             names: Joints and chains.
-            angles: One for each joint, or one for all, in rad.
+            angles: rad.
             speed: Fraction of the top speed, above 0 to 1.
             relative: Whether angles are added to the measured ones.
             interrupt: Ends it.
-
-        Raises:
-            NaoError: If an argument is wrong, the robot refuses or is lost.
         """
         joints, values, speed = self._angles(names, angles, speed)
         if relative:
@@ -176,11 +139,7 @@ class JointController:
         return self._motion_ended(call, list(joints), interrupt)
 
     def stiffen(self, frames: KeyFrames, interrupt: CancellationToken) -> Reached:
-        """Bring stiffnesses along key frames, to the end or to the interrupt.
-
-        Raises:
-            NaoError: If the robot refuses or is lost.
-        """
+        """Bring stiffnesses along key frames, to the end or to the interrupt."""
         joints = list(frames.joints)
         call = self._robot.proxy(MOTION).call_async("stiffnessInterpolation", *frames.interpolation_arguments()[:3])
 
@@ -209,7 +168,6 @@ class JointController:
         self._service(LIFE, "setState", ALIVE if alive else LIFELESS)
 
     def life_state(self) -> str:
-        """State of autonomous life."""
         return str(self._service(LIFE, "getState"))
 
     # --- parts ----------------------------------------------------------------------------------------------------

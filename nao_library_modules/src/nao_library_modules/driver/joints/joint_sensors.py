@@ -1,17 +1,20 @@
-"""What nao_joint_states reads from the robot in one go, and what the values mean. No ROS."""
+"""The readings of nao_joint_states, each taken from the robot in one go, and their meaning. No ROS."""
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 from naoqi.errors import NaoError
 
+from ...base.paths import config_file
 from ...nao.joint_names import MOTION
 from ..base.rotation import Vector
-from .motors import torque_per_ampere
 
 MEMORY = "ALMemory"
 DEVICE = "Device/SubDeviceList/{}/Value"
@@ -37,44 +40,38 @@ SHARED_MOTORS = {"RHipYawPitch": "LHipYawPitch"}
 FRAME_WORLD = 1
 LIMIT = 1.0
 """s that the robot may take for one reading."""
+MOTORS_FIELDS = {"_source", "voltage_v", "gear_efficiency", "motors"}
+MOTOR_FIELDS = {"model", "no_load_rpm", "gear_ratios"}
 
 
 @dataclass(frozen=True)
 class Reading:
     """One reading of the robot.
 
-    Attributes:
-        positions: Angle of each joint, in rad (hands: 0..1).
-        efforts: Torque at each joint in N m, as far as the motor's current tells; its sign is that of the way from the
-            measured to the commanded angle. Not a number where the robot does not tell.
-        roll: Of the torso by the inertial unit, in rad.
-        pitch: Likewise.
-        angular_velocity: Of the torso, in its frame, rad/s.
-        acceleration: That the torso feels, in its frame, m/s^2.
-        torso: Its x, y, z (m) and roll, pitch, yaw (rad) in the robot's odometry; None if it was not asked for.
+    Efforts are torques at the joints as the motor currents give them; their sign is that of the way from the measured
+    to the commanded angle. They are NaN where the robot gives no current.
     """
 
-    positions: tuple[float, ...]
-    efforts: tuple[float, ...]
-    roll: float
+    positions: tuple[float, ...]  # rad (hands: 0..1)
+    efforts: tuple[float, ...]  # N m
+    roll: float  # of the torso by the inertial unit, rad
     pitch: float
-    angular_velocity: Vector
-    acceleration: Vector
-    torso: tuple[float, ...] | None
+    angular_velocity: Vector  # of the torso, in its frame, rad/s
+    acceleration: Vector  # felt by the torso, in its frame, m/s^2
+    torso: tuple[float, ...] | None  # x, y, z (m), roll, pitch, yaw (rad) in the robot's odometry, if asked for
 
 
 class JointSensors:
-    """Reads joints, inertial unit and odometry of one robot. For one thread."""
+    """Reads joints, inertial unit and odometry of one robot. For one thread.
+
+    Args:
+        robot: Its proxies and connection, see `nao_library_modules.robot`.
+        joints: Names of the joints.
+        use_sensors: False takes commanded angles for measured ones.
+        use_odometry: Whether to ask for the place of the torso.
+    """
 
     def __init__(self, robot: Any, joints: Sequence[str], use_sensors: bool = True, use_odometry: bool = True) -> None:
-        """Prepare the question; nothing is asked yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            joints: Names of the joints.
-            use_sensors: False takes commanded angles for measured ones.
-            use_odometry: Whether to ask for the place of the torso.
-        """
         self._robot = robot
         self.joints = tuple(joints)
         self._use_sensors = use_sensors
@@ -98,7 +95,7 @@ class JointSensors:
         return self._reading(values.result(timeout=LIMIT), None if torso is None else torso.result(timeout=LIMIT))
 
     def read_stiffnesses(self) -> tuple[float, ...]:
-        """Stiffness of each joint, 0 to 1; not a number where the robot does not tell.
+        """Stiffness of each joint, 0 to 1; NaN where the robot gives none.
 
         Raises:
             NaoError: If it cannot be asked.
@@ -134,3 +131,32 @@ class JointSensors:
 def _number(value: Any, missing: float = math.nan) -> float:
     """A value of the memory; older robots do not have all of them."""
     return float(value) if isinstance(value, (int, float)) else missing
+
+
+def read_motors(path: Path) -> Mapping[str, float]:
+    """Torque per current, in N m / A, by the kind of joint ("HeadYaw", "KneePitch": without L and R).
+
+    A motor's torque constant is the supply voltage over its speed without load.
+
+    Raises:
+        ValueError: If the file has unknown fields, or lacks some.
+    """
+    table = json.loads(path.read_text())
+    if set(table) != MOTORS_FIELDS or any(set(motor) != MOTOR_FIELDS for motor in table["motors"]):
+        raise ValueError(f"{path}: the fields are {sorted(MOTORS_FIELDS)}, of a motor {sorted(MOTOR_FIELDS)}")
+    return {
+        kind: table["voltage_v"] / (motor["no_load_rpm"] * math.pi / 30.0) * ratio * table["gear_efficiency"]
+        for motor in table["motors"]
+        for kind, ratio in motor["gear_ratios"].items()
+    }
+
+
+@lru_cache(maxsize=None)
+def _motors() -> Mapping[str, float]:
+    return read_motors(config_file("motors.json"))
+
+
+def torque_per_ampere(joint: str) -> float:
+    """Torque at a joint for each ampere of its motor, in N m / A; NaN for an unknown joint."""
+    kind = joint[1:] if joint[:1] in ("L", "R") else joint
+    return _motors().get(kind, math.nan)

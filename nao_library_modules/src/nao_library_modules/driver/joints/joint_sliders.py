@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import rospy
 from sensor_msgs.msg import JointState
 
 from naoqi.errors import NaoError
-
-from .urdf_joints import UrdfJoint, movable_joints
 
 DESCRIPTION = "robot_description"
 TOPIC = "joint_sliders"
@@ -17,10 +18,50 @@ COLUMNS = 2
 # ms between two looks whether the node has ended.
 LOOK = 200
 RESOLUTION = 0.001
+MOVABLE = ("revolute", "continuous", "prismatic")
+
+
+@dataclass(frozen=True)
+class UrdfJoint:
+    """A joint that can be set by itself. Limits in rad, or m of a prismatic one."""
+
+    name: str
+    lower: float
+    upper: float
+
+    @property
+    def rest(self) -> float:
+        """Zero, or the limit that is nearest to it."""
+        return min(max(0.0, self.lower), self.upper)
+
+
+def movable_joints(description: str) -> list[UrdfJoint]:
+    """Joints in the order of the description, without those that follow another one.
+
+    Raises:
+        NaoError: If it is no URDF.
+    """
+    try:
+        root = ElementTree.fromstring(description)
+    except ElementTree.ParseError as error:
+        raise NaoError(f"the robot description is no XML: {error}") from error
+    found = []
+    for joint in root.findall("joint"):
+        if joint.get("type") not in MOVABLE or joint.find("mimic") is not None:
+            continue
+        limit = joint.find("limit")
+        if joint.get("type") == "continuous" or limit is None:
+            lower, upper = -math.pi, math.pi
+        else:
+            lower, upper = float(limit.get("lower", 0.0)), float(limit.get("upper", 0.0))
+        found.append(UrdfJoint(joint.get("name", ""), lower, upper))
+    if not found:
+        raise NaoError("the robot description has no joint that moves")
+    return found
 
 
 class JointSliders:
-    """The window. Everything runs in the thread that made it.
+    """The window, with a slider for each joint. All of it runs in the thread that made it.
 
     ROS API:
         Publishes `joint_sliders` (sensor_msgs/JointState) when a slider moves, latched.
@@ -28,14 +69,7 @@ class JointSliders:
     """
 
     def __init__(self, joints: Sequence[UrdfJoint]) -> None:
-        """Open the window.
-
-        Args:
-            joints: One slider each.
-
-        Raises:
-            NaoError: If there is no display, or Python has no Tk.
-        """
+        """Raises NaoError if there is no display, or Python has no Tk."""
         try:
             import tkinter
         except ImportError as error:
@@ -68,7 +102,6 @@ class JointSliders:
         self._publish()
 
     def run(self) -> None:
-        """Show the window until it is closed or the node ends."""
         self._window.after(LOOK, self._look)
         self._window.mainloop()
 

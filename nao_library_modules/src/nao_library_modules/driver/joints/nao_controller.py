@@ -22,33 +22,30 @@ from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import RobotLost
-from ...base.field_checks import number_parameter
-from ...base.limits import limit
 from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from .joint_controller import JointController, Reached
+from .joint_controller import INIT_STIFFNESS, InitialStiffness, JointController, Reached
 
 COMPLAINT_PERIOD = 5.0
 """s between two complaints about messages of one topic that cannot be carried out."""
 SHUTDOWN_LIMIT = 2.0
 """s that the end of the node waits for running goals to be interrupted."""
-START_STIFFNESS = "init_stiffness"
 
 
 class NaoController:
     """Joint control of one robot.
 
     Goals of one action for different joints run side by side; one for joints that an older goal moves ends the older
-    one. A cancelled goal ends the motion on the robot at once, and its result tells where the joints are then.
+    one. A cancelled goal ends the motion on the robot at once, and its result has the angles of the joints then.
 
     ROS API (relative names):
         Subscribes `joint_angles` (nao_library_msgs/JointAnglesWithSpeed), `joint_stiffness` (sensor_msgs/JointState:
         name and effort).
         Publishes `get_life_state` (std_msgs/String, latched): state of autonomous life when a service asked or
         changed it.
-        Actions `joint_trajectory` (its feedback tells ten times a second where the joints are to be, are, and how far
-        off), `joint_stiffness_trajectory` (nao_library_actions/JointTrajectory), `joint_angles_action`
+        Actions `joint_trajectory` (its feedback has ten times a second the commanded and measured angles and their
+        difference), `joint_stiffness_trajectory` (nao_library_actions/JointTrajectory), `joint_angles_action`
         (nao_library_actions/JointAnglesWithSpeed).
         Services `body_stiffness/enable`, `body_stiffness/disable`, `wakeup`, `rest`, `life/enable`, `life/disable`
         (std_srvs/Empty), `life/get_state` (std_srvs/Trigger).
@@ -56,23 +53,14 @@ class NaoController:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-        """
         self._node = node
         self._robot = robot
         self._joints = JointController(robot)
-        self._init_stiffness = number_parameter(
-            f"~{START_STIFFNESS}", self._node.param(f"~{START_STIFFNESS}", 0.0), limit("share")
-        )
-        self._crowds = [
-            self._serve("joint_trajectory", JointTrajectoryAction, self._trajectory_joints, self._trajectory, True),
-            self._serve("joint_stiffness_trajectory", JointTrajectoryAction, self._trajectory_joints, self._stiffness),
-            self._serve("joint_angles_action", JointAnglesWithSpeedAction, self._angles_joints, self._angles),
-        ]
+        self._init_stiffness = InitialStiffness(self._joints, node.param)
+        self._servers: dict[str, ConcurrentActionServer] = {}
+        self._serve("joint_trajectory", JointTrajectoryAction, self._trajectory_joints, self._trajectory, True)
+        self._serve("joint_stiffness_trajectory", JointTrajectoryAction, self._trajectory_joints, self._stiffness)
+        self._serve("joint_angles_action", JointAnglesWithSpeedAction, self._angles_joints, self._angles)
         self._life = self._node.publisher("get_life_state", String, queue_size=1, latch=True)
         self._node.offer("body_stiffness/enable", Empty, lambda _: self._joints.set_body_stiffness(1.0))
         self._node.offer("body_stiffness/disable", Empty, lambda _: self._joints.set_body_stiffness(0.0))
@@ -87,16 +75,12 @@ class NaoController:
         self._node.subscriber("joint_stiffness", JointState, self._on_stiffness, queue_size=10)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
-        return {f"goals {name}": server.counter.report for name, server in zip(self._names, self._crowds)}
-
-    _names = ("joint_trajectory", "joint_stiffness_trajectory", "joint_angles_action")
+        return {f"goals {name}": server.counter.report for name, server in self._servers.items()}
 
     def close(self) -> None:
-        """End all goals."""
         self._robot.connection.remove_listener(self._connection_changed)
-        for server in self._crowds:
-            server.close(SHUTDOWN_LIMIT / len(self._crowds))
+        for server in self._servers.values():
+            server.close(SHUTDOWN_LIMIT / len(self._servers))
 
     # --- actions --------------------------------------------------------------------------------------------------
 
@@ -107,10 +91,9 @@ class NaoController:
         claims: Callable[[Any], frozenset[str]],
         execute: Callable[..., Outcome],
         with_feedback: bool = False,
-    ) -> ConcurrentActionServer:
-        server = ConcurrentActionServer(claims, execute, with_feedback, self._robot)
-        self._node.action(name, action, server)
-        return server
+    ) -> None:
+        self._servers[name] = ConcurrentActionServer(claims, execute, with_feedback, self._robot)
+        self._node.action(name, action, self._servers[name])
 
     def _trajectory_joints(self, goal: Any) -> frozenset[str]:
         return frozenset(self._joints.joints_of(goal.trajectory.joint_names))
@@ -121,7 +104,7 @@ class NaoController:
     def _trajectory(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> Outcome:
         began = rospy.Time.now()
 
-        def tell(joints: Sequence[str], desired: Sequence[float], actual: Sequence[float]) -> None:
+        def report(joints: Sequence[str], desired: Sequence[float], actual: Sequence[float]) -> None:
             feedback = JointTrajectoryFeedback(joint_names=list(joints))
             feedback.header.stamp = rospy.Time.now()
             off = [wanted - there for wanted, there in zip(desired, actual)]
@@ -130,7 +113,7 @@ class NaoController:
             publish(feedback)
 
         frames = self._joints.trajectory(goal.trajectory, relative=goal.relative != 0)
-        reached = self._joints.follow(frames, interrupt, tell)
+        reached = self._joints.follow(frames, interrupt, report)
         return _outcome(JointTrajectoryResult(), goal.trajectory.joint_names, reached)
 
     def _stiffness(self, goal: Any, interrupt: CancellationToken) -> Outcome:
@@ -177,14 +160,13 @@ class NaoController:
         connection = self._robot.connection
         if connection.state == "lost":
             lost = RobotLost(self._robot.address, connection.last_error or "no answer")
-            for server in self._crowds:
+            for server in self._servers.values():
                 server.interrupt_all(lost)
-        elif connection.state == "connected" and self._init_stiffness > 0.0:
-            stiffness, self._init_stiffness = self._init_stiffness, 0.0  # once: a robot that restarts stays limp
+        elif connection.state == "connected":
             try:
-                self._joints.set_body_stiffness(stiffness)
+                self._init_stiffness.apply()
             except NaoError as error:
-                rospy.logerr("~%s: %s", START_STIFFNESS, error)
+                rospy.logerr("%s: %s", INIT_STIFFNESS, error)
 
 
 def _outcome(result: Any, names: Sequence[str], reached: Reached) -> Outcome:

@@ -25,8 +25,8 @@ from ...base.limits import limit
 from ...nao.joint_names import JointNames
 from ...ros.health import Level, Report
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
+from ..base.node import frame_parameter
 from ..base.rate import Rate
 from . import state_messages as messages
 from .feet import LEG_JOINTS, footprint
@@ -52,7 +52,7 @@ class NaoJointStates:
     Threads: one reads and publishes; `close` and the diagnostics come from others and touch only what is set once.
 
     ROS API (relative names):
-        Publishes `joint_states` (sensor_msgs/JointState; efforts are torques in N m as the motor currents tell them),
+        Publishes `joint_states` (sensor_msgs/JointState; efforts are torques in N m from the motor currents),
         `imu` (sensor_msgs/Imu, in the frame of the torso), `odom` (nav_msgs/Odometry), and on /tf the frames odom ->
         base_link and base_link -> base_footprint (REP 105, REP 120). `~joint_stiffness` (sensor_msgs/JointState:
         efforts are stiffnesses, 0 to 1), while somebody listens: under the name of the node, for what is published on
@@ -68,30 +68,20 @@ class NaoJointStates:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Begin; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
-        self._node = node
+        """Raises NaoError if a parameter is wrong; the robot need not be there yet."""
         self._robot = robot
         self._names = JointNames(robot)
-        rate = self._node.param("~sensor_rate", self._node.param("~torso_odom_rate", DEFAULT_RATE))
+        rate = node.param("~sensor_rate", node.param("~torso_odom_rate", DEFAULT_RATE))
         self._period = 1.0 / number_parameter("~sensor_rate", rate, limit("reading rate"))
-        prefix = tf_prefix()
-        self._base = prefix + self._node.param("~base_frame_id", "base_link").lstrip("/")
-        self._footprint = prefix + self._node.param("~footprint_frame_id", "base_footprint").lstrip("/")
-        self._odom = prefix + self._node.param("~odom_frame_id", "odom").lstrip("/")
-        self._use_sensors = bool(self._node.param("~use_joint_sensors", True))
-        self._use_odometry = bool(self._node.param("~use_odometry", True))
-        self._joint_states = self._node.publisher("joint_states", JointState, queue_size=10)
-        self._imu = self._node.publisher("imu", Imu, queue_size=10)
-        self._stiffness = self._node.publisher("~joint_stiffness", JointState, queue_size=10)
-        self._odometry = self._node.publisher("odom", Odometry, queue_size=10) if self._use_odometry else None
+        self._base = frame_parameter(node, "~base_frame_id", "base_link")
+        self._footprint = frame_parameter(node, "~footprint_frame_id", "base_footprint")
+        self._odom = frame_parameter(node, "~odom_frame_id", "odom")
+        self._use_sensors = bool(node.param("~use_joint_sensors", True))
+        self._use_odometry = bool(node.param("~use_odometry", True))
+        self._joint_states = node.publisher("joint_states", JointState, queue_size=10)
+        self._imu = node.publisher("imu", Imu, queue_size=10)
+        self._stiffness = node.publisher("~joint_stiffness", JointState, queue_size=10)
+        self._odometry = node.publisher("odom", Odometry, queue_size=10) if self._use_odometry else None
         self._offset = OdometryOffset()
         if self._use_odometry:
             place_in = lambda request: read_transform(request.offset)  # noqa: E731
@@ -108,11 +98,9 @@ class NaoJointStates:
         self._thread.start()
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"readings": self._report}
 
     def close(self) -> None:
-        """Publish no more."""
         self._interrupt.stop()
         self._thread.join(END_LIMIT)
 

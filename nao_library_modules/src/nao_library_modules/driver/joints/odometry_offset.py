@@ -11,16 +11,15 @@ from ...base.places import ORIGIN, Place
 
 
 class OdometryOffset:
-    """What lies between the robot's own odometry and the one that is published: a place on the floor and a heading.
+    """The offset of the published odometry from the robot's own: a place on the floor and a heading.
 
     Height, roll and pitch of the torso stay those of the robot, so that the frame of odometry keeps level with the
-    floor.
+    floor. Every change raises NaoError before the first reading.
 
     Threads: one corrects readings, others (services) change the offset; the lock guards all of it.
     """
 
     def __init__(self) -> None:
-        """Begin with the robot's own odometry."""
         self._lock = threading.Lock()
         self._offset = ORIGIN
         self._raw: Place | None = None
@@ -29,17 +28,12 @@ class OdometryOffset:
 
     @property
     def paused(self) -> bool:
-        """Whether the published odometry stands still."""
         return self._paused_at is not None
 
     def correct(self, torso: Sequence[float]) -> tuple[tuple[float, ...], int]:
-        """The torso in the published odometry.
+        """The torso's x, y, z (m) and roll, pitch, yaw (rad) in the published odometry, from those in the robot's own.
 
-        Args:
-            torso: Its x, y, z (m) and roll, pitch, yaw (rad) in the robot's own odometry.
-
-        Returns:
-            The same in the published one, and how often that has jumped: speeds taken across a jump would be wrong.
+        Also how often the published odometry has jumped: speeds taken across a jump would be wrong.
         """
         x, y, z, roll, pitch, yaw = torso
         with self._lock:
@@ -50,11 +44,7 @@ class OdometryOffset:
         return (place.x, place.y, z, roll, pitch, place.yaw), jumps
 
     def pause(self) -> None:
-        """Let the published odometry stand still, for a robot that is carried or slips.
-
-        Raises:
-            NaoError: If nothing was read yet.
-        """
+        """Let the published odometry stand still, for a robot that is carried or slips."""
         with self._lock:
             if self._paused_at is None:
                 self._paused_at = self._published()
@@ -65,23 +55,11 @@ class OdometryOffset:
             self._paused_at = None
 
     def move_by(self, way: Place) -> None:
-        """Move the torso in the published odometry.
-
-        Args:
-            way: In the frame of the torso as published, seen from above.
-
-        Raises:
-            NaoError: If nothing was read yet.
-        """
+        """Move the torso in the published odometry; the way is in its frame there, seen from above."""
         with self._lock:
             self._jump_to(self._published().then(way))
 
     def set(self, place: Place) -> None:
-        """Set where the torso is in the published odometry.
-
-        Raises:
-            NaoError: If nothing was read yet.
-        """
         with self._lock:
             self._published()
             self._jump_to(place)

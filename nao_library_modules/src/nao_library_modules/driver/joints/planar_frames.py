@@ -1,4 +1,4 @@
-"""Frames of /tf seen from above: where the robot is, and where goals are that are told in any frame."""
+"""Frames of /tf seen from above: where the robot is, and where goals in any frame are."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from ...base.errors import BadGoal
 from ...base.field_checks import require_length, require_within
 from ...base.limits import limit
 from ...base.places import Place, yaw_of_quaternion
+from ...ros.robot_frames import seen_from_above
 from ..base.rotation import from_roll_pitch_yaw, product, rotate
 
 PLACE, PLACES = limit("place"), limit("places")
@@ -30,32 +31,22 @@ OLDEST = 2.0
 
 @lru_cache(maxsize=None)
 def _frames_of_tf() -> tf2_ros.Buffer:
-    """What /tf tells: a busy topic, to which a process listens once."""
+    """The transforms of /tf: a busy topic, to which a process listens once."""
     buffer = tf2_ros.Buffer(debug=False)
     buffer.listener = tf2_ros.TransformListener(buffer)
     return buffer
 
 
 class PlanarFrames:
-    """Looks frames up. Any thread may ask."""
+    """Looks frames up, in /tf or in the given buffer. Any thread may ask."""
 
     def __init__(self, buffer: Any = None) -> None:
-        """Begin to listen to /tf.
-
-        Args:
-            buffer: Frames that are known already, instead.
-        """
         self._buffer = _frames_of_tf() if buffer is None else buffer
         self._wall = WallClock()
         self._seen: dict[tuple[str, str], tuple[rospy.Time, float]] = {}
 
     def locate(self, child: str, frame: str, patience: float = PATIENCE) -> Place:
-        """Where a frame is in another one, by the latest transform.
-
-        Args:
-            child: The frame that is looked for.
-            frame: The frame to tell it in.
-            patience: s to wait for it.
+        """Where `child` is in `frame`, by the latest transform, for which it waits up to `patience` s.
 
         Raises:
             NaoError: If they are not connected, or what is known is old.
@@ -65,17 +56,12 @@ class PlanarFrames:
         age = (rospy.Time.now() - stamp).to_sec()
         if stamp and age > OLDEST and self._unchanged(child, frame, stamp) > OLDEST:
             raise NaoError(f"where {child} is in {frame} was told {age:.1f} s ago: does nao_joint_states run?")
-        move, turn = transform.transform.translation, transform.transform.rotation
-        yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
-        return Place(move.x, move.y, 0.0 if yaw is None else yaw)
+        return seen_from_above(transform.transform)
 
     def place_in(self, frame: str, pose: PoseStamped, patience: float = PATIENCE) -> Place:
-        """A pose told in any frame, seen from above in another one.
+        """A pose in any frame, seen from above in another one, which it waits for up to `patience` s.
 
-        Args:
-            frame: The frame to tell it in.
-            pose: Checked, see `read_place`. Its time counts as far back as /tf is known; without one it is the latest.
-            patience: s to wait for its frame.
+        The time of the pose counts as far back as /tf is known; without one it is the latest.
 
         Raises:
             NaoError: If the frames are not connected.
@@ -90,10 +76,10 @@ class PlanarFrames:
         point, own = pose.pose.position, pose.pose.orientation
         x, y, _ = rotate(frame_turn, (point.x, point.y, point.z))
         yaw = yaw_of_quaternion(*product(frame_turn, (own.x, own.y, own.z, own.w)))
-        return Place(x + move.x, y + move.y, 0.0 if yaw is None else yaw)
+        return Place(x + move.x, y + move.y, yaw or 0.0)
 
     def inside(self, frame: str, outer: str) -> bool:
-        """Whether a frame hangs below another one, or is that frame itself."""
+        """Whether a frame is a descendant of another one, or that frame itself."""
         parents = yaml.safe_load(self._buffer.all_frames_as_yaml()) or {}
         seen = set()
         while frame != outer and isinstance(parents, dict) and frame in parents and frame not in seen:
@@ -116,14 +102,10 @@ class PlanarFrames:
 
 
 def read_place(field: str, pose: PoseStamped) -> tuple[Place, str]:
-    """Place and frame of a pose, seen from above.
-
-    Args:
-        field: Name of the field, for texts.
-        pose: The message.
+    """Place and frame of a pose, seen from above; `field` is its name for texts.
 
     Raises:
-        BadGoal: If a number is none, the frame has no name or the orientation is no rotation.
+        BadGoal: If a coordinate is no number, the frame has no name or the orientation is no rotation.
     """
     frame = pose.header.frame_id.lstrip("/")
     if not frame:
@@ -132,8 +114,9 @@ def read_place(field: str, pose: PoseStamped) -> tuple[Place, str]:
     turn = pose.pose.orientation
     yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
     if yaw is None:
+        given = f"({turn.x:g}, {turn.y:g}, {turn.z:g}, {turn.w:g})"
         raise BadGoal(
-            f"{field}.pose.orientation", _text(turn), "a rotation; w: 1 and the others 0 heads along X of its frame"
+            f"{field}.pose.orientation", given, "a rotation; w: 1 and the others 0 heads along X of its frame"
         )
     return place._replace(yaw=yaw), frame
 
@@ -142,7 +125,7 @@ def read_point(field: str, pose: PoseStamped) -> Place:
     """The point of a pose, with heading 0.
 
     Raises:
-        BadGoal: If a number is none.
+        BadGoal: If a coordinate is no number.
     """
     point = pose.pose.position
     place = Place(point.x, point.y, 0.0)
@@ -155,7 +138,8 @@ def read_path(path: Path) -> tuple[list[Place], str]:
     """Places and frame of a path. Only the last heading counts; without one it is that of the path.
 
     Raises:
-        BadGoal: If a number is none, the frame has no name, poses are in different frames, or they are too many.
+        BadGoal: If a coordinate is no number, the frame has no name, poses are in different frames, or they are too
+        many.
     """
     require_length("path.poses", len(path.poses), PLACES)
     frames = {pose.header.frame_id.lstrip("/") for pose in path.poses} - {""}
@@ -175,7 +159,7 @@ def read_path(path: Path) -> tuple[list[Place], str]:
 
 
 def read_transform(transform: Transform) -> Place:
-    """What of a transform lies in the plane of the floor.
+    """The part of a transform in the plane of the floor.
 
     Raises:
         BadGoal: If a coordinate is no number, or the rotation is no rotation.
@@ -190,12 +174,7 @@ def read_transform(transform: Transform) -> Place:
     return Place(move.x, move.y, yaw)
 
 
-def _text(turn: Quaternion) -> str:
-    return f"({turn.x:g}, {turn.y:g}, {turn.z:g}, {turn.w:g})"
-
-
 def pose_stamped(place: Place, frame: str, stamp: rospy.Time) -> PoseStamped:
-    """A place as a message."""
     message = PoseStamped()
     message.header.frame_id, message.header.stamp = frame, stamp
     message.pose.position.x, message.pose.position.y = place.x, place.y
@@ -204,5 +183,4 @@ def pose_stamped(place: Place, frame: str, stamp: rospy.Time) -> PoseStamped:
 
 
 def level_quaternion(yaw: float) -> Quaternion:
-    """A turn about Z."""
     return Quaternion(*from_roll_pitch_yaw(0.0, 0.0, yaw))

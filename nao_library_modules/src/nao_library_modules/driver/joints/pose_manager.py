@@ -48,34 +48,26 @@ class PoseManager:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-        """
         self._node = node
         self._robot = robot
         self._poses = self._read_poses()
         self._trajectory = TrajectoryClient()
         self._stop_walk = self._node.caller(STOP_WALK, Empty)
-        self._crowds = {
+        self._servers = {
             "body_pose": ConcurrentActionServer(lambda _: BODY, self._take_pose, robot=robot),
             "body_pose_naoqi": ConcurrentActionServer(lambda _: BODY, self._take_posture, robot=robot),
         }
-        for (name, server), action in zip(self._crowds.items(), (BodyPoseAction, BodyPoseWithSpeedAction)):
+        for (name, server), action in zip(self._servers.items(), (BodyPoseAction, BodyPoseWithSpeedAction)):
             self._node.action(name, action, server)
         robot.connection.add_listener(self._connection_changed)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
-        return {f"goals {name}": server.counter.report for name, server in self._crowds.items()}
+        return {f"goals {name}": server.counter.report for name, server in self._servers.items()}
 
     def close(self) -> None:
-        """End all goals."""
         self._robot.connection.remove_listener(self._connection_changed)
-        for server in self._crowds.values():
-            server.close(SHUTDOWN_LIMIT / len(self._crowds))
+        for server in self._servers.values():
+            server.close(SHUTDOWN_LIMIT / len(self._servers))
 
     # --- poses of the tables --------------------------------------------------------------------------------------
 
@@ -93,7 +85,7 @@ class PoseManager:
         return self._poses[name]
 
     def _read_poses(self) -> dict[str, Pose]:
-        """All poses; a table that cannot be read is left out, and said to be."""
+        """All poses; a table that cannot be read is logged and left out."""
         poses = built_in()
         paths = self._node.param("~xap", [])
         for path in [paths] if isinstance(paths, str) else list(paths):
@@ -131,7 +123,7 @@ class PoseManager:
         connection = self._robot.connection
         if connection.state == "lost":
             lost = RobotLost(self._robot.address, connection.last_error or "no answer")
-            self._crowds["body_pose_naoqi"].interrupt_all(lost)  # of the other one, nao_controller takes care
+            self._servers["body_pose_naoqi"].interrupt_all(lost)  # of the other one, nao_controller takes care
 
 
 def _add(poses: dict[str, Pose], read: Callable[[], dict[str, Pose]]) -> None:

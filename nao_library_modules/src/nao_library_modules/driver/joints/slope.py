@@ -7,33 +7,23 @@ from collections.abc import Sequence
 
 DEFAULT_SAMPLES = 5
 GAP = 0.5
-"""s without a sample after which older ones tell nothing about the present."""
+"""s without a sample after which older ones say nothing about the present."""
 
 
 class SlopeEstimator:
-    """Slopes of straight lines through the last samples of several values.
+    """Slopes of straight lines through the last `samples` samples (at least 2) of several values.
 
     The robot measures in cycles of its own, so of two samples 20 ms apart one may hold one cycle's motion and the next
     three; a line through several of them is not upset by that. The slope is that of the middle of the window.
     """
 
     def __init__(self, samples: int = DEFAULT_SAMPLES) -> None:
-        """Begin without samples.
-
-        Args:
-            samples: How many samples the lines go through, at least 2.
-        """
         self._samples: deque[tuple[float, Sequence[float]]] = deque(maxlen=samples)
 
     def add(self, time: float, values: Sequence[float]) -> list[float]:
-        """Take a sample and return the slopes.
+        """Take a sample and return the change of each value per s; zeros with less than two samples.
 
-        Args:
-            time: s. A time that goes back, or far ahead, makes the estimator start anew.
-            values: As many as in the samples before.
-
-        Returns:
-            Change of each value per s; zeros with less than two samples.
+        A `time` (s) that goes back, or far ahead, makes the estimator start anew.
         """
         if self._samples and not 0.0 <= time - self._samples[-1][0] <= GAP:
             self._samples.clear()

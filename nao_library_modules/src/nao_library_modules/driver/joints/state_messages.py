@@ -26,7 +26,7 @@ def joint_state(stamp: Time, joints: Sequence[str], reading: Reading, velocities
 
 
 def joint_stiffness(stamp: Time, joints: Sequence[str], stiffnesses: Sequence[float]) -> JointState:
-    """Stiffnesses of the joints, 0 to 1, in the place of efforts."""
+    """Stiffnesses of the joints, 0 to 1, as efforts."""
     message = JointState(name=list(joints), effort=stiffnesses)
     message.header.stamp = stamp
     return message
@@ -51,12 +51,7 @@ def imu(stamp: Time, frame: str, reading: Reading) -> Imu:
 def odometry(stamp: Time, frame: str, base: str, reading: Reading, velocity: Sequence[float]) -> Odometry:
     """The torso in the robot's own odometry.
 
-    Args:
-        stamp: When it was read.
-        frame: Name of the frame of odometry.
-        base: Name of the frame of the torso.
-        reading: With the place of the torso.
-        velocity: (3,) of the torso in `frame`, m/s. The message has it in `base`, as REP 105 asks.
+    `velocity` is that of the torso in `frame`, (3,) m/s; the message has it in `base`, as REP 105 asks.
     """
     x, y, z, roll, pitch, yaw = reading.torso
     turn = from_roll_pitch_yaw(roll, pitch, yaw)
@@ -83,12 +78,11 @@ def transform(stamp: Time, parent: str, child: str, place: Sequence[float], turn
 
 
 def odometry_transform(stamp: Time, frame: str, base: str, reading: Reading) -> TransformStamped:
-    """Pose of the torso in odometry."""
     place = reading.torso
     return transform(stamp, frame, base, place[:3], from_roll_pitch_yaw(*place[3:]))
 
 
 def diagonal(*variances: float) -> list[float]:
-    """A covariance matrix, row by row, of values that do not depend on each other."""
+    """A covariance matrix, row by row, of independent values."""
     count = len(variances)
     return [variances[i // count] if i % (count + 1) == 0 else 0.0 for i in range(count * count)]

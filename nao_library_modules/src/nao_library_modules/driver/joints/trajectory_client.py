@@ -32,16 +32,11 @@ class TrajectoryClient:
     """
 
     def __init__(self) -> None:
-        """Look for the server in the background."""
         self._client = actionlib.ActionClient(ACTION, JointTrajectoryAction)
         self._clock = RosClock()
 
     def take(self, pose: Pose, interrupt: CancellationToken) -> None:
-        """Have a pose taken.
-
-        Args:
-            pose: Where to go, and in what time.
-            interrupt: Ends it.
+        """Take a pose, unless the interrupt ends it.
 
         Raises:
             NaoError: If there is no server, or it does not get there in time.

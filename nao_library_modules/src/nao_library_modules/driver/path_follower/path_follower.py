@@ -26,8 +26,8 @@ from ...base.places import Place
 from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome, Replaced
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
+from ..base.node import frame_parameter
 from ..joints.planar_frames import PlanarFrames, pose_stamped, read_path, read_place
 from .courses import Aim, PathCourse, TargetCourse
 from .legs import WalkTopics
@@ -76,9 +76,8 @@ class NaoPathFollower:
         self._node = node
         self._robot = robot
         self._settings = Settings.read(node.param)
-        prefix = tf_prefix()
-        self._base = prefix + self._node.param("~base_frame_id", "base_footprint").lstrip("/")
-        self._odom = prefix + self._node.param("~odom_frame_id", "odom").lstrip("/")
+        self._base = frame_parameter(node, "~base_frame_id", "base_footprint")
+        self._odom = frame_parameter(node, "~odom_frame_id", "odom")
         self._frames = PlanarFrames()
         self._legs = WalkTopics(robot, node, self._settings.use_vel_ctrl)
         self._clock = RosClock()

@@ -36,7 +36,7 @@ CODES = {leg: code for code, leg in LEGS.items()}
 
 
 class NaoFootsteps:
-    """Makes footsteps. What is too far is shortened as `clip_footstep_srv` tells; half a second a step.
+    """Makes footsteps, half a second each. A step that is too far is shortened as by `clip_footstep_srv`.
 
     ROS API (relative names):
         Subscribes `footstep` (nao_library_msgs/StepTarget): one more step.

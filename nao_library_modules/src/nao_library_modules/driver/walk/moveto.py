@@ -14,7 +14,7 @@ from naoqi.errors import NaoError
 from ...base.places import Place
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import tf_prefix
+from ..base.node import frame_parameter
 from ..joints.planar_frames import PlanarFrames, read_place
 from .moveto_walk import Goal, MoveToWalk
 from .walk_commands import require_way
@@ -23,7 +23,7 @@ from .walk_commands import require_way
 class NaoqiMoveTo:
     """Walks to poses, in any frame of /tf, with the robot's own planning of steps. A new goal takes over.
 
-    There is no answer: the log and /diagnostics tell how it ends. For one, use the action `walk_target`.
+    There is no answer: the end is in the log and on /diagnostics. For an answer, use the action `walk_target`.
 
     ROS API (relative names):
         Subscribes `move_base_simple/goal` (geometry_msgs/PoseStamped), `move_base_simple/cancel` (std_msgs/Empty).
@@ -32,9 +32,8 @@ class NaoqiMoveTo:
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         self._node = node
-        prefix = tf_prefix()
-        self._base = prefix + self._node.param("~base_frame_id", "base_footprint").lstrip("/")
-        self._odom = prefix + self._node.param("~odom_frame_id", "odom").lstrip("/")
+        self._base = frame_parameter(node, "~base_frame_id", "base_footprint")
+        self._odom = frame_parameter(node, "~odom_frame_id", "odom")
         self._frames = PlanarFrames()
         self._walk = MoveToWalk(robot)
         self._node.subscriber("move_base_simple/goal", PoseStamped, self._on_goal, queue_size=1)

@@ -86,7 +86,7 @@ class MoveToWalk:
                 else:
                     self._stop()
             except NaoError as error:
-                self._tell(Level.ERROR, f"{goal.name if goal else 'stop'}: {error}")
+                self._report(Level.ERROR, f"{goal.name if goal else 'stop'}: {error}")
             except Exception as error:  # a mistake in here must not leave a node that takes goals and does nothing
                 log.exception("a goal failed")
                 self._state = Report(Level.ERROR, f"unexpected error: {error!r}")
@@ -97,7 +97,7 @@ class MoveToWalk:
         way = goal.way()
         call = self._robot.proxy(MOTION).call_async("moveTo", *way)
         self._newest = call
-        self._tell(Level.OK, f"walks to {goal.name}: {way.x:.2f} m ahead, {way.y:.2f} m left, {way.yaw:.2f} rad")
+        self._report(Level.OK, f"walks to {goal.name}: {way.x:.2f} m ahead, {way.y:.2f} m left, {way.yaw:.2f} rad")
         call.add_done_callback(lambda done: self._ended(goal, done))
 
     def _stop(self) -> None:
@@ -105,7 +105,7 @@ class MoveToWalk:
         if call is None or call.done():
             return
         self._robot.proxy(MOTION).call_async("stopMove").result(timeout=STOP_LIMIT)
-        self._tell(Level.OK, "the robot was stopped")
+        self._report(Level.OK, "the robot was stopped")
 
     def _ended(self, goal: Goal, call: Any) -> None:
         """Report how a walk ended, in a thread of libqi. One that was replaced or stopped is no longer the newest."""
@@ -114,13 +114,13 @@ class MoveToWalk:
         try:
             reached = call.result(timeout=0)
         except NaoError as error:
-            self._tell(Level.ERROR, f"{goal.name}: {error}")
+            self._report(Level.ERROR, f"{goal.name}: {error}")
             return
         if reached is False:
-            self._tell(Level.WARN, f"{goal.name} was not reached: something stopped the robot on the way")
+            self._report(Level.WARN, f"{goal.name} was not reached: something stopped the robot on the way")
         else:
-            self._tell(Level.OK, f"{goal.name} is reached")
+            self._report(Level.OK, f"{goal.name} is reached")
 
-    def _tell(self, level: Level, text: str) -> None:
+    def _report(self, level: Level, text: str) -> None:
         self._state = Report(level, text)
         log.log({Level.OK: logging.INFO, Level.WARN: logging.WARNING, Level.ERROR: logging.ERROR}[level], "%s", text)

@@ -40,7 +40,7 @@ CONTACT_PROTECTION = "ENABLE_FOOT_CONTACT_PROTECTION"
 class NaoWalker:
     """Walking of one robot: the newest command wins, a stop always gets through.
 
-    Velocities on `cmd_vel` have to be renewed: when they cease for `~cmd_vel_timeout`, the robot is told to stop.
+    Velocities on `cmd_vel` have to be renewed: when they cease for `~cmd_vel_timeout`, the robot is stopped.
     Those of `cmd_vel_srv` last until the next command. While a node inhibits walking, commands of all other nodes are
     refused; its own are not, and `stop_walk_srv` never is.
 
