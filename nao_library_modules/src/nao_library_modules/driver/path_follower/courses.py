@@ -1,8 +1,7 @@
-"""Where a robot that follows a target or a path aims next. Pure logic: no ROS, no clock."""
+"""Where a robot aims that follows a target or a path. Pure logic: no ROS, no clock."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -20,47 +19,37 @@ TURN_RADIUS = 0.05
 
 @dataclass(frozen=True)
 class Aim:
-    """Where to go next.
+    """Where to go next."""
 
-    Attributes:
-        place: In the frame of the course.
-        final: Whether the course ends there.
-        rest: What is left of the course, m; a turn counts by a radius. Progress makes it less.
-        index: Of the waypoint ahead.
-    """
-
-    place: Place
-    final: bool
-    rest: float
-    index: int = 0
+    place: Place  # in the frame of the course
+    final: bool  # the course ends there
+    rest: float  # m that are left of the course; a turn counts by a radius. Progress makes it less
+    index: int = 0  # of the waypoint ahead
 
 
 class TargetCourse:
-    """Straight to a target, which may drift as the robot learns better where it is."""
+    """Straight to a target, which may drift as the robot learns better where it is.
+
+    `target` gives its place now, in the frame of the course.
+    """
 
     def __init__(self, target: Callable[[], Place]) -> None:
-        """Keep the target.
-
-        Args:
-            target: Tells where it is now, in the frame of the course.
-        """
         self._target = target
 
     def aim(self, robot: Place) -> Aim:
-        """Where a robot at this place goes next."""
         target = self._target()
-        return Aim(target, final=True, rest=_effort(require_way("target_pose", target.seen_from(robot))))
+        way = require_way("target_pose", target.seen_from(robot))
+        return Aim(target, final=True, rest=way.distance + TURN_RADIUS * abs(way.yaw))
 
 
 class PathCourse:
     """Along a path, aiming at a place of it that moves ahead of the robot."""
 
     def __init__(self, path: WalkPath, settings: Settings) -> None:
-        """Begin at the start of the path."""
         self._path = path
         self._settings = settings
         self._along: float | None = None
-        self._final = False  # who has once aimed at the end does so from then on
+        self._final = False  # a robot that has once aimed at the end does so from then on
 
     def aim(self, robot: Place) -> Aim:
         """Where a robot at this place goes next. Progress along the path is kept.
@@ -84,7 +73,7 @@ class PathCourse:
         return Aim(place, self._final, rest, path.index_at(path.length if at_end else along))
 
     def _find(self, robot: Place) -> tuple[float, float]:
-        """How far along the path the robot is, and how far off it."""
+        """How far along the path the robot is, and how far off it, m."""
         if self._along is None:
             begin = self._path.waypoints[0].distance_to(robot)
             if begin > self._settings.path_max_start_distance:
@@ -105,15 +94,6 @@ class PathCourse:
         return settings.path_next_target_distance
 
 
-def _effort(way: Place) -> float:
-    return way.distance + TURN_RADIUS * abs(way.yaw)
-
-
 def reached(way: Place, settings: Settings) -> bool:
     """Whether the way to a target is so short that it counts as reached."""
     return way.distance <= settings.target_distance_threshold and abs(way.yaw) <= settings.target_angle_threshold
-
-
-def facing(way: Place) -> float:
-    """How far to turn to look at where a way leads, rad."""
-    return math.atan2(way.y, way.x)

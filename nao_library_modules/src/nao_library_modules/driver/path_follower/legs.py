@@ -1,4 +1,4 @@
-"""The robot's legs as nao_path_follower moves them: by way of nao_walker's topics and services."""
+"""The robot's legs as nao_path_follower moves them: through nao_walker's topics and services."""
 
 from __future__ import annotations
 
@@ -29,18 +29,19 @@ STOP, INHIBIT, LET_GO = "stop_walk_srv", "inhibit_walk", "uninhibit_walk"
 
 
 class _Heard(rospy.SubscribeListener):
-    """Knows when a topic has somebody who listens."""
+    """Sets its event when somebody subscribes to a topic."""
 
     def __init__(self) -> None:
         self.event = threading.Event()
 
     def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
-        """Somebody begins to listen."""
         self.event.set()
 
 
 class WalkTopics:
     """Publishes walk commands; asks the robot itself whether it can walk and does. For one thread at a time.
+
+    All methods raise NaoError if the robot cannot be asked or stopped.
 
     ROS API (relative names):
         Publishes `cmd_pose` (geometry_msgs/Pose2D), `cmd_vel` (geometry_msgs/Twist).
@@ -48,13 +49,6 @@ class WalkTopics:
     """
 
     def __init__(self, robot: Any, node: NodeInterface, use_velocities: bool) -> None:
-        """Advertise the topics.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-            use_velocities: Whether commands go to `cmd_vel`.
-        """
         self._robot = robot
         self._node = node
         self._heard = _Heard()
@@ -84,7 +78,7 @@ class WalkTopics:
             run_task(self._robot.proxy(MOTION).call_async("moveInit"), interrupt, self._stop_robot)
 
     def go_to(self, way: Place) -> None:
-        """Walk to where a way leads, in the robot's frame."""
+        """Walk to where a way leads, in the robot's frame; replaces the command before."""
         self._own_walk()
         self._commands.publish(Pose2D(way.x, way.y, way.yaw))
 
@@ -96,24 +90,15 @@ class WalkTopics:
         self._commands.publish(command)
 
     def walking(self) -> bool:
-        """Whether the robot walks.
-
-        Raises:
-            NaoError: If it cannot be asked.
-        """
-        return bool(self._quick("moveIsActive"))
+        return bool(self._robot.proxy(MOTION).call_async("moveIsActive").result(timeout=QUICK_LIMIT))
 
     def why_stopped(self) -> str:
-        """What ended a walk since `prepare`: cause of the robot's event MoveFailed; empty if there was none."""
+        """Cause of the robot's event MoveFailed since `prepare`, an obstacle for example; empty without one."""
         failure = self._last_failure()
         return str(failure[0]) if failure and failure != self._failed_before else ""
 
     def stop(self) -> None:
-        """Stand, on both feet.
-
-        Raises:
-            NaoError: If the robot cannot be stopped, or goes on for too long.
-        """
+        """Stand, on both feet; returns then."""
         try:
             self._stop()
         except (rospy.ServiceException, rospy.ROSException):  # nobody offers it, or it failed: ask the robot itself
@@ -124,7 +109,7 @@ class WalkTopics:
 
     def reserve(self) -> None:
         """Keep others, a joystick for example, from walking."""
-        # Held before: who is killed in between must not leave it behind.
+        # Held before: a node that is killed in between must not leave it behind.
         self._robot.owners.hold(INHIBIT, "hold on walking", [SERVICE, self._let_go.resolved_name, rospy.get_name()])
         self._call_if_there(self._inhibit)
 
@@ -134,7 +119,7 @@ class WalkTopics:
         self._robot.owners.let_go(INHIBIT)
 
     def _own_walk(self) -> None:
-        """Note the walk as of this node: nao_walker, which begins it, goes on when this node dies."""
+        """Own the walk of this node: nao_walker, which begins it, goes on when this node dies."""
         self._robot.owners.hold(self, "walk", [MOTION, "stopMove", []])
 
     def _last_failure(self) -> list:
@@ -142,14 +127,11 @@ class WalkTopics:
         try:
             value = self._robot.proxy(MEMORY).call_async("getData", FAILED).result(timeout=QUICK_LIMIT)
         except RobotError:
-            return []  # nothing has failed yet, or it is a robot that does not tell
+            return []  # nothing has failed yet, or the robot has no such event
         return list(value) if isinstance(value, (list, tuple)) else []
 
     def _stop_robot(self) -> None:
         self._robot.proxy(MOTION).call_async("stopMove").result(timeout=STOP_LIMIT)
-
-    def _quick(self, method: str) -> Any:
-        return self._robot.proxy(MOTION).call_async(method).result(timeout=QUICK_LIMIT)
 
     @staticmethod
     def _call_if_there(service: rospy.ServiceProxy) -> None:

@@ -16,12 +16,7 @@ SHORTEST = 1e-3
 
 @dataclass(frozen=True)
 class OnPath:
-    """The place of a path that is nearest to a robot.
-
-    Attributes:
-        along: m from the beginning of the path.
-        off: m from the robot.
-    """
+    """The place of a path that is nearest to a robot: m from the beginning of the path, and from the robot."""
 
     along: float
     off: float
@@ -30,20 +25,13 @@ class OnPath:
 class WalkPath:
     """Straight lines from waypoint to waypoint. The last waypoint has a heading, elsewhere the path's direction counts.
 
-    Attributes:
-        waypoints: As they were given, but for those that repeat the one before.
-        length: m.
+    Of waypoints at one place only the last is kept.
+
+    Raises:
+        BadGoal: If there are not two different ones.
     """
 
     def __init__(self, waypoints: Sequence[Place]) -> None:
-        """Measure the path.
-
-        Args:
-            waypoints: In the order of walking.
-
-        Raises:
-            BadGoal: If there are not two different ones.
-        """
         kept: list[Place] = []
         indices: list[int] = []
         for index, waypoint in enumerate(waypoints):
@@ -71,7 +59,7 @@ class WalkPath:
         start, end = self.waypoints[segment], self.waypoints[segment + 1]
         share = max(0.0, along - self._along[segment]) / (self._along[segment + 1] - self._along[segment])
         x, y = start.x + share * (end.x - start.x), start.y + share * (end.y - start.y)
-        return Place(x, y, math.atan2(end.y - start.y, end.x - start.x))
+        return _towards(start, end)._replace(x=x, y=y)
 
     def direction_at(self, along: float) -> float:
         """Direction of the path, rad; that of its last piece at the end."""
@@ -90,7 +78,7 @@ class WalkPath:
         best = OnPath(begin, self.place_at(begin).distance_to(robot))
         for segment in range(self._segment(begin), self._segment(end) + 1):
             along = min(max(self._projected(segment, robot), begin), end)
-            off = self._point(segment, along).distance_to(robot)
+            off = self.place_at(along).distance_to(robot)
             if off < best.off - 1e-9:
                 best = OnPath(along, off)
         return best
@@ -99,9 +87,9 @@ class WalkPath:
         """Whether the path stays within `deviation` m of the line between two of its places."""
         end = min(end, self.length)
         start, stop = self.place_at(begin), self.place_at(end)
-        chord = stop.seen_from(Place(start.x, start.y, math.atan2(stop.y - start.y, stop.x - start.x))).x
+        line = _towards(start, stop)
+        chord = stop.seen_from(line).x
         first, last = bisect_right(self._along, begin), bisect_left(self._along, end)
-        line = Place(start.x, start.y, math.atan2(stop.y - start.y, stop.x - start.x))
         between = [waypoint.seen_from(line) for waypoint in self.waypoints[first:last]]
         return all(abs(p.y) <= deviation and -deviation <= p.x <= chord + deviation for p in between)
 
@@ -110,11 +98,10 @@ class WalkPath:
 
     def _projected(self, segment: int, robot: Place) -> float:
         start, end = self.waypoints[segment], self.waypoints[segment + 1]
-        ahead = math.atan2(end.y - start.y, end.x - start.x)
-        walked = robot.seen_from(Place(start.x, start.y, ahead)).x
+        walked = robot.seen_from(_towards(start, end)).x
         return min(max(self._along[segment] + walked, self._along[segment]), self._along[segment + 1])
 
-    def _point(self, segment: int, along: float) -> Place:
-        start, end = self.waypoints[segment], self.waypoints[segment + 1]
-        share = (along - self._along[segment]) / (self._along[segment + 1] - self._along[segment])
-        return Place(start.x + share * (end.x - start.x), start.y + share * (end.y - start.y), 0.0)
+
+def _towards(start: Place, end: Place) -> Place:
+    """The place `start`, heading for `end`."""
+    return start._replace(yaw=math.atan2(end.y - start.y, end.x - start.x))

@@ -64,15 +64,7 @@ class NaoPathFollower:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
+        """Raises NaoError if a parameter is wrong; the robot need not be there yet."""
         self._node = node
         self._robot = robot
         self._settings = Settings.read(node.param)
@@ -95,7 +87,6 @@ class NaoPathFollower:
         self._node.subscriber("foot_contact", Bool, self._on_foot_contact, queue_size=1)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"goals": self._server.counter.report}
 
     def close(self) -> None:
@@ -169,7 +160,7 @@ class NaoPathFollower:
         return frame, PathCourse(WalkPath(places), self._settings)
 
     def _stays(self, frame: str) -> bool:
-        """Whether a goal in this frame is told in that of odometry, once and for all."""
+        """Whether a goal in this frame is fixed in that of odometry at the beginning."""
         self._frames.locate(self._base, frame)  # waits until it is known
         return self._frames.inside(frame, self._odom)
 
@@ -197,7 +188,6 @@ class NaoPathFollower:
             self._server.interrupt_all(NaoError(FOOT_CONTACT))
 
     def _connection_changed(self, *_: Any) -> None:
-        """Called from the thread that the connection has for its listeners."""
         connection = self._robot.connection
         if connection.state == "lost":
             self._server.interrupt_all(RobotLost(self._robot.address, connection.last_error or "no answer"))

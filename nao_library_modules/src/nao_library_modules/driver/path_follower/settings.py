@@ -17,72 +17,42 @@ from ...base.limits import limit
 class Settings:
     """How a robot follows targets and paths; the names are those of the parameters.
 
-    Attributes:
-        controller_frequency: Rounds a second, Hz.
-        target_distance_threshold: The target is reached this near, m.
-        target_angle_threshold: And this well turned, rad.
-        waypoint_distance_threshold: Off a path by more, the robot does not count as being on a straight piece, m.
-        waypoint_angle_threshold: Turned away from a path by more, it turns on the spot first, rad.
-        max_vel_x: Velocity mode: share of the robot's top speed ahead, above 0 to 1.
-        max_vel_y: Likewise sideways.
-        max_vel_yaw: Likewise turning.
-        step_freq: Velocity mode: step frequency that nao_walker walks with (its ~step_frequency), 0 (slow) to 1. It
-            tells how far the robot gets in a round, and so how slow it must be to meet its target.
-        use_vel_ctrl: Whether the robot is led by velocities (`cmd_vel`) and not by poses (`cmd_pose`).
-        use_foot_contact_protection: Whether a robot that is lifted gives its goal up.
-        path_next_target_distance: How far ahead on a path the robot aims, m.
-        path_max_start_distance: How far from the beginning of a path it may stand, m.
-        threshold_damp_xy: Velocity mode: this near to the target it gets slower, m.
-        threshold_damp_yaw: Likewise for turning, rad.
-        straight_threshold: A piece of a path that is straight for this long is walked along at full speed, m.
-        straight_offset: There the robot aims this far ahead, m.
-        straight_max_path_dev: And straight means this near to a line, m.
-        straight_max_robot_dev: With the robot this near to it, m.
-        straight_max_robot_yaw: And turned away from it by no more than this, rad.
-        stuck_time: Without any progress for so long the robot gives up, s; 0: never.
+    Raises:
+        NaoError: With the first value that will not do.
     """
 
-    controller_frequency: float = 10.0
-    target_distance_threshold: float = 0.05
-    target_angle_threshold: float = math.radians(5.0)
-    waypoint_distance_threshold: float = 0.1
-    waypoint_angle_threshold: float = math.radians(45.0)
+    controller_frequency: float = 10.0  # rounds a second, Hz
+    target_distance_threshold: float = 0.05  # the target is reached this near, m
+    target_angle_threshold: float = math.radians(5.0)  # and this well turned, rad
+    waypoint_distance_threshold: float = 0.1  # off a path by more, the robot is not on a straight piece, m
+    waypoint_angle_threshold: float = math.radians(45.0)  # turned away from a path by more, it first turns, rad
+    # Velocity mode: shares of the robot's top speed, above 0 to 1.
     max_vel_x: float = 0.7
     max_vel_y: float = 0.7
     max_vel_yaw: float = 0.7
+    # Velocity mode: step frequency that nao_walker walks with (its ~step_frequency), 0 (slow) to 1. By it the robot
+    # gets so far in a round, and so has to be so slow to meet its target.
     step_freq: float = 0.5
-    use_vel_ctrl: bool = False
-    use_foot_contact_protection: bool = True
-    path_next_target_distance: float = 0.1
-    path_max_start_distance: float = 0.3
-    threshold_damp_xy: float = 0.2
-    threshold_damp_yaw: float = math.radians(60.0)
-    straight_threshold: float = 0.2
-    straight_offset: float = 0.3
-    straight_max_path_dev: float = 0.03
-    straight_max_robot_dev: float = 0.05
-    straight_max_robot_yaw: float = math.radians(20.0)
-    stuck_time: float = 10.0
+    use_vel_ctrl: bool = False  # the robot is led by velocities (`cmd_vel`) and not by poses (`cmd_pose`)
+    use_foot_contact_protection: bool = True  # a robot that is lifted gives its goal up
+    path_next_target_distance: float = 0.1  # how far ahead on a path the robot aims, m
+    path_max_start_distance: float = 0.3  # how far from the beginning of a path it may stand, m
+    threshold_damp_xy: float = 0.2  # velocity mode: this near to the target it gets slower, m
+    threshold_damp_yaw: float = math.radians(60.0)  # likewise for turning, rad
+    straight_threshold: float = 0.2  # a piece of a path that is straight for this long is walked at full speed, m
+    straight_offset: float = 0.3  # there the robot aims this far ahead, m
+    straight_max_path_dev: float = 0.03  # and straight means this near to a line, m
+    straight_max_robot_dev: float = 0.05  # with the robot this near to it, m
+    straight_max_robot_yaw: float = math.radians(20.0)  # and turned away from it by no more than this, rad
+    stuck_time: float = 10.0  # without any progress for so long the robot gives up, s; 0: never
 
     def __post_init__(self) -> None:
-        """Check every value.
-
-        Raises:
-            NaoError: With the first one that will not do.
-        """
         for name in (field.name for field in fields(self)):
             _check(name, getattr(self, name))
 
     @classmethod
     def read(cls, get_param: Callable[[str, Any], Any]) -> Settings:
-        """Settings from private parameters.
-
-        Args:
-            get_param: Gives a parameter by name, or the default given with it.
-
-        Raises:
-            NaoError: If one will not do.
-        """
+        """Settings from private parameters; `get_param` takes name and default."""
         return cls(**{field.name: get_param(f"~{field.name}", field.default) for field in fields(cls)})
 
 

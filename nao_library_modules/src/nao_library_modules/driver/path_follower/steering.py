@@ -1,4 +1,4 @@
-"""Velocities that lead a robot along a way, and the notice that they do not. Arithmetic only."""
+"""Velocities that lead a robot along a way, and the check that it gets nearer. Arithmetic only."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from naoqi.errors import NaoError
 
 from ...base.places import Place, wrapped
 from ...nao.walk_speed import top_speeds
-from .courses import facing
 from .settings import Settings
 
 FACE_DISTANCE = 0.4
@@ -18,16 +17,12 @@ PROGRESS = 0.02
 
 
 def velocity(way: Place, settings: Settings) -> tuple[float, float, float]:
-    """Shares -1..1 of the top speeds ahead, to the left and turning left, for a way that lies before the robot.
+    """Shares -1..1 of the top speeds ahead, to the left and turning left, for a way in the robot's frame.
 
     None is so large that the robot would be past its target in the next round, at the step frequency of the settings.
-
-    Args:
-        way: To where it goes, in its own frame.
-        settings: Of the follower.
     """
     far = way.distance > FACE_DISTANCE
-    turn = facing(way) if far else way.yaw
+    turn = math.atan2(way.y, way.x) if far else way.yaw
     top, top_turn = (speed / settings.controller_frequency for speed in top_speeds(settings.step_freq))
     yaw = settings.max_vel_yaw * max(-1.0, min(1.0, wrapped(turn) / settings.threshold_damp_yaw))
     yaw = math.copysign(min(abs(yaw), abs(wrapped(turn)) / top_turn), yaw)
@@ -43,24 +38,15 @@ def velocity(way: Place, settings: Settings) -> tuple[float, float, float]:
 
 
 class StuckWatch:
-    """Notices that a robot gets no nearer: it pushes against a wall, or walks on the spot."""
+    """Notices that a robot gets no nearer for `limit` s (0: never): it pushes against a wall, or walks on the spot."""
 
     def __init__(self, limit: float) -> None:
-        """Watch from the first call on.
-
-        Args:
-            limit: s without progress; 0 never minds.
-        """
         self._limit = limit
         self._best = math.inf
         self._since = 0.0
 
     def check(self, now: float, rest: float) -> None:
-        """Take note of what is left of the way.
-
-        Args:
-            now: s.
-            rest: m.
+        """Note at `now` s that `rest` m of the way are left.
 
         Raises:
             NaoError: If it has not become less for too long.

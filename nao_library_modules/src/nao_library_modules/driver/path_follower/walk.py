@@ -1,10 +1,10 @@
-"""Leads a robot along a course, round by round, until it is there. No ROS: legs, eyes and clock are given."""
+"""Leads a robot along a course, round by round, until it is there. No ROS: legs, location and clock are given."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from naoqi.errors import NaoError
 
@@ -16,8 +16,11 @@ from .courses import Aim, reached
 from .settings import Settings
 from .steering import StuckWatch, velocity
 
+if TYPE_CHECKING:
+    from .legs import WalkTopics
+
 RESEND_DISTANCE, RESEND_TURN = 0.02, math.radians(4.0)
-"""m and rad that the aim moves before the robot is told: it plans its steps anew each time."""
+"""m and rad that the aim moves before the robot gets it: it plans its steps anew each time."""
 GRACE, WALL_GRACE = 1.0, 0.25
 """s from a command until the robot must be seen to walk; simulated time may be fast, so of real time as well."""
 SETTLE = 3.0
@@ -26,55 +29,36 @@ FASTEST_ROUND = 0.008
 """s of real time from one round to the next at least, however fast simulated time runs."""
 
 
-class Legs(Protocol):
-    """What carries the robot."""
-
-    def prepare(self, interrupt: CancellationToken) -> None:
-        """Get ready to walk.
-
-        Raises:
-            NaoError: If the robot cannot; the text says why.
-            Preempted: Or whatever reason the interrupt has.
-        """
-
-    def go_to(self, way: Place) -> None:
-        """Walk to where a way leads, in the robot's frame; replaces what was told before."""
-
-    def go_at(self, x: float, y: float, yaw: float) -> None:
-        """Walk with shares -1..1 of the top speeds."""
-
-    def walking(self) -> bool:
-        """Whether it walks."""
-
-    def why_stopped(self) -> str:
-        """What ended a walk since `prepare`, an obstacle for example; empty if nothing did or nobody knows."""
-
-    def stop(self) -> None:
-        """Stand, on both feet; returns then."""
-
-
-def _check_stop(legs: Legs) -> None:
+def _check_stop(legs: WalkTopics) -> None:
     """Give up a walk that a protection of the robot has ended: each new try would get nearer to what is in the way."""
     cause = legs.why_stopped()
     if cause:
         raise NaoError(f"the robot stopped: {cause}")
 
 
-class _Poses:
-    """Leads by poses: the robot plans its steps to each aim, and is told again when the aim has moved."""
+class _Mode:
+    """A way to lead; `round` does what is to be done now, and returns whether the robot has arrived and stands."""
 
-    def __init__(self, legs: Legs, settings: Settings, now: Callable[[], float], interrupt: CancellationToken) -> None:
+    def __init__(
+        self, legs: WalkTopics, settings: Settings, now: Callable[[], float], interrupt: CancellationToken
+    ) -> None:
         self._legs = legs
         self._interrupt = interrupt
         self._settings = settings
         self._now = now
         self._wall = WallClock()
-        self._told: Aim | None = None
-        self._told_at = (-math.inf, -math.inf)
+
+
+class _Poses(_Mode):
+    """Leads by poses: the robot plans its steps to each aim, and gets a new one when the aim has moved."""
+
+    def __init__(self, *shared: Any) -> None:
+        super().__init__(*shared)
+        self._sent: Aim | None = None
+        self._sent_at = (-math.inf, -math.inf)
         self._near_since: float | None = None
 
     def round(self, robot: Place, aim: Aim) -> bool:
-        """Do what is to be done now; whether the robot has arrived and stands."""
         way = aim.place.seen_from(robot)
         near = aim.final and reached(way, self._settings)
         walking = self._legs.walking()
@@ -84,46 +68,41 @@ class _Poses:
             if walking and now - self._near_since > SETTLE:
                 self._legs.stop()
                 return True
-            if not walking and not self._just_told(now):
+            if not walking and not self._just_sent(now):
                 return True
         else:
             self._near_since = None
             if not walking:
                 _check_stop(self._legs)
         if self._moved(aim):
-            self._tell(way, aim, now)
-        elif not (near or walking or self._just_told(now)):
+            self._send(way, aim, now)
+        elif not (near or walking or self._just_sent(now)):
             self._legs.prepare(self._interrupt)  # says why it does not walk, if it knows
-            self._tell(way, aim, now)
+            self._send(way, aim, now)
         return False
 
-    def _tell(self, way: Place, aim: Aim, now: float) -> None:
+    def _send(self, way: Place, aim: Aim, now: float) -> None:
         self._legs.go_to(way)
-        self._told, self._told_at = aim, (now, self._wall.now())
+        self._sent, self._sent_at = aim, (now, self._wall.now())
 
     def _moved(self, aim: Aim) -> bool:
-        if self._told is None or aim.final != self._told.final:
+        if self._sent is None or aim.final != self._sent.final:
             return True
-        change = aim.place.seen_from(self._told.place)
+        change = aim.place.seen_from(self._sent.place)
         return change.distance > RESEND_DISTANCE or abs(change.yaw) > RESEND_TURN
 
-    def _just_told(self, now: float) -> bool:
-        return now - self._told_at[0] < GRACE or self._wall.now() - self._told_at[1] < WALL_GRACE
+    def _just_sent(self, now: float) -> bool:
+        return now - self._sent_at[0] < GRACE or self._wall.now() - self._sent_at[1] < WALL_GRACE
 
 
-class _Velocities:
+class _Velocities(_Mode):
     """Leads by velocities, each round anew."""
 
-    def __init__(self, legs: Legs, settings: Settings, now: Callable[[], float], interrupt: CancellationToken) -> None:
-        self._legs = legs
-        self._interrupt = interrupt
-        self._settings = settings
-        self._now = now
-        self._wall = WallClock()
-        self._seen_at = (now(), self._wall.now())
+    def __init__(self, *shared: Any) -> None:
+        super().__init__(*shared)
+        self._seen_at = (self._now(), self._wall.now())
 
     def round(self, robot: Place, aim: Aim) -> bool:
-        """Do what is to be done now; whether the robot has arrived and stands."""
         way = aim.place.seen_from(robot)
         if aim.final and reached(way, self._settings):
             self._legs.go_at(*ORIGIN)
@@ -143,7 +122,7 @@ class _Velocities:
 
 def lead(
     course: Any,
-    legs: Legs,
+    legs: WalkTopics,
     locate: Callable[[], Place],
     clock: Any,
     settings: Settings,
@@ -153,13 +132,13 @@ def lead(
     """Walk until the course ends. The legs are not stopped when it does not come to that.
 
     Args:
-        course: Tells where to aim: see `path_follower_courses`.
-        legs: Of the robot.
-        locate: Tells where the robot is, in the frame of the course.
+        course: TargetCourse or PathCourse.
+        legs: WalkTopics.
+        locate: Gives the place of the robot, in the frame of the course.
         clock: ROS time.
         settings: How to do it.
         interrupt: Ends it.
-        report: Told in every round where the robot is, and where it aims.
+        report: Gets in every round the place of the robot, and its aim.
 
     Raises:
         NaoError: If the robot cannot walk, cannot be located or is stuck.
