@@ -11,13 +11,11 @@ import rospy
 
 from naoqi.errors import NaoError
 
-from ..processes.closing import close_all
 from ..robot.robot import Robot
-from ..ros.diagnostics import DiagnosticsPublisher
 from ..ros.health import Level, Report, connection_report
 from ..ros.node import own_as_node, robot_address, start_node
 from ..ros.node_interface import NodeInterface
-from ..ros.node_place import NodePlace
+from .base.node import keep
 from .parts import ALL, PARTS, chosen, part_class
 
 log = logging.getLogger(__name__)
@@ -28,17 +26,11 @@ RETRY = 5.0
 
 
 class Part:
-    """One part of the driver: it is started, and tried again as long as that fails. The others go on meanwhile."""
+    """One part of the driver: started in a thread of its own, and tried again as long as that fails."""
 
     def __init__(self, word: str, robot: Any) -> None:
-        """Start it, in a thread of its own.
-
-        Args:
-            word: What it is called in `PARTS`.
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-        """
         self.name = PARTS[word][0]
-        self._told_as = rospy.resolve_name(self.name)[1:]
+        self._full_name = rospy.resolve_name(self.name)[1:]
         self.started = threading.Event()
         self._word = word
         self._robot = robot
@@ -50,13 +42,12 @@ class Part:
         self._thread.start()
 
     def reports(self) -> Mapping[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name: whether the part runs, else why not, and those of its own."""
+        """Whether the part runs, else why not, and its own reports."""
         made = self._made
         reports = {"part": self._report, **({} if made is None else made.reports())}
-        return {f"{self._told_as}: {name}": report for name, report in reports.items()}
+        return {f"{self._full_name}: {name}": report for name, report in reports.items()}
 
     def close(self) -> None:
-        """End it."""
         self._ended.set()
         self._thread.join()
         if self._made is not None:
@@ -95,17 +86,10 @@ class Driver:
     """All chosen parts beside each other."""
 
     def __init__(self, robot: Any, words: Sequence[str]) -> None:
-        """Start them.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            words: What they are called in `PARTS`.
-        """
         self._robot = robot
         self.parts = [Part(word, robot) for word in words]
 
     def reports(self) -> Mapping[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         connection = lambda: connection_report(self._robot.address, self._robot.connection)  # noqa: E731
         reports: dict[str, Callable[[], Report]] = {f"{rospy.get_name()[1:]}: robot": connection}
         for part in self.parts:
@@ -122,16 +106,9 @@ class Driver:
 
 
 def run(description: str, argv: Sequence[str] | None = None) -> int:
-    """Start the node and keep it until it ends.
+    """Start the node and keep it until it ends; returns the exit status.
 
     A launched node whose name another node takes comes back when that one has ended.
-
-    Args:
-        description: What `--help` says.
-        argv: Arguments, those of the process by default.
-
-    Returns:
-        Exit status.
 
     ROS API:
         Parameters `~pip`, `~pport`: the robot; `~parts` ("all"): words of `PARTS`; `~watches` (false): whether the node
@@ -149,9 +126,5 @@ def run(description: str, argv: Sequence[str] | None = None) -> int:
     robot = Robot(ip, port)
     own_as_node(robot, watches=bool(rospy.get_param("~watches", False)))
     driver = Driver(robot, words)
-    diagnostics = DiagnosticsPublisher(robot.address, driver.reports)
-    rospy.on_shutdown(lambda: close_all(driver.close, diagnostics.close))
-    place = NodePlace()
-    rospy.spin()
-    place.come_back()
+    keep(robot, driver.reports, driver.close)
     return 0

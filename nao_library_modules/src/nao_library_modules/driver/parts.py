@@ -1,4 +1,4 @@
-"""The parts of the driver: what each is called, and the class behind it."""
+"""The parts of the driver: their names and classes."""
 
 from __future__ import annotations
 
@@ -36,10 +36,7 @@ ALL = "all"
 
 
 def chosen(words: str | Sequence[str]) -> list[str]:
-    """The parts that words name, in the order of the table.
-
-    Args:
-        words: A text with words between blanks, or a list of them; "all" stands for all.
+    """The named parts, in the order of the table: words between blanks, or a list of them; "all" stands for all.
 
     Raises:
         NaoError: There is no such part, or none is named.
@@ -55,6 +52,6 @@ def chosen(words: str | Sequence[str]) -> list[str]:
 
 
 def part_class(part: str) -> Callable[..., Any]:
-    """The class of a part; it is imported when it is asked for."""
+    """The class of a part, imported now."""
     module, _, name = PARTS[part][1].rpartition(".")
     return getattr(import_module(f".{module}", __package__), name)

@@ -12,16 +12,16 @@ from naoqi.errors import NaoError
 log = logging.getLogger(__name__)
 
 FIRST_RETRY, RETRY = 0.1, 1.0
-"""s after which a start that failed is tried again: the first time, and in the long run. Then it is told as well."""
+"""s after which a start that failed is tried again: the first time, and in the long run. Then it is logged as well."""
 LOOK_PERIOD = 1.0
 """s between two looks whether what runs is alive."""
 
 
 class LazySubscription:
-    """Starts and stops, in a thread of its own.
+    """Starts and stops something, in a thread of its own.
 
-    Any thread may say what is wanted. One lock keeps starts and stops apart; the condition guards the rest, and is not
-    held during calls to the robot.
+    Any thread may say whether it is wanted. One lock keeps starts and stops apart; the condition guards the rest, and
+    is not held during calls to the robot.
     """
 
     def __init__(
@@ -36,10 +36,10 @@ class LazySubscription:
 
         Args:
             robot: Its connection, see `nao_library_modules.robot`.
-            name: What it is, for the log.
+            name: Of what is started, for the log.
             start: Starts it. It may have been started before, on a robot that was lost since.
             stop: Stops it.
-            alive: Whether it still does what it should; if not, it is stopped and started. Asked once a second.
+            alive: Whether it still works; if not, it is stopped and started. Asked once a second.
         """
         self._robot = robot
         self._name = name
@@ -52,19 +52,18 @@ class LazySubscription:
         self._generation: int | None = None
         self._problem = ""
         self._delay = FIRST_RETRY
-        self._told = False
+        self._logged = False
         robot.connection.add_listener(self._on_state)
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
 
     @property
     def wanted(self) -> bool:
-        """Whether somebody wants it."""
         return self._wanted
 
     @property
     def running(self) -> bool:
-        """Whether it runs, on the robot as it is connected now."""
+        """Whether it runs on the robot as it is connected now."""
         connection = self._robot.connection
         return connection.state == "connected" and self._generation == connection.generation
 
@@ -74,7 +73,6 @@ class LazySubscription:
         return self._problem
 
     def want(self, wanted: bool) -> None:
-        """Have it run, or not, from now on."""
         with self._condition:
             self._wanted = wanted
             self._condition.notify_all()
@@ -107,17 +105,13 @@ class LazySubscription:
                     self._stop()
 
     def restart(self) -> None:
-        """Stop and start it, if it runs, because something about it has changed."""
+        """Stop and start it, if it runs, because its settings have changed."""
         with self._condition:
             self._stale = True
             self._condition.notify_all()
 
     def close(self, limit: float) -> None:
-        """Stop it for good.
-
-        Args:
-            limit: Longest wait for that, s.
-        """
+        """Stop it for good, and wait up to `limit` s for that."""
         self._robot.connection.remove_listener(self._on_state)
         with self._condition:
             self._closed, self._wanted = True, False
@@ -168,15 +162,15 @@ class LazySubscription:
         self._wait_after_failure()
 
     def _succeeded(self) -> None:
-        if self._told:
+        if self._logged:
             log.info("%s: it works again", self._name)
-        self._problem, self._delay, self._told = "", FIRST_RETRY, False
+        self._problem, self._delay, self._logged = "", FIRST_RETRY, False
 
     def _wait_after_failure(self) -> None:
-        """A robot that starts, or has just come back, needs a moment: so the first failures are no news."""
-        if self._delay >= RETRY and not self._told:
+        """A robot that starts, or has just come back, needs a moment: so the first failures are not logged."""
+        if self._delay >= RETRY and not self._logged:
             log.warning("%s: %s", self._name, self._problem)
-            self._told = True
+            self._logged = True
         with self._condition:
             if self._wanted and not self._closed:
                 self._condition.wait(self._delay)

@@ -1,4 +1,4 @@
-"""Tells whether anybody listens to a topic."""
+"""A topic whose work is done only while somebody listens."""
 
 from __future__ import annotations
 
@@ -10,42 +10,35 @@ import rospy
 
 
 class LazyTopic(rospy.SubscribeListener):
-    """Calls a function when the first one begins to listen, and when the last one stops.
+    """Calls a function, which must not wait, when the first listener comes, and when the last one leaves.
 
-    Callbacks come from threads of rospy, sometimes out of order: so each looks how many there are, under a lock.
+    Callbacks come from threads of rospy, sometimes out of order: so each counts the listeners, under a lock.
     """
 
-    def __init__(self, publisher: rospy.Publisher, tell: Callable[[bool], None]) -> None:
-        """Begin to watch.
-
-        Args:
-            publisher: Of the topic.
-            tell: Gets whether anybody listens; must not wait.
-        """
+    def __init__(self, publisher: rospy.Publisher, report: Callable[[bool], None]) -> None:
         super().__init__()
         self._publisher = publisher
-        self._tell = tell
+        self._report = report
         self._lock = threading.Lock()
-        self._told = False
-        publisher.impl.add_subscriber_listener(self)  # not in the constructor: who comes first would find no publisher
+        self._listened = False
+        # Not in the constructor of the publisher: the first listener would find none.
+        publisher.impl.add_subscriber_listener(self)
         self._look()
 
     @property
     def listened(self) -> bool:
-        """Whether somebody listens, as it was told last."""
-        return self._told
+        """Whether somebody listens, as last reported."""
+        return self._listened
 
     def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
-        """One more listens; called by rospy."""
         self._look()
 
     def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
-        """One less listens; called by rospy."""
         self._look()
 
     def _look(self) -> None:
         with self._lock:
             listens = self._publisher.get_num_connections() > 0
-            if listens != self._told:
-                self._told = listens
-                self._tell(listens)
+            if listens != self._listened:
+                self._listened = listens
+                self._report(listens)

@@ -1,4 +1,4 @@
-"""What all driver nodes do alike: arguments, robot, diagnostics, spin; names and messages."""
+"""The common parts of all driver nodes: arguments, robot, diagnostics, spin; names and messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ...base.field_checks import number_parameter
 from ...base.limits import limit
 from ...processes.closing import close_all
 from ...robot.robot import Robot
-from ...ros.diagnostics import DiagnosticsPublisher
+from ...ros.diagnostics import DiagnosticsPublisher, Reports
 from ...ros.health import connection_report
 from ...ros.node import own_as_node, robot_address, start_node
 from ...ros.node_interface import AlreadyOffered, NodeInterface
@@ -32,19 +32,16 @@ def run_driver(
     argv: Sequence[str] | None = None,
     watches: bool = False,
 ) -> int:
-    """Start a driver node and keep it until it ends.
+    """Start a driver node and keep it until it ends; returns the exit status.
 
     A launched node whose name another node takes comes back when that one has ended.
 
     Args:
         make: Makes the node's object for a robot and a side to ROS: it has `close()`, and `reports()` for /diagnostics.
         name: Default name of the node.
-        description: What `--help` says.
+        description: The text of `--help`.
         argv: Arguments, those of the process by default.
         watches: As `run_module` takes it.
-
-    Returns:
-        Exit status.
 
     ROS API:
         Parameters `~pip`, `~pport`: the robot. Publishes `/diagnostics`.
@@ -59,12 +56,17 @@ def run_driver(
         return 1
     own_as_node(robot, watches)
     reports = {"robot": lambda: connection_report(robot.address, robot.connection), **node.reports()}
-    diagnostics = DiagnosticsPublisher(robot.address, reports)  # it puts the name of the node before each
-    rospy.on_shutdown(lambda: close_all(node.close, diagnostics.close))
+    keep(robot, reports, node.close)
+    return 0
+
+
+def keep(robot: Robot, reports: Reports | Callable[[], Reports], close: Callable[[], object]) -> None:
+    """Publish diagnostics as DiagnosticsPublisher takes them until the node ends, then close."""
+    diagnostics = DiagnosticsPublisher(robot.address, reports)
+    rospy.on_shutdown(lambda: close_all(close, diagnostics.close))
     place = NodePlace()
     rospy.spin()
     place.come_back()
-    return 0
 
 
 def _made(make: Callable[[Robot, NodeInterface], Any], robot: Robot) -> Any:
@@ -73,32 +75,28 @@ def _made(make: Callable[[Robot, NodeInterface], Any], robot: Robot) -> Any:
     Raises:
         NaoError: It cannot be made.
     """
-    told = False
+    logged = False
     while True:
         interface = NodeInterface()
         try:
             return make(robot, interface)
         except AlreadyOffered as error:
             interface.fail()
-            if not told:
+            if not logged:
                 rospy.logerr("%s; this node waits for its end", error)
-                told = True
+                logged = True
             if rospy.core.is_shutdown_requested():
                 raise
             time.sleep(RETRY)
 
 
 def name_for_robot(name: str) -> str:
-    """Name under which NAOqi knows a node, or a part of one: as a module, and as a subscriber of its modules.
-
-    Args:
-        name: Its full name.
-    """
+    """Name under which NAOqi knows a node, or a part of one: as a module, and as a subscriber of its modules."""
     return "ros" + name.replace("/", "_")
 
 
 def publish(publisher: rospy.Publisher, message: Any) -> None:
-    """Publish something that the robot has sent: it may still come when this node has closed its topics."""
+    """Publish something from the robot: it may still come when this node has closed its topics."""
     try:
         publisher.publish(message)
     except rospy.ROSException as error:

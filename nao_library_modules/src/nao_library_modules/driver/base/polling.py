@@ -1,4 +1,4 @@
-"""Something that is read from the robot again and again, while somebody wants it. No ROS."""
+"""Something that is read from the robot at a steady rate, while somebody wants it. No ROS."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Polling:
             name: What is read, for log and report.
             rate: Readings a second of `clock`, Hz.
             clock: WallClock or RosClock.
-            read: Asks the robot and hands on what it says, in the thread of this object.
+            read: Asks the robot and hands on its answer, in the thread of this object.
         """
         self._robot = robot
         self._name = name
@@ -45,19 +45,18 @@ class Polling:
         self._closed = False
         self._count = 0
         self._problem = ""
-        self._told = ""
+        self._logged = ""
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
 
     def want(self, wanted: bool) -> None:
-        """Read, or not, from now on; any thread may say so."""
+        """Read, or not, from now on. Any thread."""
         with self._condition:
             self._wanted = wanted
             self._interrupt.clear() if wanted else self._interrupt.trigger()
             self._condition.notify_all()
 
     def report(self) -> Report:
-        """Whether it is read."""
         values = {"asked for every (ms)": f"{1000 * self._period:.0f}", "readings": str(self._count)}
         if not self._wanted:
             return Report(Level.OK, "nobody listens", values)
@@ -66,11 +65,7 @@ class Polling:
         return Report(Level.OK, "read", values)
 
     def close(self, limit: float = 2.0) -> None:
-        """Read no more.
-
-        Args:
-            limit: Longest wait for the thread, s.
-        """
+        """Read no more; waits up to `limit` s for the thread."""
         with self._condition:
             self._closed, self._wanted = True, False
             self._interrupt.stop()
@@ -104,7 +99,6 @@ class Polling:
                 self._interrupt.wait(RETRY)
 
     def _read_on(self) -> None:
-        """Read until it is no longer wanted or fails."""
         rate = Rate(self._clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
         last = None
         while rate.wait() and self._robot.connection.state == "connected":
@@ -113,10 +107,10 @@ class Polling:
                 continue  # a step of simulated time may be longer than the wait
             last = now
             self._read()
-            self._problem = self._told = ""
+            self._problem = self._logged = ""
             self._count += 1
 
     def _complain_once(self) -> None:
-        if self._problem != self._told:
+        if self._problem != self._logged:
             log.warning("the %s cannot be read: %s", self._name, self._problem)
-            self._told = self._problem
+            self._logged = self._problem

@@ -9,21 +9,13 @@ from ...base.clock import WallClock
 
 
 class Rate:
-    """Waits for the next moment of a cycle. For one thread.
+    """Waits for the next moment of a cycle of `period` s on a clock. For one thread.
 
-    On simulated time that runs faster than real time, rounds do not follow each other faster than `rest` allows in
-    real time: the program would do nothing else.
+    On simulated time that runs faster than real time, rounds are at least `rest` s of real time apart: the program
+    would do nothing else. The interrupt ends a wait.
     """
 
     def __init__(self, clock: Any, period: float, rest: float, interrupt: CancellationToken) -> None:
-        """Begin the cycle with the first wait.
-
-        Args:
-            clock: WallClock or RosClock.
-            period: s between two moments, on that clock.
-            rest: s of real time between two moments at least.
-            interrupt: Ends a wait.
-        """
         self._clock = clock
         self._period = period
         self._rest = rest
@@ -33,11 +25,7 @@ class Rate:
         self._last_wall = self._wall.now() - rest
 
     def wait(self) -> bool:
-        """Wait for the next moment; moments that have passed already are left out.
-
-        Returns:
-            Whether it came; False if the interrupt came first.
-        """
+        """Wait for the next moment; missed ones are left out. False if the interrupt came first."""
         now = self._clock.now()
         if self._next is None or abs(self._next - now) > 1.5 * self._period:
             self._next = now  # the first round, or one after a break; also when the clock was set back

@@ -25,15 +25,13 @@ HIGHEST: dict[type, Value] = {bool: True, int: 2**31 - 1, float: float("inf"), s
 
 @dataclass(frozen=True)
 class Field:
-    """One parameter.
+    """One parameter; its default has its type.
 
     Attributes:
-        name: Its name.
-        default: Its value when nobody sets it; tells the type as well.
-        description: What it does, for the tools that show it.
+        description: For the tools that show it.
         lowest: Least value of a number.
         highest: Greatest value of a number.
-        choices: Value -> what it means, when there are only some.
+        choices: Value -> its meaning, when there are only some.
     """
 
     name: str
@@ -45,7 +43,7 @@ class Field:
 
 
 def description_of(fields: Sequence[Field]) -> Any:
-    """What `dynamic_reconfigure` wants to know about parameters, as it would be generated from a .cfg file."""
+    """The description of parameters for `dynamic_reconfigure`, as it would be generated from a .cfg file."""
     parameters = [
         {
             "name": field.name,
@@ -53,8 +51,8 @@ def description_of(fields: Sequence[Field]) -> Any:
             "default": field.default,
             "level": 1 << place,
             "description": field.description,
-            "min": _limit(field.lowest, field.default, LOWEST),
-            "max": _limit(field.highest, field.default, HIGHEST),
+            "min": LOWEST[type(field.default)] if field.lowest is None else field.lowest,
+            "max": HIGHEST[type(field.default)] if field.highest is None else field.highest,
             "edit_method": _choices(field),
         }
         for place, field in enumerate(fields)
@@ -75,16 +73,16 @@ def serve(
     """Offer parameters of a node for changes.
 
     Args:
-        node: That they belong to.
+        node: Their node.
         fields: The parameters. Those that are set already keep their values.
         changed: Called with the values before and after each change, at once with an empty mapping before; gives the
-            values that hold from then on. Called in the thread of the service. A NaoError refuses the change: who
-            asked for it gets its text.
-        part: What of the node they belong to, where that is not all of it: it comes before their names. With a slash
-            before it, the full name of something else that they belong to, such as a topic.
+            values that hold from then on. Called in the thread of the service. A NaoError refuses the change, and the
+            client gets its text.
+        part: Part of the node that they belong to: it comes before their names. With a slash before it, the full
+            name of something else that they belong to, such as a topic.
 
     Returns:
-        The server; `update_configuration` changes values from within the node.
+        The server; `update` changes values from within the node.
 
     Raises:
         NaoError: If a parameter is set to something that it cannot be. The server would change it without a word.
@@ -94,9 +92,9 @@ def serve(
         a part `~PART/set_parameters` and so on.
     """
     owner = node.resolve(part if part.startswith("/") else f"~{part}").rstrip("/")
-    told = f"~{part}/" if part else "~"
+    prefix = f"~{part}/" if part else "~"
     for field in fields:
-        name = f"{part}/{field.name}" if part.startswith("/") else f"{told}{field.name}"
+        name = f"{part}/{field.name}" if part.startswith("/") else f"{prefix}{field.name}"
         _check(name, field, node.param(name, field.default))
     names = [field.name for field in fields]
     last: dict[str, Any] = {}
@@ -133,7 +131,7 @@ def update(server: Server, changes: Mapping[str, Any]) -> None:
 
 @contextmanager
 def _own_errors() -> Iterator[None]:
-    """What the server passes on as an error of a service is the NaoError again that it was."""
+    """Raise the NaoError that the server passes on as an error of a service."""
     try:
         yield
     except rospy.ServiceException as error:
@@ -159,12 +157,7 @@ def _allowed(field: Field) -> str:
     return " ".join([KINDS[type(field.default)], *ends])
 
 
-def _limit(limit: Value | None, default: Value, limits: Mapping[type, Value]) -> Value:
-    return limits[type(default)] if limit is None else limit
-
-
 def _choices(field: Field) -> str:
-    """The choices, in the form that the tools read."""
     if not field.choices:
         return ""
     kind = TYPES[type(field.default)]

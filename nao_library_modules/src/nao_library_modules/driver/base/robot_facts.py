@@ -25,20 +25,14 @@ TYPES = {"nao": 0, "romeo": 1, "juliette": 2, "pepper": 2}
 
 
 def facts_of(values: Mapping[str, Any]) -> dict[str, str]:
-    """Fact -> text; empty for what the robot does not tell.
-
-    Args:
-        values: Key -> value.
-    """
+    """Fact -> text, from key -> value; empty for a fact that the robot does not know."""
     return {fact: "" if values.get(key) is None else str(values[key]).strip() for fact, key in KEYS.items()}
 
 
 def info_fields(facts: Mapping[str, str], joints: int) -> dict[str, Any]:
-    """Fields of a nao_library_msgs/RobotInfo.
+    """Fields of a nao_library_msgs/RobotInfo from `facts_of`.
 
-    Args:
-        facts: From `facts_of`.
-        joints: How many joints its body has: a NAO of 26 moves wrists and hands, and with 22 it does not.
+    A NAO of 26 joints moves wrists and hands, and with 22 it does not.
     """
     kind = (facts["body type"] or facts["head type"] or "nao").lower()
     number = TYPES.get(kind, TYPES["nao"])

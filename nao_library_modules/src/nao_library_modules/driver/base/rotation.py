@@ -23,7 +23,6 @@ def from_roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Quaternion:
 
 
 def inverse(q: Quaternion) -> Quaternion:
-    """The rotation back."""
     return (-q[0], -q[1], -q[2], q[3])
 
 
@@ -54,8 +53,3 @@ def about(axis: Vector, angle: float) -> Quaternion:
     """Turn by `angle` about an axis of length 1."""
     s = math.sin(angle / 2)
     return (axis[0] * s, axis[1] * s, axis[2] * s, math.cos(angle / 2))
-
-
-def yaw_of(direction: Vector) -> float:
-    """Heading of a direction, 0 along X."""
-    return math.atan2(direction[1], direction[0])

@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Tuple
 
-from ..base.rotation import Quaternion, Vector, about, from_roll_pitch_yaw, inverse, product, rotate, yaw_of
+from ..base.rotation import Quaternion, Vector, about, from_roll_pitch_yaw, inverse, product, rotate
 
 HIP_Y, HIP_Z = 0.05, 0.085
 THIGH, TIBIA, FOOT = 0.1, 0.1029, 0.04519
@@ -54,6 +54,6 @@ def footprint(angles: Mapping[str, float], roll: float, pitch: float) -> Pose:
     feet = [sole(side, [angles[joint] for joint in joints]) for side, joints in LEG_JOINTS.items()]
     (left, left_toes), (right, right_toes) = ((rotate(tilt, place), rotate(tilt, toes)) for place, toes in feet)
     middle = ((left[0] + right[0]) / 2, (left[1] + right[1]) / 2, min(left[2], right[2]))
-    heading = yaw_of((left_toes[0] + right_toes[0], left_toes[1] + right_toes[1], 0.0))
+    heading = math.atan2(left_toes[1] + right_toes[1], left_toes[0] + right_toes[0])
     back = inverse(tilt)
     return rotate(back, middle), product(back, from_roll_pitch_yaw(0.0, 0.0, heading))

@@ -138,8 +138,7 @@ def read_path(path: Path) -> tuple[list[Place], str]:
     """Places and frame of a path. Only the last heading counts; without one it is that of the path.
 
     Raises:
-        BadGoal: If a coordinate is no number, the frame has no name, poses are in different frames, or they are too
-        many.
+        BadGoal: If a coordinate is no number, the frame has no name, or poses are too many or in different frames.
     """
     require_length("path.poses", len(path.poses), PLACES)
     frames = {pose.header.frame_id.lstrip("/") for pose in path.poses} - {""}
