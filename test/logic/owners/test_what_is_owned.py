@@ -7,7 +7,7 @@ import json
 import pytest
 
 from nao_library_modules.owners.rules import rules
-from nao_library_modules.owners.watch import Book
+from nao_library_modules.owners.watch import OwnershipTable
 
 STOP_WALK = ["ALMotion", "stopMove", []]
 
@@ -25,70 +25,70 @@ def clock():
 
 
 @pytest.fixture
-def book(clock):
-    return Book(clock)
+def table(clock):
+    return OwnershipTable(clock)
 
 
-def says(book, owner, *messages):
-    book.hear(owner, b"".join(json.dumps(message).encode() + b"\n" for message in messages))
+def says(table, owner, *messages):
+    table.receive(owner, b"".join(json.dumps(message).encode() + b"\n" for message in messages))
 
 
 def holds(number, cure=STOP_WALK, seconds=0.0, since=0.0):
     return {"hold": number, "what": "walk", "cure": cure, "seconds": seconds, "since": since}
 
 
-def lost(book, owner):
-    return [json.loads(each.cure) for each in book.lose(owner)]
+def lost(table, owner):
+    return [json.loads(each.cure) for each in table.remove(owner)]
 
 
-def test_what_a_dead_owner_held_is_stopped_once(book):
+def test_what_a_dead_owner_held_is_stopped_once(table):
     say = ["ALTextToSpeech", "stopAll", []]
-    says(book, 1, {"owner": "NaoMotion"}, holds(0), holds(1, say), holds(2))
-    assert [each.owner for each in book.lose(1)] == ["NaoMotion", "NaoMotion"]
-    assert book.lose(1) == []
+    says(table, 1, {"owner": "NaoMotion"}, holds(0), holds(1, say), holds(2))
+    assert [each.owner for each in table.remove(1)] == ["NaoMotion", "NaoMotion"]
+    assert table.remove(1) == []
 
 
-def test_what_was_let_go_is_not_stopped(book):
-    says(book, 1, holds(0), {"release": 0})
-    assert lost(book, 1) == []
+def test_what_was_let_go_is_not_stopped(table):
+    says(table, 1, holds(0), {"release": 0})
+    assert lost(table, 1) == []
 
 
 @pytest.mark.parametrize("heard", [(1, 2), (2, 1)], ids=["as it was", "by a new watch"])
-def test_who_began_last_owns_a_walk(book, heard):
+def test_who_began_last_owns_a_walk(table, heard):
     for owner in heard:
-        says(book, owner, holds(0, since=owner))
-    assert lost(book, 1) == []
-    assert lost(book, 2) == [STOP_WALK]
+        says(table, owner, holds(0, since=owner))
+    assert lost(table, 1) == []
+    assert lost(table, 2) == [STOP_WALK]
 
 
-def test_a_walk_that_was_taken_from_another_is_stopped(book):
-    says(book, 2, holds(0, since=1.0))
-    says(book, 1, holds(0, since=2.0))
-    assert lost(book, 1) == [STOP_WALK]
+def test_a_walk_that_was_taken_from_another_is_stopped(table):
+    says(table, 2, holds(0, since=1.0))
+    says(table, 1, holds(0, since=2.0))
+    assert lost(table, 1) == [STOP_WALK]
 
 
-def test_a_target_is_stopped_as_long_as_it_may_be_on_its_way(book, clock):
+def test_a_target_is_stopped_as_long_as_it_may_be_on_its_way(table, clock):
     aim = ["ALMotion", "setAngles", [["HeadYaw"]]]
-    says(book, 1, holds(0, aim, 30.0))
-    says(book, 2, holds(0, aim, 20.0))
+    says(table, 1, holds(0, aim, 30.0))
+    says(table, 2, holds(0, aim, 20.0))
     clock.now = 25.0
-    assert lost(book, 2) == []
-    assert lost(book, 1) == [aim]
+    assert lost(table, 2) == []
+    assert lost(table, 1) == [aim]
 
 
-def test_a_message_comes_in_pieces(book):
+def test_a_message_comes_in_pieces(table):
     text = json.dumps(holds(0)).encode() + b"\n"
-    book.hear(1, text[:7])
-    book.hear(1, text[7:])
-    assert lost(book, 1) == [STOP_WALK]
+    table.receive(1, text[:7])
+    table.receive(1, text[7:])
+    assert lost(table, 1) == [STOP_WALK]
 
 
 @pytest.mark.parametrize(
     "noise", [b"hello\n", b"[1]\n", b'{"hold": 1}\n', b"x" * 70000], ids=["words", "a list", "half", "no end"]
 )
-def test_noise_is_refused(book, noise):
+def test_noise_is_refused(table, noise):
     with pytest.raises((ValueError, KeyError)):
-        book.hear(1, noise)
+        table.receive(1, noise)
 
 
 def test_rules_say_what_stops_a_call():

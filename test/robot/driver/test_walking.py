@@ -10,7 +10,7 @@ from nao_library_modules.base.places import Place
 from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.walk.footsteps_walk import FootstepWalk
 from nao_library_modules.driver.walk.head_scan import AFTERWARDS, DOWN, UP, HeadScan
-from nao_library_modules.driver.walk.moveto_walk import Goal, MoveToWalk
+from nao_library_modules.driver.walk.moveto_walk import MoveToWalk, WalkGoal
 from nao_library_modules.driver.walk.walk_commands import Step, Target, Velocity
 from nao_library_modules.driver.walk.walk_orders import Stop, Superseded, WalkEnded
 from nao_library_modules.driver.walk.walker import Walker
@@ -233,7 +233,7 @@ def moving(standing, driver_robot, closing):
 
 
 def goal(name, *way):
-    return Goal(name, lambda: Place(*way))
+    return WalkGoal(name, lambda: Place(*way))
 
 
 def test_a_goal_is_walked_to_and_a_new_one_takes_over_without_a_stop(moving, robot, until, eventually):

@@ -1,6 +1,5 @@
-"""What a process has set going that must not go on without it: noted while it lives, stopped when it dies.
+"""What a process starts on the robot and what must not outlive it: noted while it lives, stopped if it dies.
 
-Every process that calls the robot tells its `OwnerLine` what it sets going. At the other end of the line is the
-`OwnerWatch` of another process: a line that breaks while something is noted has lost its owner, and the watch stops
-what was noted.
+Every process that calls the robot reports to the `OwnerWatch` of another process, by its `OwnerLine`, what it starts.
+A line that breaks while something is noted has lost its owner, and the watch stops what was noted.
 """

@@ -1,4 +1,4 @@
-"""The watch of owners as part of a node that sets nothing going itself."""
+"""The watch of owners as part of a node that starts nothing itself."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from .watch import OwnerWatch
 log = logging.getLogger(__name__)
 
 QUEUE = 20
-"""Cancelled goals of an action that a server is told of which is found late."""
+"""Cancelled goals of an action that a server which is found late still gets."""
 
 
-class GoalEnds(rospy.SubscribeListener):
+class GoalCanceller(rospy.SubscribeListener):
     """Cancels goals of others. Any thread.
 
     ROS API:
@@ -38,9 +38,9 @@ class GoalEnds(rospy.SubscribeListener):
         self._cancelled: dict[str, deque[str]] = defaultdict(partial(deque, maxlen=QUEUE))
 
     def cancel(self, topic: str, goal: str) -> None:
-        """Cancel a goal; a server that is not connected yet hears of it when it is.
+        """Cancel a goal; a server that is not connected yet gets the cancellation when it is.
 
-        One that is connected to another publisher of this process is nobody who begins to listen: it is told at once.
+        A server that is connected to another publisher of this process causes no `peer_subscribe`: it gets it at once.
         """
         with self._lock:
             self._cancelled[topic].append(goal)
@@ -51,7 +51,6 @@ class GoalEnds(rospy.SubscribeListener):
         publisher.publish(GoalID(id=goal))
 
     def peer_subscribe(self, topic_name: str, _publish: Any, peer_publish: Any) -> None:
-        """Somebody takes cancellations from now on; called by rospy."""
         for goal in tuple(self._cancelled[topic_name]):
             peer_publish(GoalID(id=goal))
 
@@ -68,7 +67,7 @@ def call_for(service: str, node: str) -> None:
         raise NaoError(f"{service} failed: {error}") from error
 
 
-def _call_beside(service: str, node: str) -> None:
+def _call_in_thread(service: str, node: str) -> None:
     """Call it without waiting: to stop a walk takes a second, and the next thing is to be stopped meanwhile."""
 
     def call() -> None:
@@ -81,11 +80,7 @@ def _call_beside(service: str, node: str) -> None:
 
 
 def watch_owners(robot: Any) -> None:
-    """Stop what processes leave going that die, until this node ends.
-
-    Args:
-        robot: Its proxies and connection.
-    """
-    stops = Stops(robot, {GOAL: GoalEnds().cancel, SERVICE: _call_beside})
+    """Stop what processes leave going that die, until this node ends."""
+    stops = Stops(robot, {GOAL: GoalCanceller().cancel, SERVICE: _call_in_thread})
     watch = OwnerWatch(robot.address, stops.stop)
     rospy.on_shutdown(watch.close)

@@ -1,4 +1,4 @@
-"""The owner's end: what this process has set going is told to the watch, for as long as it goes on. No ROS.
+"""The owner's end: reports to the watch what this process has started, for as long as it goes on. No ROS.
 
 A line is a local socket. The system closes it at once when a process dies, however it dies.
 """
@@ -29,7 +29,7 @@ PEER = struct.Struct("3i")
 RETRY = 0.1
 """s between two attempts to find a watch, while something is owned."""
 REFRESH = 1.0
-"""s in which what is set going again and again is told once."""
+"""s in which what is started again and again is reported once."""
 
 GOAL, SERVICE = "goal", "service"
 """Stand for modules in the cures of what is not the robot's: a goal of an action, then come the topic of its
@@ -49,21 +49,17 @@ def peer_of(line: socket.socket) -> tuple[int, int]:
     return process, user
 
 
-class Dialling:
-    """Lines to the watch of a robot. Another user who has its place gets none, and the log says who it is, once.
-
-    Args:
-        address: `ip:port` of the robot.
-    """
+class WatchConnector:
+    """Connects to the watch of the robot at `ip:port`. A watch of another user is refused, and logged once."""
 
     def __init__(self, address: str) -> None:
         self._place = place(address)
-        self._told: tuple[int, int] | None = None
+        self._logged: tuple[int, int] | None = None
 
-    def line(self) -> socket.socket | None:
-        """One; None while there is no watch."""
+    def connect(self) -> socket.socket | None:
+        """A line; None while there is no watch."""
         line = socket.socket(socket.AF_UNIX)
-        line.setblocking(False)  # one who takes nobody in is not waited for
+        line.setblocking(False)  # a watch that accepts no line is not waited for
         try:
             line.connect(self._place)
             line.settimeout(None)  # rospy gives all sockets 60 s, and a line that ends is the death of its owner
@@ -74,20 +70,20 @@ class Dialling:
         if peer[1] == os.getuid():
             return line
         line.close()
-        if peer != self._told:
-            self._told = peer
+        if peer != self._logged:
+            self._logged = peer
             log.error("process %d of user %d has the place of the watch: what dead processes leave goes on", *peer)
         return None
 
 
 class OwnerLine:
-    """What this process owns of one robot.
+    """The things that this process owns of one robot.
 
-    Threads: any may hold and let go. A thread of its own finds the watch again when that has gone; it works only
-    while something is owned. The lock guards all there is and is held while a line of text is sent, which never waits.
+    Threads: any may hold and let go. A thread of its own finds the watch again when that has gone; it works only while
+    something is owned. The lock guards all state and is held while a line of text is sent, which never waits.
 
     Attributes:
-        name: What the watch calls this process.
+        name: Name of this process for the watch.
 
     Args:
         address: `ip:port` of the robot.
@@ -96,7 +92,7 @@ class OwnerLine:
 
     def __init__(self, address: str, clock: Callable[[], float] = time.monotonic) -> None:
         self.name = os.path.basename(sys.argv[0]) or "a program"
-        self._dialling = Dialling(address)
+        self._connector = WatchConnector(address)
         self._clock = clock
         self._condition = threading.Condition()  # of an RLock
         self._held: dict[Hashable, dict[str, Any]] = {}
@@ -110,9 +106,9 @@ class OwnerLine:
         """Own something from now on.
 
         Args:
-            key: Of it in this process; what has just been told is not told again.
+            key: Of it in this process; one that was just reported is not reported again.
             what: Name of it.
-            cure: What stops it: module, method, arguments.
+            cure: The call that stops it: module, method, arguments.
             seconds: How long it goes on at most; 0: until `let_go`.
         """
         with self._condition:
@@ -125,12 +121,11 @@ class OwnerLine:
             number = next(self._numbers) if held is None else held["hold"]
             self._held[key] = {"hold": number, "what": what, "cure": list(cure), "seconds": seconds, "since": now}
             if self._socket is None:
-                self._find_watch()  # which is told of all there is
+                self._find_watch()  # which gets all there is
             else:
                 self._send(self._held[key])
 
     def let_go(self, key: Hashable) -> None:
-        """It is over, or has been ended; nothing if it is not held."""
         with self._condition:
             held = self._held.pop(key, None)
             if held is not None:
@@ -139,14 +134,7 @@ class OwnerLine:
     def sending(
         self, module: str, method: str, arguments: Sequence[Any], cure: Sequence[Any] | None = None
     ) -> Ended | None:
-        """A call is about to be sent; see `naoqi.Connection.witness`.
-
-        Args:
-            module: NAOqi's module.
-            method: Its method.
-            arguments: What it gets.
-            cure: What stops it, where that is not the robot's own call.
-        """
+        """A call is about to be sent, see `naoqi.Connection.witness`; `cure` stops it if not a call of the robot does."""
         rule = rules().get((module, method))
         if rule is None:
             return None
@@ -182,14 +170,14 @@ class OwnerLine:
                 self._socket.shutdown(socket.SHUT_RDWR)  # which the thread notices, and closes it
 
     def _find_watch(self) -> None:
-        self._dial()
+        self._connect()
         if self._thread is None:
             self._thread = threading.Thread(target=self._keep, name="line of owner", daemon=True)
             self._thread.start()
         self._condition.notify_all()
 
-    def _dial(self) -> None:
-        self._socket = self._dialling.line()
+    def _connect(self) -> None:
+        self._socket = self._connector.connect()
         if self._socket is None:
             return
         self._send({"owner": self.name})
@@ -201,21 +189,16 @@ class OwnerLine:
             with self._condition:
                 self._condition.wait_for(lambda: self._held or self._socket)
                 if self._socket is None:
-                    self._dial()
+                    self._connect()
                 line = self._socket
                 if line is None:
                     self._condition.wait(RETRY)
                     continue
-            _await_end(line)
+            with contextlib.suppress(OSError):
+                line.recv(1)  # the watch never sends anything: what comes is the end of the line
             with self._condition:
                 self._socket = None
                 line.close()
-
-
-def _await_end(line: socket.socket) -> None:
-    """The watch never says anything: what comes is the end of the line."""
-    with contextlib.suppress(OSError):
-        line.recv(1)
 
 
 def _succeeded(call: Any) -> bool:

@@ -1,9 +1,9 @@
-"""Which calls of the robot set something going, and what stops it. Read from `config/owned_calls.json`. No ROS."""
+"""The calls of the robot that start something, and the calls that stop it, from `config/owned_calls.json`. No ROS."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -16,30 +16,18 @@ NAMES, FIRST, NONE = "names", "first", "none"
 
 @dataclass(frozen=True)
 class Rule:
-    """One kind of thing that goes on by itself.
+    """One kind of thing that goes on by itself."""
 
-    Attributes:
-        what: Name of it, for texts.
-        module: NAOqi module of the calls.
-        during: Methods that own it while they run.
-        begins: Methods after which it goes on.
-        ends: Methods that end what `begins` set going.
-        seconds: How long it goes on after a method of `during` that has ended, s.
-        cure: Module and method that stop it.
-        arguments: What the cure takes of the arguments of the call: "names", "first" or "none".
-    """
-
-    what: str
-    module: str
-    cure: tuple[str, str]
-    arguments: str
-    during: frozenset[str] = frozenset()
-    begins: frozenset[str] = frozenset()
-    ends: frozenset[str] = frozenset()
-    seconds: float = 0.0
+    what: str  # name of it, for texts
+    module: str  # NAOqi module of the calls
+    cure: tuple[str, str]  # module and method that stop it
+    arguments: str  # what the cure takes of the arguments of the call: "names", "first" or "none"
+    during: frozenset[str] = frozenset()  # methods that own it while they run
+    begins: frozenset[str] = frozenset()  # methods after which it goes on
+    ends: frozenset[str] = frozenset()  # methods that end what `begins` started
+    seconds: float = 0.0  # how long it goes on after a method of `during` that has ended
 
     def cure_arguments(self, arguments: Sequence[Any]) -> list[Any]:
-        """What the cure of a call takes."""
         if self.arguments == NONE or not arguments:
             return []
         first = arguments[0]
@@ -56,18 +44,16 @@ class Rule:
 @lru_cache(maxsize=1)
 def rules() -> dict[tuple[str, str], Rule]:
     """Module and method of a call -> its rule."""
-    told = json.loads(config_file(FILE).read_text(encoding="utf-8"))["owned"]
-    return {(rule.module, method): rule for rule in map(_rule, told) for method in _methods(rule)}
+    owned = json.loads(config_file(FILE).read_text(encoding="utf-8"))["owned"]
+    return {
+        (rule.module, method): rule for rule in map(_rule, owned) for method in rule.during | rule.begins | rule.ends
+    }
 
 
-def _rule(told: dict[str, Any]) -> Rule:
+def _rule(entry: dict[str, Any]) -> Rule:
     named = {"from": "begins", "to": "ends"}
-    fields = {named.get(name, name): value for name, value in told.items()}
+    fields = {named.get(name, name): value for name, value in entry.items()}
     for name in ("during", "begins", "ends"):
         fields[name] = frozenset(fields.get(name, ()))
     fields["cure"] = tuple(fields["cure"])
     return Rule(**fields)
-
-
-def _methods(rule: Rule) -> Iterable[str]:
-    return rule.during | rule.begins | rule.ends

@@ -1,4 +1,4 @@
-"""Stops what has lost its owner: by calls of the robot, and goals of servers by their cancellation."""
+"""Stops what has lost its owner: by calls of the robot, goals of servers by their cancellation."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Stops:
 
     Args:
         robot: Its proxies and connection.
-        elsewhere: What is not the robot's, by its word in the place of a module: `GOAL`, with topic and id, `SERVICE`,
-            with its name and that of the node that has died.
+        elsewhere: Stops what is not the robot's, by its word in the place of a module: `GOAL`, with topic and id,
+            `SERVICE`, with its name and that of the node that has died.
     """
 
     def __init__(self, robot: Any, elsewhere: Mapping[str, Callable[[str, str], None]]) -> None:
@@ -35,7 +35,7 @@ class Stops:
         self._elsewhere = elsewhere
 
     def stop(self, owned: Owned) -> None:
-        """Stop something; what goes wrong is logged."""
+        """Stop something; errors are logged."""
         module, method, arguments = json.loads(owned.cure)
         try:
             if module in self._elsewhere:
@@ -44,14 +44,14 @@ class Stops:
                 self._robot.connection.wait_connected(ROBOT_LIMIT)
                 completed = self._completed(module, method, arguments)
                 # Not waited for: a walk ends on both feet, and the next thing is to be stopped meanwhile.
-                self._robot.proxy(module).call_async(method, *completed).add_done_callback(partial(_tell, owned))
+                self._robot.proxy(module).call_async(method, *completed).add_done_callback(partial(_log_failure, owned))
         except NaoError as error:
             log.error("%s has died, and its %s may go on: %s", owned.owner, owned.what, error)
         else:
             log.warning("%s has died: its %s is stopped", owned.owner, owned.what)
 
     def _completed(self, module: str, method: str, arguments: list[Any]) -> list[Any]:
-        """Joints in the place of chains; and where joints are told to be, as the new target that ends the former."""
+        """Joints in the place of chains; and the commanded angles, as the new target that ends the former."""
         if module != MOTION or not arguments:
             return arguments
         joints = [joint for name in arguments[0] for joint in self._ask(MOTION, "getBodyNames", name)]
@@ -61,8 +61,7 @@ class Stops:
         return self._robot.proxy(module).call_async(method, *arguments).result(timeout=LIMIT)
 
 
-def _tell(owned: Owned, call: Any) -> None:
-    """What became of a cure."""
+def _log_failure(owned: Owned, call: Any) -> None:
     try:
         call.result(timeout=0)
     except NaoError as error:

@@ -1,7 +1,7 @@
-"""The other end of the lines: an owner that dies loses what it has set going, which is stopped at once. No ROS.
+"""The other end of the lines: what an owner that dies has started is stopped at once. No ROS.
 
-One watch at a time has the place; others wait for its end and take over. So any process may be one that sets nothing
-going itself.
+One watch at a time has the place; others wait for its end and take over. So any process that starts nothing itself
+may be one.
 """
 
 from __future__ import annotations
@@ -20,33 +20,25 @@ from typing import Any
 
 from naoqi.worker import Worker
 
-from .line import Dialling, peer_of, place
+from .line import WatchConnector, peer_of, place
 
 log = logging.getLogger(__name__)
 
 LONGEST = 65536
 """Bytes of one line of text at most."""
 RETRY = 0.1
-"""s until the next attempt to take a place that is held by somebody who does not answer."""
+"""s until the next attempt to take a place whose watch does not answer."""
 
 
 @dataclass(frozen=True)
 class Owned:
-    """Something that goes on.
+    """Something that goes on."""
 
-    Attributes:
-        owner: Name of the process.
-        what: Name of it.
-        cure: What stops it: JSON of module, method, arguments.
-        since: When it began, s of the monotonic clock, which all processes share.
-        until: s of the monotonic clock at which it is over by itself.
-    """
-
-    owner: str
-    what: str
-    cure: str
-    since: float
-    until: float = float("inf")
+    owner: str  # name of the process
+    what: str  # name of it
+    cure: str  # the call that stops it: JSON of module, method, arguments
+    since: float  # when it began, s of the monotonic clock, which all processes share
+    until: float = float("inf")  # s of the same clock at which it is over by itself
 
 
 @dataclass
@@ -58,8 +50,8 @@ class _Line:
     rest: bytes = b""
 
 
-class Book:
-    """Who owns what. Plain state; one thread.
+class OwnershipTable:
+    """Owners and what they own. Plain state; one thread.
 
     Args:
         clock: s, monotonic.
@@ -69,11 +61,11 @@ class Book:
         self._clock = clock
         self._lines: dict[Any, _Line] = {}
 
-    def hear(self, owner: Any, data: bytes) -> None:
-        """An owner says something.
+    def receive(self, owner: Any, data: bytes) -> None:
+        """Take in what an owner sends.
 
         Raises:
-            ValueError: It is nothing that an owner says.
+            ValueError: It is no message of an owner.
         """
         line = self._lines.setdefault(owner, _Line())
         *texts, line.rest = (line.rest + data).split(b"\n")
@@ -82,24 +74,24 @@ class Book:
         for text in texts:
             self._note(line, json.loads(text))
 
-    def _note(self, line: _Line, told: Any) -> None:
-        if not isinstance(told, dict):
-            raise ValueError(f"{told!r} is no message of an owner")
-        if "owner" in told:
-            line.name = str(told["owner"])
+    def _note(self, line: _Line, message: Any) -> None:
+        if not isinstance(message, dict):
+            raise ValueError(f"{message!r} is no message of an owner")
+        if "owner" in message:
+            line.name = str(message["owner"])
             log.debug("%s may own something", line.name)
-        elif "release" in told:
-            line.held.pop(told["release"], None)
+        elif "release" in message:
+            line.held.pop(message["release"], None)
         else:
-            seconds = float(told["seconds"])
-            cure, since = json.dumps(told["cure"]), float(told["since"])
+            seconds = float(message["seconds"])
+            cure, since = json.dumps(message["cure"]), float(message["since"])
             until = since + seconds if seconds else float("inf")
-            line.held[int(told["hold"])] = Owned(line.name, str(told["what"]), cure, since, until)
+            line.held[int(message["hold"])] = Owned(line.name, str(message["what"]), cure, since, until)
 
-    def lose(self, owner: Any) -> list[Owned]:
+    def remove(self, owner: Any) -> list[Owned]:
         """An owner has gone: what has to be stopped, in the order in which it began.
 
-        What somebody else has begun to own since goes on: the walk of another is none of the dead one's.
+        What another process has begun to own since goes on: its walk is none of the dead one's.
         """
         line = self._lines.pop(owner, None)
         if line is None:
@@ -115,7 +107,7 @@ class Book:
 
 
 class OwnerWatch:
-    """Listens to the owners of a robot, or waits until whoever does has gone.
+    """Listens to the owners of a robot, or waits until the watch that does has gone.
 
     Args:
         address: `ip:port` of the robot.
@@ -124,7 +116,7 @@ class OwnerWatch:
 
     def __init__(self, address: str, stop: Callable[[Owned], None]) -> None:
         self._place = place(address)
-        self._dialling = Dialling(address)
+        self._connector = WatchConnector(address)
         self._stop = stop
         self._worker = Worker("things without an owner")
         self._closed = threading.Event()
@@ -153,8 +145,8 @@ class OwnerWatch:
                 self._serve(listener)
 
     def _await_other(self) -> None:
-        """Wait until the watch that has the place has gone: as an owner that owns nothing."""
-        line = self._dialling.line()
+        """Wait until the watch that has the place has gone, as an owner that owns nothing."""
+        line = self._connector.connect()
         if line is None:
             self._closed.wait(RETRY)
             return
@@ -164,7 +156,7 @@ class OwnerWatch:
             news.select()
 
     def _serve(self, listener: socket.socket) -> None:
-        book = Book()
+        table = OwnershipTable()
         with selectors.DefaultSelector() as news:
             news.register(listener, selectors.EVENT_READ)
             news.register(self._woken, selectors.EVENT_READ)
@@ -176,18 +168,18 @@ class OwnerWatch:
                             news.register(line, selectors.EVENT_READ)
                         else:
                             line.close()
-                    elif key.fileobj is not self._woken and not self._hear(book, key.fileobj):
+                    elif key.fileobj is not self._woken and not self._receive(table, key.fileobj):
                         news.unregister(key.fileobj)
                         key.fileobj.close()
-                        for owned in book.lose(key.fileobj):
+                        for owned in table.remove(key.fileobj):
                             self._worker.submit(partial(self._stop, owned))
 
-    def _hear(self, book: Book, line: Any) -> bool:
-        """Take in what an owner says; whether it lives on."""
+    def _receive(self, table: OwnershipTable, line: Any) -> bool:
+        """Take in what an owner sends; whether it lives on."""
         try:
             data = line.recv(LONGEST)
             if data:
-                book.hear(line, data)
+                table.receive(line, data)
             return bool(data)
         except (OSError, ValueError, KeyError, TypeError) as error:
             log.warning("an owner says what nobody understands: %r", error)

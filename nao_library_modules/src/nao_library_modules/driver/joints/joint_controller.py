@@ -18,7 +18,7 @@ from ...robot.robot_task import run_task
 
 log = logging.getLogger(__name__)
 
-Report = Callable[[Sequence[str], Sequence[float], Sequence[float]], None]
+MotionReport = Callable[[Sequence[str], Sequence[float], Sequence[float]], None]
 FRACTION = limit("fraction")
 LIFE = "ALAutonomousLife"
 INIT_STIFFNESS = "~init_stiffness"
@@ -92,7 +92,7 @@ class JointController:
     def joints_of(self, names: Sequence[str]) -> tuple[str, ...]:
         return expand_names(names, self.names.chains)
 
-    def follow(self, frames: KeyFrames, interrupt: CancellationToken, report: Report | None = None) -> Reached:
+    def follow(self, frames: KeyFrames, interrupt: CancellationToken, report: MotionReport | None = None) -> Reached:
         """Move joints along key frames, to the end or to the interrupt.
 
         Ten times a second meanwhile `report` gets the joints, their commanded and their measured angles, rad.
@@ -109,7 +109,9 @@ class JointController:
             self._report_until_over(call, joints, interrupt, report)
         return self._motion_ended(call, joints, interrupt)
 
-    def _report_until_over(self, call: Any, joints: list[str], interrupt: CancellationToken, report: Report) -> None:
+    def _report_until_over(
+        self, call: Any, joints: list[str], interrupt: CancellationToken, report: MotionReport
+    ) -> None:
         over = threading.Event()
         call.add_done_callback(lambda _: over.set())
         try:

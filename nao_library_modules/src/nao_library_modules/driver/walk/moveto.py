@@ -16,7 +16,7 @@ from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ..base.node import frame_parameter
 from ..joints.planar_frames import PlanarFrames, read_place
-from .moveto_walk import Goal, MoveToWalk
+from .moveto_walk import MoveToWalk, WalkGoal
 from .walk_commands import require_way
 
 
@@ -52,7 +52,7 @@ class NaoqiMoveTo:
             rospy.logerr("move_base_simple/goal: %s", error)
             return
         name = f"({place.x:.2f} m, {place.y:.2f} m, {place.yaw:.2f} rad) in {frame}"
-        self._walk.go(Goal(name, lambda: self._way(goal)))
+        self._walk.go(WalkGoal(name, lambda: self._way(goal)))
 
     def _way(self, goal: PoseStamped) -> Place:
         """The way from where the robot is now; a goal in its own frame is where it was when the goal came."""

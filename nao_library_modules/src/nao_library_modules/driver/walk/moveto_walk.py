@@ -22,7 +22,7 @@ END_LIMIT = 1.0
 
 
 @dataclass(frozen=True)
-class Goal:
+class WalkGoal:
     """A place to walk to; `name` is for the log.
 
     `way` gives, when the robot sets out, the place in its frame. It may take a moment, and raise NaoError.
@@ -42,7 +42,7 @@ class MoveToWalk:
     def __init__(self, robot: Any) -> None:
         self._robot = robot
         self._lock = threading.Condition()
-        self._asked: Goal | None = None
+        self._asked: WalkGoal | None = None
         self._stop_asked = False
         self._closed = False
         self._state = Report(Level.OK, "no goal yet")
@@ -50,7 +50,7 @@ class MoveToWalk:
         self._thread = threading.Thread(target=self._run, name="move to", daemon=True)
         self._thread.start()
 
-    def go(self, goal: Goal) -> None:
+    def go(self, goal: WalkGoal) -> None:
         """Walk to a place; returns at once. Of goals that come faster than the robot takes them the last one counts."""
         with self._lock:
             self._asked, self._stop_asked = goal, False
@@ -93,7 +93,7 @@ class MoveToWalk:
             if closed:
                 return
 
-    def _set_out(self, goal: Goal) -> None:
+    def _set_out(self, goal: WalkGoal) -> None:
         way = goal.way()
         call = self._robot.proxy(MOTION).call_async("moveTo", *way)
         self._newest = call
@@ -107,7 +107,7 @@ class MoveToWalk:
         self._robot.proxy(MOTION).call_async("stopMove").result(timeout=STOP_LIMIT)
         self._report(Level.OK, "the robot was stopped")
 
-    def _ended(self, goal: Goal, call: Any) -> None:
+    def _ended(self, goal: WalkGoal, call: Any) -> None:
         """Report how a walk ended, in a thread of libqi. One that was replaced or stopped is no longer the newest."""
         if call is not self._newest:
             return
