@@ -134,7 +134,7 @@ class OwnerLine:
     def sending(
         self, module: str, method: str, arguments: Sequence[Any], cure: Sequence[Any] | None = None
     ) -> Ended | None:
-        """A call is about to be sent, see `naoqi.Connection.witness`; `cure` stops it if not a call of the robot does."""
+        """A call is about to be sent, see `naoqi.Connection.witness`; `cure` stops it if the call of the rule does not."""
         rule = rules().get((module, method))
         if rule is None:
             return None

@@ -1,4 +1,4 @@
-"""The end of a program: every step is made, whatever the others do, and it is over in time. No ROS."""
+"""The end of a program: every step is made, even if others fail, and it is over in time. No ROS."""
 
 from __future__ import annotations
 
@@ -22,9 +22,7 @@ Step = Callable[[], object]
 def close_all(*steps: Step, limit: float = CLOSE_LIMIT) -> None:
     """Make steps one after the other; one that raises is logged, one that hangs is left to itself.
 
-    Args:
-        steps: Each may take half of the time that is left; then the next begins.
-        limit: s for all of them.
+    All may take `limit` s together; each may take half of the time that is left, then the next begins.
     """
     deadline = time.monotonic() + limit
     begun = [_begin(step, deadline) for step in steps]
@@ -53,7 +51,7 @@ def _name(step: Step) -> str:
 
 
 def exit_in_time(limit: float = EXIT_LIMIT) -> None:
-    """See that the process is over after `limit` s, whatever its threads wait for then."""
+    """End the process after `limit` s, even if threads still wait."""
 
     def end() -> None:
         time.sleep(limit)

@@ -17,12 +17,7 @@ def trim_of_libc() -> Callable[[], object]:
 
 
 class Heap:
-    """Returns free memory now and then. For one thread.
-
-    Args:
-        trim: What returns it.
-        clock: Wall time, s.
-    """
+    """Returns free memory now and then, by `trim`. For one thread. The clock is wall time, s."""
 
     def __init__(self, trim: Callable[[], object] | None = None, clock: Callable[[], float] = time.monotonic) -> None:
         self._trim = trim or trim_of_libc()

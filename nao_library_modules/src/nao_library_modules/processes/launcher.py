@@ -16,14 +16,9 @@ LaunchPath = Tuple[str, str]
 
 
 class BadLaunchPath(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A launch path names no launch file that can be read.
-
-    Attributes:
-        launchpath: `(package, launchfile)` as given.
-    """
+    """A launch path `(package, launchfile)` names no launch file that can be read."""
 
     def __init__(self, launchpath: object, problem: str) -> None:
-        """Compose the text."""
         super().__init__(f"launchpath {launchpath!r}: {problem}: it is (package, launchfile)")
         self.launchpath = launchpath
 
@@ -47,7 +42,7 @@ def find_launch_file(launchpath: LaunchPath) -> Path:
 
 
 def _missing(package: str, launchfile: str) -> str:
-    """Which of the two is not there, with the names that come close; empty: both are."""
+    """The problem with the name that is not found, with names that come close; empty if both are."""
     import roslib.packages
     import rospkg
 
@@ -97,25 +92,13 @@ def launched_nodes(launchpath: LaunchPath, ip: str, port: int, namespace: str) -
 
 
 def launch_arguments(declared: Collection[str], ip: str, port: int) -> list[str]:
-    """Arguments of a launch file for a robot.
-
-    Args:
-        declared: Arguments that the file takes.
-        ip: Address of the robot, passed as `nao_ip` to a file that declares it.
-        port: Port of its NAOqi, passed as `nao_port` likewise.
-    """
+    """Those of `nao_ip` and `nao_port` that a launch file declares, set for a robot."""
     robot = {"nao_ip": ip, "nao_port": str(port)}
     return [f"{name}:={value}" for name, value in robot.items() if name in declared]
 
 
 def launch_supervisor(launchpath: LaunchPath, ip: str, port: int, namespace: str) -> Supervisor:
-    """A supervisor for a launch file; not started.
-
-    Args:
-        launchpath: Package and launch file.
-        ip: Address of the robot.
-        port: Port of its NAOqi.
-        namespace: ROS namespace that the nodes of the file start in.
+    """A supervisor for a launch file, not started; its nodes start in the namespace.
 
     Raises:
         BadLaunchPath: If there is no such file.

@@ -25,10 +25,10 @@ class OwnStack:
     Attributes:
         ros_port: Of its ROS master.
         nao_port: Of the simulated robot's NAOqi.
-        log: What roslaunch and the nodes have printed.
+        log: Output of roslaunch and the nodes.
 
     Args:
-        log: Where that goes.
+        log: File for the output.
         arguments: Of the launch file, by name.
         launch: What roslaunch starts: package and launch file, or the path of one.
         ros_port: Of a ROS master that runs already; None for one of its own.
@@ -58,7 +58,6 @@ class OwnStack:
 
     @property
     def master_uri(self) -> str:
-        """Address of its ROS master."""
         return f"http://127.0.0.1:{self.ros_port}"
 
     @property
@@ -67,14 +66,10 @@ class OwnStack:
         return self._process.pid
 
     def alive(self) -> bool:
-        """Whether roslaunch still runs."""
         return self._process.poll() is None
 
     def wait_for_master(self, limit: float = START_LIMIT) -> None:
-        """Wait until the ROS master answers: nodes can be made then.
-
-        Args:
-            limit: s.
+        """Wait up to `limit` s until the ROS master answers: nodes can be made then.
 
         Raises:
             TimeoutError: It does not, or roslaunch has ended.
@@ -82,10 +77,7 @@ class OwnStack:
         self._wait_for("the ROS master", self.ros_port, limit)
 
     def wait_for_robot(self, limit: float = START_LIMIT) -> None:
-        """Wait until the simulated robot answers: parameters are set then, and nodes come up.
-
-        Args:
-            limit: s.
+        """Wait up to `limit` s until the simulated robot answers: parameters are set then, and nodes come up.
 
         Raises:
             TimeoutError: It does not, or roslaunch has ended.
@@ -93,7 +85,7 @@ class OwnStack:
         self._wait_for("the simulated robot", self.nao_port, limit)
 
     def _wait_for(self, what: str, port: int, limit: float) -> None:
-        """Nobody tells that somebody listens on a port: look again and again, but hear of the end of roslaunch."""
+        """No event says that a port is open: look again and again, but notice the end of roslaunch."""
         deadline = time.monotonic() + limit
         while not can_connect(port):
             if self._ended_within(PERIOD):
@@ -128,14 +120,13 @@ class OwnStack:
 
 
 def can_connect(port: int) -> bool:
-    """Whether somebody listens on a port of this computer."""
+    """Whether a program listens on a port of this computer."""
     with socket.socket() as probe:
         probe.settimeout(1.0)
         return probe.connect_ex(("127.0.0.1", port)) == 0
 
 
 def free_port() -> int:
-    """A port that nobody uses."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]

@@ -14,12 +14,7 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class ProcessId:
-    """A process, told from a later one with the same number by its start time.
-
-    Attributes:
-        pid: Its number.
-        started: When it started, in clock ticks since boot.
-    """
+    """A process; its start, in clock ticks since boot, distinguishes it from a later one with the same number."""
 
     pid: int
     started: int
@@ -62,11 +57,7 @@ def descendants(pid: int) -> list[ProcessId]:
 
 
 def kill_survivors(processes: list[ProcessId]) -> list[int]:
-    """Kill those of the processes that are still alive.
-
-    Returns:
-        Their numbers.
-    """
+    """Kill those of the processes that are still alive; their numbers."""
     killed = []
     for process in processes:
         if identify(process.pid) == process:

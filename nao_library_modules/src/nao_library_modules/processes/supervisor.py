@@ -1,4 +1,4 @@
-"""A program that is kept running: started again when it dies, stopped with all it started. No ROS."""
+"""A program that is kept running: started again when it dies, stopped with all its processes. No ROS."""
 
 from __future__ import annotations
 
@@ -23,8 +23,6 @@ killed. roslaunch ends its nodes then."""
 
 
 class State(enum.Enum):
-    """What a supervised program does at present."""
-
     STOPPED = "stopped"
     RUNNING = "running"
     WAITING = "waiting to be started again"
@@ -32,52 +30,29 @@ class State(enum.Enum):
 
 @dataclass(frozen=True)
 class Timing:
-    """Delays of a supervisor, in s.
+    """Delays of a supervisor, in s."""
 
-    Attributes:
-        first_delay: Before the first restart; doubles with each one.
-        longest_delay: Limit of that.
-        settled: A program that ran this long has started well: its next restart comes after the first delay.
-        interrupt: Given to it to end after SIGINT. roslaunch passes that on to its nodes.
-        terminate: Given to it to end after SIGTERM.
-        kill: Given to it to disappear after SIGKILL.
-    """
-
-    first_delay: float = 1.0
+    first_delay: float = 1.0  # before the first restart; doubles with each one
     longest_delay: float = 30.0
-    settled: float = 60.0
-    interrupt: float = 2.5
-    terminate: float = 0.5
-    kill: float = 0.5
+    settled: float = 60.0  # a program that ran this long has started well: its next restart is after the first delay
+    interrupt: float = 2.5  # to end after SIGINT, which roslaunch passes on to its nodes
+    terminate: float = 0.5  # to end after SIGTERM
+    kill: float = 0.5  # to disappear after SIGKILL
 
 
 @dataclass(frozen=True)
 class Status:
-    """What there is to say about a supervised program.
-
-    Attributes:
-        state: What it does.
-        pid: Number of the process, None when none is running.
-        restarts: How often it was started again.
-        last_end: How it ended last, empty if it never did.
-    """
-
     state: State
-    pid: int | None
+    pid: int | None  # None when no process is running
     restarts: int
-    last_end: str
+    last_end: str  # how it ended last, empty if it never did
 
 
 @dataclass(frozen=True)
 class _Running:
-    """A process that runs.
+    """A process that runs; `ended` is set by the watching thread."""
 
-    Attributes:
-        pid: Its number, which is that of its process group as well.
-        ended: Set by the watching thread when it has ended.
-    """
-
-    pid: int
+    pid: int  # of its process group as well
     ended: threading.Event
 
 
@@ -86,6 +61,12 @@ class Supervisor:
 
     The lock guards `_running` and `_status`. `stop` may be called from any thread, even from a signal
     handler of the main thread: it takes the lock only for moments in which nothing is waited for.
+
+    Args:
+        command: Program and arguments; no shell is used.
+        name: Name for the log.
+        environment: Variables to add to those of this process.
+        timing: Delays.
     """
 
     def __init__(
@@ -95,14 +76,6 @@ class Supervisor:
         environment: Mapping[str, str] | None = None,
         timing: Timing | None = None,
     ) -> None:
-        """Prepare; nothing is started.
-
-        Args:
-            command: Program and arguments; no shell sees them.
-            name: What the log calls it.
-            environment: Variables to add to those of this process.
-            timing: Delays.
-        """
         self._command = list(command)
         self._name = name
         self._environment = {**os.environ, **(environment or {})}
@@ -115,7 +88,6 @@ class Supervisor:
 
     @property
     def status(self) -> Status:
-        """What the program does at present."""
         with self._lock:
             return self._status
 
@@ -134,7 +106,7 @@ class Supervisor:
             self._thread.start()
 
     def stop(self) -> None:
-        """End the program and all that it started; returns when they are gone, or the limits are reached."""
+        """End the program and all its processes; returns when they are gone, or the limits are reached."""
         with self._lock:
             thread = self._thread
             self._stopping.set()
@@ -184,12 +156,8 @@ class Supervisor:
             self._running = None
         running.ended.set()
         if stopping.is_set():
-            end = "was stopped"
-        elif code < 0:
-            end = f"was ended by {signal.Signals(-code).name}"
-        else:
-            end = f"ended by itself with exit status {code}"
-        return end
+            return "was stopped"
+        return f"was ended by {signal.Signals(-code).name}" if code < 0 else f"ended by itself with exit status {code}"
 
     def _note(self, state: State, pid: int | None, last_end: str | None = None) -> None:
         with self._lock:

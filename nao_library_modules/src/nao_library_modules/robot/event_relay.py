@@ -16,17 +16,11 @@ EventSink = Callable[[str, Any], None]
 class EventRelay:
     """Subscriptions to events of ALMemory.
 
-    The sink is called with name and value from a thread of libqi, so it must not block. The lock guards the
-    table of subscriptions; it is not held during calls to the robot or to the sink.
+    The sink gets name and value of each event from a thread of libqi, so it must not block. `memory` gives the proxy of
+    ALMemory. The lock guards the table of subscriptions; it is not held during calls to the robot or to the sink.
     """
 
     def __init__(self, memory: Callable[[], Any], sink: EventSink) -> None:
-        """Begin without subscriptions.
-
-        Args:
-            memory: Gives the proxy of ALMemory.
-            sink: Takes name and value of each event.
-        """
         self._memory = memory
         self._sink = sink
         self._lock = threading.Lock()
@@ -34,12 +28,12 @@ class EventRelay:
 
     @property
     def names(self) -> list[str]:
-        """The events that are subscribed, sorted."""
+        """The subscribed events, sorted."""
         with self._lock:
             return sorted(self._links)
 
     def subscribe(self, name: str) -> None:
-        """Pass an event on from now on; no effect when it is subscribed already.
+        """Subscribe to an event, unless it is subscribed already.
 
         Raises:
             NaoError: If the robot cannot be asked; then it is not subscribed.
@@ -56,13 +50,12 @@ class EventRelay:
             raise
 
     def unsubscribe(self, name: str) -> None:
-        """Pass an event on no longer; no effect when it is not subscribed."""
         with self._lock:
             link = self._links.pop(name, None)
         self._unlink(name, link)
 
     def renew(self) -> None:
-        """Subscribe everything again: the robot behind a new connection knows nothing of it."""
+        """Subscribe to all events again: the robot behind a new connection knows nothing of them."""
         for name in self.names:
             try:
                 self._link(name)
@@ -72,7 +65,6 @@ class EventRelay:
                 log.info("event %s is subscribed again", name)
 
     def close(self) -> None:
-        """Unsubscribe everything."""
         for name in self.names:
             self.unsubscribe(name)
 

@@ -18,11 +18,10 @@ class ImageClock:
     """Maps the robot's times of one stream to ROS time, so that they grow from picture to picture. For one thread.
 
     A picture comes some time after it was taken, sometimes sooner and sometimes later. The quickest of the last ones
-    tells how the robot's clock and ROS time go together.
+    gives the difference of the robot's clock and ROS time.
     """
 
     def __init__(self) -> None:
-        """Begin a stream."""
         self._latest: deque[tuple[float, float]] = deque()  # ROS time of arrival, and robot's time before that
         self._last = (0.0, 0.0)
 
@@ -31,14 +30,11 @@ class ImageClock:
         self._latest.clear()
 
     def take(self, robot: float, now: float) -> float:
-        """ROS time of the next picture.
+        """ROS time at which a picture was taken, s, never after its arrival.
 
         Args:
             robot: Robot's time at which it was taken, s.
             now: ROS time of its arrival, s.
-
-        Returns:
-            ROS time at which it was taken, s; never after its arrival.
         """
         last_robot, last_ros = self._last
         if robot < last_robot or now < last_ros:

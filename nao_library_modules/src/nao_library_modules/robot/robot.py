@@ -1,4 +1,4 @@
-"""The robot as a module sees it: its proxies by name, its connection, calls that can be interrupted."""
+"""The robot for a module: its proxies by name, its connection, calls that can be interrupted."""
 
 from __future__ import annotations
 
@@ -23,21 +23,15 @@ CLEAN_UP_LIMIT = 2.0
 
 
 class Robot:
-    """Proxies of one robot. Made before the robot can be reached; calls fail clearly until it can.
+    """Proxies of one robot; it connects in the background. Calls fail with a clear error until it is reached.
 
     Attributes:
         connection: The connection that all proxies share.
         address: `ip:port`, for texts.
-        owners: Where this process tells what it sets going.
+        owners: Notes what this process starts on the robot.
     """
 
     def __init__(self, ip: str, port: int) -> None:
-        """Begin to connect in the background.
-
-        Args:
-            ip: Address or host name of the robot.
-            port: Port of its NAOqi.
-        """
         self.address = f"{ip}:{port}"
         self.connection = naoqi.connection(ip, port, wait=False)
         self.owners = OwnerLine(self.address)

@@ -1,4 +1,4 @@
-"""When something happened, from the robot's clock to ROS time. No ROS."""
+"""The ROS time of an event, from the robot's clock. No ROS."""
 
 from __future__ import annotations
 
@@ -20,17 +20,12 @@ KEY = "nao_library/Clock"
 
 
 def same_clock(robot_time: float, now: float) -> bool:
-    """Whether a time of the robot is one of simulated ROS time.
-
-    Args:
-        robot_time: s, not long ago.
-        now: ROS time, s.
-    """
+    """Whether a recent time of the robot is one of simulated ROS time, `now`; both in s."""
     return abs(now - robot_time) <= CLOCKS_AGREE
 
 
 def _mapped(time: float, latest: float) -> float:
-    """A time that was worked out, s: none after `latest`, and none below 0, where simulated time begins."""
+    """A computed time, s: none after `latest`, and none below 0, where simulated time begins."""
     return max(0.0, min(time, latest))
 
 
@@ -39,34 +34,24 @@ class RobotClock:
 
     A simulated robot whose clock is the simulated ROS time has nothing to map. With any other robot the clocks are
     compared when a time is asked for: a key is written several times, and was written between call and answer each
-    time; that tells how the clocks go together, to half of the quickest write. A simulated robot's clock goes in ticks,
-    which shows as times that contradict each other: then the write soonest after a tick counts. What is behind another
-    connection is compared anew.
+    time, which gives the difference of the clocks to half of the quickest write. A simulated robot's clock goes in
+    ticks, which shows as times that contradict each other: then the write soonest after a tick counts. A robot behind
+    another connection is compared anew.
+
+    All methods take times in s, and `call`, the method of a module that calls a proxy: proxy, method, arguments. They
+    raise NaoError if the robot cannot be asked.
     """
 
     def __init__(self, robot: Any, clock: Any) -> None:
-        """Compare nothing yet.
-
-        Args:
-            robot: Robot, whose memory is asked.
-            clock: ROS time.
-        """
         self._robot = robot
         self._clock = clock
         self._lock = threading.Lock()
         self._offset: tuple[float, float, int] | None = None  # s; when it was found, and in which connection
 
     def event_time(self, call: Callable[..., Any], event: str, value: Any, arrived: float) -> float:
-        """ROS time at which an event was raised, s, as far as the robot knows it; otherwise that of its arrival.
+        """ROS time at which an event was raised, as far as the robot knows it; otherwise that of its arrival.
 
-        Args:
-            call: `call` of a module: proxy, method, arguments.
-            event: Its name.
-            value: What it said; where it has been raised again since, its own time is lost.
-            arrived: ROS time of its arrival, s.
-
-        Raises:
-            NaoError: The robot cannot be asked.
+        If `value` is not its last one, it has been raised again since, and its own time is lost.
         """
         last, seconds, microseconds = call(self._robot.proxy("ALMemory"), "getTimestamp", event)
         if last != value:
@@ -77,15 +62,7 @@ class RobotClock:
         return min(self.ros_time(call, robot_time), arrived)
 
     def ros_time(self, call: Callable[..., Any], robot_time: float) -> float:
-        """ROS time of a time on the robot, s; later than now only where now is late: /clock is on its way, too.
-
-        Args:
-            call: As `event_time` takes it.
-            robot_time: s, as ALMemory and the camera stamp.
-
-        Raises:
-            NaoError: The robot cannot be asked.
-        """
+        """ROS time of a time on the robot; later than now only where now is late: /clock is on its way, too."""
         if self._is_ours(robot_time):
             return robot_time
         now = self._clock.now()
@@ -96,23 +73,14 @@ class RobotClock:
         return self._clock.simulated and same_clock(robot_time, self._clock.now())
 
     def compare(self, call: Callable[..., Any]) -> None:
-        """Have `mapped` know the robot's clock, where ROS time is not simulated.
-
-        Args:
-            call: As `event_time` takes it.
-
-        Raises:
-            NaoError: The robot cannot be asked.
-        """
+        """Have `mapped` know the robot's clock, where ROS time is not simulated."""
         if not self._clock.simulated:
             self._offset_at(call, self._clock.now())
 
     def mapped(self, robot_time: float, arrived: float) -> float:
         """As `ros_time`, without asking the robot: for threads that must not wait.
 
-        Args:
-            robot_time: s.
-            arrived: ROS time, s, at which it was told here; the answer where the clocks have not been compared.
+        Where the clocks have not been compared it is the ROS time of arrival.
         """
         if self._is_ours(robot_time):
             return robot_time

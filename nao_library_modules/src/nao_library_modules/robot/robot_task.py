@@ -57,15 +57,9 @@ def end_call(call: Any, stop: Callable[[], None]) -> None:
 
 
 def wait_for_call(call: Any, interrupt: CancellationToken, limit: float | None = None) -> bool:
-    """Wait until a call is over or an interrupt comes; the call goes on in any case.
+    """Wait until a call is over, which it returns, or an interrupt comes; the call goes on in any case.
 
-    Args:
-        call: What `proxy.call_async` returned.
-        interrupt: Ends the wait.
-        limit: s; None waits as long as it takes: the proxy layer fails calls to a lost robot.
-
-    Returns:
-        Whether the call is over.
+    `limit` is in s; without one it waits as long as it takes: the proxy layer fails calls to a lost robot.
     """
     news = threading.Event()
     call.add_done_callback(lambda _: news.set())
