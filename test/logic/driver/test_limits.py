@@ -23,8 +23,7 @@ from nao_library_modules.driver.path_follower.courses import TargetCourse
 from nao_library_modules.driver.path_follower.settings import Settings
 from nao_library_modules.driver.teleop.joy_control import JoyControl, JoySettings
 from nao_library_modules.driver.walk.footsteps import read_steps
-from nao_library_modules.driver.walk.gait_config import read_gait_config
-from nao_library_modules.driver.walk.walk_commands import read_step, read_target, read_velocity
+from nao_library_modules.driver.walk.walk_commands import read_gait_config, read_step, read_target, read_velocity
 from nao_library_modules.functions.joint_trajectory import read_trajectory
 from nao_library_msgs.msg import StepTarget
 from naoqi.errors import NaoError

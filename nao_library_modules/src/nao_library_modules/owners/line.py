@@ -20,7 +20,7 @@ from typing import Any, Callable
 
 from naoqi.errors import NaoError
 
-from .rules import Rule, rules
+from .rules import rules
 
 log = logging.getLogger(__name__)
 
@@ -134,13 +134,11 @@ class OwnerLine:
     def sending(
         self, module: str, method: str, arguments: Sequence[Any], cure: Sequence[Any] | None = None
     ) -> Ended | None:
-        """A call is about to be sent, see `naoqi.Connection.witness`; `cure` stops it if the call of the rule does not."""
+        """A call is about to be sent, see `naoqi.Connection.witness`; `cure` stops it, else the call of the rule."""
         rule = rules().get((module, method))
         if rule is None:
             return None
-        return self._follow(rule, method, arguments, cure or [*rule.cure, rule.cure_arguments(arguments)])
-
-    def _follow(self, rule: Rule, method: str, arguments: Sequence[Any], cure: Sequence[Any]) -> Ended | None:
+        cure = cure or [*rule.cure, rule.cure_arguments(arguments)]
         if rule.seconds:
             self.hold((rule.cure, str(cure)), rule.what, cure, rule.seconds)
             return None

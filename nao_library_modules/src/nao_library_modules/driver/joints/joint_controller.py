@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from naoqi.errors import NaoError
+
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
 from ...base.field_checks import number_parameter, require_within
@@ -213,7 +215,10 @@ class InitialStiffness:
         self._stiffness = number_parameter(INIT_STIFFNESS, get_param(INIT_STIFFNESS, 0.0), limit("share"))
 
     def apply(self) -> None:
-        """Set it, once: a robot that restarts stays limp. Raises NaoError if the robot refuses."""
+        """Set it, once: a robot that restarts stays limp. The log has it if the robot refuses."""
         if self._stiffness > 0.0:
             stiffness, self._stiffness = self._stiffness, 0.0
-            self._joints.set_body_stiffness(stiffness)
+            try:
+                self._joints.set_body_stiffness(stiffness)
+            except NaoError as error:
+                log.error("%s: %s", INIT_STIFFNESS, error)

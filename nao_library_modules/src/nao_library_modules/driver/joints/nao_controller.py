@@ -25,7 +25,7 @@ from ...base.errors import RobotLost
 from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from .joint_controller import INIT_STIFFNESS, InitialStiffness, JointController, Reached
+from .joint_controller import InitialStiffness, JointController, Reached
 
 COMPLAINT_PERIOD = 5.0
 """s between two complaints about messages of one topic that cannot be carried out."""
@@ -163,10 +163,7 @@ class NaoController:
             for server in self._servers.values():
                 server.interrupt_all(lost)
         elif connection.state == "connected":
-            try:
-                self._init_stiffness.apply()
-            except NaoError as error:
-                rospy.logerr("%s: %s", INIT_STIFFNESS, error)
+            self._init_stiffness.apply()
 
 
 def _outcome(result: Any, names: Sequence[str], reached: Reached) -> Outcome:

@@ -17,6 +17,7 @@ from ...nao.joint_names import MOTION
 from ...owners.line import SERVICE
 from ...robot.robot_task import run_task
 from ...ros.node_interface import NodeInterface
+from ..base.lazy_topic import LazyTopic
 from ..joints.joint_controller import QUICK_LIMIT
 from ..joints.joint_sensors import MEMORY
 
@@ -26,16 +27,6 @@ STOP_LIMIT = 10.0
 """s that a walking robot may take to stand."""
 FAILED = "ALMotion/MoveFailed"
 STOP, INHIBIT, LET_GO = "stop_walk_srv", "inhibit_walk", "uninhibit_walk"
-
-
-class _Heard(rospy.SubscribeListener):
-    """Sets its event when somebody subscribes to a topic."""
-
-    def __init__(self) -> None:
-        self.event = threading.Event()
-
-    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
-        self.event.set()
 
 
 class WalkTopics:
@@ -51,12 +42,11 @@ class WalkTopics:
     def __init__(self, robot: Any, node: NodeInterface, use_velocities: bool) -> None:
         self._robot = robot
         self._node = node
-        self._heard = _Heard()
+        self._heard = threading.Event()
         self._topic = "cmd_vel" if use_velocities else "cmd_pose"
         kind = Twist if use_velocities else Pose2D
-        self._commands = node.publisher(
-            self._topic, kind, subscriber_listener=self._heard, tcp_nodelay=True, queue_size=1
-        )
+        self._commands = node.publisher(self._topic, kind, tcp_nodelay=True, queue_size=1)
+        LazyTopic(self._commands, lambda listened: self._heard.set() if listened else None)
         self._stop = node.caller(STOP, Empty)
         self._inhibit = node.caller(INHIBIT, Empty)
         self._failed_before: list = []
@@ -70,7 +60,7 @@ class WalkTopics:
             Preempted: Or whatever reason the interrupt has.
         """
         if not self._commands.get_num_connections():
-            self._heard.event.wait(LISTENER_LIMIT)
+            self._heard.wait(LISTENER_LIMIT)
         if not self._commands.get_num_connections():
             raise NaoError(f"nobody listens to {self._node.resolve(self._topic)}: does nao_walker run?")
         self._failed_before = self._last_failure()

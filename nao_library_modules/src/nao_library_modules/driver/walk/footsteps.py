@@ -25,7 +25,7 @@ from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
-from ..joints.joint_controller import INIT_STIFFNESS, InitialStiffness, JointController
+from ..joints.joint_controller import InitialStiffness, JointController
 from .footsteps_walk import FootstepWalk
 from .walk_commands import LEGS, Step, read_step
 
@@ -116,10 +116,7 @@ class NaoFootsteps:
         if connection.state == "lost":
             self._server.interrupt_all(RobotLost(self._robot.address, connection.last_error or "no answer"))
         elif connection.state == "connected":
-            try:
-                self._init_stiffness.apply()
-            except NaoError as error:
-                rospy.logerr("%s: %s", INIT_STIFFNESS, error)
+            self._init_stiffness.apply()
 
 
 def read_steps(targets: list[StepTarget]) -> list[Step]:

@@ -23,9 +23,8 @@ from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
 from ..joints.joint_controller import QUICK_LIMIT, InitialStiffness, JointController
-from .gait_config import read_gait_config
 from .head_scan import HeadScan
-from .walk_commands import Velocity, read_step, read_target, read_velocity
+from .walk_commands import Velocity, read_gait_config, read_step, read_target, read_velocity
 from .walk_inhibition import WalkInhibition
 from .walk_orders import Command, Order, Stop, Superseded
 from .walk_report import IS_ACTIVE, WalkJournal

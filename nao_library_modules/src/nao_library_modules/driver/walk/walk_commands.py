@@ -1,13 +1,16 @@
-"""Commands to walk: a velocity, a target, a step. Messages become checked values. No ROS."""
+"""Commands to walk (a velocity, a target, a step) and gait parameters: messages become checked values. No ROS."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, List, Union
+
+from naoqi.errors import NaoError
 
 from ...base.errors import BadGoal
-from ...base.field_checks import require_within
+from ...base.field_checks import number_parameter, require_within
 from ...base.limits import limit
 from ...base.places import Place
 
@@ -17,6 +20,9 @@ STANDSTILL = 1e-3
 LEFT, RIGHT = "LLeg", "RLeg"
 LEGS = {0: RIGHT, 1: LEFT}
 """Legs of nao_library_msgs/StepTarget, as ALMotion names them."""
+GaitConfig = List[List[Union[str, float]]]
+"""What ALMotion takes: [["MaxStepX", 0.04], ...]."""
+FORM = "a list like [[MaxStepX, 0.03], [StepHeight, 0.02]], or a dictionary"
 
 
 @dataclass(frozen=True)
@@ -116,6 +122,24 @@ def require_way(field: str, way: Place) -> Place:
     if not way.distance <= WAY.highest:
         raise BadGoal(field, f"{way.distance:g} m away", f"up to {WAY.highest:g} m from the robot")
     return way
+
+
+def read_gait_config(name: str, value: Any) -> GaitConfig:
+    """Gait parameters from pairs of name and value, or a dictionary. Names and ranges are the robot's to judge.
+
+    Raises:
+        NaoError: If it is something else; `name` is the parameter's, for its text.
+    """
+    pairs = list(value.items()) if isinstance(value, Mapping) else value
+    if not isinstance(pairs, (list, tuple)):
+        raise NaoError(f"{name} is {value!r}: {FORM}")
+    config: GaitConfig = []
+    for pair in pairs:
+        if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not isinstance(pair[0], str):
+            raise NaoError(f"{name} has the entry {pair!r}: {FORM}")
+        key, number = pair
+        config.append([key, number_parameter(f"{name}: {key}", number, limit("setting"))])
+    return config
 
 
 def _pose(pose: Any, field: str = "") -> tuple[float, float, float]:

@@ -17,8 +17,7 @@ from ...base.errors import Preempted
 from ...nao.joint_names import MOTION
 from ...robot.robot_task import run_task
 from ..joints.joint_controller import QUICK_LIMIT
-from .gait_config import GaitConfig
-from .walk_commands import Step, Target, Velocity
+from .walk_commands import GaitConfig, Step, Target, Velocity
 from .walk_orders import Command, Mailbox, Order, Stop, Superseded, WalkEnded
 from .walk_timing import WalkPace, WalkWatchdog
 
