@@ -14,7 +14,7 @@ from nao_library_actions.msg import (
     ExecFootstepsResult,
 )
 from nao_library_msgs.msg import StepTarget
-from nao_library_msgs.srv import ClipFootstep, ClipFootstepResponse, StepTargetService, StepTargetServiceResponse
+from nao_library_msgs.srv import ClipFootstep, ClipFootstepResponse, StepTargetService
 from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
@@ -57,7 +57,7 @@ class NaoFootsteps:
         self._node.action("footsteps_execution", ExecFootstepsAction, self._server)
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
-        self._node.service("footstep_srv", StepTargetService, self._on_step_service)
+        self._node.offer("footstep_srv", StepTargetService, lambda request: self._walk.make(read_step(request.step)))
         self._node.service("clip_footstep_srv", ClipFootstep, self._on_clip)
         self._node.subscriber("footstep", StepTarget, self._on_step, queue_size=50)
 
@@ -95,14 +95,6 @@ class NaoFootsteps:
             self._walk.add(read_step(target))
         except NaoError as error:
             rospy.logerr_throttle(COMPLAINT_PERIOD, f"footstep: {error}")
-
-    def _on_step_service(self, request: Any) -> StepTargetServiceResponse:
-        try:
-            self._walk.make(read_step(request.step))
-        except NaoError as error:
-            rospy.logerr("footstep_srv: %s", error)
-            raise rospy.ServiceException(str(error)) from error
-        return StepTargetServiceResponse()
 
     def _on_clip(self, request: Any) -> ClipFootstepResponse:
         try:

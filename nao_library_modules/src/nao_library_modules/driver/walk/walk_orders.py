@@ -31,8 +31,6 @@ class WalkEnded(NaoError):
 
     def __init__(self, command: Command, reason: str) -> None:
         super().__init__(f"{command} ended before time: {reason}")
-        self.command = command
-        self.reason = reason
 
 
 class Superseded(WalkEnded):

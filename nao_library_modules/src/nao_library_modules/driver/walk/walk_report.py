@@ -12,8 +12,7 @@ from ...ros.health import Level, Report
 log = logging.getLogger(__name__)
 
 IS_ACTIVE = "moveIsActive"
-QUESTIONS = (IS_ACTIVE,)
-"""Methods that the report asks: their answers say nothing about commands."""
+"""The method that the report asks: its answer says nothing about commands."""
 COMPLAINT_PERIOD = 5.0
 """s of real time from one complaint to the next about the same thing."""
 
@@ -35,9 +34,9 @@ class WalkJournal:
             self._command, self._commanded_at = source, now
 
     def succeeded(self, name: str) -> None:
-        """The robot carried a command out, or answered: a command clears any failure, a method of QUESTIONS its own."""
+        """The robot carried a command out, or answered: a command clears any failure, IS_ACTIVE its own."""
         with self._lock:
-            if name not in QUESTIONS or self._failing == name:
+            if name != IS_ACTIVE or self._failing == name:
                 self._failing = ""
 
     def failed(self, name: str, error: BaseException) -> None:
