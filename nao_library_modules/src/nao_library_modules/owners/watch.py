@@ -62,11 +62,7 @@ class OwnershipTable:
         self._lines: dict[Any, _Line] = {}
 
     def receive(self, owner: Any, data: bytes) -> None:
-        """Take in what an owner sends.
-
-        Raises:
-            ValueError: It is no message of an owner.
-        """
+        """Take in what an owner sends. Raises ValueError if it is no message of an owner."""
         line = self._lines.setdefault(owner, _Line())
         *texts, line.rest = (line.rest + data).split(b"\n")
         if len(line.rest) > LONGEST:

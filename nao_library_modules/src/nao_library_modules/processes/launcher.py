@@ -24,11 +24,7 @@ class BadLaunchPath(NaoError):  # noqa: N818  named like the errors of the proxy
 
 
 def find_launch_file(launchpath: LaunchPath) -> Path:
-    """Path of a launch file, found as roslaunch finds it.
-
-    Raises:
-        BadLaunchPath: If it is not there.
-    """
+    """Path of a launch file, found as roslaunch finds it. Raises BadLaunchPath if it is not there."""
     from roslaunch.core import RLException
     from roslaunch.rlutil import resolve_launch_arguments
 

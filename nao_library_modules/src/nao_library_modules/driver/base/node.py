@@ -109,9 +109,5 @@ def frame_parameter(node: NodeInterface, name: str, default: str) -> str:
 
 
 def rate_parameter(node: NodeInterface, name: str, default: float) -> float:
-    """A parameter that is a rate in Hz.
-
-    Raises:
-        NaoError: If it is none that a node can keep.
-    """
+    """A parameter that is a rate in Hz. Raises NaoError if it is none that a node can keep."""
     return number_parameter(name, node.param(name, default), limit("reading rate"))

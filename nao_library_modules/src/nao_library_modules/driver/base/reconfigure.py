@@ -120,11 +120,7 @@ def serve(
 
 
 def update(server: Server, changes: Mapping[str, Any]) -> None:
-    """Change parameters from within the node.
-
-    Raises:
-        NaoError: If the change was refused.
-    """
+    """Change parameters from within the node. Raises NaoError if the change was refused."""
     with _own_errors():
         server.update_configuration(changes)
 

@@ -95,11 +95,7 @@ class JointSensors:
         return self._reading(values.result(timeout=LIMIT), None if torso is None else torso.result(timeout=LIMIT))
 
     def read_stiffnesses(self) -> tuple[float, ...]:
-        """Stiffness of each joint, 0 to 1; NaN where the robot gives none.
-
-        Raises:
-            NaoError: If it cannot be asked.
-        """
+        """Stiffness of each joint, 0 to 1; NaN where the robot gives none. Raises NaoError if it cannot be asked."""
         values = self._robot.proxy(MEMORY).call_async("getListData", self._stiffness_keys).result(timeout=LIMIT)
         return tuple(_number(value) for value in values)
 

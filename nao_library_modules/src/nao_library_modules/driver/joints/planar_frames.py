@@ -122,11 +122,7 @@ def read_place(field: str, pose: PoseStamped) -> tuple[Place, str]:
 
 
 def read_point(field: str, pose: PoseStamped) -> Place:
-    """The point of a pose, with heading 0.
-
-    Raises:
-        BadGoal: If a coordinate is no number.
-    """
+    """The point of a pose, with heading 0. Raises BadGoal if a coordinate is no number."""
     point = pose.pose.position
     place = Place(point.x, point.y, 0.0)
     require_within(f"{field}.pose.position.x", point.x, PLACE)

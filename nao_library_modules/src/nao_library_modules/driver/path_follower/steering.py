@@ -46,11 +46,7 @@ class StuckWatch:
         self._since = 0.0
 
     def check(self, now: float, rest: float) -> None:
-        """Note at `now` s that `rest` m of the way are left.
-
-        Raises:
-            NaoError: If it has not become less for too long.
-        """
+        """Note at `now` s that `rest` m of the way are left. Raises NaoError if it has not become less for too long."""
         if rest < self._best - PROGRESS or math.isinf(self._best):
             self._best, self._since = rest, now
         elif self._limit > 0.0 and now - self._since > self._limit:

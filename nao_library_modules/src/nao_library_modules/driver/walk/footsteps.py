@@ -112,11 +112,7 @@ class NaoFootsteps:
 
 
 def read_steps(targets: list[StepTarget]) -> list[Step]:
-    """Steps from their messages.
-
-    Raises:
-        BadGoal: If one will not do, or they are too many.
-    """
+    """Steps from their messages. Raises BadGoal if one will not do, or they are too many."""
     require_length("footsteps", len(targets), FOOTSTEPS)
     return [read_step(target, f"footsteps[{index}].") for index, target in enumerate(targets)]
 

@@ -40,11 +40,7 @@ class FootstepWalk:
 
     @staticmethod
     def clipped(step: Step) -> Step:
-        """The step as the robot can make it.
-
-        Raises:
-            NaoError: If it is no step.
-        """
+        """The step as the robot can make it. Raises NaoError if it is no step."""
         return Step(step.leg, *clip(step.place, step.leg))
 
     def prepared(self, steps: Sequence[Step]) -> tuple[Step, ...]:

@@ -94,11 +94,7 @@ def read_velocity(twist: Any) -> tuple[Velocity, str]:
 
 
 def read_target(pose: Any) -> Target:
-    """The target of a geometry_msgs/Pose2D.
-
-    Raises:
-        BadGoal: If a part is out of its bounds.
-    """
+    """The target of a geometry_msgs/Pose2D. Raises BadGoal if a part is out of its bounds."""
     return Target(*_pose(pose))
 
 
@@ -114,11 +110,7 @@ def read_step(step: Any, field: str = "") -> Step:
 
 
 def require_way(field: str, way: Place) -> Place:
-    """The way to a target, seen from the robot.
-
-    Raises:
-        BadGoal: If it is too far.
-    """
+    """The way to a target, seen from the robot. Raises BadGoal if it is too far."""
     if not way.distance <= WAY.highest:
         raise BadGoal(field, f"{way.distance:g} m away", f"up to {WAY.highest:g} m from the robot")
     return way
