@@ -8,7 +8,7 @@ import math
 import pytest
 import rospy
 import tf2_ros
-from geometry_msgs.msg import PoseStamped, TransformStamped
+from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped
 from nav_msgs.msg import Path
 
 from nao_library_modules.base.cancellation import CancellationToken
@@ -18,7 +18,6 @@ from nao_library_modules.driver.base.rotation import from_roll_pitch_yaw
 from nao_library_modules.driver.joints import planar_frames
 from nao_library_modules.driver.joints.planar_frames import (
     PlanarFrames,
-    level_quaternion,
     pose_stamped,
     read_path,
     read_place,
@@ -296,7 +295,7 @@ def pose(x, y, frame="odom", yaw=None):
     message.header.frame_id = frame
     message.pose.position.x, message.pose.position.y = x, y
     if yaw is not None:
-        message.pose.orientation = level_quaternion(yaw)
+        message.pose.orientation = Quaternion(*from_roll_pitch_yaw(0.0, 0.0, yaw))
     return message
 
 

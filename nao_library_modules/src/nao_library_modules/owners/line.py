@@ -77,17 +77,11 @@ class WatchConnector:
 
 
 class OwnerLine:
-    """The things that this process owns of one robot.
+    """The things that this process (`name`) owns of the robot at `ip:port`.
 
     Threads: any may hold and let go. A thread of its own finds the watch again when that has gone; it works only while
     something is owned. The lock guards all state and is held while a line of text is sent, which never waits.
-
-    Attributes:
-        name: Name of this process for the watch.
-
-    Args:
-        address: `ip:port` of the robot.
-        clock: s, the monotonic clock of the computer, by which the watch compares owners.
+    The clock is the monotonic one of the computer, s, by which the watch compares owners.
     """
 
     def __init__(self, address: str, clock: Callable[[], float] = time.monotonic) -> None:

@@ -51,11 +51,7 @@ class _Line:
 
 
 class OwnershipTable:
-    """Owners and what they own. Plain state; one thread.
-
-    Args:
-        clock: s, monotonic.
-    """
+    """Owners and what they own. Plain state; one thread. The clock is monotonic, s."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock

@@ -22,13 +22,8 @@ it were killed before, they would be left."""
 class OwnStack:
     """Simulator, driver and action servers, started by roslaunch on free ports.
 
-    Attributes:
-        ros_port: Of its ROS master.
-        nao_port: Of the simulated robot's NAOqi.
-        log: Output of roslaunch and the nodes.
-
     Args:
-        log: File for the output.
+        log: File for the output of roslaunch and the nodes.
         arguments: Of the launch file, by name.
         launch: What roslaunch starts: package and launch file, or the path of one.
         ros_port: Of a ROS master that runs already; None for one of its own.

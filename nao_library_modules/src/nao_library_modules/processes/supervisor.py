@@ -98,10 +98,7 @@ class Supervisor:
                 return
             self._stopping = threading.Event()
             self._thread = threading.Thread(
-                target=self._keep_running,
-                args=(self._stopping,),
-                name=f"supervisor of {self._name}",
-                daemon=True,
+                target=self._keep_running, args=(self._stopping,), name=f"supervisor of {self._name}", daemon=True
             )
             self._thread.start()
 

@@ -79,12 +79,7 @@ def _error_of(call: Any) -> NaoError | None:
 def wait_for_calls(calls: Sequence[Any], interrupt: CancellationToken) -> list[Any]:
     """Wait until all calls are done, one fails, or an interrupt comes; then cancel those still running.
 
-    Args:
-        calls: What `proxy.call_async` returned.
-        interrupt: Ends the wait.
-
-    Returns:
-        The results, in order.
+    Returns the results, in order.
 
     Raises:
         NaoError: Of the first call that failed.

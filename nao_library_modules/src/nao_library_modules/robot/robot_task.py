@@ -21,14 +21,8 @@ CANCEL_PATIENCE = 0.1
 def run_task(call: Any, interrupt: CancellationToken, stop: Callable[[], None]) -> Any:
     """Wait for a call; an interrupt cancels it, and stops what it started if that is not enough.
 
-    Args:
-        call: What `proxy.call_async` returned.
-        interrupt: Ends the wait.
-        stop: Stops by other means what the call started, for robots whose calls cannot be cancelled. It may raise
-            NaoError.
-
-    Returns:
-        What the call returned. If it had ended by the time of the interrupt, that counts.
+    `stop` stops by other means what the call started, for robots whose calls cannot be cancelled; it may raise
+    NaoError. The result of a call that has ended by the time of the interrupt counts.
 
     Raises:
         NaoError: If the call failed.

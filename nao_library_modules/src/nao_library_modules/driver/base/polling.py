@@ -27,12 +27,8 @@ class Polling:
     def __init__(self, robot: Any, name: str, rate: float, clock: Any, read: Callable[[], None]) -> None:
         """Nothing is wanted yet.
 
-        Args:
-            robot: Its connection, see `nao_library_modules.robot`.
-            name: What is read, for log and report.
-            rate: Readings a second of `clock`, Hz.
-            clock: WallClock or RosClock.
-            read: Asks the robot and hands on its answer, in the thread of this object.
+        `read` asks the robot for what `name` says and hands on its answer, in the thread of this object, at `rate` Hz
+        of the clock (WallClock or RosClock).
         """
         self._robot = robot
         self._name = name
@@ -91,7 +87,9 @@ class Polling:
                 self._interrupt.wait(RETRY)
             except NaoError as error:
                 self._problem = str(error)
-                self._complain_once()
+                if self._problem != self._logged:  # of several in a row only the first
+                    log.warning("the %s cannot be read: %s", self._name, self._problem)
+                    self._logged = self._problem
                 self._interrupt.wait(RETRY)
             except Exception as error:  # a mistake in here must not leave a node that lives and says nothing
                 self._problem = f"unexpected error: {error!r}"
@@ -109,8 +107,3 @@ class Polling:
             self._read()
             self._problem = self._logged = ""
             self._count += 1
-
-    def _complain_once(self) -> None:
-        if self._problem != self._logged:
-            log.warning("the %s cannot be read: %s", self._name, self._problem)
-            self._logged = self._problem

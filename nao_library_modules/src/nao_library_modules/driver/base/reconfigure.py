@@ -25,21 +25,14 @@ HIGHEST: dict[type, Value] = {bool: True, int: 2**31 - 1, float: float("inf"), s
 
 @dataclass(frozen=True)
 class Field:
-    """One parameter; its default has its type.
-
-    Attributes:
-        description: For the tools that show it.
-        lowest: Least value of a number.
-        highest: Greatest value of a number.
-        choices: Value -> its meaning, when there are only some.
-    """
+    """One parameter; its default has its type."""
 
     name: str
     default: Value
-    description: str
-    lowest: Value | None = None
+    description: str  # for the tools that show it
+    lowest: Value | None = None  # of a number
     highest: Value | None = None
-    choices: Mapping[Value, str] | None = None
+    choices: Mapping[Value, str] | None = None  # value -> its meaning, when there are only some
 
 
 def description_of(fields: Sequence[Field]) -> Any:

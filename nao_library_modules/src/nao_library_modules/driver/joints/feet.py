@@ -23,12 +23,7 @@ Pose = Tuple[Vector, Quaternion]
 
 
 def sole(side: str, angles: Sequence[float]) -> tuple[Vector, Vector]:
-    """Place of a sole and the direction of its toes, in the torso frame.
-
-    Args:
-        side: L or R.
-        angles: Of the six joints of the leg, hip first, in rad.
-    """
+    """Sole and direction of its toes in the torso frame, from the six angles of a leg (L or R), hip first, in rad."""
     outwards = 1.0 if side == "L" else -1.0
     place: Vector = (0.0, 0.0, -FOOT)
     toes: Vector = X

@@ -46,10 +46,9 @@ class Reached:
 class JointController:
     """Joint motion of one robot. Every method may be called from any thread.
 
-    They raise NaoError if an argument is wrong, or the robot refuses or is lost.
-
-    Names are those of joints and chains; values are one for each joint, or one for all. `set_angles` and
-    `set_stiffnesses` return when the robot has taken the command.
+    They raise NaoError if an argument is wrong, or the robot refuses or is lost. Names are those of joints and chains;
+    values are one for each joint, or one for all: angles in rad, stiffnesses 0..1. Speeds are fractions of the top
+    speed, above 0 to 1. `set_angles` and `set_stiffnesses` return when the robot has taken the command.
     """
 
     def __init__(self, robot: Any) -> None:
@@ -59,19 +58,11 @@ class JointController:
     # --- at once --------------------------------------------------------------------------------------------------
 
     def set_angles(self, names: Sequence[str], angles: Sequence[float], speed: float, relative: bool) -> None:
-        """Start moving joints; a newer call replaces an older one.
-
-        Args:
-            names: Joints and chains.
-            angles: rad.
-            speed: Fraction of the top speed, above 0 to 1.
-            relative: Whether angles are added to where the joints are heading.
-        """
+        """Start moving joints; a newer call replaces an older one. Relative angles add to the commanded ones."""
         joints, values, speed = self._angles(names, angles, speed)
         self._quick("changeAngles" if relative else "setAngles", list(joints), list(values), speed)
 
     def set_stiffnesses(self, names: Sequence[str], stiffnesses: Sequence[float]) -> None:
-        """Set stiffnesses, 0..1."""
         chains = self.names.chains
         joints = expand_names(names, chains, "name")
         values = one_each(stiffnesses, names, chains, "effort")
@@ -126,15 +117,7 @@ class JointController:
     def move(
         self, names: Sequence[str], angles: Sequence[float], speed: float, relative: bool, interrupt: CancellationToken
     ) -> Reached:
-        """Move joints to angles, to the end or to the interrupt.
-
-        Args:
-            names: Joints and chains.
-            angles: rad.
-            speed: Fraction of the top speed, above 0 to 1.
-            relative: Whether angles are added to the measured ones.
-            interrupt: Ends it.
-        """
+        """Move joints to angles, to the end or to the interrupt. Relative angles add to the measured ones."""
         joints, values, speed = self._angles(names, angles, speed)
         if relative:
             values = tuple(now + step for now, step in zip(self._quick("getAngles", list(joints), True), values))

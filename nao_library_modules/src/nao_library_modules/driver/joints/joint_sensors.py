@@ -24,16 +24,7 @@ CURRENT = "{}/ElectricCurrent/Sensor"
 STIFFNESS = "{}/Hardness/Actuator"
 INERTIAL = tuple(
     f"InertialSensor/{name}/Sensor"
-    for name in (
-        "AngleX",
-        "AngleY",
-        "GyroscopeX",
-        "GyroscopeY",
-        "GyroscopeZ",
-        "AccelerometerX",
-        "AccelerometerY",
-        "AccelerometerZ",
-    )
+    for name in ("AngleX", "AngleY", *(kind + axis for kind in ("Gyroscope", "Accelerometer") for axis in "XYZ"))
 )
 # Both hips are turned by one motor, and the robot's memory has it under the name of the left one.
 SHARED_MOTORS = {"RHipYawPitch": "LHipYawPitch"}
@@ -64,11 +55,7 @@ class Reading:
 class JointSensors:
     """Reads joints, inertial unit and odometry of one robot. For one thread.
 
-    Args:
-        robot: Its proxies and connection, see `nao_library_modules.robot`.
-        joints: Names of the joints.
-        use_sensors: False takes commanded angles for measured ones.
-        use_odometry: Whether to ask for the place of the torso.
+    Without `use_sensors` commanded angles stand for measured ones; without `use_odometry` the torso is not asked for.
     """
 
     def __init__(self, robot: Any, joints: Sequence[str], use_sensors: bool = True, use_odometry: bool = True) -> None:

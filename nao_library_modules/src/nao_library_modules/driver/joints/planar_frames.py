@@ -124,10 +124,9 @@ def read_place(field: str, pose: PoseStamped) -> tuple[Place, str]:
 def read_point(field: str, pose: PoseStamped) -> Place:
     """The point of a pose, with heading 0. Raises BadGoal if a coordinate is no number."""
     point = pose.pose.position
-    place = Place(point.x, point.y, 0.0)
     require_within(f"{field}.pose.position.x", point.x, PLACE)
     require_within(f"{field}.pose.position.y", point.y, PLACE)
-    return place
+    return Place(point.x, point.y, 0.0)
 
 
 def read_path(path: Path) -> tuple[list[Place], str]:
@@ -173,9 +172,5 @@ def pose_stamped(place: Place, frame: str, stamp: rospy.Time) -> PoseStamped:
     message = PoseStamped()
     message.header.frame_id, message.header.stamp = frame, stamp
     message.pose.position.x, message.pose.position.y = place.x, place.y
-    message.pose.orientation = level_quaternion(place.yaw)
+    message.pose.orientation = Quaternion(*from_roll_pitch_yaw(0.0, 0.0, place.yaw))
     return message
-
-
-def level_quaternion(yaw: float) -> Quaternion:
-    return Quaternion(*from_roll_pitch_yaw(0.0, 0.0, yaw))

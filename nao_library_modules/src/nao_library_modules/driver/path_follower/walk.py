@@ -129,16 +129,10 @@ def lead(
     interrupt: CancellationToken,
     report: Callable[[Place, Aim], None] = lambda robot, aim: None,
 ) -> None:
-    """Walk until the course ends. The legs are not stopped when it does not come to that.
+    """Walk until the course ends; `report` gets in every round the place of the robot, and its aim.
 
-    Args:
-        course: TargetCourse or PathCourse.
-        legs: WalkTopics.
-        locate: Gives the place of the robot, in the frame of the course.
-        clock: ROS time.
-        settings: How to do it.
-        interrupt: Ends it.
-        report: Gets in every round the place of the robot, and its aim.
+    `locate` gives the place of the robot in the frame of the course. The legs are not stopped when an error ends the
+    walk.
 
     Raises:
         NaoError: If the robot cannot walk, cannot be located or is stuck.

@@ -7,12 +7,7 @@ from typing import Any
 
 import rospy
 
-from nao_library_actions.msg import (
-    ExecFootstepsAction,
-    ExecFootstepsFeedback,
-    ExecFootstepsGoal,
-    ExecFootstepsResult,
-)
+from nao_library_actions.msg import ExecFootstepsAction, ExecFootstepsFeedback, ExecFootstepsGoal, ExecFootstepsResult
 from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import ClipFootstep, ClipFootstepResponse, StepTargetService
 from naoqi.errors import NaoError

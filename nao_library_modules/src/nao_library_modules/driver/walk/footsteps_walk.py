@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -115,11 +116,9 @@ class FootstepWalk:
             self._motion("waitUntilMoveIsFinished").result(timeout=STOP_LIMIT)
         except NaoError:
             interrupt.check()  # why it was to stop says more than that it cannot be reached
-        try:
+        with suppress(Preempted):
             interrupt.check()
-        except Preempted:
-            return Walked(steps[: made or 0], preempted=True)
-        return Walked(steps[: made or 0])
+        return Walked(steps[: made or 0], preempted=True)
 
     def _send(self, steps: tuple[Step, ...], clear: bool) -> None:
         legs = [step.leg for step in steps]

@@ -257,11 +257,7 @@ def _is_zero(command: Command) -> bool:
 
 
 def _wait(order: Order) -> None:
-    """Wait for the end of an order without a limit, for the proxy layer ends calls to a lost robot.
-
-    Raises:
-        NaoError: If it was not carried out.
-    """
+    """Raises NaoError if it was not carried out. No limit: the proxy layer ends calls to a lost robot."""
     order.answer.result()
 
 

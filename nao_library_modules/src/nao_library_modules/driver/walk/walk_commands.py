@@ -80,11 +80,7 @@ def read_velocity(twist: Any) -> tuple[Velocity, str]:
     """
     clamped = []
     values = []
-    for name, value in (
-        ("linear.x", twist.linear.x),
-        ("linear.y", twist.linear.y),
-        ("angular.z", twist.angular.z),
-    ):
+    for name, value in (("linear.x", twist.linear.x), ("linear.y", twist.linear.y), ("angular.z", twist.angular.z)):
         if not math.isfinite(value):
             raise BadGoal(name, value, "-1 to 1")
         if abs(value) > 1.0:

@@ -54,14 +54,9 @@ class WalkJournal:
             log.warning("%s", text)
 
     def report(self, now: float, doing: str, active: bool | None, owners: Sequence[str], watchdog_stops: int) -> Report:
-        """The line of diagnostics.
+        """The line of diagnostics at `now` s of ROS time.
 
-        Args:
-            now: ROS time, s.
-            doing: What the node has the robot do.
-            active: Whether the robot says that it walks; None if it was not asked.
-            owners: The nodes that inhibit walking.
-            watchdog_stops: How often the watchdog stopped it.
+        `doing` is what the node has the robot do, `active` whether the robot answers that it walks (None: not asked).
         """
         with self._lock:
             age = f"{now - self._commanded_at:.1f}" if self._command else ""

@@ -45,13 +45,7 @@ class Walker:
     """
 
     def __init__(self, robot: Any, clock: Any, cmd_vel_timeout: float) -> None:
-        """Start; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            clock: The time in which commands cease.
-            cmd_vel_timeout: s after which a watched velocity that is not renewed ends; 0: never.
-        """
+        """A watched velocity that is not renewed within `cmd_vel_timeout` s of the clock ends; 0: never."""
         self.frequency = 1.0
         self.gait: GaitConfig = []
         self.needs_walk_pose = False
