@@ -27,7 +27,7 @@ from nao_library_modules.driver.joints.planar_frames import read_transform
 from nao_library_modules.driver.joints.slope import SlopeEstimator
 from nao_library_modules.driver.walk import walk_commands as commands
 from nao_library_modules.driver.walk.footsteps import read_steps, step_target
-from nao_library_modules.driver.walk.footsteps_clipping import LEFT_BOX, RIGHT_BOX, check_legs, clip
+from nao_library_modules.driver.walk.footsteps_walk import LEFT_BOX, RIGHT_BOX, check_legs, clip
 from nao_library_modules.driver.walk.walk_commands import Step, Target, Velocity, read_gait_config, read_step
 from nao_library_modules.driver.walk.walk_inhibition import NotInhibited, WalkInhibition
 from nao_library_modules.driver.walk.walk_orders import Mailbox, Order, Stop, WalkEnded

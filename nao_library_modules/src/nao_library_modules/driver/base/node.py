@@ -10,10 +10,12 @@ import rospy
 
 from naoqi.errors import NaoError
 
+from ...base.errors import RobotLost
 from ...base.field_checks import number_parameter
 from ...base.limits import limit
 from ...processes.closing import close_all
 from ...robot.robot import Robot
+from ...ros.concurrent_action_server import ConcurrentActionServer
 from ...ros.diagnostics import DiagnosticsPublisher, Reports
 from ...ros.health import connection_report
 from ...ros.node import own_as_node, robot_address, start_node
@@ -88,6 +90,20 @@ def _made(make: Callable[[Robot, NodeInterface], Any], robot: Robot) -> Any:
             if rospy.core.is_shutdown_requested():
                 raise
             time.sleep(RETRY)
+
+
+def interrupt_when_lost(robot: Robot, *servers: ConcurrentActionServer) -> Callable[[], None]:
+    """End the goals of servers whenever the robot is lost; call what it returns to end that."""
+
+    def changed(*_: Any) -> None:
+        connection = robot.connection
+        if connection.state == "lost":
+            lost = RobotLost(robot.address, connection.last_error or "no answer")
+            for server in servers:
+                server.interrupt_all(lost)
+
+    robot.connection.add_listener(changed)
+    return lambda: robot.connection.remove_listener(changed)
 
 
 def name_for_robot(name: str) -> str:

@@ -21,10 +21,10 @@ from nao_library_msgs.msg import JointAnglesWithSpeed
 from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
-from ...base.errors import RobotLost
 from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
+from ..base.node import interrupt_when_lost
 from .joint_controller import InitialStiffness, JointController, Reached
 
 COMPLAINT_PERIOD = 5.0
@@ -69,6 +69,7 @@ class NaoController:
         self._node.offer("life/enable", Empty, lambda _: self._set_life(True))
         self._node.offer("life/disable", Empty, lambda _: self._set_life(False))
         self._node.service("life/get_state", Trigger, self._on_life_state)
+        self._stop_watching = interrupt_when_lost(robot, *self._servers.values())
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
         self._node.subscriber("joint_angles", JointAnglesWithSpeed, self._on_angles, queue_size=10)
@@ -79,6 +80,7 @@ class NaoController:
 
     def close(self) -> None:
         self._robot.connection.remove_listener(self._connection_changed)
+        self._stop_watching()
         for server in self._servers.values():
             server.close(SHUTDOWN_LIMIT / len(self._servers))
 
@@ -157,12 +159,7 @@ class NaoController:
 
     def _connection_changed(self, *_: Any) -> None:
         """Called from the thread that the connection has for its listeners; they may call the robot."""
-        connection = self._robot.connection
-        if connection.state == "lost":
-            lost = RobotLost(self._robot.address, connection.last_error or "no answer")
-            for server in self._servers.values():
-                server.interrupt_all(lost)
-        elif connection.state == "connected":
+        if self._robot.connection.state == "connected":
             self._init_stiffness.apply()
 
 

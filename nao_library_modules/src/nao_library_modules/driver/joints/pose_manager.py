@@ -24,7 +24,6 @@ from nao_library_actions.msg import (
 from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
-from ...base.errors import RobotLost
 from ...base.field_checks import require_within
 from ...nao.joint_names import MOTION
 from ...nao.pose_tables import Pose, UnknownPose, built_in, library, pose_table
@@ -34,6 +33,7 @@ from ...ros.goal_tracker import GoalTracker
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
+from ..base.node import interrupt_when_lost
 from .joint_controller import FRACTION, QUICK_LIMIT, STIFFEN_TIME
 
 POSTURE = "ALRobotPosture"
@@ -72,13 +72,14 @@ class PoseManager:
         }
         for (name, server), action in zip(self._servers.items(), (BodyPoseAction, BodyPoseWithSpeedAction)):
             self._node.action(name, action, server)
-        robot.connection.add_listener(self._connection_changed)
+        # Goals of the other action are ended by nao_controller.
+        self._stop_watching = interrupt_when_lost(robot, self._servers["body_pose_naoqi"])
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         return {f"goals {name}": server.counter.report for name, server in self._servers.items()}
 
     def close(self) -> None:
-        self._robot.connection.remove_listener(self._connection_changed)
+        self._stop_watching()
         for server in self._servers.values():
             server.close(SHUTDOWN_LIMIT / len(self._servers))
 
@@ -130,13 +131,6 @@ class PoseManager:
         if not run_task(posture.call_async("goToPosture", goal.posture_name, goal.speed), interrupt, stop):
             raise NaoError(f"the robot did not reach the posture {goal.posture_name}")
         return Outcome(BodyPoseWithSpeedResult())
-
-    def _connection_changed(self, *_: Any) -> None:
-        """Called from the thread that the connection has for its listeners."""
-        connection = self._robot.connection
-        if connection.state == "lost":
-            lost = RobotLost(self._robot.address, connection.last_error or "no answer")
-            self._servers["body_pose_naoqi"].interrupt_all(lost)  # of the other one, nao_controller takes care
 
 
 def _add(poses: dict[str, Pose], read: Callable[[], dict[str, Pose]]) -> None:

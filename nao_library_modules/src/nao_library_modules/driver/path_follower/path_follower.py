@@ -27,7 +27,7 @@ from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome, Rep
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
-from ..base.node import frame_parameter
+from ..base.node import frame_parameter, interrupt_when_lost
 from ..joints.planar_frames import PlanarFrames, pose_stamped, read_path, read_place
 from .courses import Aim, PathCourse, TargetCourse
 from .legs import WalkTopics
@@ -66,7 +66,6 @@ class NaoPathFollower:
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Raises NaoError if a parameter is wrong; the robot need not be there yet."""
         self._node = node
-        self._robot = robot
         self._settings = Settings.read(node.param)
         self._base = frame_parameter(node, "~base_frame_id", "base_footprint")
         self._odom = frame_parameter(node, "~odom_frame_id", "odom")
@@ -81,7 +80,7 @@ class NaoPathFollower:
             self._node.action(name, action, self._server)
         self._target_goals = self._node.publisher("walk_target/goal", MoveBaseActionGoal, queue_size=1)
         self._path_goals = self._node.publisher("walk_path/goal", FollowPathActionGoal, queue_size=1)
-        robot.connection.add_listener(self._connection_changed)
+        self._stop_watching = interrupt_when_lost(robot, self._server)
         self._node.subscriber("walk_target_simple/goal", PoseStamped, self._on_target, queue_size=1)
         self._node.subscriber("walk_path_simple/goal", Path, self._on_path, queue_size=1)
         self._node.subscriber("foot_contact", Bool, self._on_foot_contact, queue_size=1)
@@ -91,7 +90,7 @@ class NaoPathFollower:
 
     def close(self) -> None:
         """End the goal that runs; the robot stands then."""
-        self._robot.connection.remove_listener(self._connection_changed)
+        self._stop_watching()
         self._server.interrupt_all(NaoError(NODE_KILLED))
         self._server.close(SHUTDOWN_LIMIT)
 
@@ -186,8 +185,3 @@ class NaoPathFollower:
         self._touching = contact.data
         if not contact.data and self._settings.use_foot_contact_protection:
             self._server.interrupt_all(NaoError(FOOT_CONTACT))
-
-    def _connection_changed(self, *_: Any) -> None:
-        connection = self._robot.connection
-        if connection.state == "lost":
-            self._server.interrupt_all(RobotLost(self._robot.address, connection.last_error or "no answer"))

@@ -13,13 +13,13 @@ from nao_library_msgs.srv import ClipFootstep, ClipFootstepResponse, StepTargetS
 from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
-from ...base.errors import RobotLost
 from ...base.field_checks import require_length, require_within
 from ...base.limits import limit
 from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
+from ..base.node import interrupt_when_lost
 from ..joints.joint_controller import InitialStiffness, JointController
 from .footsteps_walk import FootstepWalk
 from .walk_commands import LEGS, Step, read_step
@@ -50,6 +50,7 @@ class NaoFootsteps:
         self._walk = FootstepWalk(robot, RosClock())
         self._server = ConcurrentActionServer(self._claims, self._execute, with_feedback=True, robot=robot)
         self._node.action("footsteps_execution", ExecFootstepsAction, self._server)
+        self._stop_watching = interrupt_when_lost(robot, self._server)
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
         self._node.offer("footstep_srv", StepTargetService, lambda request: self._walk.make(read_step(request.step)))
@@ -62,6 +63,7 @@ class NaoFootsteps:
     def close(self) -> None:
         """End the goal that runs; the robot stands then."""
         self._robot.connection.remove_listener(self._connection_changed)
+        self._stop_watching()
         self._server.close(SHUTDOWN_LIMIT)
 
     # --- the action -----------------------------------------------------------------------------------------------
@@ -99,10 +101,7 @@ class NaoFootsteps:
 
     def _connection_changed(self, *_: Any) -> None:
         """Called from the thread that the connection has for its listeners; they may call the robot."""
-        connection = self._robot.connection
-        if connection.state == "lost":
-            self._server.interrupt_all(RobotLost(self._robot.address, connection.last_error or "no answer"))
-        elif connection.state == "connected":
+        if self._robot.connection.state == "connected":
             self._init_stiffness.apply()
 
 
