@@ -50,11 +50,12 @@ class NaoFootsteps:
         self._walk = FootstepWalk(robot, RosClock())
         self._server = ConcurrentActionServer(self._claims, self._execute, with_feedback=True, robot=robot)
         self._node.action("footsteps_execution", ExecFootstepsAction, self._server)
+        self._node.offer("footstep_srv", StepTargetService, lambda request: self._walk.make(read_step(request.step)))
+        self._node.service("clip_footstep_srv", ClipFootstep, self._on_clip)
+        # After the services: a part that cannot offer them sets nothing on the robot.
         self._stop_watching = interrupt_when_lost(robot, self._server)
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
-        self._node.offer("footstep_srv", StepTargetService, lambda request: self._walk.make(read_step(request.step)))
-        self._node.service("clip_footstep_srv", ClipFootstep, self._on_clip)
         self._node.subscriber("footstep", StepTarget, self._on_step, queue_size=50)
 
     def reports(self) -> dict[str, Callable[[], Report]]:

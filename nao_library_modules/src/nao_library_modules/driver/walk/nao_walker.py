@@ -82,9 +82,10 @@ class NaoWalker:
         self._scan = HeadScan(joints, head_speed)
         self._speech = self._node.publisher("speech", String, queue_size=10, latch=True)
         self._online = False
+        self._offer_services()
+        # After the services: a part that cannot offer them sets nothing on the robot.
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
-        self._offer_services()
         self._node.subscriber("cmd_vel", Twist, self._on_velocity, queue_size=1, tcp_nodelay=True)
         self._node.subscriber("cmd_pose", Pose2D, self._on_pose, queue_size=1, tcp_nodelay=True)
         self._node.subscriber("cmd_step", StepTarget, self._on_step, queue_size=STEPS_IN_LINE)
