@@ -38,8 +38,7 @@ ALL = "all"
 def chosen(words: str | Sequence[str]) -> list[str]:
     """The named parts, in the order of the table: words between blanks, or a list of them; "all" stands for all.
 
-    Raises:
-        NaoError: There is no such part, or none is named.
+    Raises NaoError if there is no such part, or none is named.
     """
     named = words.split() if isinstance(words, str) else list(words)
     for word in named:

@@ -58,8 +58,7 @@ class GoalCanceller(rospy.SubscribeListener):
 def call_for(service: str, node: str) -> None:
     """Call a service without arguments in the name of a node that has died.
 
-    Raises:
-        NaoError: Nobody offers it, or it failed.
+    Raises NaoError if nobody offers it, or it failed.
     """
     try:
         rospy.ServiceProxy(service, Empty, headers={"callerid": node})()

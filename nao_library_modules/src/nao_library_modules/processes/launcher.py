@@ -56,8 +56,7 @@ def _missing(package: str, launchfile: str) -> str:
 def declared_arguments(launch_file: Path) -> set[str]:
     """Names of the arguments that a launch file takes: those it declares without a fixed value.
 
-    Raises:
-        BadLaunchPath: If the file is no XML.
+    Raises BadLaunchPath if the file is no XML.
     """
     try:
         root = ElementTree.parse(launch_file).getroot()
@@ -69,8 +68,7 @@ def declared_arguments(launch_file: Path) -> set[str]:
 def launched_nodes(launchpath: LaunchPath, ip: str, port: int, namespace: str) -> frozenset[str]:
     """Full names of the nodes that a launch file starts for a robot in a namespace.
 
-    Raises:
-        BadLaunchPath: If it cannot be read.
+    Raises BadLaunchPath if it cannot be read.
     """
     from rosgraph.names import get_ros_namespace, ns_join
     from roslaunch.config import load_config_default
@@ -96,8 +94,7 @@ def launch_arguments(declared: Collection[str], ip: str, port: int) -> list[str]
 def launch_supervisor(launchpath: LaunchPath, ip: str, port: int, namespace: str) -> Supervisor:
     """A supervisor for a launch file, not started; its nodes start in the namespace.
 
-    Raises:
-        BadLaunchPath: If there is no such file.
+    Raises BadLaunchPath if there is no such file.
     """
     declared = declared_arguments(find_launch_file(launchpath))
     return Supervisor(

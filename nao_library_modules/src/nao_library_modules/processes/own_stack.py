@@ -66,16 +66,14 @@ class OwnStack:
     def wait_for_master(self, limit: float = START_LIMIT) -> None:
         """Wait up to `limit` s until the ROS master answers: nodes can be made then.
 
-        Raises:
-            TimeoutError: It does not, or roslaunch has ended.
+        Raises TimeoutError if it does not, or roslaunch has ended.
         """
         self._wait_for("the ROS master", self.ros_port, limit)
 
     def wait_for_robot(self, limit: float = START_LIMIT) -> None:
         """Wait up to `limit` s until the simulated robot answers: parameters are set then, and nodes come up.
 
-        Raises:
-            TimeoutError: It does not, or roslaunch has ended.
+        Raises TimeoutError if it does not, or roslaunch has ended.
         """
         self._wait_for("the simulated robot", self.nao_port, limit)
 

@@ -35,8 +35,7 @@ class EventRelay:
     def subscribe(self, name: str) -> None:
         """Subscribe to an event, unless it is subscribed already.
 
-        Raises:
-            NaoError: If the robot cannot be asked; then it is not subscribed.
+        Raises NaoError if the robot cannot be asked; then it is not subscribed.
         """
         with self._lock:
             if name in self._links:

@@ -80,8 +80,7 @@ class LazySubscription:
     def start_now(self) -> None:
         """Start it in the calling thread, unless it runs; from then on it is wanted.
 
-        Raises:
-            NaoError: If it cannot be started; then it is not wanted.
+        Raises NaoError if it cannot be started; then it is not wanted.
         """
         with self._work:
             if not self.running:
@@ -94,8 +93,7 @@ class LazySubscription:
     def stop_now(self) -> None:
         """Stop it in the calling thread; from then on it is not wanted.
 
-        Raises:
-            NaoError: If the robot cannot be asked.
+        Raises NaoError if the robot cannot be asked.
         """
         self.want(False)
         with self._work:

@@ -74,8 +74,7 @@ def keep(robot: Robot, reports: Reports | Callable[[], Reports], close: Callable
 def _made(make: Callable[[Robot, NodeInterface], Any], robot: Robot) -> Any:
     """The node's object; where another node has its services, when that has ended.
 
-    Raises:
-        NaoError: It cannot be made.
+    Raises NaoError if it cannot be made.
     """
     logged = False
     while True:

@@ -42,8 +42,7 @@ def footprint(angles: Mapping[str, float], roll: float, pitch: float) -> Pose:
 
     Joint angles are those measured, roll and pitch those of the torso, all in rad.
 
-    Raises:
-        KeyError: If a joint of the legs is missing, as on a robot without legs.
+    Raises KeyError if a joint of the legs is missing, as on a robot without legs.
     """
     tilt = from_roll_pitch_yaw(roll, pitch, 0.0)
     feet = [sole(side, [angles[joint] for joint in joints]) for side, joints in LEG_JOINTS.items()]

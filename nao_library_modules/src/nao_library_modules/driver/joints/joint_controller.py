@@ -189,8 +189,7 @@ class JointController:
 class InitialStiffness:
     """The parameter `~init_stiffness`: stiffness that the body gets when the robot is first reached, if above 0.
 
-    Raises:
-        NaoError: If it is no share.
+    Raises NaoError if it is no share.
     """
 
     def __init__(self, joints: JointController, get_param: Callable[[str, Any], Any]) -> None:

@@ -72,8 +72,7 @@ class JointSensors:
     def read(self) -> Reading:
         """Ask the robot; memory and odometry at the same time.
 
-        Raises:
-            NaoError: If it cannot be asked, or does not know its joints.
+        Raises NaoError if it cannot be asked, or does not know its joints.
         """
         values = self._robot.proxy(MEMORY).call_async("getListData", self._keys)
         torso = None
@@ -121,8 +120,7 @@ def read_motors(path: Path) -> Mapping[str, float]:
 
     A motor's torque constant is the supply voltage over its speed without load.
 
-    Raises:
-        ValueError: If the file has unknown fields, or lacks some.
+    Raises ValueError if the file has unknown fields, or lacks some.
     """
     table = json.loads(path.read_text())
     if set(table) != MOTORS_FIELDS or any(set(motor) != MOTOR_FIELDS for motor in table["motors"]):

@@ -38,8 +38,7 @@ class UrdfJoint:
 def movable_joints(description: str) -> list[UrdfJoint]:
     """Joints in the order of the description, without those that follow another one.
 
-    Raises:
-        NaoError: If it is no URDF.
+    Raises NaoError if it is no URDF.
     """
     try:
         root = ElementTree.fromstring(description)

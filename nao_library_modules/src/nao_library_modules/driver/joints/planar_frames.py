@@ -48,8 +48,7 @@ class PlanarFrames:
     def locate(self, child: str, frame: str, patience: float = PATIENCE) -> Place:
         """Where `child` is in `frame`, by the latest transform, for which it waits up to `patience` s.
 
-        Raises:
-            NaoError: If they are not connected, or what is known is old.
+        Raises NaoError if they are not connected, or what is known is old.
         """
         transform = self._look_up(frame, child, rospy.Time(), patience)
         stamp = transform.header.stamp
@@ -63,8 +62,7 @@ class PlanarFrames:
 
         The time of the pose counts as far back as /tf is known; without one it is the latest.
 
-        Raises:
-            NaoError: If the frames are not connected.
+        Raises NaoError if the frames are not connected.
         """
         origin = pose.header.frame_id.lstrip("/")
         try:
@@ -104,8 +102,7 @@ class PlanarFrames:
 def read_place(field: str, pose: PoseStamped) -> tuple[Place, str]:
     """Place and frame of a pose, seen from above; `field` is its name for texts.
 
-    Raises:
-        BadGoal: If a coordinate is no number, the frame has no name or the orientation is no rotation.
+    Raises BadGoal if a coordinate is no number, the frame has no name or the orientation is no rotation.
     """
     frame = pose.header.frame_id.lstrip("/")
     if not frame:
@@ -132,8 +129,7 @@ def read_point(field: str, pose: PoseStamped) -> Place:
 def read_path(path: Path) -> tuple[list[Place], str]:
     """Places and frame of a path. Only the last heading counts; without one it is that of the path.
 
-    Raises:
-        BadGoal: If a coordinate is no number, the frame has no name, or poses are too many or in different frames.
+    Raises BadGoal if a coordinate is no number, the frame has no name, or poses are too many or in different frames.
     """
     require_length("path.poses", len(path.poses), PLACES)
     frames = {pose.header.frame_id.lstrip("/") for pose in path.poses} - {""}
@@ -155,8 +151,7 @@ def read_path(path: Path) -> tuple[list[Place], str]:
 def read_transform(transform: Transform) -> Place:
     """The part of a transform in the plane of the floor.
 
-    Raises:
-        BadGoal: If a coordinate is no number, or the rotation is no rotation.
+    Raises BadGoal if a coordinate is no number, or the rotation is no rotation.
     """
     move, turn = transform.translation, transform.rotation
     for name in ("x", "y"):

@@ -54,8 +54,7 @@ class PathCourse:
     def aim(self, robot: Place) -> Aim:
         """Where a robot at this place goes next. Progress along the path is kept.
 
-        Raises:
-            BadGoal: If the robot is too far from where the path begins, at the first call.
+        Raises BadGoal if the robot is too far from where the path begins, at the first call.
         """
         along, off = self._find(robot)
         path, settings = self._path, self._settings

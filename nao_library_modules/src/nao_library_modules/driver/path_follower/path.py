@@ -27,8 +27,7 @@ class WalkPath:
 
     Of waypoints at one place only the last is kept.
 
-    Raises:
-        BadGoal: If there are not two different ones.
+    Raises BadGoal if there are not two different ones.
     """
 
     def __init__(self, waypoints: Sequence[Place]) -> None:

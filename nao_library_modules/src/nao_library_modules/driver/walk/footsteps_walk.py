@@ -40,8 +40,7 @@ RIGHT_BOX = [Position2D(corner.x, -corner.y) for corner in reversed(LEFT_BOX)]
 def clip(step: Place, leg: str) -> Place:
     """The nearest step of its kind that the robot can make: place of the moving foot `leg` in the frame of the other.
 
-    Raises:
-        NaoError: If a number of the step is none, or the leg is unknown.
+    Raises NaoError if a number of the step is none, or the leg is unknown.
     """
     if leg not in (LEFT, RIGHT):
         raise NaoError(f"no leg {leg!r}: {LEFT} or {RIGHT}")
@@ -61,11 +60,7 @@ def clip(step: Place, leg: str) -> Place:
 
 
 def check_legs(legs: Sequence[str]) -> None:
-    """Check that each step is made by the other foot than the one before.
-
-    Raises:
-        BadGoal
-    """
+    """Check that each step is made by the other foot than the one before; raises BadGoal."""
     for index, (before, leg) in enumerate(zip(legs, legs[1:]), start=1):
         if leg == before:
             raise BadGoal(f"footsteps[{index}].leg", leg, f"left and right in turn, and {before} made the step before")
@@ -94,8 +89,7 @@ class FootstepWalk:
     def prepared(self, steps: Sequence[Step]) -> tuple[Step, ...]:
         """Steps as the robot can make them, one after the other.
 
-        Raises:
-            NaoError: If there are none, or they are not made by one leg after the other.
+        Raises NaoError if there are none, or they are not made by one leg after the other.
         """
         if not steps:
             raise BadGoal("footsteps", [], "one step at least")
@@ -105,16 +99,14 @@ class FootstepWalk:
     def add(self, step: Step) -> None:
         """Have a step made after those that were added before; returns at once.
 
-        Raises:
-            NaoError: If it is no step, or the robot refuses it.
+        Raises NaoError if it is no step, or the robot refuses it.
         """
         self._send((self.clipped(step),), clear=False)
 
     def make(self, step: Step) -> None:
         """Make a step, and return when the robot stands.
 
-        Raises:
-            NaoError: If it is no step, or the robot does not make it.
+        Raises NaoError if it is no step, or the robot does not make it.
         """
         self.add(step)
         self._motion("waitUntilMoveIsFinished").result(timeout=STOP_LIMIT)
@@ -130,8 +122,7 @@ class FootstepWalk:
 
         Every `period` s `report` gets the steps that are made.
 
-        Raises:
-            NaoError: If the robot refuses them, is lost or stops by itself.
+        Raises NaoError if the robot refuses them, is lost or stops by itself.
         """
         steps = tuple(steps)
         began = self._clock.now()

@@ -38,8 +38,7 @@ class HeadScan:
     def run(self, prepare: Callable[[], None] = lambda: None) -> None:
         """Look down, sweep up, look at the ground before the feet; `prepare` is called first, as a part of it.
 
-        Raises:
-            NaoError: A scan is under way; the robot refuses or is lost; the node ends.
+        Raises NaoError if a scan is under way, the robot refuses or is lost, or the node ends.
         """
         if not self._scanning.acquire(blocking=False):
             raise NaoError("a head scan is under way")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import rospy
@@ -86,9 +87,9 @@ class NaoWalker:
         # After the services: a part that cannot offer them sets nothing on the robot.
         robot.connection.add_listener(self._connection_changed)
         self._connection_changed()
-        self._node.subscriber("cmd_vel", Twist, self._on_velocity, queue_size=1, tcp_nodelay=True)
-        self._node.subscriber("cmd_pose", Pose2D, self._on_pose, queue_size=1, tcp_nodelay=True)
-        self._node.subscriber("cmd_step", StepTarget, self._on_step, queue_size=STEPS_IN_LINE)
+        self._listen("cmd_vel", Twist, partial(self._velocity, "cmd_vel"), watched=True, queue_size=1, tcp_nodelay=True)
+        self._listen("cmd_pose", Pose2D, read_target, queue_size=1, tcp_nodelay=True)
+        self._listen("cmd_step", StepTarget, read_step, queue_size=STEPS_IN_LINE)
         self._node.subscriber("start_scan", std_msgs.msg.Empty, self._on_scan, queue_size=1)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
@@ -103,14 +104,10 @@ class NaoWalker:
 
     # --- topics ---------------------------------------------------------------------------------------------------
 
-    def _on_velocity(self, message: Twist) -> None:
-        self._take("cmd_vel", message, lambda: self._velocity("cmd_vel", message), watched=True)
-
-    def _on_pose(self, message: Pose2D) -> None:
-        self._take("cmd_pose", message, lambda: read_target(message))
-
-    def _on_step(self, message: StepTarget) -> None:
-        self._take("cmd_step", message, lambda: read_step(message))
+    def _listen(
+        self, topic: str, kind: type, read: Callable[[Any], Command], watched: bool = False, **options: Any
+    ) -> None:
+        self._node.subscriber(topic, kind, lambda message: self._take(topic, message, read, watched), **options)
 
     def _on_scan(self, message: std_msgs.msg.Empty) -> None:
         try:
@@ -118,11 +115,11 @@ class NaoWalker:
         except NaoError as error:
             self._journal.failed("start_scan", error)
 
-    def _take(self, topic: str, message: Any, read: Callable[[], Command], watched: bool = False) -> None:
+    def _take(self, topic: str, message: Any, read: Callable[[Any], Command], watched: bool) -> None:
         """Take a command from a topic; errors go to the log."""
         caller = _caller(message)
         try:
-            command = read()
+            command = read(message)
             if _is_zero(command) and self._inhibition.against(caller):
                 return  # a stick at rest is no news to those who inhibit walking
             order = self._order(topic, caller, command, watched=watched)
@@ -163,9 +160,12 @@ class NaoWalker:
         def serve(name: str, kind: type, action: Callable[[str, Any], None]) -> None:
             self._node.offer(name, kind, lambda request: action(_caller(request), request))
 
-        serve("cmd_vel_srv", CmdVelService, self._serve_velocity)
-        serve("cmd_pose_srv", CmdPoseService, self._serve_pose)
-        serve("cmd_step_srv", StepTargetService, self._serve_step)
+        def walk(name: str, kind: type, read: Callable[[Any], Command], **options: bool) -> None:
+            serve(name, kind, lambda caller, request: _wait(self._order(name, caller, read(request), **options)))
+
+        walk("cmd_vel_srv", CmdVelService, lambda request: self._velocity("cmd_vel_srv", request.twist))
+        walk("cmd_pose_srv", CmdPoseService, lambda request: read_target(request.pose))
+        walk("cmd_step_srv", StepTargetService, lambda request: read_step(request.step), to_the_end=True)
         serve("stop_walk_srv", Empty, self._serve_stop)
         serve("head_scan_srv", Empty, self._serve_scan)
         serve("inhibit_walk", Empty, self._serve_inhibit)
@@ -173,15 +173,6 @@ class NaoWalker:
         serve("needs_start_walk_pose_srv", Empty, self._serve_walk_pose)
         serve("read_foot_gait_config_srv", Empty, self._serve_gait)
         serve("enable_arms_walking_srv", SetArmsEnabled, self._serve_arms)
-
-    def _serve_velocity(self, caller: str, request: Any) -> None:
-        _wait(self._order("cmd_vel_srv", caller, self._velocity("cmd_vel_srv", request.twist)))
-
-    def _serve_pose(self, caller: str, request: Any) -> None:
-        _wait(self._order("cmd_pose_srv", caller, read_target(request.pose)))
-
-    def _serve_step(self, caller: str, request: Any) -> None:
-        _wait(self._order("cmd_step_srv", caller, read_step(request.step), to_the_end=True))
 
     def _serve_stop(self, caller: str, _: Any) -> None:
         _wait(self._walker.order(Stop(), f"stop_walk_srv from {caller}"))

@@ -75,8 +75,7 @@ class Step:
 def read_velocity(twist: Any) -> tuple[Velocity, str]:
     """The velocity of a geometry_msgs/Twist, and in words which of its parts were clamped to -1..1 (empty: none).
 
-    Raises:
-        BadGoal: If a part is not a finite number.
+    Raises BadGoal if a part is not a finite number.
     """
     clamped = []
     values = []
@@ -97,8 +96,7 @@ def read_target(pose: Any) -> Target:
 def read_step(step: Any, field: str = "") -> Step:
     """The step of a nao_library_msgs/StepTarget; `field` is where it stands in a goal, for texts.
 
-    Raises:
-        BadGoal: If it names no leg, or a part is out of its bounds.
+    Raises BadGoal if it names no leg, or a part is out of its bounds.
     """
     if step.leg not in LEGS:
         raise BadGoal(f"{field}leg", step.leg, "0 (right) or 1 (left)")
@@ -115,8 +113,7 @@ def require_way(field: str, way: Place) -> Place:
 def read_gait_config(name: str, value: Any) -> GaitConfig:
     """Gait parameters from pairs of name and value, or a dictionary. Names and ranges are the robot's to judge.
 
-    Raises:
-        NaoError: If it is something else; `name` is the parameter's, for its text.
+    Raises NaoError if it is something else; `name` is the parameter's, for its text.
     """
     pairs = list(value.items()) if isinstance(value, Mapping) else value
     if not isinstance(pairs, (list, tuple)):

@@ -43,8 +43,7 @@ class WalkInhibition:
 
         A person who lets go at a command line has another name each time.
 
-        Raises:
-            NotInhibited: If there is none.
+        Raises NotInhibited if there is none.
         """
         with self._lock:
             if not self._holds:
