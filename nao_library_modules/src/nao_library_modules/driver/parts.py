@@ -51,6 +51,5 @@ def chosen(words: str | Sequence[str]) -> list[str]:
 
 
 def part_class(part: str) -> Callable[..., Any]:
-    """The class of a part, imported now."""
     module, _, name = PARTS[part][1].rpartition(".")
     return getattr(import_module(f".{module}", __package__), name)

@@ -79,7 +79,6 @@ def _call_in_thread(service: str, node: str) -> None:
 
 
 def watch_owners(robot: Any) -> None:
-    """Stop what processes leave going that die, until this node ends."""
     stops = Stops(robot, {GOAL: GoalCanceller().cancel, SERVICE: _call_in_thread})
     watch = OwnerWatch(robot.address, stops.stop)
     rospy.on_shutdown(watch.close)

@@ -117,7 +117,6 @@ class OwnerWatch:
         self._thread.start()
 
     def close(self) -> None:
-        """Leave it to others."""
         self._closed.set()
         self._wake.close()
         self._thread.join(1.0)

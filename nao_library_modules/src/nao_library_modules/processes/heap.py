@@ -25,7 +25,6 @@ class Heap:
         self._due = clock()
 
     def tidy(self) -> None:
-        """Return free memory, unless that was done a moment ago."""
         now = self._clock()
         if now >= self._due:
             self._due = now + PERIOD

@@ -57,7 +57,6 @@ class OwnStack:
 
     @property
     def pid(self) -> int:
-        """Process of roslaunch."""
         return self._process.pid
 
     def alive(self) -> bool:
@@ -99,7 +98,6 @@ class OwnStack:
         return True
 
     def stop(self) -> None:
-        """End everything that was started."""
         for number, limit in LIMITS:
             if self.alive():
                 self._process.send_signal(number)

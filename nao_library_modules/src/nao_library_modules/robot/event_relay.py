@@ -28,7 +28,6 @@ class EventRelay:
 
     @property
     def names(self) -> list[str]:
-        """The subscribed events, sorted."""
         with self._lock:
             return sorted(self._links)
 

@@ -69,7 +69,6 @@ class RobotClock:
         return _mapped(robot_time + self._offset_at(call, now), now)
 
     def _is_ours(self, robot_time: float) -> bool:
-        """Whether a time of the robot is simulated ROS time already."""
         return self._clock.simulated and same_clock(robot_time, self._clock.now())
 
     def compare(self, call: Callable[..., Any]) -> None:

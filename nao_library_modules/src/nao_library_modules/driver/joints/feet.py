@@ -23,7 +23,7 @@ Pose = Tuple[Vector, Quaternion]
 
 
 def sole(side: str, angles: Sequence[float]) -> tuple[Vector, Vector]:
-    """Sole and direction of its toes in the torso frame, from the six angles of a leg (L or R), hip first, in rad."""
+    """Place of a sole and its toes' direction in the torso frame, from the angles of a leg (L or R), hip first, rad."""
     outwards = 1.0 if side == "L" else -1.0
     place: Vector = (0.0, 0.0, -FOOT)
     toes: Vector = X

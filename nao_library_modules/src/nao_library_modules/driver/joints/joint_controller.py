@@ -37,10 +37,10 @@ ALIVE, LIFELESS = "solitary", "disabled"
 
 @dataclass(frozen=True)
 class Reached:
-    """Measured angles in rad (stiffnesses: 0..1), one for each joint, and whether the motion was ended before time."""
+    """Measured angles in rad (stiffnesses: 0..1), one for each joint."""
 
     values: list[float]
-    preempted: bool
+    preempted: bool  # ended before time
 
 
 class JointController:
@@ -126,7 +126,6 @@ class JointController:
         return self._motion_ended(call, list(joints), interrupt)
 
     def stiffen(self, frames: KeyFrames, interrupt: CancellationToken) -> Reached:
-        """Bring stiffnesses along key frames, to the end or to the interrupt."""
         joints = list(frames.joints)
         call = self._robot.proxy(MOTION).call_async("stiffnessInterpolation", *frames.interpolation_arguments()[:3])
 
@@ -151,7 +150,6 @@ class JointController:
         self._service(MOTION, "rest")
 
     def set_life(self, alive: bool) -> None:
-        """Switch autonomous life to `solitary` or off."""
         self._service(LIFE, "setState", ALIVE if alive else LIFELESS)
 
     def life_state(self) -> str:

@@ -99,15 +99,8 @@ class JointSensors:
             for current, torque, command, position in zip(currents, self._torque, commanded, measured)
         )
         roll, pitch, *rest = (_number(value, 0.0) for value in values[3 * count :])
-        return Reading(
-            tuple(positions),
-            efforts,
-            roll,
-            pitch,
-            (rest[0], rest[1], rest[2]),
-            (rest[3], rest[4], rest[5]),
-            None if torso is None else tuple(torso),
-        )
+        place = None if torso is None else tuple(torso)
+        return Reading(tuple(positions), efforts, roll, pitch, tuple(rest[:3]), tuple(rest[3:6]), place)
 
 
 def _number(value: Any, missing: float = math.nan) -> float:

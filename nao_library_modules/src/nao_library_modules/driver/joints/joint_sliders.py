@@ -15,8 +15,8 @@ from naoqi.errors import NaoError
 DESCRIPTION = "robot_description"
 TOPIC = "joint_sliders"
 COLUMNS = 2
-# ms between two looks whether the node has ended.
 LOOK = 200
+"""ms between two looks whether the node has ended."""
 RESOLUTION = 0.001
 MOVABLE = ("revolute", "continuous", "prismatic")
 
@@ -122,7 +122,6 @@ class JointSliders:
 
 
 def main() -> int:
-    """Show the sliders of `robot_description`; returns the exit status."""
     rospy.init_node("joint_sliders")
     try:
         name = rospy.search_param(DESCRIPTION)

@@ -134,7 +134,6 @@ class NaoJointStates:
                 self._interrupt.wait(RETRY)
 
     def _read_on(self, sensors: JointSensors) -> None:
-        """Read and publish until the robot cannot be read, or the node ends."""
         clock = RosClock()
         rate = Rate(clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
         velocities, speeds = SlopeEstimator(), SlopeEstimator()

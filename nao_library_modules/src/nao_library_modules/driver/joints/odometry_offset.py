@@ -50,7 +50,6 @@ class OdometryOffset:
                 self._paused_at = self._published()
 
     def resume(self) -> None:
-        """Go on from where the published odometry stands."""
         with self._lock:
             self._paused_at = None
 

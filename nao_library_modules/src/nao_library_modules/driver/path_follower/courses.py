@@ -94,5 +94,4 @@ class PathCourse:
 
 
 def reached(way: Place, settings: Settings) -> bool:
-    """Whether the way to a target is so short that it counts as reached."""
     return way.distance <= settings.target_distance_threshold and abs(way.yaw) <= settings.target_angle_threshold

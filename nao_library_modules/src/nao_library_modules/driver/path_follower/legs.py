@@ -104,7 +104,6 @@ class WalkTopics:
         self._call_if_there(self._inhibit)
 
     def release(self) -> None:
-        """Let others walk again."""
         self._call_if_there(self._let_go)
         self._robot.owners.let_go(INHIBIT)
 

@@ -68,10 +68,10 @@ def check_legs(legs: Sequence[str]) -> None:
 
 @dataclass(frozen=True)
 class Walked:
-    """The steps that were made, in order, as the robot can make them; whether they were ended before time."""
+    """The steps that were made, in order, as the robot can make them."""
 
     steps: tuple[Step, ...]
-    preempted: bool = False
+    preempted: bool = False  # ended before time
 
 
 class FootstepWalk:
@@ -83,7 +83,6 @@ class FootstepWalk:
 
     @staticmethod
     def clipped(step: Step) -> Step:
-        """The step as the robot can make it. Raises NaoError if it is no step."""
         return Step(step.leg, *clip(step.place, step.leg))
 
     def prepared(self, steps: Sequence[Step]) -> tuple[Step, ...]:

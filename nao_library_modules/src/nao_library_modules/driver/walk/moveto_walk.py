@@ -66,7 +66,6 @@ class MoveToWalk:
         return self._state
 
     def close(self) -> None:
-        """Stop a walk that goes on, and end."""
         with self._lock:
             self._closed = True
             self._lock.notify()

@@ -116,7 +116,6 @@ class NaoWalker:
             self._journal.failed("start_scan", error)
 
     def _take(self, topic: str, message: Any, read: Callable[[Any], Command], watched: bool) -> None:
-        """Take a command from a topic; errors go to the log."""
         caller = _caller(message)
         try:
             command = read(message)
@@ -254,5 +253,4 @@ def _wait(order: Order) -> None:
 
 
 def _caller(message: Any) -> str:
-    """Name of the node that a message or request came from."""
     return getattr(message, "_connection_header", {}).get("callerid", "an unknown node")

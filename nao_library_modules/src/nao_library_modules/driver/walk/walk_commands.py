@@ -35,7 +35,6 @@ class Velocity:
 
     @property
     def is_zero(self) -> bool:
-        """Whether it means to stand."""
         return max(abs(self.x), abs(self.y), abs(self.theta)) < STANDSTILL
 
     def __str__(self) -> str:
@@ -65,7 +64,6 @@ class Step:
 
     @property
     def place(self) -> Place:
-        """Where the foot goes."""
         return Place(self.x, self.y, self.theta)
 
     def __str__(self) -> str:

@@ -40,7 +40,6 @@ class WalkJournal:
                 self._failing = ""
 
     def failed(self, name: str, error: BaseException) -> None:
-        """A command failed or was refused; logged, but not all the time."""
         with self._lock:
             self._failures += 1
             self._failing = name

@@ -23,7 +23,7 @@ class WalkPace:
         self._heard: float | None = None
 
     def pause(self, now: float) -> float:
-        """Time until the next velocity or target may be sent; 0 or less: at once."""
+        """Time until the next velocity or target may be sent; at once if not above 0."""
         return 0.0 if self._sent is None else self._sent + PACE - now
 
     def sent(self, velocity: Velocity | None, now: float) -> None:
@@ -43,7 +43,7 @@ class WalkPace:
 
 
 class WalkWatchdog:
-    """Time since the last command of a walk that is steered; `limit` is the s without one that stop it, 0: never."""
+    """Time since the last command of a steered walk, which stops after `limit` s without one; 0: never."""
 
     def __init__(self, limit: float) -> None:
         self.limit = limit
