@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -13,8 +12,6 @@ from ...robot.event_relay import EventRelay
 from ...ros.health import Level, Report
 from ..base.lazy_subscription import LazySubscription
 
-log = logging.getLogger(__name__)
-
 MODULES = ("ALSoundLocalization", "ALAudioSourceLocalization")
 """Newer name first."""
 ENERGY = "EnergyComputation"
@@ -24,30 +21,20 @@ CLOSE_LIMIT = 2.0
 
 @dataclass(frozen=True)
 class Direction:
-    """Where a sound came from.
+    """Where a sound came from."""
 
-    Attributes:
-        time: Robot's time, s.
-        azimuth: In the frame of the head, positive to the left, rad.
-        elevation: Positive upwards, rad.
-        confidence: 0 to 1.
-        energy: Loudness as the robot reports it.
-        head_in_torso: x, y, z in m, roll, pitch, yaw in rad, at that time.
-    """
-
-    time: float
-    azimuth: float
-    elevation: float
-    confidence: float
-    energy: float
-    head_in_torso: tuple[float, ...]
+    time: float  # s, the robot's clock
+    azimuth: float  # rad, in the frame of the head, positive to the left
+    elevation: float  # rad, positive upwards
+    confidence: float  # 0 to 1
+    energy: float  # as the robot reports it
+    head_in_torso: tuple[float, ...]  # x, y, z in m, roll, pitch, yaw in rad, at that time
 
 
 def read_direction(value: Any) -> Direction | None:
-    """Direction from an event; None for one that holds none.
+    """Direction from an event, [[s, us], [azimuth, elevation, confidence, energy], head in torso, head in robot].
 
-    Args:
-        value: [[s, us], [azimuth, elevation, confidence, energy], head in torso, head in robot].
+    None for an event without one.
     """
     if not isinstance(value, (list, tuple)) or len(value) < 3 or len(value[1]) < 3 or len(value[2]) != 6:
         return None
@@ -58,15 +45,14 @@ def read_direction(value: Any) -> Direction | None:
 
 
 class SoundDirections:
-    """Has the robot locate sounds while that is wanted, after a lost connection as well."""
+    """Has the robot locate sounds while that is wanted, also after a lost connection."""
 
     def __init__(self, robot: Any, subscriber: str, sensitivity: float, sink: Callable[[Direction], None]) -> None:
-        """Begin without; the robot need not be there yet.
+        """Start idle; the robot need not be connected yet.
 
         Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            subscriber: Name under which the robot knows who listens.
-            sensitivity: 0 to 1; below 0 leaves what the robot has.
+            subscriber: Name of the subscriber at the robot.
+            sensitivity: 0 to 1; below 0 leaves the robot's own.
             sink: Gets each direction, in a thread of libqi.
         """
         self._robot = robot
@@ -78,11 +64,9 @@ class SoundDirections:
         self._locating = LazySubscription(robot, "sound localisation", self._begin, self._end)
 
     def want(self, wanted: bool) -> None:
-        """Locate sounds, or not, from now on."""
         self._locating.want(wanted)
 
     def report(self) -> Report:
-        """Whether sounds are located."""
         values = {"module": self._module, "last error": self._locating.problem}
         if not self._locating.wanted:
             return Report(Level.OK, "nobody listens", values)
@@ -92,7 +76,6 @@ class SoundDirections:
         return Report(Level.ERROR, f"sounds cannot be located: {problem}", values)
 
     def close(self) -> None:
-        """Locate no more."""
         self._locating.close(CLOSE_LIMIT)
 
     def _begin(self) -> None:
@@ -110,11 +93,7 @@ class SoundDirections:
         self._ask("unsubscribe", self._subscriber)
 
     def _find_module(self) -> str:
-        """The module that this robot has.
-
-        Raises:
-            NaoError: If it has neither, or cannot be asked.
-        """
+        """The module that this robot has; raises NaoError if it has neither, or cannot be asked."""
         missing: NaoError | None = None
         for module in MODULES:
             try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 from typing import Any
 
@@ -12,8 +11,6 @@ from ...base.cancellation import CancellationToken
 from ...robot.robot_task import run_task
 from .audio_requests import RecordingRequest
 
-log = logging.getLogger(__name__)
-
 PLAYER, RECORDER, DEVICE = "ALAudioPlayer", "ALAudioRecorder", "ALAudioDevice"
 ANSWER_LIMIT = 2.0
 FILE_LIMIT = 10.0
@@ -21,33 +18,24 @@ FILE_LIMIT = 10.0
 
 
 class AudioPlayer:
-    """Sound files and volume of one robot. Any thread may call; all of it ends with `interrupt`."""
+    """Sound files and volume of one robot. Any thread may call; all of it ends with `interrupt`.
+
+    Methods raise NaoError if the robot refuses or cannot be asked.
+    """
 
     def __init__(self, robot: Any, clock: Any, interrupt: CancellationToken) -> None:
-        """Do nothing yet; the robot need not be there.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            clock: The robot's time: `wait(duration, interrupt)`.
-            interrupt: Ends what is played and recorded.
-        """
         self._robot = robot
         self._clock = clock
         self._interrupt = interrupt
         self._recording = threading.Lock()
 
     def play(self, file: str) -> None:
-        """Play a file to its end.
-
-        Raises:
-            NaoError: If the robot cannot.
-            Preempted: If it was interrupted.
-        """
+        """Play a file to its end; raises Preempted if interrupted."""
         call = self._robot.proxy(PLAYER).call_async("playFile", file)
         run_task(call, self._interrupt, lambda: self._ask(PLAYER, "stopAll"))
 
     def record(self, request: RecordingRequest) -> None:
-        """Record the microphones, from now on until the time is over.
+        """Record the microphones until the time is over.
 
         Raises:
             NaoError: If the robot cannot, or if a recording is under way.
@@ -90,19 +78,10 @@ class AudioPlayer:
             connection.remove_listener(on_state)
 
     def volume(self) -> int:
-        """Volume of the loudspeakers, 0 to 100.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
+        """0 to 100."""
         return int(self._ask(DEVICE, "getOutputVolume"))
 
     def set_volume(self, volume: int) -> None:
-        """Set the volume of the loudspeakers.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
         self._ask(DEVICE, "setOutputVolume", volume)
 
     def _ask(self, module: str, method: str, *arguments: Any, limit: float = ANSWER_LIMIT) -> Any:

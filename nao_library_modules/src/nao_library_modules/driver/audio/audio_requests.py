@@ -1,4 +1,4 @@
-"""What clients of nao_audio ask for, checked and in the words of NAOqi. No ROS."""
+"""Requests to nao_audio, checked and in NAOqi's terms. No ROS."""
 
 from __future__ import annotations
 
@@ -18,13 +18,9 @@ CHANNELS = ("left", "right", "front", "rear")
 
 
 def file_on_robot(name: str) -> str:
-    """Full name of a file on the robot.
+    """Full name of a file on the robot, from one that is absolute or relative to the home of its user.
 
-    Args:
-        name: Relative to the home of the robot's user, or in full.
-
-    Raises:
-        BadGoal: If it leads out of that home.
+    Raises BadGoal if it leads out of that home.
     """
     allowed = f"a name inside {HOME}"
     if not name.strip() or "\0" in name or name.endswith("/"):
@@ -39,35 +35,27 @@ def file_on_robot(name: str) -> str:
 
 @dataclass(frozen=True)
 class RecordingRequest:
-    """A recording of the microphones.
+    """A recording of the microphones."""
 
-    Attributes:
-        file: Full name on the robot.
-        seconds: How long.
-        kind: wav or ogg.
-        rate: Samples a second.
-        channels: A flag for each of left, right, front, rear: 0 or 1.
-    """
-
-    file: str
-    seconds: int
-    kind: str
-    rate: int
-    channels: tuple[int, ...]
+    file: str  # full name on the robot
+    seconds: int  # duration
+    kind: str  # wav or ogg
+    rate: int  # Hz
+    channels: tuple[int, ...]  # 0 or 1 for each of left, right, front, rear
 
 
 def read_recording(file: str, seconds: int, kind: int, channels: Sequence[bool], rate: int) -> RecordingRequest:
     """Check a request.
 
     Args:
-        file: Name of the file; without an ending it gets that of its kind.
-        seconds: How long.
+        file: Without an ending it gets that of its kind.
+        seconds: Duration.
         kind: 0 wav, 1 ogg.
         channels: Whether left, right, front and rear are wanted.
         rate: Hz.
 
     Raises:
-        BadGoal: If something in it will not do. Which channels go with which rate is the robot's to say.
+        BadGoal: For a bad value. Which channels go with which rate is up to the robot.
     """
     if kind not in KINDS:
         raise BadGoal("audio_type", kind, "0 (wav) or 1 (ogg)")
@@ -84,11 +72,7 @@ def read_recording(file: str, seconds: int, kind: int, channels: Sequence[bool],
 
 
 def read_volume(volume: int) -> int:
-    """Check a volume in percent.
-
-    Raises:
-        BadGoal: If it is none.
-    """
+    """Check a volume in percent; raises BadGoal."""
     if not 0 <= volume <= 100:
         raise BadGoal("master_volume", volume, "0 to 100")
     return volume

@@ -1,4 +1,4 @@
-"""The microphones of the robot, heard while somebody wants to. No ROS."""
+"""The robot's microphones, heard while somebody listens. No ROS."""
 
 from __future__ import annotations
 
@@ -28,19 +28,12 @@ CLOSE_LIMIT = 2.0
 
 @dataclass(frozen=True)
 class Block:
-    """What the microphones heard.
-
-    Attributes:
-        time: Of the first sample.
-        rate: Samples a second and channel, Hz.
-        places: Where the microphone of each channel is, as numbered in nao_library_msgs/AudioBuffer.
-        samples: 16 bit, one of each channel and then the next.
-    """
+    """A block of sound; its time is that of the first sample."""
 
     time: BlockTime
-    rate: int
-    places: tuple[int, ...]
-    samples: Sequence[int]
+    rate: int  # Hz, of each channel
+    places: tuple[int, ...]  # of each channel's microphone, as numbered in nao_library_msgs/AudioBuffer
+    samples: Sequence[int]  # 16 bit, interleaved
 
 
 class SoundReceiver(ALModule):
@@ -50,21 +43,20 @@ class SoundReceiver(ALModule):
         """Register with the newest broker.
 
         Args:
-            name: Name for the robot.
+            name: Name at the robot.
             take: Gets channels, frames, time ([s, us]) and sound of each block, in the thread of the module.
         """
         self.__take = take
         super().__init__(name)
 
     def processRemote(self, channels: int, frames: int, stamp: Any, sound: bytes) -> None:  # noqa: N802  NAOqi's name
-        """Take a block."""
         self.__take(channels, frames, stamp, sound)
 
 
 class Microphone:
-    """Blocks of sound while they are wanted, after a lost connection as well.
+    """Blocks of sound while they are wanted, also after a lost connection.
 
-    The robot has to reach this computer for it. If it cannot, that is told, and everything else goes on.
+    The robot has to reach this computer for it. If it cannot, the report and the log say so.
     """
 
     def __init__(
@@ -75,11 +67,10 @@ class Microphone:
         sink: Callable[[Block], None],
         wall_time: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Begin without hearing; the robot need not be there yet.
+        """Start idle; the robot need not be connected yet.
 
         Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            name: Name under which the robot knows the module.
+            name: Name of the module at the robot.
             clock: ROS time: `now()`.
             sink: Gets each block, in the thread of the module.
             wall_time: Time of this computer, s.
@@ -101,15 +92,10 @@ class Microphone:
         self._hearing = LazySubscription(robot, "microphones", self._begin, self._end, self._is_alive)
 
     def want(self, wanted: bool) -> None:
-        """Hear, or not, from now on."""
         self._hearing.want(wanted)
 
     def set_rate(self, rate: int) -> None:
-        """Hear at another rate.
-
-        Raises:
-            NaoError: If the robot does not have it.
-        """
+        """Change the rate, Hz; raises NaoError if the robot does not have it."""
         if rate not in FORMATS:
             allowed = " or ".join(f"{each} ({channels})" for each, channels in RATES.items())
             raise NaoError(f"frequency is {rate!r}: {allowed}")
@@ -118,7 +104,6 @@ class Microphone:
             self._hearing.restart()
 
     def report(self) -> Report:
-        """Whether blocks come, and how many are missing."""
         with self._lock:
             values = {
                 "frequency (Hz)": str(self._rate),
@@ -136,7 +121,6 @@ class Microphone:
         return Report(Level.OK, "heard", values)
 
     def close(self) -> None:
-        """Hear no more."""
         self._hearing.close(CLOSE_LIMIT)
         if self._broker is not None:
             self._broker.shutdown()
@@ -157,10 +141,9 @@ class Microphone:
         self._ask("unsubscribe", self._name)
 
     def _serve(self) -> None:
-        """Be there for the robot to call.
+        """Register the module that the robot calls.
 
-        Raises:
-            NaoError: If that does not work, or not yet: the broker registers again what a lost robot has forgotten.
+        Raises NaoError if that fails or is not done yet: the broker registers again at a robot that was lost.
         """
         connection = self._robot.connection
         if self._broker is None:

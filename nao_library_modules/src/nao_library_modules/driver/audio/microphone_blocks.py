@@ -1,4 +1,4 @@
-"""Blocks of sound from the microphones: format, channels, time, and which are missing. No ROS."""
+"""Blocks of sound from the microphones: format, channels, time, and lost ones. No ROS."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ GAP = 0.5
 
 
 def channel_map(channels: int, version: str) -> tuple[int, ...]:
-    """Where the microphones are that the channels of a block come from.
+    """Positions of the microphones that the channels of a block come from.
 
     Args:
         channels: 4, or 1 for the front one.
-        version: Version of the head or body, such as "6.0.0"; anything else is taken for a V6.
+        version: Version of the head or body, such as "6.0.0"; anything else counts as V6.
     """
     major = version.lstrip("Vv").split(".")[0]
     older = major.isdigit() and int(major) < FIRST_OF_CORNERS
@@ -48,15 +48,9 @@ def channel_map(channels: int, version: str) -> tuple[int, ...]:
 
 
 def read_samples(sound: bytes, channels: int, frames: int) -> array:
-    """The samples of a block: one of each channel, then the next.
+    """Interleaved samples of a block of 16 bit little-endian sound.
 
-    Args:
-        sound: 16 bit, little end first.
-        channels: How many there should be.
-        frames: How many samples of each.
-
-    Raises:
-        NaoError: If there are more or fewer.
+    Raises NaoError unless there are `frames` samples of each of `channels`.
     """
     samples = array("h")
     if len(sound) != channels * frames * samples.itemsize:
@@ -69,32 +63,25 @@ def read_samples(sound: bytes, channels: int, frames: int) -> array:
 
 @dataclass(frozen=True)
 class BlockTime:
-    """When a block was heard.
+    """Time of a block's first sample, s."""
 
-    Attributes:
-        robot: Robot's time of the first sample, s.
-        ros: The same moment in ROS time, s.
-    """
-
-    robot: float
-    ros: float
+    robot: float  # robot's clock
+    ros: float  # ROS time
 
 
 class BlockClock:
-    """Times of the blocks of one stream, and how many are missing. For one thread.
+    """Times of the blocks of one stream, and the number lost. For one thread.
 
-    A block comes some time after it was heard, sometimes sooner and sometimes later. The quickest ones tell how the
-    robot's clock and ROS time go together.
+    A block arrives with a varying delay. The quickest ones give the offset from the robot's clock to ROS time.
     """
 
     def __init__(self) -> None:
-        """Begin a stream."""
         self.lost = 0
         self._expected: float | None = None
         self._offset: float | None = None
 
     def restart(self) -> None:
-        """Begin another stream: the time until its first block is no gap, and its clock may be another one."""
+        """Begin another stream: the time until its first block is no gap, and its clock may differ."""
         self._expected = self._offset = None
 
     def take(self, stamp: Sequence[float], duration: float, now: float) -> BlockTime:
@@ -102,7 +89,7 @@ class BlockClock:
 
         Args:
             stamp: Robot's time of its first sample: [s, us].
-            duration: How long it is, s.
+            duration: s.
             now: ROS time of its arrival, s.
         """
         robot = stamp[0] + 1e-6 * stamp[1]

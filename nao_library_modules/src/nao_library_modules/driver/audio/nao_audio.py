@@ -53,36 +53,25 @@ class NaoAudioServices:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
-        self._node = node
-        sensitivity = self._node.param("~sensitivity", ROBOTS_OWN)
+        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
+        sensitivity = node.param("~sensitivity", ROBOTS_OWN)
         sensitivity = number_parameter("~sensitivity", sensitivity, limit("share"), also=ROBOTS_OWN)
         self._interrupt = CancellationToken()
         self._frame = tf_prefix() + TORSO
         self._player = AudioPlayer(robot, RosClock(), self._interrupt)
-        self._directions = SoundDirections(robot, name_for_robot(self._node.name), sensitivity, self._publish)
+        self._directions = SoundDirections(robot, name_for_robot(node.name), sensitivity, self._publish)
         name = "nao_audio/audio_source_localization"
-        self._topic = self._node.publisher(name, AudioSourceLocalization, queue_size=10)
+        self._topic = node.publisher(name, AudioSourceLocalization, queue_size=10)
         self._lazy = LazyTopic(self._topic, self._directions.want)
-        self._node.offer("nao_audio/play_file", AudioPlayback, self._play)
-        self._node.offer("nao_audio/record", AudioRecorder, self._record)
-        self._node.offer("nao_audio/master_volume", SetAudioMasterVolume, self._set_volume)
-        self._node.offer("nao_audio/get_master_volume", GetAudioMasterVolume, self._volume)
+        node.offer("nao_audio/play_file", AudioPlayback, self._play)
+        node.offer("nao_audio/record", AudioRecorder, self._record)
+        node.offer("nao_audio/master_volume", SetAudioMasterVolume, self._set_volume)
+        node.offer("nao_audio/get_master_volume", GetAudioMasterVolume, self._volume)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"sound localisation": self._directions.report}
 
     def close(self) -> None:
-        """End what is played, recorded and located."""
         self._interrupt.stop()
         self._directions.close()
 

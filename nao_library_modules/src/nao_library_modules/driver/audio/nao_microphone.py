@@ -35,34 +35,23 @@ class NaoMicrophone:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer the topic; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
-        self._node = node
+        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._use_ros_time = True
-        self._frame = tf_prefix() + str(self._node.param("~frame_id", HEAD)).lstrip("/")
-        self._microphone = Microphone(robot, name_for_robot(self._node.name), RosClock(), self._publish)
+        self._frame = tf_prefix() + str(node.param("~frame_id", HEAD)).lstrip("/")
+        self._microphone = Microphone(robot, name_for_robot(node.name), RosClock(), self._publish)
         node.if_it_fails(self._microphone.close)
         fields = (
             Field("frequency", min(FORMATS), "samples a second and channel", min(FORMATS), max(FORMATS), RATES),
             Field("use_ros_time", is_wallclock(), "whether stamps are in ROS time, instead of the robot's own"),
         )
         self._server = serve(node, fields, self._changed)
-        self._audio = self._node.publisher("~audio_raw", AudioBuffer, queue_size=QUEUE)
+        self._audio = node.publisher("~audio_raw", AudioBuffer, queue_size=QUEUE)
         self._lazy = LazyTopic(self._audio, self._microphone.want)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"microphones": self._microphone.report}
 
     def close(self) -> None:
-        """Hear no more."""
         self._microphone.close()
 
     def _changed(self, _before: Mapping[str, Any], after: Mapping[str, Any]) -> Mapping[str, Any]:

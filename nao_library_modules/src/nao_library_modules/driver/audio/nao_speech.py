@@ -1,4 +1,4 @@
-"""The node nao_speech: the one that speaks, and listens for words."""
+"""The node nao_speech: speech, and recognition of words."""
 
 from __future__ import annotations
 
@@ -79,15 +79,7 @@ class NaoSpeech:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong, or another node speaks already.
-        """
+        """Raises NaoError for a wrong parameter, or if another node speaks already; the robot need not be connected."""
         self._node = node
         other = node_that_offers(node.resolve(START))
         if other:
@@ -115,12 +107,10 @@ class NaoSpeech:
         self._node.offer(START, Empty, lambda _: self._recognition.start())
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         goals = {f"goals {name}": server.counter.report for name, server in self._goals.items()}
         return {"speech": self._speech.report, "recognition": self._recognition.report, **goals}
 
     def close(self) -> None:
-        """Be silent and listen no longer."""
         self._robot.connection.remove_listener(self._connection_changed)
         for server in self._goals.values():
             server.close(SHUTDOWN_LIMIT / len(self._goals))
@@ -165,7 +155,7 @@ class NaoSpeech:
     # --- parameters -----------------------------------------------------------------------------------------------
 
     def _changed(self, before: Mapping[str, Any], after: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Take new values of the parameters; those of the first time are not tried on the robot."""
+        """Apply new values of the parameters; the first ones are not tried on the robot."""
         former, self._settings = self._settings, from_config(after)
         try:
             if before:
@@ -178,7 +168,7 @@ class NaoSpeech:
         return {**after, "vocabulary": join_vocabulary(self._settings.vocabulary)}
 
     def _try_voice(self, former: SpeechSettings, settings: SpeechSettings) -> None:
-        """Refuse what the robot does not have; one that is not there is asked when it speaks."""
+        """Refuse a voice or language that the robot lacks; one that is not connected is asked at the next text."""
         if self._robot.connection.state != "connected":
             return
         for name, method in KNOWN.items():
@@ -191,7 +181,7 @@ class NaoSpeech:
     # --- the connection -------------------------------------------------------------------------------------------
 
     def _read_parameters(self) -> dict[str, Any]:
-        """Private parameters that somebody has set, in today's form; former names are gone afterwards."""
+        """Private parameters that are set, in today's form; former names are deleted."""
         given = self._node.param(self._node.name, {})
         values = given_parameters(given)
         for former in FORMER_NAMES.values():
@@ -200,13 +190,13 @@ class NaoSpeech:
         return values
 
     def _connection_changed(self, *_: Any) -> None:
-        """Called from the thread that the connection has for its listeners."""
+        """Called from the connection's thread for listeners."""
         if self._robot.connection.state == "connected":
             self._speech.robot_is_back()
 
 
 def _listening(settings: SpeechSettings) -> tuple[Any, ...]:
-    """The part of the settings that recognition depends on."""
+    """The settings that recognition depends on."""
     return settings.vocabulary, settings.audio_expression, settings.visual_expression, settings.word_spotting
 
 

@@ -1,4 +1,4 @@
-"""Texts that the robot says, one after the other and each once. No ROS."""
+"""A queue of texts that the robot says, each once. No ROS."""
 
 from __future__ import annotations
 
@@ -33,29 +33,21 @@ CLOSE_LIMIT = 2.0
 
 
 class NothingSaid(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """The robot took a text, and then said nothing for long.
-
-    Attributes:
-        limit: s after which it was given up.
-    """
+    """The robot accepted a text, and then said nothing for `limit` s."""
 
     def __init__(self, limit: float) -> None:
-        """Compose the text."""
         super().__init__(f"the robot has said nothing for {limit:g} s: the text was given up")
         self.limit = limit
 
 
 class Utterance:
-    """A text on its way through the queue.
+    """A text in the queue.
 
-    Attributes:
-        text: What is said.
-        ended: Set when it was said, or will not be.
-        error: Why it was not, or not to its end; None if it was.
+    Callbacks run in threads of the queue or of libqi and must not wait. `ended` is set when the text was said, or will
+    not be; `error` is the reason if it was not said to its end.
     """
 
     def __init__(self, text: str, on_start: Callable[[], None], on_failure: Callable[[Exception], None]) -> None:
-        """Keep text and callbacks, which come from threads of the queue or of libqi and must not wait."""
         self.text = text
         self.ended = threading.Event()
         self.error: Exception | None = None
@@ -67,14 +59,13 @@ class Utterance:
         self._started = False
 
     def start(self) -> None:
-        """Tell, once, that the robot began to say it."""
+        """Report, once, that the robot began to say it."""
         with self._lock:
             first, self._started = not self._started, True
         if first:
             self._on_start()
 
     def end(self, error: Exception | None) -> None:
-        """Note how it ended."""
         self.error = error
         if isinstance(error, NaoError):
             self._on_failure(error)
@@ -82,18 +73,17 @@ class Utterance:
 
 
 class Speech:
-    """The one voice of the robot: a queue of texts, and a thread that has them said.
+    """The robot's voice: a queue of texts, and a thread that has them said.
 
     Any thread may call. The lock guards queue and counters; it is not held during calls to the robot.
     """
 
     def __init__(self, robot: Any, clock: Any, settings: Callable[[], SpeechSettings]) -> None:
-        """Begin with an empty queue; the robot need not be there yet.
+        """Start with an empty queue; the robot need not be connected yet.
 
         Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
             clock: The robot's time: `now()` and `wait(duration, interrupt)`.
-            settings: Gives what the next text is said with.
+            settings: Gives the settings of the next text.
         """
         self._robot = robot
         self._clock = clock
@@ -117,7 +107,7 @@ class Speech:
         on_start: Callable[[], None] = lambda: None,
         on_failure: Callable[[Exception], None] = lambda error: None,
     ) -> Utterance:
-        """Put a text at the end of the queue.
+        """Append a text to the queue.
 
         Args:
             text: What to say.
@@ -142,9 +132,7 @@ class Speech:
     def silence(self, utterance: Utterance, reason: Exception | None = None) -> None:
         """End a text: at once if it is being said, and before it begins if it waits.
 
-        Args:
-            utterance: What `say` gave.
-            reason: What its `error` is then; Preempted if none is given.
+        Its `error` becomes `reason`, or Preempted if none is given.
         """
         with self._news:
             waits = utterance in self._waiting
@@ -156,13 +144,12 @@ class Speech:
             utterance.end(reason or Preempted())
 
     def robot_is_back(self) -> None:
-        """Listen to the robot's words again, after a connection was made anew, and put back what is still owed."""
+        """Subscribe events again after a reconnection, and restore the voice if that is still owed."""
         self._events.renew()
         with self._news:
             self._news.notify_all()
 
     def report(self) -> Report:
-        """What was said, and what was not."""
         with self._news:
             values = {name: str(count) for name, count in self._counts.items()}
             values["waiting"] = str(len(self._waiting))
@@ -173,7 +160,7 @@ class Speech:
         return Report(Level.OK, "ready for texts", values)
 
     def close(self) -> None:
-        """Be silent, now and for all texts to come, and give the voice back."""
+        """Be silent, now and for all texts to come, and restore the voice."""
         with self._news:
             self._closed = True
             waiting = [*self._waiting]
@@ -202,12 +189,12 @@ class Speech:
             utterance.end(error)
 
     def _can_give_back(self) -> bool:
-        """Whether the robot is back that was lost with a voice that is not its own; one attempt a connection."""
+        """Whether a lost robot is back whose voice has to be restored; one attempt a connection."""
         connection = self._robot.connection
         return self._voice.owed and connection.state == "connected" and self._gave_back_to != connection.generation
 
     def _outcome(self, utterance: Utterance) -> Exception | None:
-        """Have a text said; why it was not, if so."""
+        """Have a text said; the error if it was not."""
         try:
             self._speak(utterance)
         except Preempted as signal:

@@ -1,4 +1,4 @@
-"""Recognition of words: vocabulary, start and stop, and what was heard. No ROS."""
+"""Recognition of words. No ROS."""
 
 from __future__ import annotations
 
@@ -26,26 +26,16 @@ SPOTTED = re.compile(r"<\.\.\.>")
 
 @dataclass(frozen=True)
 class Heard:
-    """What the robot heard.
-
-    Attributes:
-        words: The best word or phrase first.
-        confidences: 0 to 1, one each.
-    """
+    """Recognised words or phrases, the best first."""
 
     words: tuple[str, ...]
-    confidences: tuple[float, ...]
+    confidences: tuple[float, ...]  # 0 to 1, one each
 
 
 class RecognitionInUse(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """Somebody else listens for words, and a new vocabulary would take them away.
-
-    Attributes:
-        owners: Names of the subscribers.
-    """
+    """Another subscriber listens for words, and a new vocabulary would take them away."""
 
     def __init__(self, owners: Sequence[str]) -> None:
-        """Compose the text."""
         super().__init__(f"the recognition of words is in use by {', '.join(owners)}: stop it there first")
         self.owners = list(owners)
 
@@ -56,13 +46,12 @@ class Recognition:
     def __init__(
         self, robot: Any, subscriber: str, settings: Callable[[], SpeechSettings], sink: Callable[[Heard], None]
     ) -> None:
-        """Begin without listening; the robot need not be there yet.
+        """Start without listening; the robot need not be connected yet.
 
         Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            subscriber: Name under which the robot knows who listens.
+            subscriber: Name of the subscriber at the robot.
             settings: Gives vocabulary and expressions.
-            sink: Gets what was heard, whoever has started the recognition; in a thread of libqi.
+            sink: Gets recognised words, whoever has started the recognition; in a thread of libqi.
         """
         self._robot = robot
         self._subscriber = subscriber
@@ -77,27 +66,22 @@ class Recognition:
 
     @property
     def running(self) -> bool:
-        """Whether this subscriber listens."""
         return self._listening.wanted
 
     def start(self) -> None:
         """Begin to listen; go on after a lost connection. No effect if it listens.
 
         Raises:
-            NaoError: If there is no vocabulary, the robot cannot be asked, or somebody else uses the recognition.
+            NaoError: If there is no vocabulary, the robot cannot be asked, or another subscriber uses the recognition.
         """
         self._listening.start_now()
 
     def stop(self) -> None:
-        """Listen no longer. No effect if it does not.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
+        """Listen no longer. No effect if it does not. Raises NaoError if the robot cannot be asked."""
         self._listening.stop_now()
 
     def apply(self) -> None:
-        """Use the settings of now, if it listens.
+        """Use the present settings, if it listens.
 
         Raises:
             NaoError: If the robot cannot; then it listens as before, or not at all.
@@ -112,7 +96,6 @@ class Recognition:
                 self._ask("pause", False)
 
     def report(self) -> Report:
-        """Whether it listens, and for what."""
         words = " / ".join(self._settings().vocabulary)
         values = {"vocabulary": words, "last error": self._listening.problem or self._hearing.problem}
         if not self._listening.wanted:
@@ -122,7 +105,6 @@ class Recognition:
         return Report(Level.ERROR, f"cannot listen: {self._listening.problem or 'the robot is not connected'}", values)
 
     def close(self) -> None:
-        """Listen no longer, for good."""
         self._listening.close(CLOSE_LIMIT)
         self._hearing.close(CLOSE_LIMIT)
 
@@ -168,10 +150,9 @@ class Recognition:
 
 
 def read_heard(value: Any) -> Heard | None:
-    """What an event says was heard; None for one that only takes back what was heard before.
+    """Words from an event: [phrase, confidence, ...], the best first; "<...> phrase <...>" if spotted.
 
-    Args:
-        value: [phrase, confidence, phrase, confidence, ...], the best first; "<...> phrase <...>" if spotted.
+    None for an event that only takes back earlier words.
     """
     if not isinstance(value, (list, tuple)) or len(value) < 2:
         return None

@@ -1,4 +1,4 @@
-"""How the robot speaks and what it listens for: parameters of nao_speech, old and new. No ROS."""
+"""Settings of speech and recognition: parameters of nao_speech, old and new. No ROS."""
 
 from __future__ import annotations
 
@@ -22,21 +22,11 @@ FORMER_NAMES = {
 
 @dataclass(frozen=True)
 class SpeechSettings:
-    """What a text is said with, and what is listened for.
+    """Settings of speech and recognition; `PARAMETERS` of nao_speech describes them."""
 
-    Attributes:
-        voice: Name of the voice; empty for the robot's own.
-        language: Name of the language; empty for the robot's own.
-        volume: 0 to 1; None for the robot's own.
-        vocabulary: Words and phrases that are listened for.
-        audio_expression: Whether the robot beeps when it begins to listen.
-        visual_expression: Whether its eyes show that it listens.
-        word_spotting: Whether words are found within longer sentences.
-    """
-
-    voice: str = ""
-    language: str = ""
-    volume: float | None = None
+    voice: str = ""  # empty: the robot's own
+    language: str = ""  # empty: the robot's own
+    volume: float | None = None  # 0 to 1; None: the robot's own
     vocabulary: tuple[str, ...] = ()
     audio_expression: bool = True
     visual_expression: bool = True
@@ -44,11 +34,7 @@ class SpeechSettings:
 
 
 def from_config(config: Mapping[str, Any]) -> SpeechSettings:
-    """Settings from the values of the parameters.
-
-    Args:
-        config: Name -> value of each; volume in percent or -1, vocabulary as "yes / no".
-    """
+    """Settings from the values of the parameters: volume in percent or -1, vocabulary as "yes / no"."""
     volume = config["volume"]
     return SpeechSettings(
         voice=config["voice"].strip(),
@@ -62,16 +48,10 @@ def from_config(config: Mapping[str, Any]) -> SpeechSettings:
 
 
 def given_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """The parameters that somebody has set, in the form of today.
+    """Private parameters that are set, in the form of today; raises NaoError for a wrong value.
 
     The first versions of nao_speech had the volume as a share of 1, the vocabulary as a list, and longer names for the
-    switches: all of that is understood.
-
-    Args:
-        parameters: Name -> value of the private parameters of the node.
-
-    Raises:
-        NaoError: If one has a value that it cannot have.
+    switches: all of that is accepted.
     """
     given: dict[str, Any] = {}
     for name in ("voice", "language"):
@@ -91,11 +71,7 @@ def given_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
 def percent(volume: Any) -> int:
     """Volume in percent, or -1 for the robot's own.
 
-    Args:
-        volume: A whole number in percent, or a number with a point as a share of 1.
-
-    Raises:
-        NaoError: If it is neither.
+    Takes an integer in percent, or a float as a share of 1; raises NaoError for anything else.
     """
     if isinstance(volume, float) and 0.0 <= volume <= 1.0:
         return round(FULL_VOLUME * volume)
@@ -111,11 +87,7 @@ def split_vocabulary(text: str) -> tuple[str, ...]:
 
 
 def join_vocabulary(words: Sequence[str]) -> str:
-    """Words and phrases as one text.
-
-    Raises:
-        NaoError: If one of them is empty or holds what separates them.
-    """
+    """The inverse of `split_vocabulary`; raises NaoError if a word is empty or holds the separator."""
     for word in words:
         if SEPARATOR in word:
             raise NaoError(f"field words: {word!r} holds {SEPARATOR!r}, which separates words")

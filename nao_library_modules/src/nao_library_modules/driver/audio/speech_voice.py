@@ -1,4 +1,4 @@
-"""Voice, language and volume that a text is said with, and what the robot had before. No ROS."""
+"""Voice, language and volume of a text, restored afterwards. No ROS."""
 
 from __future__ import annotations
 
@@ -24,33 +24,23 @@ SAME_VOLUME = 0.005
 
 
 class BorrowedVoice:
-    """Changes how the robot speaks for a while, and puts it back.
+    """Changes how the robot speaks for a while, and restores it.
 
-    What somebody else has changed meanwhile is left alone. What could not be put back, because the robot was lost, is
-    put back when it is there again. Used by one thread at a time.
+    Changes that others make meanwhile are left alone. What could not be restored because the robot was lost is restored
+    when it is back. Used by one thread at a time.
     """
 
     def __init__(self, robot: Any) -> None:
-        """Nothing is borrowed.
-
-        Args:
-            robot: Its proxies, see `nao_library_modules.robot`.
-        """
         self._robot = robot
         self._before: dict[str, Any] = {}
         self._ours: dict[str, Any] = {}
 
     @property
     def owed(self) -> bool:
-        """Whether something is to be put back."""
         return bool(self._before)
 
     def take(self, settings: SpeechSettings) -> None:
-        """Have the robot speak as the settings say; what they leave open stays as it is.
-
-        Raises:
-            NaoError: If the robot cannot; then it speaks as before.
-        """
+        """Apply the settings that are given; raises NaoError if the robot cannot, and then it speaks as before."""
         if self.owed:
             self._settle()
         wanted = {"language": settings.language, "voice": settings.voice, "volume": settings.volume}
@@ -70,11 +60,7 @@ class BorrowedVoice:
             raise
 
     def give_back(self) -> None:
-        """Put back what was there.
-
-        Raises:
-            NaoError: If the robot cannot be asked; then it is still owed.
-        """
+        """Restore the former values; raises NaoError if the robot cannot be asked, and then they are still owed."""
         if not self.owed:
             return
         now = {name: self._get(name) for name in self._before}
@@ -88,7 +74,7 @@ class BorrowedVoice:
         self._before, self._ours = {}, {}
 
     def _settle(self) -> None:
-        """Give back what the robot takes; what it does not take must not keep it silent."""
+        """Restore what the robot accepts; what it refuses must not keep it silent."""
         try:
             self.give_back()
         except NaoError as error:
