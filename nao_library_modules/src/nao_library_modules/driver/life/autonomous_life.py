@@ -23,17 +23,11 @@ CLOSE_LIMIT = 2.0
 
 @dataclass(frozen=True)
 class Ability:
-    """Something that a robot does by itself.
+    """Something that a robot does by itself."""
 
-    Attributes:
-        name: Name of its services.
-        life: What ALAutonomousLife calls it.
-        module: The module that older robots have for it.
-    """
-
-    name: str
-    life: str
-    module: str
+    name: str  # of its services
+    life: str  # name in ALAutonomousLife
+    module: str  # that older robots have for it
 
 
 ABILITIES = tuple(
@@ -49,14 +43,12 @@ ABILITIES = tuple(
 
 
 class AutonomousLife:
-    """Any thread may call."""
+    """Autonomous life of one robot. Any thread may call. Methods raise NaoError if the robot refuses or lacks it."""
 
     def __init__(self, robot: Any, tell: Callable[[str], None]) -> None:
-        """Begin to listen to the state; the robot need not be there yet.
+        """Begin to listen to the state; the robot need not be connected yet.
 
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            tell: Gets each state, in a thread of libqi or of this object; must not wait.
+        `tell` gets each state, in a thread of libqi or of this object; it must not wait.
         """
         self._robot = robot
         self._tell = tell
@@ -66,30 +58,16 @@ class AutonomousLife:
         self._listening.want(True)
 
     def set_state(self, state: str) -> None:
-        """Go to a state, and wait until it is there.
-
-        Raises:
-            NaoError: If the robot refuses or has no autonomous life.
-        """
+        """Change the state, and wait until it is reached."""
         self._robot.proxy(LIFE).call_async("setState", state).result(timeout=CHANGE_LIMIT)
 
     def set_enabled(self, ability: Ability, enabled: bool) -> None:
-        """Switch an ability on or off.
-
-        Raises:
-            NaoError: If the robot refuses or does not have it.
-        """
         try:
             self._ask(ability.module, "setEnabled", enabled)
         except UnknownModule:
             self._ask(LIFE, "setAutonomousAbilityEnabled", ability.life, enabled)
 
     def is_enabled(self, ability: Ability) -> bool:
-        """Whether an ability is switched on.
-
-        Raises:
-            NaoError: If the robot does not have it.
-        """
         try:
             return bool(self._ask(ability.module, "isEnabled"))
         except UnknownModule:
@@ -103,7 +81,6 @@ class AutonomousLife:
         return Report(Level.OK, f"unknown: {self._listening.problem or 'the robot is not connected'}", values)
 
     def close(self) -> None:
-        """Listen no more."""
         self._listening.close(CLOSE_LIMIT)
 
     def _begin(self) -> None:

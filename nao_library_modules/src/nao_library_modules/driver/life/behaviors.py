@@ -23,19 +23,9 @@ class Behaviors:
     """Lists and runs them. Any thread may call."""
 
     def __init__(self, robot: Any) -> None:
-        """Keep the robot; it need not be there yet.
-
-        Args:
-            robot: Its proxies, see `nao_library_modules.robot`.
-        """
         self._robot = robot
 
     def installed(self) -> list[str]:
-        """Their names.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
         return [str(name) for name in self._ask("getInstalledBehaviors")]
 
     def run(self, name: str, interrupt: CancellationToken) -> None:

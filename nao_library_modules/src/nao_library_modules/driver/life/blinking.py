@@ -1,4 +1,4 @@
-"""Eyes that blink in random colours until they are told to stop. No ROS."""
+"""Eyes that blink in random colours until they are stopped. No ROS."""
 
 from __future__ import annotations
 
@@ -29,28 +29,16 @@ Colour = Tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Blinks:
-    """How to blink.
+    """How to blink."""
 
-    Attributes:
-        colours: To choose from.
-        background: Between the blinks.
-        duration: Of one blink, s: a third to fade in, a third to hold, a third to fade out.
-        mean_pause: Between two of them, s.
-        deviation: Standard deviation of the pause, s.
-    """
-
-    colours: Sequence[Colour]
-    background: Colour
-    duration: float
-    mean_pause: float
-    deviation: float
+    colours: Sequence[Colour]  # to choose from
+    background: Colour  # between the blinks
+    duration: float  # of one blink, s: a third each to fade in, hold and fade out
+    mean_pause: float  # s
+    deviation: float  # standard deviation of the pause, s
 
     def check(self) -> None:
-        """See that they can be carried out.
-
-        Raises:
-            BadGoal: If not.
-        """
+        """Raises BadGoal if they cannot be carried out."""
         if not self.colours:
             raise BadGoal("colors", [], "at least one colour", problem="there is no colour to blink in")
         fields = [("bg_color", self.background), *((f"colors[{i}]", each) for i, each in enumerate(self.colours))]
@@ -62,20 +50,12 @@ class Blinks:
         require_zero_or("blink_rate_sd", self.deviation, DURATION)
 
     def pause(self, chance: random.Random) -> float:
-        """A pause between two blinks, s."""
         longest = self.mean_pause + LONGEST_PAUSE * self.deviation
         return min(max(chance.gauss(self.mean_pause, self.deviation), 0.0), longest)
 
 
 def fade(robot: Any, light: str, colour: Colour, duration: float, interrupt: CancellationToken) -> None:
-    """Fade a light or a group to a colour, and wait for the end.
-
-    Args:
-        robot: Its proxies, see `nao_library_modules.robot`.
-        light: As the robot names it.
-        colour: Red, green and blue, 0 to 1.
-        duration: s.
-        interrupt: Ends it.
+    """Fade a light or a group to a colour in `duration` s, and wait for the end.
 
     Raises:
         NaoError: If the robot refuses or is lost.
@@ -96,15 +76,15 @@ def blink(
     """Blink until the interrupt comes; the eyes have the background colour then.
 
     Args:
-        robot: Its proxies, see `nao_library_modules.robot`.
-        blinks: How.
+        robot: Gives proxies.
+        blinks: Colours and times.
         clock: Time of holds and pauses.
         interrupt: Ends it.
         tell: Gets the colour of each blink that begins.
         chance: Picks colours and pauses.
 
     Returns:
-        Whether somebody else blinks from now on.
+        Whether a newer goal replaces this one.
 
     Raises:
         NaoError: If the robot refuses or is lost.

@@ -29,27 +29,18 @@ class NaoAlife:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-        """
-        self._node = node
-        self._state = self._node.publisher("~state", String, queue_size=1, latch=True)
+        self._state = node.publisher("~state", String, queue_size=1, latch=True)
         self._life = AutonomousLife(robot, lambda state: publish(self._state, String(data=state)))
         for state in STATES:
-            self._node.offer(f"~{state}", Empty, lambda _, state=state: self._life.set_state(state))
+            node.offer(f"~{state}", Empty, lambda _, state=state: self._life.set_state(state))
         for ability in ABILITIES:
-            self._node.service(f"{ability.name}/set_enabled", SetBool, lambda r, a=ability: self._switch(a, r.data))
-            self._node.service(f"{ability.name}/is_enabled", Trigger, lambda _, a=ability: self._ask(a))
+            node.service(f"{ability.name}/set_enabled", SetBool, lambda r, a=ability: self._switch(a, r.data))
+            node.service(f"{ability.name}/is_enabled", Trigger, lambda _, a=ability: self._ask(a))
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"autonomous life": self._life.report}
 
     def close(self) -> None:
-        """Tell no more."""
         self._life.close()
 
     def _switch(self, ability: Ability, enabled: bool) -> SetBoolResponse:

@@ -30,27 +30,17 @@ class NaoBehaviors:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-        """
-        self._node = node
         self._robot = robot
         self._behaviors = Behaviors(robot)
         self._server = ConcurrentActionServer(lambda _: ROBOT, self._run, robot=robot)
-        name = "run_behavior"
-        self._node.action(name, RunBehaviorAction, self._server)
+        node.action("run_behavior", RunBehaviorAction, self._server)
         robot.connection.add_listener(self._connection_changed)
-        self._node.offer("get_installed_behaviors", GetInstalledBehaviors, self._installed)
+        node.offer("get_installed_behaviors", GetInstalledBehaviors, self._installed)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"goals run_behavior": self._server.counter.report}
 
     def close(self) -> None:
-        """Stop what runs."""
         self._robot.connection.remove_listener(self._connection_changed)
         self._server.close(SHUTDOWN_LIMIT)
 
@@ -62,7 +52,7 @@ class NaoBehaviors:
         return Outcome(RunBehaviorResult())
 
     def _connection_changed(self, state: Any) -> None:
-        """Called from the thread that the connection has for its listeners."""
+        """Called from the connection's thread for listeners."""
         if state == "lost":
             reason = self._robot.connection.last_error or "no answer"
             self._server.interrupt_all(RobotLost(self._robot.address, reason))

@@ -37,28 +37,19 @@ class NaoLeds:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-        """
-        self._node = node
         self._robot = robot
         self._clock = RosClock()
         self._chance = random.Random()
         self._interrupt = CancellationToken()
         self._server = ConcurrentActionServer(lambda _: frozenset({EYES}), self._blink, with_feedback=True, robot=robot)
-        self._node.action("blink", BlinkAction, self._server)
+        node.action("blink", BlinkAction, self._server)
         robot.connection.add_listener(self._connection_changed)
-        self._node.subscriber("fade_rgb", FadeRGB, self._fade, queue_size=QUEUE)
+        node.subscriber("fade_rgb", FadeRGB, self._fade, queue_size=QUEUE)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"goals blink": self._server.counter.report}
 
     def close(self) -> None:
-        """End fades and goals."""
         self._robot.connection.remove_listener(self._connection_changed)
         self._interrupt.stop()
         self._server.close(SHUTDOWN_LIMIT)
@@ -92,7 +83,7 @@ class NaoLeds:
         return Outcome(BlinkResult(still_blinking=replaced), preempted=True)
 
     def _connection_changed(self, state: Any) -> None:
-        """Called from the thread that the connection has for its listeners."""
+        """Called from the connection's thread for listeners."""
         if state == "lost":
             reason = self._robot.connection.last_error or "no answer"
             self._server.interrupt_all(RobotLost(self._robot.address, reason))
