@@ -149,11 +149,11 @@ def test_calibrations_are_written_and_read():
 
 
 def test_a_calibration_is_a_message_and_back():
-    info = to_info(MEASURED, Picture(5.0, 0, 640, 480, "mono8", b""), HEADER)
+    info = to_info(MEASURED, 640, 480, HEADER)
     assert (info.width, info.height, info.distortion_model) == (640, 480, "plumb_bob")
     assert (list(info.K), list(info.P)) == (list(MEASURED.k), list(MEASURED.p))
     assert from_info(info) == replace(MEASURED, name="")
-    nothing = to_info(None, PICTURE, HEADER)
+    nothing = to_info(None, PICTURE.width, PICTURE.height, HEADER)
     assert (nothing.width, nothing.height, nothing.K[0], list(nothing.D)) == (4, 2, 0.0, [])
     refused("focal lengths above 0", from_info, nothing)
     known = ideal(320, 240, *FOV)

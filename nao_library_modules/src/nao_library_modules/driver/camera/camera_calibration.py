@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Tuple
 
 import yaml
@@ -29,34 +28,19 @@ MATRICES = {
 
 @dataclass(frozen=True)
 class Calibration:
-    """What sensor_msgs/CameraInfo holds; matrices row by row, in pixels.
-
-    Attributes:
-        width: Of the pictures that it is for.
-        height: Of the pictures that it is for.
-        k: (9,) camera matrix.
-        d: (n,) distortion.
-        r: (9,) rectification.
-        p: (12,) projection.
-        model: Name of the distortion model.
-        name: Of the camera; empty if it was not told.
-    """
+    """Contents of sensor_msgs/CameraInfo for pictures of one size; matrices row by row, in pixels."""
 
     width: int
     height: int
-    k: Row
-    d: Row = NO_DISTORTION
-    r: Row = NO_ROTATION
-    p: Row = ()
+    k: Row  # (9,) camera matrix
+    d: Row = NO_DISTORTION  # (n,) distortion
+    r: Row = NO_ROTATION  # (9,) rectification
+    p: Row = ()  # (12,) projection; empty: that of k
     model: str = PLUMB_BOB
-    name: str = ""
+    name: str = ""  # of the camera; may be empty
 
     def __post_init__(self) -> None:
-        """Check what everything else relies on.
-
-        Raises:
-            NaoError: If it is no calibration.
-        """
+        """Raises NaoError for a wrong number or size."""
         if self.width <= 0 or self.height <= 0:
             raise NaoError(f"a calibration for pictures of {self.width}x{self.height} pixels is none")
         for name, row, count in (("K", self.k, 9), ("R", self.r, 9), ("P", self.p or (0.0,) * 12, 12)):
@@ -72,23 +56,15 @@ class Calibration:
 
 
 def ideal(width: int, height: int, hfov: float, vfov: float) -> Calibration:
-    """A pinhole without distortion.
-
-    Args:
-        width: Pixels.
-        height: Pixels.
-        hfov: Horizontal field of view, from edge to edge of the picture, rad.
-        vfov: Vertical field of view, rad.
-    """
+    """A pinhole without distortion; fields of view from edge to edge of the picture, rad."""
     fx, fy = width / 2.0 / math.tan(hfov / 2.0), height / 2.0 / math.tan(vfov / 2.0)
     return Calibration(width, height, (fx, 0.0, width / 2.0, 0.0, fy, height / 2.0, 0.0, 0.0, 1.0))
 
 
 def scaled(calibration: Calibration, width: int, height: int) -> Calibration:
-    """The same for pictures of another size: the sizes of a NAO's camera all show the same, more or less finely.
+    """The same for pictures of another size: a NAO's camera has one field of view in all sizes.
 
-    Raises:
-        NaoError: If a picture of that size cannot show the same.
+    Raises NaoError if width over height differs.
     """
     x, y = width / calibration.width, height / calibration.height
     if abs(x / y - 1.0) > SAME_SHAPE:
@@ -97,11 +73,10 @@ def scaled(calibration: Calibration, width: int, height: int) -> Calibration:
     factors = (x, y, 1.0)
     k = tuple(value * factors[place // 3] for place, value in enumerate(calibration.k))
     p = tuple(value * factors[place // 4] for place, value in enumerate(calibration.p))
-    return Calibration(width, height, k, calibration.d, calibration.r, p, calibration.model, calibration.name)
+    return replace(calibration, width=width, height=height, k=k, p=p)
 
 
 def to_yaml(calibration: Calibration) -> str:
-    """Text of a calibration file."""
     content: dict[str, Any] = {
         "image_width": calibration.width,
         "image_height": calibration.height,
@@ -115,11 +90,7 @@ def to_yaml(calibration: Calibration) -> str:
 
 
 def from_yaml(text: str) -> Calibration:
-    """Calibration from the text of a file.
-
-    Raises:
-        NaoError: If it holds none.
-    """
+    """Calibration from the text of a file; raises NaoError if it holds none."""
     try:
         content = yaml.safe_load(text)
     except yaml.YAMLError as error:
@@ -141,8 +112,4 @@ def _matrix(content: dict[str, Any], key: str, columns: int | None) -> Row:
     entry = content[key] if key in ("camera_matrix", "distortion_coefficients") else content.get(key)
     if entry is None:
         return NO_ROTATION if columns == 3 else ()
-    return _numbers(entry["data"])
-
-
-def _numbers(values: Sequence[Any]) -> Row:
-    return tuple(float(each) for each in values)
+    return tuple(float(each) for each in entry["data"])

@@ -1,4 +1,4 @@
-"""Pictures as ALVideoDevice gives them, and what ROS calls their sizes and colours. No ROS."""
+"""Pictures of ALVideoDevice, and ROS's names for their sizes and colours. No ROS."""
 
 from __future__ import annotations
 
@@ -45,23 +45,14 @@ IMAGE_FIELDS = 7
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture of a camera.
+    """A picture of a camera."""
 
-    Attributes:
-        time: Robot's time, s.
-        camera: NAOqi's number of the camera.
-        width: Pixels.
-        height: Pixels.
-        encoding: As in sensor_msgs/Image.
-        pixels: Row by row, the upper left one first.
-    """
-
-    time: float
-    camera: int
+    time: float  # s, the robot's clock
+    camera: int  # NAOqi's number
     width: int
     height: int
-    encoding: str
-    pixels: bytes
+    encoding: str  # as in sensor_msgs/Image
+    pixels: bytes  # row by row from the upper left
 
     @property
     def step(self) -> int:
@@ -74,7 +65,7 @@ def read_picture(image: Sequence[Any], camera: int) -> Picture:
 
     Args:
         image: [width, height, layers, colour space, s, us, pixels, camera, ...].
-        camera: What to take it for if the robot does not tell its camera.
+        camera: Its camera, if the robot does not report it.
 
     Raises:
         NaoError: If it holds no picture, one of colours that ROS has no encoding for, or too few pixels.

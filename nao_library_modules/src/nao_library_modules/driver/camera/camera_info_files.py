@@ -1,4 +1,4 @@
-"""Where calibrations are kept: URLs and file names by the convention of camera_info_manager. No ROS."""
+"""Files of calibrations: URLs and names by the convention of camera_info_manager. No ROS."""
 
 from __future__ import annotations
 
@@ -22,12 +22,11 @@ UNSAFE = re.compile(r"[^A-Za-z0-9_]")
 
 
 def ros_home() -> Path:
-    """Folder of ROS for files of this user."""
     return Path(os.environ.get("ROS_HOME") or Path.home() / ".ros")
 
 
 def camera_name(words: str) -> str:
-    """A name as the convention wants it: letters, digits and underscores."""
+    """A name of letters, digits and underscores, as the convention demands."""
     return UNSAFE.sub("_", words.strip("/"))
 
 
@@ -58,15 +57,10 @@ def sized(path: Path, width: int, height: int) -> Path:
     return path.with_name(f"{path.stem}_{width}x{height}{path.suffix}")
 
 
-def read(path: Path, name: str) -> Calibration:
-    """The calibration in a file.
+def read(path: Path, name: str | None = None) -> Calibration:
+    """The calibration in a file; another `name` of the camera in it is logged.
 
-    Args:
-        path: The file.
-        name: Of the camera; another one in the file is told in the log.
-
-    Raises:
-        NaoError: If it cannot be read, or holds none.
+    Raises NaoError if it cannot be read, or holds none.
     """
     try:
         calibration = from_yaml(path.read_text(encoding="utf-8"))
@@ -74,15 +68,11 @@ def read(path: Path, name: str) -> Calibration:
         raise NaoError(f"{path} cannot be read: {error}") from error
     except NaoError as error:
         raise NaoError(f"{path} is no calibration: {error}") from error
-    if calibration.name != name:
+    if name is not None and calibration.name != name:
         log.warning("%s is of the camera %r, and used for %r", path, calibration.name, name)
     return calibration
 
 
 def write(path: Path, calibration: Calibration) -> None:
-    """Put a calibration into a file, all of it or nothing.
-
-    Raises:
-        FileTrouble: If that does not work.
-    """
+    """Write a calibration to a file, all of it or nothing; raises FileTrouble."""
     write_whole(path, to_yaml(calibration))

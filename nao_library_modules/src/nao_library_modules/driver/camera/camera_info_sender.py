@@ -15,19 +15,16 @@ from std_msgs.msg import Header
 from naoqi.errors import NaoError
 
 from ...nao.camera_facts import CAMERAS
-from .camera_calibration import Calibration, from_yaml, ideal, scaled
-from .image_messages import fill_info
+from .camera_calibration import Calibration, ideal, scaled
+from .camera_info_files import read
+from .image_messages import to_info
 
 WAIT = 10.0
 DEGREES = "degrees, the whole picture"
 
 
 def parse_size(text: str) -> tuple[int, int]:
-    """Width and height from a text such as 320x240.
-
-    Raises:
-        ValueError: If it is something else.
-    """
+    """Width and height from a text such as 320x240; raises ValueError for anything else."""
     width, height = (int(each) for each in text.lower().split("x"))
     if width <= 0 or height <= 0:
         raise ValueError(text)
@@ -35,7 +32,6 @@ def parse_size(text: str) -> tuple[int, int]:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The options of the program."""
     options = argparse.ArgumentParser(
         description="Gives a camera of the robot its calibration, which nao_camera keeps for later runs.",
         epilog="With ROS remappings, such as __ns:=robot1, for a robot in a namespace.",
@@ -49,11 +45,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def read_calibration(options: argparse.Namespace) -> Calibration:
-    """The calibration that the options describe.
-
-    Raises:
-        NaoError: If they describe none.
-    """
+    """The calibration that the options describe; raises NaoError if they describe none."""
     if (options.file is None) == (options.fov is None):
         raise NaoError("either a file or --fov is needed")
     if options.fov is not None:
@@ -61,31 +53,18 @@ def read_calibration(options: argparse.Namespace) -> Calibration:
         if not (0.0 < wide < 180.0 and 0.0 < high < 180.0):
             raise NaoError(f"--fov is {wide:g} {high:g}: above 0 and below 180 degrees")
         return ideal(*(options.size or (640, 480)), math.radians(wide), math.radians(high))
-    try:
-        found = from_yaml(Path(options.file).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise NaoError(f"{options.file} cannot be read: {error}") from error
-    except NaoError as error:
-        raise NaoError(f"{options.file} is no calibration: {error}") from error
+    found = read(Path(options.file))
     return scaled(found, *options.size) if options.size else found
 
 
 def send(service: str, calibration: Calibration) -> str:
-    """Give a camera its calibration.
+    """Set the calibration by the service of a camera node, and return its answer.
 
-    Args:
-        service: Name of its service.
-        calibration: What to give.
-
-    Returns:
-        What the camera node says.
-
-    Raises:
-        NaoError: If it is not there, or refuses.
+    Raises NaoError if it is not there, or refuses.
     """
     try:
         rospy.wait_for_service(service, WAIT)
-        info = fill_info(calibration, calibration.width, calibration.height, Header())
+        info = to_info(calibration, calibration.width, calibration.height, Header())
         answer = rospy.ServiceProxy(service, SetCameraInfo)(info)
     except (rospy.ROSException, rospy.ServiceException) as error:
         raise NaoError(f"{rospy.resolve_name(service)}: {error}") from error
@@ -95,14 +74,7 @@ def send(service: str, calibration: Calibration) -> str:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the program.
-
-    Args:
-        argv: Name of the program and arguments, those of the process by default.
-
-    Returns:
-        Exit status.
-    """
+    """Run the program and return its exit status; `argv` begins with the name of the program."""
     options = parser().parse_args(rospy.myargv(argv if argv is not None else sys.argv)[1:])
     try:
         calibration = read_calibration(options)

@@ -1,4 +1,4 @@
-"""Which calibration holds for pictures of one size: the one that was given, that was set, or a computed one. No ROS."""
+"""Selects the calibration of pictures of one size: from a file, set by the service, or computed. No ROS."""
 
 from __future__ import annotations
 
@@ -20,16 +20,10 @@ class CameraInfos:
     """Calibrations of one camera. Any thread may call; files are read once, when their size is first asked for.
 
     Of the file that the URL names and the one beside it with the size in its name (`name_320x240.yaml`), the latter
-    comes first. A file for another size is scaled, which is told once.
+    comes first. A file for another size is scaled, which is logged once.
     """
 
     def __init__(self, name: str, package_folder: Callable[[str], str]) -> None:
-        """Begin with the default place.
-
-        Args:
-            name: Of the camera, in files.
-            package_folder: Gives the folder of a package.
-        """
         self._name = name
         self._package_folder = package_folder
         self._lock = threading.Lock()
@@ -40,13 +34,9 @@ class CameraInfos:
         self._fov: tuple[float, float] | None = None
 
     def set_url(self, url: str) -> None:
-        """Take calibrations from somewhere else from now on.
+        """Take calibrations from another URL, see `path_of`; empty: the default place.
 
-        Args:
-            url: See `camera_info_files.path_of`; empty: the default place.
-
-        Raises:
-            NaoError: If it is no such URL, or names a file that is not there or no calibration.
+        Raises NaoError if it is no such URL, or names a file that is not there or no calibration.
         """
         path = path_of(url, self._name, self._package_folder)
         if url and not any(path.parent.glob(f"{path.stem}_*x*{path.suffix}")):
@@ -56,14 +46,14 @@ class CameraInfos:
             self._known.clear()
 
     def set_fov(self, hfov: float, vfov: float) -> None:
-        """Compute with these fields of view, rad, where no file says better."""
+        """Set the fields of view, rad, for sizes without a file."""
         with self._lock:
             if (hfov, vfov) != self._fov:
                 self._fov = (hfov, vfov)
                 self._known.clear()
 
     def of(self, width: int, height: int) -> Calibration | None:
-        """The calibration of pictures of one size; None while neither a file nor the robot has told any."""
+        """The calibration of pictures of one size; None while there is neither a file nor a field of view."""
         with self._lock:
             size = (width, height)
             if size not in self._known:
@@ -75,20 +65,14 @@ class CameraInfos:
             return self._known[size]
 
     def source(self, width: int, height: int) -> str:
-        """Where the calibration of one size comes from, in words; empty if it was not asked for yet."""
+        """Origin of the calibration of one size, in words; empty if it was not asked for yet."""
         with self._lock:
             return self._sources.get((width, height), "")
 
     def set(self, calibration: Calibration) -> Path:
-        """Keep a calibration, now and for later runs.
+        """Save a calibration and return its file; raises NaoError if it cannot be written.
 
-        It goes where the URL says; beside it, with the size in its name, if that file is for another size.
-
-        Returns:
-            The file.
-
-        Raises:
-            NaoError: If it cannot be written.
+        The file is that of the URL, or the one beside it with the size in its name if that is for another size.
         """
         calibration = replace(calibration, name=self._name)
         with self._lock:

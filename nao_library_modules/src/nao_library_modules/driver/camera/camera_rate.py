@@ -1,4 +1,4 @@
-"""How many pictures a second come. No ROS."""
+"""Rate of pictures. No ROS."""
 
 from __future__ import annotations
 
@@ -12,10 +12,9 @@ GAP = 1.5
 
 
 class RateMeter:
-    """Counts pictures, and those that are missing between them. Any thread may ask."""
+    """Counts pictures, and missed ones between them. Any thread may ask."""
 
     def __init__(self) -> None:
-        """Begin without pictures."""
         self._lock = threading.Lock()
         self._times: deque[float] = deque()
         self._count = 0
@@ -27,12 +26,7 @@ class RateMeter:
             self._times.clear()
 
     def note(self, time: float, period: float) -> None:
-        """Count a picture.
-
-        Args:
-            time: When it was taken, s.
-            period: What should be between two of them, s.
-        """
+        """Count a picture taken at `time`, s; `period`, s, should be between two of them."""
         with self._lock:
             if self._times and time < self._times[-1]:
                 self._times.clear()
@@ -46,12 +40,10 @@ class RateMeter:
 
     @property
     def count(self) -> int:
-        """Pictures since the beginning."""
         return self._count
 
     @property
     def missed(self) -> int:
-        """Pictures that were due and did not come."""
         return self._missed
 
     @property

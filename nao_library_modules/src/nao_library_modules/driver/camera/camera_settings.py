@@ -1,4 +1,4 @@
-"""What can be set of a camera: the parameters of the node, and what they are at the robot. No ROS."""
+"""Parameters of a camera node, and their numbers at the robot. No ROS."""
 
 from __future__ import annotations
 
@@ -23,15 +23,12 @@ ALGORITHMS = {0: "average", 1: "weighted average", 2: "for highlights", 3: "for 
 class Tuning:
     """A parameter of the picture that the camera itself has; it holds for all who use the camera.
 
-    Attributes:
-        id: NAOqi's number.
-        field: What the node offers. The limits are the widest that a camera of a NAO has: each has some of its own.
-        automatic: Name of the parameter that must be 0 for this one to count.
+    The limits of `field` are the widest that a camera of a NAO has: each has some of its own.
     """
 
-    id: int
+    id: int  # NAOqi's number
     field: Field
-    automatic: str = ""
+    automatic: str = ""  # parameter that must be 0 for this one to take effect
 
 
 TUNINGS = {
@@ -76,12 +73,7 @@ TUNINGS = {
 def fields_of(resolution: int, frame_rate: float, use_ros_time: bool, camera: int, alone: bool) -> tuple[Field, ...]:
     """The parameters of one camera, under the names of naoqi_camera.
 
-    Args:
-        resolution: Default.
-        frame_rate: Default, pictures a second.
-        use_ros_time: Default.
-        camera: NAOqi's number of the camera.
-        alone: Whether the node serves this camera only, and can change over to the other.
+    `alone`: the node serves this camera only, and can change over to the other.
     """
     source = (Field("source", camera, "camera", TOP, BOTTOM, CAMERAS),) if alone else ()
     return (
@@ -103,15 +95,7 @@ def fields_of(resolution: int, frame_rate: float, use_ros_time: bool, camera: in
 
 
 def stream_settings(config: Mapping[str, Any], camera: int) -> StreamSettings:
-    """What to ask the robot for.
-
-    Args:
-        config: Values of the parameters.
-        camera: NAOqi's number of the camera, unless the values have a `source`.
-
-    Raises:
-        NaoError: If a number stands for nothing.
-    """
+    """Settings of the stream, of `camera` unless `config` has a `source`; raises NaoError for an unknown number."""
     for name, known in (("resolution", RESOLUTIONS), ("color_space", COLOR_SPACES), ("source", CAMERAS)):
         if name in config and config[name] not in known:
             listed = ", ".join(f"{number} ({text})" for number, text in sorted(known.items()))
@@ -121,12 +105,7 @@ def stream_settings(config: Mapping[str, Any], camera: int) -> StreamSettings:
 
 
 def settled(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, Any]:
-    """Values that go together: who sets a fixed value does not want the camera to choose it.
-
-    Args:
-        before: Values so far; empty at the start.
-        after: What somebody asks for.
-    """
+    """New values made consistent: a fixed value switches off its automatic. `before` is empty at the start."""
     values = {**after, "frame_rate": float(round(after["frame_rate"]))}
     for name, tuning in TUNINGS.items():
         automatic = tuning.automatic
@@ -137,5 +116,4 @@ def settled(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, An
 
 
 def changed_tunings(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, int]:
-    """Name -> value of those parameters of the picture that are not as before."""
     return {name: after[name] for name in TUNINGS if after[name] != before[name]}

@@ -1,4 +1,4 @@
-"""The pictures of one camera of the robot, fetched while somebody wants them. No ROS."""
+"""The pictures of one camera of the robot, fetched while they are wanted. No ROS."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SLOW = 0.8
 
 @dataclass(frozen=True, eq=False)
 class Subscription:
-    """One subscription at the robot; its interrupt ends whatever waits for its pictures."""
+    """A subscription at the robot; its interrupt ends all waits for its pictures."""
 
     handle: str
     interrupt: CancellationToken = field(default_factory=CancellationToken)
@@ -46,9 +46,9 @@ class Subscription:
 class CameraStream:
     """Asks the robot for one picture after the other, at the robot's own pace, while they are wanted.
 
-    Three threads: that of the demand subscribes and unsubscribes, that of the pictures waits for them and hands them
-    on, and any may change the settings. `_changing` keeps changes and subscriptions apart and is held during calls;
-    `_news` guards the subscription and is not.
+    Three threads: that of the lazy subscription subscribes and unsubscribes, that of the pictures waits for them and
+    passes them on, and any may change the settings. `_changing` keeps changes and subscriptions apart and is held
+    during calls; `_news` guards the subscription and is not.
     """
 
     def __init__(
@@ -61,15 +61,13 @@ class CameraStream:
         prepare: Callable[[], None] = lambda: None,
         wall_time: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Begin without pictures; the robot need not be there yet.
+        """Start without pictures; the robot need not be connected yet.
 
         Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            name: Name under which the robot knows the subscriber.
-            settings: What to ask for.
+            name: Name of the subscriber at the robot.
             clock: ROS time: `now()`.
             sink: Gets each picture and the ROS time at which it was taken, in s, in the thread of the pictures.
-            prepare: Called before each subscription, in the thread of the demand. May make calls.
+            prepare: Called before each subscription, in the thread of the lazy subscription. May make calls.
             wall_time: Time of this computer, s.
         """
         self._robot = robot
@@ -95,23 +93,20 @@ class CameraStream:
 
     @property
     def settings(self) -> StreamSettings:
-        """What is asked for."""
         return self._settings
 
     @property
     def running(self) -> bool:
-        """Whether the robot sends pictures."""
         return self._lazy.running
 
     def want(self, wanted: bool) -> None:
-        """Have pictures, or not, from now on."""
         self._lazy.want(wanted)
 
     def change(self, settings: StreamSettings) -> None:
-        """Ask for something else. Pictures go on to come meanwhile, but for another camera.
+        """Change the settings. Pictures keep coming meanwhile, unless the camera changes.
 
         Raises:
-            NaoError: If the robot refuses, or cannot be asked; then it is as before.
+            NaoError: If the robot refuses, or cannot be asked; then the former settings hold.
         """
         with self._changing:
             before, subscription = self._settings, self._subscription
@@ -137,7 +132,6 @@ class CameraStream:
             self._lazy.restart()
 
     def report(self) -> Report:
-        """Whether pictures come, and how many."""
         settings, rate = self._settings, self._rate.rate
         values = {
             "camera": CAMERA_NAMES[settings.camera],
@@ -159,7 +153,6 @@ class CameraStream:
         return Report(Level.OK, "pictures come", values)
 
     def close(self) -> None:
-        """Look no more; the robot is told."""
         self._lazy.close(CLOSE_LIMIT)
         with self._news:
             self._closed = True
@@ -230,7 +223,7 @@ class CameraStream:
                 self._lazy.restart()
 
     def _look(self, subscription: Subscription) -> None:
-        """Hand on pictures until something goes wrong.
+        """Pass on pictures until something goes wrong.
 
         Raises:
             NaoError: What went wrong.

@@ -1,4 +1,4 @@
-"""A subscriber of the robot's cameras: what it asks for, and the calls for that. No ROS."""
+"""A subscriber of the robot's cameras: its settings, and the calls to ALVideoDevice. No ROS."""
 
 from __future__ import annotations
 
@@ -18,19 +18,12 @@ ANSWER_LIMIT = 5.0
 
 @dataclass(frozen=True)
 class StreamSettings:
-    """What a subscriber of ALVideoDevice asks for.
-
-    Attributes:
-        camera: NAOqi's number of the camera.
-        resolution: NAOqi's number of the size.
-        color_space: NAOqi's number.
-        frame_rate: Pictures a second.
-    """
+    """A subscription to ALVideoDevice; camera, resolution and colour space are NAOqi's numbers."""
 
     camera: int
     resolution: int
     color_space: int
-    frame_rate: int
+    frame_rate: int  # pictures a second
 
     @property
     def period(self) -> float:
@@ -47,24 +40,17 @@ CHANGES = {
 
 
 class CameraSubscriber:
-    """Subscribes to the cameras of one robot under one name, for one subscription at a time. Keeps nothing."""
+    """Subscribes to the cameras of one robot under one name, for one subscription at a time. Has no state.
+
+    Methods raise NaoError if the robot refuses or cannot be asked.
+    """
 
     def __init__(self, robot: Any, name: str) -> None:
-        """Remember whom to ask.
-
-        Args:
-            robot: Its proxies, see `nao_library_modules.robot`.
-            name: Name under which the robot knows the subscriber.
-        """
         self._robot = robot
         self._name = name
 
     def subscribe(self, wanted: StreamSettings) -> str:
-        """The handle of a new subscription.
-
-        Raises:
-            NaoError: If there is none to be had.
-        """
+        """The handle of a new subscription."""
         arguments = (self._name, wanted.camera, wanted.resolution, wanted.color_space, wanted.frame_rate)
         try:
             handle = self._ask("subscribeCamera", *arguments)
@@ -82,22 +68,13 @@ class CameraSubscriber:
         return handle
 
     def change(self, handle: str, before: StreamSettings, after: StreamSettings) -> None:
-        """Tell the robot what is new; not of the camera.
-
-        Raises:
-            NaoError: If it refuses.
-        """
+        """Apply new settings to a subscription, all but the camera."""
         for name, method in CHANGES.items():
             value = getattr(after, name)
             if value != getattr(before, name) and self._ask(method, handle, value) is False:
                 raise NaoError(f"the robot refuses the {name} {value} for its {CAMERA_NAMES[after.camera]}")
 
     def unsubscribe(self, handle: str) -> None:
-        """End a subscription.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
         try:
             self._ask("unsubscribe", handle)
         except RobotError as error:  # the robot has forgotten it

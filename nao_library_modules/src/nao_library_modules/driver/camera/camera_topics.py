@@ -48,25 +48,22 @@ WARN_PERIOD = 10.0
 
 
 class CameraTopics:
-    """Publishes what one camera sees while somebody looks; otherwise the robot sends nothing.
+    """Publishes the pictures of one camera while somebody subscribes; otherwise the robot sends nothing.
 
     See `nao_camera.NaoCamera` for names. Pictures are published in a thread of the camera; parameters change in those
     of their services.
     """
 
     def __init__(self, robot: Any, node: NodeInterface, camera: int, folder: str, part: str, alone: bool) -> None:
-        """Offer everything; the robot need not be there yet.
+        """Raises NaoError for a wrong parameter. The robot need not be connected yet.
 
         Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-            camera: NAOqi's number of the camera.
-            folder: What comes before the names of the topics, with its slash.
-            part: What comes before the names of the parameters; empty if nothing does.
+            robot: Gives proxies and the connection.
+            node: Of the topics.
+            camera: NAOqi's number.
+            folder: Prefix of the topics, with its slash.
+            part: Prefix of the parameters; may be empty.
             alone: Whether the node serves this camera only, and can change over to the other.
-
-        Raises:
-            NaoError: If a parameter is wrong.
         """
         self._robot = robot
         self._node = node
@@ -95,29 +92,24 @@ class CameraTopics:
         self._tuning.choose(camera, given, connected=False)
         compressed = f"{folder}image_raw/compressed"
         self._compression_server = serve(node, COMPRESSION, self._compress_as, node.resolve(compressed))
-        self._image = self._offer(f"{folder}image_raw", Image)
-        self._info = self._offer(f"{folder}camera_info", CameraInfo)
-        self._compressed = self._offer(compressed, CompressedImage)
+        self._image = node.publisher(f"{folder}image_raw", Image, queue_size=QUEUE)
+        self._info = node.publisher(f"{folder}camera_info", CameraInfo, queue_size=QUEUE)
+        self._compressed = node.publisher(compressed, CompressedImage, queue_size=QUEUE)
         publishers = {"image": self._image, "info": self._info, "compressed": self._compressed}
         self._lazys = [LazyTopic(each, partial(self._on_listeners, name)) for name, each in publishers.items()]
         node.service(f"{folder}set_camera_info", SetCameraInfo, self._set_camera_info)
 
     @property
     def camera(self) -> int:
-        """NAOqi's number of the camera that is looked through."""
+        """NAOqi's number of the present camera."""
         return self._stream.settings.camera
 
     def report(self) -> Report:
-        """Whether pictures come, and what they are."""
         report = self._stream.report()
         return Report(report.level, report.message, {**report.values, "calibration": self._calibration_source()})
 
     def close(self) -> None:
-        """Look no more."""
         self._stream.close()
-
-    def _offer(self, name: str, kind: type) -> rospy.Publisher:
-        return self._node.publisher(name, kind, queue_size=QUEUE)
 
     def _on_listeners(self, name: str, listens: bool) -> None:
         with self._lock:
@@ -127,14 +119,14 @@ class CameraTopics:
     # --- pictures -------------------------------------------------------------------------------------------------
 
     def _show(self, picture: Picture, ros_time: float) -> None:
-        """Publish a picture, and what belongs to it; called in the thread of the pictures."""
+        """Publish a picture with its calibration; called in the thread of the pictures."""
         time = ros_time if self._config["use_ros_time"] else picture.time
         header = header_of(time, self._frames[picture.camera])
         if self._image.get_num_connections():
             publish(self._image, to_image(picture, header))
         if self._info.get_num_connections():
             calibration = self._infos[picture.camera].of(picture.width, picture.height)
-            publish(self._info, to_info(calibration, picture, header))
+            publish(self._info, to_info(calibration, picture.width, picture.height, header))
         if self._compressed.get_num_connections():
             self._show_compressed(picture, header)
 
@@ -152,10 +144,9 @@ class CameraTopics:
         return self._robot.proxy(DEVICE).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
 
     def _prepare(self) -> None:
-        """Have robot and parameters say the same; called in the thread of the demand, before pictures come.
+        """Make robot and parameters agree; called in the thread of the lazy subscription, before pictures come.
 
-        Raises:
-            NaoError: One of `NO_ANSWER`: this is tried again then.
+        Raises one of `NO_ANSWER`: this is tried again then.
         """
         camera = self.camera
         try:
@@ -178,7 +169,7 @@ class CameraTopics:
     # --- parameters -----------------------------------------------------------------------------------------------
 
     def _changed(self, before: Mapping[str, Any], after: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Take new values; called in the thread of the service, and once at the start."""
+        """Apply new values; called in the thread of the service, and once at the start."""
         changed = changed_tunings(before, after) if before else {}
         if changed and all(self._shown.get(name) == value for name, value in changed.items()):
             changed = {}  # what the robot has said
@@ -225,7 +216,6 @@ class CameraTopics:
 
 
 def _frame(node: NodeInterface, camera: int) -> str:
-    """Name of the optical frame of a camera."""
     given = node.param(f"~camera_{CAMERAS[camera]}_frame", f"{CAMERA_NAMES[camera]}_optical_frame")
     return tf_prefix() + str(given).lstrip("/")
 

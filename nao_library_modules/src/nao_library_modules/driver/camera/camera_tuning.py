@@ -19,19 +19,13 @@ NO_ANSWER = (RobotUnreachable, UnknownModule, CallTimeout)
 
 
 class CameraTuning:
-    """Sets what somebody has chosen, again on a robot that has forgotten it, and leaves the rest as it is.
+    """Sets chosen values, again on a robot that has forgotten them, and leaves the rest as it is.
 
-    They belong to the camera: others who look through it see the same. Any thread may call; the lock is held during
-    calls to the robot, so that values of two callers do not mix.
+    They belong to the camera: other subscribers see the same. Any thread may call; the lock is held during calls to the
+    robot, so that values of two callers do not mix. `ask` calls a method of ALVideoDevice.
     """
 
     def __init__(self, ask: Callable[..., Any], chosen: Mapping[str, int]) -> None:
-        """Remember what was chosen at the start; the robot need not be there yet.
-
-        Args:
-            ask: Calls a method of ALVideoDevice.
-            chosen: Name -> value.
-        """
         self._ask = ask
         self._chosen = dict(chosen)
         self._missing: set[tuple[int, str]] = set()  # not there when it was read
@@ -39,12 +33,7 @@ class CameraTuning:
         self._lock = threading.Lock()
 
     def choose(self, camera: int, values: Mapping[str, int], connected: bool) -> None:
-        """Set values, now if the robot is there, and on a robot that comes later.
-
-        Args:
-            camera: NAOqi's number of the camera.
-            values: Name -> value.
-            connected: Whether the robot is there.
+        """Set values, now if the robot is connected, and on a robot that comes later.
 
         Raises:
             NaoError: If the camera cannot be set to one of them; then none is set.
@@ -55,11 +44,7 @@ class CameraTuning:
             self._chosen.update(values)
 
     def set_again(self, camera: int) -> None:
-        """Set everything that was chosen; what the camera refuses is told in the log.
-
-        Raises:
-            NaoError: One of `NO_ANSWER`.
-        """
+        """Set all chosen values; refusals are logged. Raises one of `NO_ANSWER`."""
         with self._lock:
             for name in TUNINGS:
                 if name not in self._chosen:
@@ -72,11 +57,7 @@ class CameraTuning:
                     log.warning("%s", error)
 
     def read(self, camera: int) -> dict[str, int]:
-        """Name -> value of all that the camera has.
-
-        Raises:
-            NaoError: One of `NO_ANSWER`.
-        """
+        """Name -> value of all that the camera has; raises one of `NO_ANSWER`."""
         values = {}
         with self._lock:
             for name, tuning in TUNINGS.items():
@@ -97,8 +78,7 @@ class CameraTuning:
     def _possible(self, camera: int, values: Mapping[str, int]) -> dict[str, int]:
         """Those of the values that this camera has, in the order in which it takes them.
 
-        Raises:
-            NaoError: If one is out of the camera's range.
+        Raises NaoError if one is out of the camera's range.
         """
         possible = {}
         for name in (name for name in TUNINGS if name in values):
@@ -127,11 +107,6 @@ class CameraTuning:
         return lowest, highest
 
     def _set(self, camera: int, values: Mapping[str, int]) -> None:
-        """Set values.
-
-        Raises:
-            NaoError: If the robot refuses one.
-        """
         for name, value in values.items():
             automatic = TUNINGS[name].automatic
             if automatic and self._ask("getParameter", camera, TUNINGS[automatic].id):

@@ -1,4 +1,4 @@
-"""Pictures as JPEG and PNG, as image_transport has them. No ROS."""
+"""Pictures as JPEG and PNG, in the formats of image_transport. No ROS."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FORMATS = {JPEG: "small, with losses", PNG: "large, without losses"}
 
 
 def compress(picture: Picture, kind: str, jpeg_quality: int, png_level: int) -> tuple[str, bytes]:
-    """A picture as a file.
+    """A picture as a file, and its format in sensor_msgs/CompressedImage.
 
     Args:
         picture: In colours or grey.
@@ -25,11 +25,8 @@ def compress(picture: Picture, kind: str, jpeg_quality: int, png_level: int) -> 
         jpeg_quality: 1 to 100.
         png_level: 1 (quick) to 9 (small).
 
-    Returns:
-        What sensor_msgs/CompressedImage calls its format, and the file.
-
     Raises:
-        NaoError: If it can not be done.
+        NaoError: For other encodings, or if OpenCV fails.
     """
     pixels, colours = _as_opencv(picture)
     options: list[Any] = [cv2.IMWRITE_JPEG_QUALITY, jpeg_quality]
@@ -42,11 +39,7 @@ def compress(picture: Picture, kind: str, jpeg_quality: int, png_level: int) -> 
 
 
 def _as_opencv(picture: Picture) -> tuple[np.ndarray, str]:
-    """The pixels as OpenCV writes them, and what image_transport calls their colours.
-
-    Raises:
-        NaoError: If they are neither colours nor grey.
-    """
+    """The pixels in OpenCV's order, and image_transport's name of their colours."""
     layers = BYTES[picture.encoding]
     shape = (picture.height, picture.width) if layers == 1 else (picture.height, picture.width, layers)
     pixels = np.frombuffer(picture.pixels, dtype=np.uint8).reshape(shape)

@@ -1,4 +1,4 @@
-"""The node nao_camera: what the robot's cameras see, as topics."""
+"""The node nao_camera: the robot's cameras as topics."""
 
 from __future__ import annotations
 
@@ -42,35 +42,24 @@ class NaoCamera:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
-        self._node = node
+        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._cameras: dict[str, CameraTopics] = {}
-        alone = next((name for name in reversed(ALONE) if self._node.has_param(f"~{name}")), None)
+        alone = next((name for name in reversed(ALONE) if node.has_param(f"~{name}")), None)
         if alone is None:
             for camera, name in CAMERAS.items():
                 self._cameras[name] = CameraTopics(robot, node, camera, f"nao_robot/camera/{name}/", name, alone=False)
             return
-        camera = self._node.param(f"~{alone}", TOP)
+        camera = node.param(f"~{alone}", TOP)
         if isinstance(camera, bool) or camera not in CAMERAS:
             listed = " or ".join(f"{number} ({name})" for number, name in CAMERAS.items())
             raise NaoError(f"~{alone} is {camera!r}: {listed}")
         self._cameras["alone"] = CameraTopics(robot, node, camera, "", "", alone=True)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         if "alone" in self._cameras:
             return {"camera": self._cameras["alone"].report}
         return {f"camera {name}": camera.report for name, camera in self._cameras.items()}
 
     def close(self) -> None:
-        """Look no more."""
         for camera in self._cameras.values():
             camera.close()
