@@ -1,4 +1,4 @@
-"""What the robot says about its body, judged: one report for each part of it. No ROS."""
+"""Diagnostics of the robot's body: one report for each part. No ROS."""
 
 from __future__ import annotations
 
@@ -58,32 +58,22 @@ ALARMS = tuple(name for name in BATTERY_FLAGS if name.endswith("Alarm") or "Alar
 
 @dataclass(frozen=True)
 class Thresholds:
-    """From where on something is worth a warning, or an error.
+    """Limits of warnings and errors."""
 
-    Attributes:
-        warm: Joint temperature, degC.
-        hot: Likewise.
-        head_warm: Temperature of the processor, degC.
-        head_hot: Likewise.
-        low: Charge of the battery, percent.
-        empty: Likewise.
-    """
-
-    warm: float = HOT_MOTOR
-    hot: float = TOO_HOT_MOTOR
-    head_warm: float = 100.0
-    head_hot: float = 105.0
-    low: float = 30.0
-    empty: float = 10.0
+    warm: float = HOT_MOTOR  # joint temperature, degC
+    hot: float = TOO_HOT_MOTOR  # joint temperature, degC
+    head_warm: float = 100.0  # temperature of the processor, degC
+    head_hot: float = 105.0  # temperature of the processor, degC
+    low: float = 30.0  # charge of the battery, percent
+    empty: float = 10.0  # charge of the battery, percent
 
 
 def part_of(report: str) -> str:
-    """Part of the robot that a report is about."""
     return PARTS.get(report) or report.split(": ")[-1]
 
 
 def keys_of(joints: Sequence[str]) -> list[str]:
-    """Keys of the robot's memory that the reports are made of."""
+    """Keys of the robot's memory that the reports need."""
     keys = [
         pattern.format(joint) for joint in joints if joint not in WITHOUT_SENSOR for pattern in (TEMPERATURE, STIFFNESS)
     ]
@@ -91,13 +81,7 @@ def keys_of(joints: Sequence[str]) -> list[str]:
 
 
 def body_reports(joints: Sequence[str], values: Mapping[str, Any], limits: Thresholds) -> dict[str, Report]:
-    """Reports by name.
-
-    Args:
-        joints: Names of the joints.
-        values: What the memory has for the keys of `keys_of`; None for what it does not.
-        limits: From where on something is wrong.
-    """
+    """Reports by name, from the values of the keys of `keys_of`; None for a missing one."""
     reports = {JOINT.format(joint): joint_report(joint, values, limits) for joint in joints}
     charge, flags = _number(values.get(CHARGE)), values.get(BATTERY_STATUS)
     reports[BATTERY] = battery_report(charge, flags if isinstance(flags, int) else None, limits)
@@ -107,7 +91,6 @@ def body_reports(joints: Sequence[str], values: Mapping[str, Any], limits: Thres
 
 
 def joint_report(joint: str, values: Mapping[str, Any], limits: Thresholds) -> Report:
-    """Temperature and stiffness of a joint."""
     temperature = _number(values.get(TEMPERATURE.format(joint)))
     stiffness = _number(values.get(STIFFNESS.format(joint)))
     facts = {"Temperature": _text(temperature), "Stiffness": _text(stiffness)}
@@ -163,11 +146,9 @@ def head_report(temperature: float | None, limits: Thresholds) -> Report:
 
 
 def network_reports(services: Sequence[Any] | None) -> dict[str, Report]:
-    """The robot's networks.
+    """The robot's networks, from ALConnectionManager.services: of each a list of [property, value].
 
-    Args:
-        services: What ALConnectionManager lists: of each network a list of [property, value]; None if the robot does
-            not tell, as only newer ones do.
+    None if the robot does not report them, as only newer ones do.
     """
     kinds = {WLAN: "wifi", ETHERNET: "ethernet"}
     if services is None:

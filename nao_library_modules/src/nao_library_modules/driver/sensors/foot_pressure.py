@@ -1,4 +1,4 @@
-"""What the force sensors under the feet say. No ROS."""
+"""Force sensors under the feet. No ROS."""
 
 from __future__ import annotations
 
@@ -21,29 +21,22 @@ ANSWER_LIMIT = 1.0
 
 @dataclass(frozen=True)
 class FootPressure:
-    """One foot.
+    """One foot."""
 
-    Attributes:
-        forces: Front left, front right, rear left, rear right, N.
-        total: N.
-        center: Centre of pressure x, y in the frame of the sole, m; not a number without load.
-        contact: Whether it touches the ground.
-    """
-
-    forces: tuple[float, ...]
-    total: float
-    center: tuple[float, float]
-    contact: bool
+    forces: tuple[float, ...]  # front left, front right, rear left, rear right, N
+    total: float  # N
+    center: tuple[float, float]  # of pressure, x, y in the frame of the sole, m; NaN without load
+    contact: bool  # whether it touches the ground
 
 
 def keys_of(side: str) -> list[str]:
-    """Keys of one foot, in the order in which `read_foot` takes their values."""
+    """Keys of one foot, in the order of `read_foot`."""
     center = [sensor_key(CENTER.format(side[0].upper(), axis)) for axis in "XY"]
     return [*weight_keys(side), *center, CONTACT.format(side)]
 
 
 def read_foot(values: Sequence[Any]) -> FootPressure:
-    """A foot from the values of its keys; what the robot does not have is not a number."""
+    """A foot from the values of its keys; missing ones are NaN."""
     numbers = [float(each) if isinstance(each, (bool, int, float)) else math.nan for each in values]
     forces = tuple(GRAVITY * each for each in numbers[:4])
     total = GRAVITY * numbers[4]
@@ -53,11 +46,7 @@ def read_foot(values: Sequence[Any]) -> FootPressure:
 
 
 def read_feet(robot: Any) -> dict[str, FootPressure]:
-    """Both feet, by side, in one question.
-
-    Raises:
-        NaoError: If the robot cannot be asked.
-    """
+    """Both feet, by side, in one call; raises NaoError if the robot cannot be asked."""
     keys = [key for side in SIDES for key in keys_of(side)]
     values = robot.proxy(MEMORY).call_async("getListData", keys).result(timeout=ANSWER_LIMIT)
     count = len(keys) // len(SIDES)

@@ -1,4 +1,4 @@
-"""The node nao_diagnostic_updater: how the robot is, and whether it can be reached."""
+"""The node nao_diagnostic_updater: state of body and connection."""
 
 from __future__ import annotations
 
@@ -60,15 +60,7 @@ class NaoDiagnosticUpdater:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Begin; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
+        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._node = node
         self._robot = robot
         self._period = 1.0 / _number(node, "~update_rate", DEFAULT_RATE, RATE)
@@ -93,11 +85,10 @@ class NaoDiagnosticUpdater:
         self._thread.start()
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics beside those that it publishes itself: none."""
+        """Empty: it publishes its reports itself."""
         return {}
 
     def close(self) -> None:
-        """Publish no more."""
         self._robot.connection.remove_listener(self._on_state)
         self._interrupt.stop()
         self._thread.join(SHUTDOWN_LIMIT)
@@ -105,7 +96,7 @@ class NaoDiagnosticUpdater:
     # --- connection -----------------------------------------------------------------------------------------------
 
     def _on_state(self, state: Any) -> None:
-        """Called from the thread that the connection has for its listeners."""
+        """Called from the connection's thread for listeners."""
         connection = self._robot.connection
         message = ConnectionState(address=self._robot.address, state=str(state), connections=connection.generation)
         message.last_error = connection.last_error or ""

@@ -1,4 +1,4 @@
-"""The node nao_sonar: how far it is to what is ahead."""
+"""The node nao_sonar: distances ahead."""
 
 from __future__ import annotations
 
@@ -33,15 +33,7 @@ class NaoSonar:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Begin; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
+        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._node = node
         self._prefix = tf_prefix()
         self._lock = threading.Lock()  # guards the set
@@ -59,11 +51,9 @@ class NaoSonar:
         ]
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"sonars": self._sonars.report}
 
     def close(self) -> None:
-        """Measure no more."""
         self._sonars.close()
 
     def _want(self, name: str, wanted: bool) -> None:

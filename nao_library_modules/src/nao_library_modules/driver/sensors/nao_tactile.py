@@ -1,4 +1,4 @@
-"""The node nao_tactile: everything that touches the robot, from its head to its soles."""
+"""The node nao_tactile: touch sensors, bumpers, buttons and soles."""
 
 from __future__ import annotations
 
@@ -41,15 +41,7 @@ class NaoTactile:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Begin; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
+        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._node = node
         self._robot = robot
         self._head = self._node.publisher("tactile_touch", TactileTouch, queue_size=QUEUE)
@@ -71,11 +63,9 @@ class NaoTactile:
         self._sensors = TouchSensors(robot, self._on_touch, self._on_clicks)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"touch": self._sensors.report, "foot pressure": self._pressure.report}
 
     def close(self) -> None:
-        """Tell no more."""
         self._pressure.close()
         self._sensors.close()
 

@@ -54,12 +54,6 @@ class NaoVisionServices:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-        """
         self._node = node
         subscriber = name_for_robot(self._node.name)
         self._prefix = tf_prefix()
@@ -79,20 +73,14 @@ class NaoVisionServices:
             node.offer(f"{folder}/enable", Empty, lambda _, detection=detection: detection.enable())
             node.offer(f"{folder}/disable", Empty, lambda _, detection=detection: detection.disable())
         folder = "nao_vision/face_detection"
-        learn, forget = (
-            partial(self._ask_person, "learnFace", limit=LEARN_LIMIT),
-            partial(self._ask_person, "forgetPerson"),
-        )
-        node.offer(f"{folder}/learn_face", LearnFace, learn)
-        node.offer(f"{folder}/forget_person", LearnFace, forget)
+        node.offer(f"{folder}/learn_face", LearnFace, partial(self._ask_person, "learnFace", limit=LEARN_LIMIT))
+        node.offer(f"{folder}/forget_person", LearnFace, partial(self._ask_person, "forgetPerson"))
         node.offer("nao_vision/movement_detection_sensitivity", VisionMotionSensitivity, self._set_sensitivity)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {f"{name} detection": detection.report for name, detection in self._detections.items()}
 
     def close(self) -> None:
-        """Switch everything off."""
         for detection in self._detections.values():
             detection.close()
 
@@ -121,11 +109,7 @@ class NaoVisionServices:
             raise
 
     def _send_sensitivity(self) -> None:
-        """Tell the robot the sensitivity that was chosen, if any.
-
-        Raises:
-            NaoError: If it cannot be told.
-        """
+        """Set the chosen sensitivity, if any; raises NaoError."""
         if self._sensitivity is None:
             return
         newer, older = SENSITIVITY_METHODS
@@ -157,7 +141,7 @@ class NaoVisionServices:
             publish(self._movement_topic, to_movement(movement, self._header(MOVEMENT, movement.view)))
 
     def _header(self, kind: Kind, view: View | None) -> Header:
-        """Header for something that was seen; without a view, of now and the top camera."""
+        """Header of a detection; without a view, of now and the top camera."""
         frame = f"{self._prefix}{CAMERA_NAMES[TOP if view is None else view.camera]}_optical_frame"
         if view is None:
             return Header(stamp=rospy.Time.now(), frame_id=frame)

@@ -1,4 +1,4 @@
-"""The sonars of the chest, which measure while somebody wants to know. No ROS."""
+"""The sonars of the chest, which measure while that is wanted. No ROS."""
 
 from __future__ import annotations
 
@@ -22,31 +22,25 @@ CLOSE_LIMIT = 2.0
 
 
 def range_of(value: Any) -> float:
-    """A distance in m as REP 117 has it.
+    """A distance in m by REP 117, from a value of the robot's memory, see `echo_of`.
 
-    Args:
-        value: What the robot's memory says, see `echo_of`.
-
-    Returns:
-        Infinity where there is nothing, minus infinity for what is too close to be measured, not a number for a
-        sensor that failed.
+    Infinity where there is nothing, minus infinity where it is too close, NaN for a sensor that failed.
     """
     echo = echo_of(value)
     return -math.inf if echo < NEAREST else echo
 
 
 class Sonars:
-    """Has the robot measure while that is wanted, after a lost connection as well."""
+    """Has the robot measure while that is wanted, also after a lost connection."""
 
     def __init__(
         self, robot: Any, subscriber: str, rate: float, clock: Any, sink: Callable[[Mapping[str, float]], None]
     ) -> None:
-        """Begin without; the robot need not be there yet.
+        """Start idle; the robot need not be connected yet.
 
         Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            subscriber: Name under which the robot knows who wants it.
-            rate: Readings a second, Hz.
+            subscriber: Name of the subscriber at the robot.
+            rate: Hz.
             clock: ROS time.
             sink: Gets each reading by side, in m, in a thread of its own.
         """
@@ -59,19 +53,16 @@ class Sonars:
         self._polling = Polling(robot, "sonars", rate, clock, self._read)
 
     def want(self, wanted: bool) -> None:
-        """Measure, or not, from now on."""
         self._measuring.want(wanted)
         self._polling.want(wanted)
 
     def report(self) -> Report:
-        """Whether distances come."""
         report = self._polling.report()
         if self._measuring.wanted and self._measuring.problem:
             return Report(Level.ERROR, f"the sonars do not measure: {self._measuring.problem}", report.values)
         return report
 
     def close(self) -> None:
-        """Measure no more."""
         self._polling.close()
         self._measuring.close(CLOSE_LIMIT)
 

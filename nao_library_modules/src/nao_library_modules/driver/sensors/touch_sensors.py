@@ -1,4 +1,4 @@
-"""What touches the robot: its events, and how the sensors stand when nobody has said yet. No ROS."""
+"""Touch sensors, buttons and contact of the feet: their events, and their state at the beginning. No ROS."""
 
 from __future__ import annotations
 
@@ -26,18 +26,11 @@ HEAD, HAND, BUMPER, CHEST, FEET = "head", "hand", "bumper", "chest button", "fee
 
 @dataclass(frozen=True)
 class Sensor:
-    """One that is touched or not.
+    """A sensor that is touched while one of its keys in the robot's memory is not 0."""
 
-    Attributes:
-        event: The event that tells that it changes.
-        place: What it belongs to: HEAD, HAND, BUMPER, CHEST or FEET.
-        number: Which one there, as the message of that place numbers them.
-        keys: Of the robot's memory: it is touched while one of them is not 0.
-    """
-
-    event: str
-    place: str
-    number: int
+    event: str  # raised at each change
+    place: str  # HEAD, HAND, BUMPER, CHEST or FEET
+    number: int  # as the message of that place numbers them
     keys: tuple[str, ...]
 
 
@@ -68,10 +61,10 @@ CLICKS = {
 
 
 class TouchSensors:
-    """Tells every change of every sensor, after a lost connection as well.
+    """Reports every change of every sensor, also after a lost connection.
 
-    What a sensor says at the beginning counts as a change if it is touched, and so does what has changed while the
-    robot was lost; of the feet the beginning is always told.
+    The state at the beginning counts as a change if the sensor is touched, and so does what has changed while the robot
+    was lost; for the feet the beginning is always reported.
     """
 
     def __init__(
@@ -81,10 +74,9 @@ class TouchSensors:
         tell_clicks: Callable[[int], None],
         sensors: Sequence[Sensor] = SENSORS,
     ) -> None:
-        """Begin to listen; the robot need not be there yet.
+        """Begin to listen; the robot need not be connected yet.
 
         Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
             tell: Gets a sensor and whether it is touched, in a thread of libqi or of this object; must not wait.
             tell_clicks: Gets how often the chest button was clicked, likewise.
             sensors: Those to listen to.
@@ -102,7 +94,6 @@ class TouchSensors:
         self._listening.want(True)
 
     def report(self) -> Report:
-        """Whether touches are told."""
         with self._lock:
             values = {event: {None: "unknown", True: "touched", False: ""}[now] for event, now in self._touched.items()}
         values["last error"] = self._listening.problem
@@ -111,7 +102,6 @@ class TouchSensors:
         return Report(Level.ERROR, f"deaf: {self._listening.problem or 'the robot is not connected'}", values)
 
     def close(self) -> None:
-        """Listen no more."""
         self._listening.close(CLOSE_LIMIT)
 
     # --- in the thread of the demand ------------------------------------------------------------------------------
@@ -126,12 +116,10 @@ class TouchSensors:
         self._read({sensor: sensor.keys for sensor in self._sensors.values()})
 
     def _look_again(self) -> bool:
-        """Read the events that came: libqi brings those that follow each other closely in any order.
+        """Read the sensors whose events came: libqi delivers events in quick succession in any order.
 
-        The sensors themselves would not do: a foot that bounces has no contact for a moment, of which no event tells.
-
-        Returns:
-            True: to be put right, nothing has to be started anew.
+        The keys of the sensors would not do: a bouncing foot has no contact for a moment, for which there is no event.
+        Returns True: nothing has to be started anew.
         """
         with self._lock:
             heard = [sensor for event, sensor in self._sensors.items() if event in self._heard]

@@ -1,4 +1,4 @@
-"""A module of the robot that looks for something, switched on and off. No ROS."""
+"""A vision module of the robot, switched on and off. No ROS."""
 
 from __future__ import annotations
 
@@ -22,19 +22,12 @@ CLOSE_LIMIT = 2.0
 
 @dataclass(frozen=True)
 class Kind:
-    """What a module looks for.
+    """A vision module of the robot."""
 
-    Attributes:
-        name: For people.
-        module: Name of the module.
-        event: Event that it raises.
-        key: Where in the robot's memory the value is, for an event that has none; else empty.
-    """
-
-    name: str
+    name: str  # for people
     module: str
     event: str
-    key: str = ""
+    key: str = ""  # in the robot's memory, of the value of an event without one; else empty
 
 
 FACES = Kind("face detection", "ALFaceDetection", "FaceDetected")
@@ -48,9 +41,9 @@ MOVEMENT = Kind(
 
 
 class Detection:
-    """Has the robot look for something while that is switched on, after a lost connection as well.
+    """Has the robot detect something while that is switched on, also after a lost connection.
 
-    Any thread may call.
+    Any thread may call. Methods raise NaoError if the robot cannot be asked.
     """
 
     def __init__(
@@ -61,12 +54,11 @@ class Detection:
         sink: Callable[[Any], None],
         prepare: Callable[[], None] = lambda: None,
     ) -> None:
-        """Begin switched off; the robot need not be there yet.
+        """Start switched off; the robot need not be connected yet.
 
         Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            kind: What to look for.
-            subscriber: Name under which the robot knows who wants it.
+            kind: Module and event.
+            subscriber: Name of the subscriber at the robot.
             sink: Gets the value of each event, in a thread of libqi: it must not wait.
             prepare: Called before the robot begins, for settings that it may have forgotten. May make calls.
         """
@@ -79,31 +71,18 @@ class Detection:
         self._looking = LazySubscription(robot, kind.name, self._begin, self._end)
 
     def enable(self) -> None:
-        """Look from now on. No effect if it does.
-
-        Raises:
-            NaoError: If the robot cannot be asked; then it is switched off.
-        """
+        """Switch on; after an error it is off. No effect if it is on."""
         self._looking.start_now()
 
     def disable(self) -> None:
-        """Look no longer. No effect if it does not.
-
-        Raises:
-            NaoError: If the robot cannot be asked; switched off it is all the same.
-        """
+        """Switch off, even after an error. No effect if it is off."""
         self._looking.stop_now()
 
     def call(self, method: str, *arguments: Any, limit: float = ANSWER_LIMIT) -> Any:
-        """Call a method of the module.
-
-        Raises:
-            NaoError: If the call fails, or takes longer than `limit` s.
-        """
+        """Call a method of the module; `limit` in s."""
         return self._robot.proxy(self._kind.module).call_async(method, *arguments).result(timeout=limit)
 
     def report(self) -> Report:
-        """Whether the robot looks."""
         values = {"module": self._kind.module, "last error": self._looking.problem}
         if not self._looking.wanted:
             return Report(Level.OK, "off", values)
@@ -112,7 +91,6 @@ class Detection:
         return Report(Level.ERROR, f"cannot run: {self._looking.problem or 'the robot is not connected'}", values)
 
     def close(self) -> None:
-        """Look no longer, for good."""
         self._looking.close(CLOSE_LIMIT)
 
     def _begin(self) -> None:

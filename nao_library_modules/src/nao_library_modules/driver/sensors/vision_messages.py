@@ -1,4 +1,4 @@
-"""What the robot has seen, as messages."""
+"""Detections of the robot's vision modules as messages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .vision_values import Face, Landmark, Movement, View
 
 
 def to_face(face: Face, view: View, header: Header) -> FaceDetected:
-    """A face; points that the robot does not tell are 0."""
+    """A face; points that the robot does not report are 0."""
     message = FaceDetected(header=header)
     message.face_id.data, message.score_reco.data, message.face_label.data = face.number, face.score, face.label
     message.shape_alpha.data, message.shape_beta.data = face.shape.alpha, face.shape.beta
@@ -28,7 +28,7 @@ def to_face(face: Face, view: View, header: Header) -> FaceDetected:
 
 
 def to_landmarks(marks: Sequence[Landmark], view: View, header: Header) -> LandmarkDetected:
-    """Marks that were seen in one picture."""
+    """Landmarks of one picture."""
     message = LandmarkDetected(header=header)
     message.mark_ids = [Int32(mark.number) for mark in marks]
     message.shape_alpha = [Float32(mark.shape.alpha) for mark in marks]
@@ -41,7 +41,7 @@ def to_landmarks(marks: Sequence[Landmark], view: View, header: Header) -> Landm
 
 
 def to_movement(movement: Movement, header: Header) -> MovementDetected:
-    """What moved; angles are x and y of the points, z is 0."""
+    """A movement; angles are x and y of the points, z is 0."""
     return MovementDetected(
         header=header,
         gravity_center=Point(*movement.centre, 0.0),

@@ -1,4 +1,4 @@
-"""What NAOqi's vision modules tell of, out of the values of their events. No ROS."""
+"""Detections of NAOqi's vision modules, from the values of their events. No ROS."""
 
 from __future__ import annotations
 
@@ -42,60 +42,38 @@ PARTS = (
 )
 """Parts of a face and their points, in the order of the event; message fields are named after them."""
 LONGEST_STEP = 0.5
-"""s between two looks above which nothing is known about what moved in between."""
+"""s between two events above which velocities are unknown."""
 
 
 @dataclass(frozen=True)
 class View:
-    """When and from where something was seen.
+    """Time and camera of a picture."""
 
-    Attributes:
-        time: Robot's time of the picture, s.
-        camera: NAOqi's number of the camera.
-        in_torso: Pose of the camera: x, y, z in m, roll, pitch, yaw in rad.
-        in_robot: The same, in the frame of the robot between its feet.
-    """
-
-    time: float
-    camera: int
-    in_torso: tuple[float, ...]
-    in_robot: tuple[float, ...]
+    time: float  # s, the robot's clock
+    camera: int  # NAOqi's number
+    in_torso: tuple[float, ...]  # pose of the camera: x, y, z in m, roll, pitch, yaw in rad
+    in_robot: tuple[float, ...]  # the same in FRAME_ROBOT, between the feet
 
 
 @dataclass(frozen=True)
 class Shape:
-    """Where something is, seen from the camera.
+    """Where something is, seen from the camera, rad."""
 
-    Attributes:
-        alpha: Of the centre, positive to the left, rad.
-        beta: Of the centre, positive downwards, rad.
-        width: rad.
-        height: rad.
-    """
-
-    alpha: float
-    beta: float
+    alpha: float  # of the centre, positive to the left
+    beta: float  # of the centre, positive downwards
     width: float
     height: float
 
 
 @dataclass(frozen=True)
 class Face:
-    """A face.
-
-    Attributes:
-        shape: Where it is.
-        number: Number of the face.
-        score: How sure the recognition is, 0 to 1.
-        label: Name of the person; empty if not known.
-        points: "left_eye_eyeCenter" and so on -> alpha, beta in rad; those that the robot does not tell are left out.
-    """
+    """A face."""
 
     shape: Shape
     number: int
-    score: float
-    label: str
-    points: dict[str, Pair]
+    score: float  # of the recognition, 0 to 1
+    label: str  # name of the person; empty if not known
+    points: dict[str, Pair]  # "left_eye_eyeCenter" and so on -> alpha, beta in rad; without those not reported
 
 
 @dataclass(frozen=True)
@@ -108,29 +86,17 @@ class Landmark:
 
 @dataclass(frozen=True)
 class Movement:
-    """What moved.
+    """Movement in a picture; positions are alpha, beta in rad, velocities in rad/s."""
 
-    Attributes:
-        view: When and from where; None if the robot does not tell.
-        centre: Mean position, alpha and beta in rad.
-        velocity: Mean velocity, rad/s.
-        points: alpha and beta of each part that moved, rad.
-        velocities: Of the same, rad/s.
-    """
-
-    view: View | None
-    centre: Pair
-    velocity: Pair
-    points: tuple[Pair, ...]
-    velocities: tuple[Pair, ...]
+    view: View | None  # None if the robot does not report it
+    centre: Pair  # mean
+    velocity: Pair  # mean
+    points: tuple[Pair, ...]  # of each part that moved
+    velocities: tuple[Pair, ...]  # of the same parts
 
 
 def read_faces(value: Any) -> tuple[View, list[Face]] | None:
-    """Faces from an event; None if it holds none.
-
-    Args:
-        value: [[s, us], [face, ..., what is new], camera in torso, camera in robot, camera], or [].
-    """
+    """Faces from [[s, us], [face, ..., recognition], camera in torso, in robot, camera]; None if there are none."""
     if not _is_list(value, 2) or not _is_list(value[1], 1):
         return None
     # Behind the faces comes what the recognition has to say over time: that has no shape.
@@ -139,7 +105,7 @@ def read_faces(value: Any) -> tuple[View, list[Face]] | None:
 
 
 def read_landmarks(value: Any) -> tuple[View, list[Landmark]] | None:
-    """Marks from an event; None if it holds none.
+    """Landmarks from an event; None if there are none.
 
     Args:
         value: [[s, us], [[[1, alpha, beta, width, height, heading], [number]], ...], camera in torso, camera in robot,
@@ -154,14 +120,13 @@ def read_landmarks(value: Any) -> tuple[View, list[Landmark]] | None:
 
 
 class MovementReader:
-    """Reads what moved, and from one time to the next how fast. For one thread."""
+    """Reads movements, and computes velocities from one to the next. For one thread."""
 
     def __init__(self) -> None:
-        """Begin without a movement."""
         self._last: tuple[float, tuple[Pair, ...], Pair] | None = None
 
     def read(self, value: Any) -> Movement | None:
-        """Movement from the value in the robot's memory; None if it holds none.
+        """Movement from the value in the robot's memory; None if there is none.
 
         Args:
             value: [[s, us], [[[alpha, beta], [x, y, width, height], share], ...], camera in torso, camera in robot,
@@ -198,7 +163,7 @@ def _velocity(begin: Pair, end: Pair, step: float) -> Pair:
 
 
 def _extent(cluster: Sequence[Any]) -> float:
-    """How much of the picture moves in a cluster, in any unit."""
+    """Size of a cluster in the picture, in any unit."""
     region = cluster[1]
     area = abs(float(region[2]) * float(region[3])) if _is_list(region, 4) else 1.0
     share = float(cluster[2]) if len(cluster) > 2 and not _is_list(cluster[2], 0) else 1.0
@@ -242,7 +207,7 @@ def _view(value: Sequence[Any]) -> View:
 
 
 def _camera(value: Any) -> int:
-    """Number of a camera that is told by number or name; the top one if it is none of those there are."""
+    """Number of a camera given by number or name; the top one for an unknown one."""
     number = camera_number(value)
     return TOP if number is None else number
 
