@@ -1,4 +1,4 @@
-"""One watched key of the robot's memory: when it is due, and what becomes of its values. No ROS."""
+"""One watched key of the robot's memory: when it is due, and where its values go. No ROS."""
 
 from __future__ import annotations
 
@@ -22,28 +22,21 @@ NOTHING = object()
 class WatchedKey:
     """A key, its topic once there is one, and the pace of its messages.
 
-    The lock is held while a value is handed to the topic: events come in several threads of libqi.
+    The lock is held while a value is passed to the topic: events come in several threads of libqi.
 
     Attributes:
-        name: Of the key.
-        topic_name: Of its topic.
-        rule: What is to become of it.
-        is_event: Whether the robot tells of it by itself.
-        subscribed: Whether it does now; for the thread that subscribes.
-        to_be_told: Whether how it stands is still to be read since then; for that thread as well.
-        wanted: Whether somebody listens to the topic.
-        kind: Kind of message; empty as long as nothing tells the type.
+        is_event: Whether the robot raises it as an event.
+        subscribed: Whether the event is subscribed; for the thread that subscribes.
+        to_be_told: Whether the present value is still to be read since then; for that thread as well.
+        wanted: Whether the topic has subscribers.
+        kind: Kind of message; empty as long as the type is unknown.
     """
 
     def __init__(self, name: str, topic_name: str, rule: Rule, make_topic: Callable[..., Any]) -> None:
         """Watch a key; there is no topic yet.
 
-        Args:
-            name: Of the key.
-            topic_name: Of its topic.
-            rule: What is to become of it.
-            make_topic: Opens a topic: gets its name, the kind of message and a function that is to be told whether
-                anybody listens. What it gives has `publish(value)` and `close()`.
+        `make_topic` opens a topic: it gets its name, the kind of message and a function to call with whether there are
+        subscribers. It returns an object with `publish(value)` and `close()`.
         """
         self.name = name
         self.topic_name = topic_name
@@ -68,7 +61,7 @@ class WatchedKey:
         """Open the topic, or another one for values of another type; nothing happens while the type is unknown.
 
         Args:
-            value: What tells the type, unless the rule does; None for nothing.
+            value: Gives the type, unless the rule does; None for no value.
             tell: Called when somebody begins or ceases to listen.
         """
         kind = self.rule.kind or ("" if value is None else kind_of(value))
@@ -90,7 +83,6 @@ class WatchedKey:
             self.kind, self._topic = kind, topic
 
     def close(self) -> None:
-        """Close the topic."""
         with self._lock:
             topic, self._topic, self.kind = self._topic, None, ""
             self._opening, self.wanted = None, False
@@ -98,11 +90,7 @@ class WatchedKey:
             topic.close()
 
     def deliver(self, value: Any) -> bool:
-        """Publish a value.
-
-        Returns:
-            Whether that was all; False if it first needs a topic of another kind.
-        """
+        """Publish a value; False if it first needs a topic of another kind."""
         with self._lock:
             if self._topic is None:
                 return False
@@ -138,14 +126,13 @@ class WatchedKey:
         return max(self._due - now, 0.0)
 
     def was_read(self, now: float) -> None:
-        """Data was read: the next time is a period later."""
         self._due = (math.floor(now / self.period + 1e-6) + 1) * self.period
 
     def hold(self, value: Any, now: float) -> float:
-        """Take an event in.
+        """Take an event; a newer one replaces it while it is held.
 
         Returns:
-            s until it may be published: 0 for at once. A newer one takes its place meanwhile.
+            s until it may be published: 0 for at once.
         """
         with self._lock:
             early = self._last is not None and self._last <= now < self._last + self.period

@@ -1,4 +1,4 @@
-"""Which keys of the robot's memory are watched, and how. No ROS."""
+"""Rules: which keys of the robot's memory are watched, and how. No ROS."""
 
 from __future__ import annotations
 
@@ -21,26 +21,15 @@ RATE = limit("sampling rate")
 
 @dataclass(frozen=True)
 class Rule:
-    """What is to become of some keys.
+    """How keys are watched."""
 
-    Attributes:
-        pattern: A key, or several with * and ?.
-        rate: Hz, at most so many messages a second and key; 0: as ever.
-        kind: Kind of message; empty: by value.
-        on: Whether they are watched.
-    """
-
-    pattern: str
-    rate: float = 0.0
-    kind: str = ""
-    on: bool = True
+    pattern: str  # a key, or several with * and ?
+    rate: float = 0.0  # most messages a second and key, Hz; 0: the default
+    kind: str = ""  # of message; empty: by value
+    on: bool = True  # whether they are watched
 
     def check(self) -> None:
-        """See that it makes sense.
-
-        Raises:
-            BadGoal: If not.
-        """
+        """Raises BadGoal for a wrong field."""
         check_pattern(self.pattern)
         require_zero_or("rate", self.rate, RATE)
         if self.kind and self.kind not in KINDS:
@@ -48,14 +37,13 @@ class Rule:
 
 
 class Rules:
-    """Rules in the order in which they were made: of those that concern a key the last one counts. For one lock."""
+    """Rules in the order in which they were made: the last one that matches a key counts. For one lock."""
 
     def __init__(self) -> None:
-        """Begin without."""
         self._rules: list[Rule] = []
 
     def add(self, rule: Rule) -> None:
-        """Add a rule; it takes the place of older ones for the same pattern, or for keys that it covers."""
+        """Add a rule; it replaces older ones for the same pattern, or for keys that it covers."""
         self._rules = [r for r in self._rules if r.pattern != rule.pattern and not self._covers(rule, r)]
         if rule.on or any(r.on for r in self._rules):
             self._rules.append(rule)
@@ -63,7 +51,6 @@ class Rules:
             self._rules.clear()
 
     def copy(self) -> Rules:
-        """The same rules, which do not change with these."""
         other = Rules()
         other._rules = list(self._rules)
         return other
@@ -73,27 +60,22 @@ class Rules:
         return list(self._rules)
 
     def rule_for(self, key: str) -> Rule | None:
-        """The rule that has a key watched; None if it is not to be."""
+        """The rule by which a key is watched; None if it is not."""
         found = next((rule for rule in reversed(self._rules) if matches(key, rule.pattern)), None)
         return found if found is not None and found.on else None
 
     def wanted_of(self, known: Iterable[str]) -> dict[str, Rule]:
-        """Key -> its rule, for all keys that are to be watched.
-
-        Args:
-            known: Keys that the robot has; a rule for one key by name wants that in any case.
-        """
+        """Key -> its rule, of all keys to watch: of those `known` at the robot, and all that a rule names."""
         named = [rule.pattern for rule in self._rules if rule.on and not is_pattern(rule.pattern)]
         found = {key: self.rule_for(key) for key in dict.fromkeys([*named, *known])}
         return {key: rule for key, rule in found.items() if rule is not None}
 
     @property
     def has_patterns(self) -> bool:
-        """Whether keys that are not there yet may be wanted."""
+        """Whether keys that do not exist yet may be wanted."""
         return any(rule.on and is_pattern(rule.pattern) for rule in self._rules)
 
     def __bool__(self) -> bool:
-        """Whether there are any."""
         return bool(self._rules)
 
     @staticmethod

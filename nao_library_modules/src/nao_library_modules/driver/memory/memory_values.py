@@ -1,4 +1,4 @@
-"""Values of the robot's memory and the types that messages have for them. No ROS."""
+"""Values of the robot's memory and their types in messages. No ROS."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def type_of(value: Any) -> str:
 
 
 def kind_of(value: Any) -> str:
-    """The kind of message for a value: one of KINDS, TEXT for what has no message of its own."""
+    """The kind of message for a value: one of KINDS, TEXT for values without a message of their own."""
     kind = type_of(value)
     if kind in (INT, INTS) and not _fits_int(value):
         return TEXT
@@ -44,8 +44,7 @@ def kind_of(value: Any) -> str:
 def converted(value: Any, kind: str) -> Any:
     """A value as a message of some kind carries it; None if it cannot.
 
-    Numbers widen (a whole number where others have a point, true as 1), and any value is a text. The other way
-    something would be lost.
+    Numbers widen (int to float, true to 1), and any value is a text. The other way would lose something.
     """
     if kind == TEXT:
         return value if isinstance(value, str) else json_of(value)
@@ -59,7 +58,7 @@ def converted(value: Any, kind: str) -> Any:
 
 
 def parse_value(text: str) -> Any:
-    """A value from JSON; what is no JSON is a text."""
+    """A value from JSON; a text that is no JSON is itself."""
     try:
         return value_of_json(text)
     except ValueError:

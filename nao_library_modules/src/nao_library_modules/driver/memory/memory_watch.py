@@ -1,4 +1,4 @@
-"""Keys and events of the robot's memory, watched while somebody listens to their topics. No ROS."""
+"""Keys and events of the robot's memory, watched while their topics have subscribers. No ROS."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ FOREVER = 1e6
 
 
 class MemoryWatch:
-    """Has topics for keys, reads data that somebody listens to, and passes events on; after a lost connection as well.
+    """Opens topics for keys, reads data with subscribers, and passes events on; also after a lost connection.
 
-    Threads: the one of this object asks the robot and opens topics; so do callers of `watch` and `unwatch`, one of all
-    of them at a time (`_work`). Events come in threads of libqi, demand in those of the topics: they change a key and
-    wake the thread.
+    Threads: that of this object asks the robot and opens topics; so do callers of `watch` and `unwatch`, one of all
+    of them at a time (`_work`). Events come in threads of libqi, subscriptions in those of the topics: they change a
+    key and wake the thread.
     """
 
     def __init__(self, robot: Any, clock: Any, make_topic: Callable[..., Any], largest: int) -> None:
-        """Watch nothing yet; the robot need not be there.
+        """Watch nothing yet; the robot need not be connected.
 
         Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            clock: Time that rates are in.
+            robot: Gives proxies and the connection.
+            clock: Time base of rates.
             make_topic: Opens a topic, see `WatchedKey`.
-            largest: How many keys may be watched at once.
+            largest: Most keys that may be watched at once.
         """
         self._robot = robot
         self._memory = MemoryAccess(robot)
@@ -67,10 +67,10 @@ class MemoryWatch:
     # --- for the node ---------------------------------------------------------------------------------------------
 
     def watch(self, rules: Iterable[Rule]) -> None:
-        """Watch what rules say, when the robot is there.
+        """Apply rules, when the robot is connected.
 
         Raises:
-            NaoError: If they are more than may be watched at once; then nothing changes.
+            NaoError: If there are more keys than may be watched at once; then nothing changes.
         """
         with self._work:
             former = self._rules.copy()
@@ -88,14 +88,7 @@ class MemoryWatch:
         self._wake()
 
     def unwatch(self, pattern: str) -> list[str]:
-        """Watch keys no longer.
-
-        Returns:
-            Those that were watched.
-
-        Raises:
-            NaoError: If the pattern is empty.
-        """
+        """Watch keys no longer, and return those that were watched; raises NaoError if the pattern is empty."""
         rule = Rule(pattern, on=False)
         rule.check()
         with self._work:
@@ -108,17 +101,16 @@ class MemoryWatch:
 
     @property
     def rules(self) -> list[Rule]:
-        """What is to be watched, the oldest rule first."""
+        """The rules, the oldest first."""
         with self._work:
             return self._rules.all()
 
     def watched(self, pattern: str = "") -> dict[str, str]:
-        """Key -> topic, empty as long as it has none, of those that a pattern stands for."""
+        """Key -> topic, empty as long as it has none, of the keys that match a pattern."""
         keys = dict(self._keys)
         return {key: keys[key].topic_name if keys[key].kind else "" for key in matching(keys, pattern)}
 
     def report(self) -> Report:
-        """How many keys are watched, and whether that works."""
         keys = list(self._keys.values())
         values = {
             "keys": str(len(keys)),
@@ -133,7 +125,6 @@ class MemoryWatch:
         return Report(Level.OK, "watched", values)
 
     def close(self) -> None:
-        """Watch nothing any more."""
         self._robot.connection.remove_listener(self._wake)
         self._closed = True
         self._news.stop()
@@ -144,7 +135,7 @@ class MemoryWatch:
     # --- under _work ----------------------------------------------------------------------------------------------
 
     def _resolve(self) -> None:
-        """Have the keys that the rules say, with their topics."""
+        """Watch the keys that the rules select, with their topics."""
         known = self._memory.known() if self._rules else {}
         wanted = self._rules.wanted_of(known)
         if len(wanted) > self._largest:
@@ -265,7 +256,7 @@ class MemoryWatch:
         return min(waits)
 
     def _mind_events(self) -> None:
-        """Subscribe the events that somebody waits for, or whose type is not known yet; those only."""
+        """Subscribe the events that have subscribers here, or whose type is not known yet; those only."""
         begun = []
         for key in self._keys.values():
             needed = key.is_event and (key.wanted or not key.kind)

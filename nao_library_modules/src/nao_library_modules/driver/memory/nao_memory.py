@@ -75,15 +75,7 @@ class NaoMemory:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Offer everything; the robot need not be there yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-            node: Its side to ROS.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
+        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._node = node
         largest = self._node.param("~max_topics", MOST_TOPICS)
         largest = int(number_parameter("~max_topics", largest, limit("topics")))
@@ -102,11 +94,9 @@ class NaoMemory:
         self._serve("~list", ListMemory, ListMemoryResponse, self._on_list)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        """Reports for /diagnostics, by name."""
         return {"memory": self._watch.report}
 
     def close(self) -> None:
-        """Watch nothing any more."""
         self._kept.forget()
         self._watch.close()
 
@@ -120,7 +110,7 @@ class NaoMemory:
         return WatchMemoryResponse(True, self._missing(request.pattern, topics), list(found), topics)
 
     def _missing(self, pattern: str, topics: list[str]) -> str:
-        """What a client should know that sees no topic."""
+        """A message for a client that gets no topic."""
         if self._robot.connection.state != "connected":
             return f"the robot at {self._robot.address} is not connected: topics appear when it is"
         shut = topics.count("")
@@ -139,7 +129,7 @@ class NaoMemory:
         return UnwatchMemoryResponse(True, "", left)
 
     def _keep(self) -> None:
-        """Keep what is watched beyond the death of the node."""
+        """Save the rules: they outlive a crash of the node."""
         self._kept.save([asdict(rule) for rule in self._watch.rules])
 
     def _on_get(self, request: Any) -> GetMemoryResponse:
@@ -160,7 +150,7 @@ class NaoMemory:
         return ListMemoryResponse(True, "", keys, [known[key] for key in keys], names)
 
     def _serve(self, name: str, kind: type, response: type, answer: Callable[[Any], Any]) -> None:
-        """Offer a service whose response tells what went wrong."""
+        """Offer a service whose response reports errors."""
 
         def serve(request: Any) -> Any:
             try:
@@ -175,17 +165,10 @@ class NaoMemory:
 
 
 class MemoryTopic(LazyTopic):
-    """The topic of a key. Who begins to listen after others gets the last message first."""
+    """The topic of a key. Each further subscriber gets the last message first."""
 
     def __init__(self, node: NodeInterface, name: str, kind: str, tell: Callable[[bool], None]) -> None:
-        """Open the topic.
-
-        Args:
-            node: That it is one of.
-            name: Of the topic, under that of the node.
-            kind: Kind of message, see memory_values.
-            tell: Gets whether anybody listens.
-        """
+        """Open the topic `name` below the node, of a kind in MESSAGES; `tell` gets whether it has subscribers."""
         self._kind = MESSAGES[kind]
         self._last: Any = None
         self._topic = rospy.Publisher(node.resolve(f"~{name}"), self._kind, queue_size=QUEUE)
@@ -199,12 +182,11 @@ class MemoryTopic(LazyTopic):
         publish(self._topic, message)
 
     def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
-        """One more listens; called by rospy. The first one gets what the robot says then, the others the last."""
+        """One more listens; called by rospy. The first one gets the robot's present value, the others the last."""
         last = self._last
         if self.listened and last is not None:
             peer_publish(last)
         super().peer_subscribe(topic_name, topic_publish, peer_publish)
 
     def close(self) -> None:
-        """Close the topic."""
         self._topic.unregister()
