@@ -1,4 +1,4 @@
-"""What a gamepad asks for: its axes and buttons become a velocity, angles of the head, and requests. No ROS."""
+"""Axes and buttons of a gamepad become a velocity, angles of the head, and requests. No ROS."""
 
 from __future__ import annotations
 
@@ -25,56 +25,31 @@ class Request(Enum):
 
 @dataclass(frozen=True)
 class JoySettings:
-    """Which axis and which button does what (indices, -1: none), and how far an axis goes.
+    """Indices of axes and buttons (-1: none), and the ranges of the axes."""
 
-    Attributes:
-        axis_x: Walks forward.
-        axis_y: Walks to the left.
-        axis_turn: Turns to the left.
-        axis_head_yaw: Turns the head, while `btn_head_mod` is held.
-        axis_head_pitch: Nods, while `btn_head_mod` is held.
-        btn_crouch: Crouches, and then the motors go off.
-        btn_init_pose: Stands up.
-        btn_enable_control: Takes control, and gives it back.
-        btn_head_mod: While it is held the axes move the head, and the robot stands.
-        max_vx: Fraction of the top speed forward when the axis is at its end, 0 to 1.
-        max_vy: The same sideways.
-        max_vw: The same turning.
-        max_head_yaw: Angle of the head when the axis is at its end, rad.
-        max_head_pitch: The same nodding.
-    """
-
-    axis_x: int = 3
-    axis_y: int = 2
-    axis_turn: int = 0
-    axis_head_yaw: int = 4
-    axis_head_pitch: int = 5
-    btn_crouch: int = 9
-    btn_init_pose: int = 0
-    btn_enable_control: int = 8
-    btn_head_mod: int = 5
-    max_vx: float = 1.0
-    max_vy: float = 1.0
-    max_vw: float = 0.5
-    max_head_yaw: float = 2.0943
-    max_head_pitch: float = 0.7853
+    axis_x: int = 3  # walk forward
+    axis_y: int = 2  # walk to the left
+    axis_turn: int = 0  # turn to the left
+    axis_head_yaw: int = 4  # while btn_head_mod is held
+    axis_head_pitch: int = 5  # while btn_head_mod is held
+    btn_crouch: int = 9  # crouch, and then the motors go off
+    btn_init_pose: int = 0  # stand up
+    btn_enable_control: int = 8  # take control, and give it back
+    btn_head_mod: int = 5  # while it is held the axes move the head, and the robot stands
+    max_vx: float = 1.0  # fraction of the top speed at the end of the axis, 0 to 1
+    max_vy: float = 1.0  # the same
+    max_vw: float = 0.5  # the same
+    max_head_yaw: float = 2.0943  # rad at the end of the axis
+    max_head_pitch: float = 0.7853  # rad
 
 
 class JoyControl:
     """The state of one gamepad. For one thread.
 
-    Attributes:
-        enabled: Whether it has control.
-        velocity: What the robot has to walk.
-        head: Yaw and pitch of the head in rad; None while its button is not held.
+    `velocity` is to be walked; `head` is its yaw and pitch in rad, None while its button is not held.
     """
 
     def __init__(self, settings: JoySettings) -> None:
-        """Begin without control.
-
-        Args:
-            settings: Which axis and button does what.
-        """
         self._settings = settings
         self._buttons: list[int] | None = None
         self._axes_now: Sequence[float] = ()
@@ -83,14 +58,14 @@ class JoyControl:
         self.head: tuple[float, float] | None = None
 
     def update(self, axes: Sequence[float], buttons: Sequence[int]) -> list[Request]:
-        """Take what the gamepad is like now.
+        """Take the state of the gamepad.
 
         Args:
             axes: Positions, -1 to 1.
             buttons: 1 for those that are pressed.
 
         Returns:
-            What buttons ask for that were not pressed before. Those held at the very first ask for nothing.
+            Requests of buttons that were not pressed before. Those held in the very first state request nothing.
         """
         settings = self._settings
         before = list(buttons) if self._buttons is None else self._buttons
@@ -105,8 +80,7 @@ class JoyControl:
             if self._pressed(settings.btn_crouch, before):
                 requests.append(Request.CROUCH)
         head = self.enabled and _at(buttons, settings.btn_head_mod) == 1
-        self.head = None
-        self.velocity = STANDSTILL
+        self.velocity, self.head = STANDSTILL, None
         if head:
             self.head = (
                 self._axis(settings.axis_head_yaw, settings.max_head_yaw),
@@ -130,7 +104,7 @@ class JoyControl:
         ]
 
     def release(self) -> None:
-        """Nobody touches the gamepad any more: it went away."""
+        """Stop everything: the gamepad went away."""
         self.velocity, self.head = STANDSTILL, None
 
     def _pressed(self, index: int, before: Sequence[int]) -> bool:

@@ -1,4 +1,4 @@
-"""What keys ask for: walking while one is held, poses, motors, speed. Arithmetic only; times are passed in. No ROS."""
+"""Keys become walking while one is held, poses, motors, speed. Arithmetic only; times are passed in, in s. No ROS."""
 
 from __future__ import annotations
 
@@ -48,15 +48,10 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Request:
-    """What a key asks for, beside walking.
-
-    Attributes:
-        kind: What it is.
-        detail: Name of the pose, the speed in words, or the key.
-    """
+    """What a key asks for, beside walking."""
 
     kind: Kind
-    detail: str = ""
+    detail: str = ""  # name of the pose, the speed in words, or the key
 
 
 REQUESTS: Mapping[str, Request] = {
@@ -73,19 +68,10 @@ REQUESTS: Mapping[str, Request] = {
 
 
 class KeyboardControl:
-    """The state of one keyboard. For one thread.
-
-    Attributes:
-        speed: Fraction of the top speed, 0.1 to 1.
-    """
+    """The state of one keyboard; `speed` is a fraction of the top speed, 0.1 to 1. For one thread."""
 
     def __init__(self, poses: Sequence[str], speed: float = 0.5) -> None:
-        """Begin with no key held.
-
-        Args:
-            poses: Names of poses, for the keys 1, 2, ... up to 9.
-            speed: Fraction of the top speed to begin with.
-        """
+        """Start with no key held; the keys 1 to 9 are for `poses`."""
         self.speed = speed
         self._poses = {str(number): name for number, name in enumerate(poses[:9], start=1)}
         self._key: str | None = None
@@ -93,18 +79,12 @@ class KeyboardControl:
 
     @property
     def help(self) -> str:
-        """What the keys do."""
         return HELP.format(poses="   ".join(f"{key} {name}" for key, name in self._poses.items()))
 
     def press(self, key: str, now: float) -> Request | None:
-        """A key was pressed, or is repeated because it is held.
+        """A key (a character, or the name of a key) was pressed, or is repeated because it is held.
 
-        Args:
-            key: A character, or the name of a key.
-            now: Time in s.
-
-        Returns:
-            What it asks for, if it does not walk.
+        Returns what it asks for, if it does not walk.
         """
         key = ARROWS.get(key, key.lower())
         if key in DIRECTIONS:
@@ -121,11 +101,6 @@ class KeyboardControl:
         return REQUESTS.get(key, Request(Kind.UNKNOWN, key))
 
     def velocity(self, now: float) -> Velocity:
-        """What the robot has to walk now.
-
-        Args:
-            now: Time in s.
-        """
         if self._key is None or now >= self._until:
             self._key = None
             return STANDSTILL

@@ -1,4 +1,4 @@
-"""What teleoperation asks of the driver: topics at once, services and poses one after the other in the background."""
+"""Clients of the driver for teleoperation: topics at once, services and poses in a queue in the background."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ POSE_LIMIT = 10.0
 class TeleopClients:
     """Clients of nao_walker, nao_controller and pose_manager.
 
-    Any thread may call; nothing here waits. Whatever cannot be done is told by `say`.
+    Any thread may call; nothing here waits. Failures are reported by `tell`.
 
     ROS API (relative names):
         Publishes `cmd_vel` (geometry_msgs/Twist), `joint_angles` (nao_library_msgs/JointAnglesWithSpeed), `speech`
@@ -36,10 +36,9 @@ class TeleopClients:
     """
 
     def __init__(self, tell: Callable[[str], None]) -> None:
-        """Make the clients; the servers need not be there yet.
+        """Create the clients; the servers need not be there yet.
 
-        Args:
-            tell: Gets a line of text when something was done, or could not be.
+        `tell` gets a line of text when something was done, or could not be.
         """
         self._tell = tell
         self._cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
@@ -53,7 +52,6 @@ class TeleopClients:
     # --- at once --------------------------------------------------------------------------------------------------
 
     def walk(self, velocity: Velocity) -> None:
-        """Command a velocity."""
         twist = Twist()
         twist.linear.x, twist.linear.y, twist.angular.z = velocity.x, velocity.y, velocity.theta
         self._cmd_vel.publish(twist)
@@ -65,31 +63,19 @@ class TeleopClients:
         )
 
     def say(self, text: str) -> None:
-        """Have the robot say a text."""
         self._speech.publish(text)
 
     # --- one after the other --------------------------------------------------------------------------------------
 
     def call(self, service: str, done: str = "") -> None:
-        """Call a service of type std_srvs/Empty.
-
-        Args:
-            service: Its name.
-            done: What is told when it has answered.
-        """
+        """Call a service of type std_srvs/Empty; `done` is the text when it has answered."""
         self._jobs.put(lambda: self._call(service, done))
 
     def take_pose(self, name: str, then: str = "") -> None:
-        """Take a pose by name.
-
-        Args:
-            name: Name of the pose.
-            then: Service to call when the robot is there, if any.
-        """
+        """Take a pose by name, and then call the service `then`, if any."""
         self._jobs.put(lambda: self._take_pose(name, then))
 
     def close(self) -> None:
-        """Do nothing any more."""
         self._jobs.put(None)
 
     def _run(self) -> None:

@@ -39,11 +39,7 @@ class TeleopNaoJoy:
     """
 
     def __init__(self) -> None:
-        """Read the parameters and begin.
-
-        Raises:
-            NaoError: If a parameter is wrong.
-        """
+        """Raises NaoError for a wrong parameter."""
         self._control = JoyControl(read_settings())
         rate = number_parameter(RATE, rospy.get_param(RATE, DEFAULT_RATE), limit("teleop rate"))
         self._timeout = number_parameter(TIMEOUT, rospy.get_param(TIMEOUT, 0.0), limit("timeout"))
@@ -59,7 +55,7 @@ class TeleopNaoJoy:
         self._thread.start()
 
     def close(self) -> None:
-        """Send nothing any more; a robot that walks is stopped."""
+        """Send nothing any more; a walking robot is stopped."""
         self._interrupt.stop()
         self._thread.join(LOSE_LIMIT)
         with self._lock:
@@ -71,7 +67,6 @@ class TeleopNaoJoy:
         self._clients.close()
 
     def report(self) -> Report:
-        """Whether there is a gamepad, and whether it has control."""
         values = {"control": "enabled" if self._control.enabled else "disabled"}
         if not self._joy.get_num_connections():
             return Report(Level.WARN, f"nobody publishes {self._joy.resolved_name}", values)
@@ -117,7 +112,7 @@ class TeleopNaoJoy:
         return silent or not self._joy.get_num_connections()
 
     def _send(self) -> None:
-        """Send what has to be sent now; with the lock."""
+        """Send what is due; with the lock."""
         velocity, head = self._control.velocity, self._control.head
         if self._moving or not velocity.is_zero:
             self._moving = not velocity.is_zero
@@ -127,11 +122,7 @@ class TeleopNaoJoy:
 
 
 def read_settings() -> JoySettings:
-    """The settings from the parameters of the node.
-
-    Raises:
-        NaoError: If one is wrong.
-    """
+    """Settings from the parameters of the node; raises NaoError."""
     values = {}
     for field in fields(JoySettings):
         name, value = f"~{field.name}", rospy.get_param(f"~{field.name}", field.default)

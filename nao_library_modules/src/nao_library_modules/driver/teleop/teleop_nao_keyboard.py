@@ -31,13 +31,6 @@ class TeleopNaoKeyboard:
     """
 
     def __init__(self, poses: Sequence[str], speed: float, out: TextIO = sys.stdout) -> None:
-        """Make the clients.
-
-        Args:
-            poses: Names of poses, for the keys 1, 2, ...
-            speed: Fraction of the top speed to begin with.
-            out: Where texts go.
-        """
         self._control = KeyboardControl(poses, speed)
         self._out = out
         self._clients = TeleopClients(self._tell)

@@ -1,4 +1,4 @@
-"""Keys from a terminal, one by one and without Enter. The terminal gets its settings back whatever happens."""
+"""Keys of a terminal, one by one and without Enter. Its settings are restored in any case."""
 
 from __future__ import annotations
 
@@ -24,24 +24,16 @@ LONGEST = 1024
 
 
 class TerminalKeys:
-    """A terminal in which keys count at once. A context manager; inside, `read` gives keys."""
+    """A terminal whose keys arrive at once (cbreak mode). A context manager; inside, `read` gives keys."""
 
     def __init__(self, file: int) -> None:
-        """Take a terminal.
-
-        Args:
-            file: Its file descriptor.
-
-        Raises:
-            NaoError: If it is no terminal.
-        """
+        """Take a terminal by its file descriptor; raises NaoError if it is none."""
         if not os.isatty(file):
             raise NaoError("keys need a terminal: start this in one with rosrun, not by a launch file or a pipe")
         self._file = file
         self._before = termios.tcgetattr(file)
 
     def __enter__(self) -> TerminalKeys:
-        """Have keys count at once."""
         atexit.register(self.restore)  # for an end that does not pass through here
         tty.setcbreak(self._file)
         return self
@@ -49,25 +41,20 @@ class TerminalKeys:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Give the terminal its settings back."""
         self.restore()
         atexit.unregister(self.restore)
 
     def restore(self) -> None:
-        """Give the terminal its settings back; keys that nobody read are forgotten."""
+        """Restore the settings of the terminal; keys not read yet are discarded."""
         try:
             termios.tcsetattr(self._file, termios.TCSAFLUSH, self._before)
         except (termios.error, OSError):
             pass  # the terminal is gone, and its settings with it
 
     def read(self, limit: float) -> list[str]:
-        """Wait for keys.
+        """Keys since the last call, after waiting for one at most `limit` s.
 
-        Args:
-            limit: s to wait at most.
-
-        Returns:
-            The keys since the last time; "ctrl-d" when the terminal is gone.
+        "ctrl-d" when the terminal is gone.
         """
         ready, _, _ = select.select([self._file], [], [], limit)
         if not ready:
@@ -80,11 +67,7 @@ class TerminalKeys:
 
 
 def decode(text: str) -> list[str]:
-    """Names of the keys behind what a terminal sends.
-
-    Args:
-        text: Characters; arrow keys are sequences that begin with escape, and come in one piece.
-    """
+    """Names of the keys in the text of a terminal; sequences of arrow keys come in one piece."""
     keys = []
     place = 0
     while place < len(text):
