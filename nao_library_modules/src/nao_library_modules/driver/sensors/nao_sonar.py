@@ -34,14 +34,13 @@ class NaoSonar:
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
-        self._node = node
         self._prefix = tf_prefix()
         self._lock = threading.Lock()  # guards the set
         self._wanted: set[str] = set()
         rate = rate_parameter(node, "~sonar_rate", DEFAULT_RATE)
         self._sonars = Sonars(robot, name_for_robot(node.name), rate, RosClock(), self._publish)
         self._topics = {
-            name: (side, self._node.publisher(name, Range, queue_size=QUEUE))
+            name: (side, node.publisher(name, Range, queue_size=QUEUE))
             for side in SONARS
             for name in (f"nao_robot/sonar/{side}", f"nao_robot/sonar/{side}/sonar")
         }

@@ -42,21 +42,20 @@ class NaoTactile:
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
-        self._node = node
         self._robot = robot
-        self._head = self._node.publisher("tactile_touch", TactileTouch, queue_size=QUEUE)
-        self._head_too = self._node.publisher("head_touch", HeadTouch, queue_size=QUEUE)
-        self._hand = self._node.publisher("hand_touch", HandTouch, queue_size=QUEUE)
-        self._bumper = self._node.publisher("bumper", Bumper, queue_size=QUEUE)
-        self._chest = self._node.publisher("chest_button", ChestButton, queue_size=QUEUE)
-        self._contact = self._node.publisher("foot_contact", Bool, queue_size=1, latch=True)
+        self._head = node.publisher("tactile_touch", TactileTouch, queue_size=QUEUE)
+        self._head_too = node.publisher("head_touch", HeadTouch, queue_size=QUEUE)
+        self._hand = node.publisher("hand_touch", HandTouch, queue_size=QUEUE)
+        self._bumper = node.publisher("bumper", Bumper, queue_size=QUEUE)
+        self._chest = node.publisher("chest_button", ChestButton, queue_size=QUEUE)
+        self._contact = node.publisher("foot_contact", Bool, queue_size=1, latch=True)
         self._prefix = tf_prefix()
         self._lock = threading.Lock()  # guards what both feet's listeners come to
         self._listeners = dict.fromkeys(SIDES, False)
         self._pressure = Polling(
             robot, "foot pressure", rate_parameter(node, "~fsr_rate", DEFAULT_RATE), RosClock(), self._read
         )
-        self._feet = {side: self._node.publisher(f"nao_robot/fsr/{side}", Fsr, queue_size=QUEUE) for side in SIDES}
+        self._feet = {side: node.publisher(f"nao_robot/fsr/{side}", Fsr, queue_size=QUEUE) for side in SIDES}
         self._lazys = [
             LazyTopic(topic, lambda wanted, side=side: self._want(side, wanted)) for side, topic in self._feet.items()
         ]
