@@ -15,7 +15,7 @@ from nao_library_modules.driver.camera.camera_calibration import Calibration, fr
 from nao_library_modules.driver.camera.camera_formats import Picture, read_picture
 from nao_library_modules.driver.camera.camera_info_files import camera_name, path_of, write
 from nao_library_modules.driver.camera.camera_infos import CameraInfos
-from nao_library_modules.driver.camera.camera_rate import RateMeter
+from nao_library_modules.driver.camera.camera_rate import PictureRate
 from nao_library_modules.driver.camera.camera_settings import changed_tunings, fields_of, settled, stream_settings
 from nao_library_modules.driver.camera.camera_subscriber import StreamSettings
 from nao_library_modules.driver.camera.image_compression import compress
@@ -235,7 +235,7 @@ def test_what_the_robot_is_asked_for():
 
 
 def test_the_rate_is_that_of_the_last_seconds():
-    meter = RateMeter()
+    meter = PictureRate()
     for number in range(100):
         meter.note(number / 30.0, 1 / 30.0)
         assert (meter.rate is None) == (number < 30)
@@ -244,7 +244,7 @@ def test_the_rate_is_that_of_the_last_seconds():
     assert meter.rate == pytest.approx(15.0, abs=0.01)
     assert (meter.count, meter.missed) == (160, 0)
     for times, missed in (((0.0, 0.1, 0.4, 0.5), 2), ((50.0, 50.1, 1.0, 1.1), 0)):  # set back, a clock misses none
-        meter = RateMeter()
+        meter = PictureRate()
         for time in times:
             meter.note(time, 0.1)
         assert meter.missed == missed

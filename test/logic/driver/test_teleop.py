@@ -12,7 +12,13 @@ import pytest
 
 from nao_library_modules.driver.teleop import joy_control, teleop_nao_joy
 from nao_library_modules.driver.teleop.joy_control import JoyControl, JoySettings
-from nao_library_modules.driver.teleop.keyboard_control import FIRST_HOLD, REPEAT_HOLD, KeyboardControl, Kind, Request
+from nao_library_modules.driver.teleop.keyboard_control import (
+    FIRST_HOLD,
+    REPEAT_HOLD,
+    KeyboardControl,
+    KeyCommand,
+    KeyRequest,
+)
 from nao_library_modules.driver.teleop.terminal_keys import TerminalKeys, decode
 from nao_library_modules.driver.walk.walk_commands import Velocity
 from naoqi.errors import NaoError
@@ -34,19 +40,22 @@ def buttons(*pressed):
 def joy():
     joy = JoyControl(JoySettings())
     joy.update(axes(), buttons())
-    assert joy.update(axes(), buttons(ENABLE)) == [joy_control.Request.ENABLE]
+    assert joy.update(axes(), buttons(ENABLE)) == [joy_control.JoyRequest.ENABLE]
     assert joy.update(axes(), buttons()) == []
     return joy
 
 
 def test_the_control_button_toggles_once_and_poses_are_asked_for_once(joy):
-    assert joy.update(axes(x=1.0), buttons(ENABLE)) == [joy_control.Request.DISABLE]
+    assert joy.update(axes(x=1.0), buttons(ENABLE)) == [joy_control.JoyRequest.DISABLE]
     assert joy.velocity.is_zero
     assert joy.update(axes(x=1.0), buttons(ENABLE)) == []
     joy.update(axes(), buttons())
-    assert joy.update(axes(x=1.0), buttons(ENABLE, INIT)) == [joy_control.Request.ENABLE, joy_control.Request.INIT_POSE]
+    assert joy.update(axes(x=1.0), buttons(ENABLE, INIT)) == [
+        joy_control.JoyRequest.ENABLE,
+        joy_control.JoyRequest.INIT_POSE,
+    ]
     assert joy.velocity.x == 1.0
-    assert joy.update(axes(), buttons(INIT, CROUCH)) == [joy_control.Request.CROUCH]
+    assert joy.update(axes(), buttons(INIT, CROUCH)) == [joy_control.JoyRequest.CROUCH]
     assert joy.update(axes(), buttons(INIT, CROUCH)) == []
 
 
@@ -81,7 +90,7 @@ def test_with_the_head_button_the_axes_move_the_head_and_the_robot_stands(joy):
 def test_settings_assign_axes_and_buttons_and_those_that_are_missing_rest(joy):
     other = JoyControl(JoySettings(axis_x=1, axis_turn=-1, btn_enable_control=2, max_vx=0.4))
     other.update([0.0, 0.0], [0, 0, 0])
-    assert other.update([1.0, 1.0], [0, 0, 1]) == [joy_control.Request.ENABLE]
+    assert other.update([1.0, 1.0], [0, 0, 1]) == [joy_control.JoyRequest.ENABLE]
     assert other.velocity == Velocity(0.4, 0.0, 0.0)
     assert joy.missing() == []
     assert joy.update([0.0, 0.0, 0.0, 1.0], buttons()[:9]) == []
@@ -189,7 +198,7 @@ def test_a_key_walks_while_a_terminal_repeats_it_and_no_longer(keyboard):
 
 def test_speed_changes_in_steps_and_has_limits_while_it_walks(keyboard):
     keyboard.press("w", 10.0)
-    assert keyboard.press("+", 10.1) == Request(Kind.SPEED, "60 % of the top speed")
+    assert keyboard.press("+", 10.1) == KeyRequest(KeyCommand.SPEED, "60 % of the top speed")
     assert keyboard.velocity(10.2).x == 0.6
     for key, limit in (("=", 1.0), ("-", 0.1)):
         for _ in range(20):
@@ -198,11 +207,18 @@ def test_speed_changes_in_steps_and_has_limits_while_it_walks(keyboard):
 
 
 def test_other_keys_end_a_walk_and_ask_for_something(keyboard):
-    asked = {"1": (Kind.POSE, "init"), "3": (Kind.UNKNOWN, "3"), " ": (Kind.STOP,), "m": (Kind.WAKE_UP,)}
-    asked.update({"n": (Kind.REST,), "?": (Kind.HELP,), "x": (Kind.QUIT,), "escape": (Kind.QUIT,)})
+    asked = {
+        "1": (KeyCommand.POSE, "init"),
+        "3": (KeyCommand.UNKNOWN, "3"),
+        " ": (KeyCommand.STOP,),
+        "m": (KeyCommand.WAKE_UP,),
+    }
+    asked.update(
+        {"n": (KeyCommand.REST,), "?": (KeyCommand.HELP,), "x": (KeyCommand.QUIT,), "escape": (KeyCommand.QUIT,)}
+    )
     for key, request in asked.items():
         keyboard.press("w", 10.0)
-        assert keyboard.press(key, 10.0) == Request(*request)
+        assert keyboard.press(key, 10.0) == KeyRequest(*request)
         assert keyboard.velocity(10.1).is_zero
     for word in ("1 init   2 crouch", "forward", "turn to the left", "stop", "speed", "motors on", "end"):
         assert word in keyboard.help

@@ -11,7 +11,7 @@ GAP = 1.5
 """Periods between two pictures from which on some are missing."""
 
 
-class RateMeter:
+class PictureRate:
     """Counts pictures, and missed ones between them. Any thread may ask."""
 
     def __init__(self) -> None:

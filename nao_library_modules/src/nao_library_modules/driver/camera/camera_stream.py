@@ -19,7 +19,7 @@ from ...robot.robot import wait_for_calls
 from ...ros.health import Level, Report
 from ..base.lazy_subscription import LazySubscription
 from .camera_formats import RESOLUTIONS, SPACES, Picture, read_picture
-from .camera_rate import RateMeter
+from .camera_rate import PictureRate
 from .camera_subscriber import DEVICE, CameraSubscriber, StreamSettings
 
 log = logging.getLogger(__name__)
@@ -83,7 +83,7 @@ class CameraStream:
         self._subscription: Subscription | None = None
         self._closed = False
         self._times = ImageClock()
-        self._rate = RateMeter()
+        self._rate = PictureRate()
         self._last = (0.0, 0.0)
         self._shows = False
         self._problem = ""

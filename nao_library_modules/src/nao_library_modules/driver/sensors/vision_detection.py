@@ -21,7 +21,7 @@ CLOSE_LIMIT = 2.0
 
 
 @dataclass(frozen=True)
-class Kind:
+class VisionModuleKind:
     """A vision module of the robot."""
 
     name: str  # for people
@@ -30,9 +30,9 @@ class Kind:
     key: str = ""  # in the robot's memory, of the value of an event without one; else empty
 
 
-FACES = Kind("face detection", "ALFaceDetection", "FaceDetected")
-LANDMARKS = Kind("landmark detection", "ALLandMarkDetection", "LandmarkDetected")
-MOVEMENT = Kind(
+FACES = VisionModuleKind("face detection", "ALFaceDetection", "FaceDetected")
+LANDMARKS = VisionModuleKind("landmark detection", "ALLandMarkDetection", "LandmarkDetected")
+MOVEMENT = VisionModuleKind(
     "motion detection",
     "ALMovementDetection",
     "MovementDetection/MovementDetected",
@@ -40,7 +40,7 @@ MOVEMENT = Kind(
 )
 
 
-class Detection:
+class VisionModule:
     """Has the robot detect something while that is switched on, also after a lost connection.
 
     Any thread may call. Methods raise NaoError if the robot cannot be asked.
@@ -49,7 +49,7 @@ class Detection:
     def __init__(
         self,
         robot: Any,
-        kind: Kind,
+        kind: VisionModuleKind,
         subscriber: str,
         sink: Callable[[Any], None],
         prepare: Callable[[], None] = lambda: None,

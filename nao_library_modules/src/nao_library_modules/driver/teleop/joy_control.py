@@ -14,7 +14,7 @@ UNUSED = -1
 STANDSTILL = Velocity(0.0, 0.0, 0.0)
 
 
-class Request(Enum):
+class JoyRequest(Enum):
     """What a button asks for, once each time it is pressed."""
 
     ENABLE = "gamepad control enabled"
@@ -57,7 +57,7 @@ class JoyControl:
         self.velocity = STANDSTILL
         self.head: tuple[float, float] | None = None
 
-    def update(self, axes: Sequence[float], buttons: Sequence[int]) -> list[Request]:
+    def update(self, axes: Sequence[float], buttons: Sequence[int]) -> list[JoyRequest]:
         """Take the state of the gamepad.
 
         Args:
@@ -73,12 +73,12 @@ class JoyControl:
         requests = []
         if self._pressed(settings.btn_enable_control, before):
             self.enabled = not self.enabled
-            requests.append(Request.ENABLE if self.enabled else Request.DISABLE)
+            requests.append(JoyRequest.ENABLE if self.enabled else JoyRequest.DISABLE)
         if self.enabled:
             if self._pressed(settings.btn_init_pose, before):
-                requests.append(Request.INIT_POSE)
+                requests.append(JoyRequest.INIT_POSE)
             if self._pressed(settings.btn_crouch, before):
-                requests.append(Request.CROUCH)
+                requests.append(JoyRequest.CROUCH)
         head = self.enabled and _at(buttons, settings.btn_head_mod) == 1
         self.velocity, self.head = STANDSTILL, None
         if head:

@@ -33,7 +33,7 @@ HELP = """\
 The robot walks while a key is held."""
 
 
-class Kind(Enum):
+class KeyCommand(Enum):
     """What a key asks for."""
 
     STOP = "stop"
@@ -47,23 +47,23 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True)
-class Request:
+class KeyRequest:
     """What a key asks for, beside walking."""
 
-    kind: Kind
+    kind: KeyCommand
     detail: str = ""  # name of the pose, the speed in words, or the key
 
 
-REQUESTS: Mapping[str, Request] = {
-    " ": Request(Kind.STOP),
-    "m": Request(Kind.WAKE_UP),
-    "n": Request(Kind.REST),
-    "h": Request(Kind.HELP),
-    "?": Request(Kind.HELP),
-    "x": Request(Kind.QUIT),
-    "ctrl-c": Request(Kind.QUIT),
-    "ctrl-d": Request(Kind.QUIT),
-    "escape": Request(Kind.QUIT),
+REQUESTS: Mapping[str, KeyRequest] = {
+    " ": KeyRequest(KeyCommand.STOP),
+    "m": KeyRequest(KeyCommand.WAKE_UP),
+    "n": KeyRequest(KeyCommand.REST),
+    "h": KeyRequest(KeyCommand.HELP),
+    "?": KeyRequest(KeyCommand.HELP),
+    "x": KeyRequest(KeyCommand.QUIT),
+    "ctrl-c": KeyRequest(KeyCommand.QUIT),
+    "ctrl-d": KeyRequest(KeyCommand.QUIT),
+    "escape": KeyRequest(KeyCommand.QUIT),
 }
 
 
@@ -81,7 +81,7 @@ class KeyboardControl:
     def help(self) -> str:
         return HELP.format(poses="   ".join(f"{key} {name}" for key, name in self._poses.items()))
 
-    def press(self, key: str, now: float) -> Request | None:
+    def press(self, key: str, now: float) -> KeyRequest | None:
         """A key (a character, or the name of a key) was pressed, or is repeated because it is held.
 
         Returns what it asks for, if it does not walk.
@@ -94,11 +94,11 @@ class KeyboardControl:
         if key in ("+", "-", "="):  # plus is the upper one of its key
             change = -SPEED_STEP if key == "-" else SPEED_STEP
             self.speed = round(min(1.0, max(SLOWEST, self.speed + change)), 2)
-            return Request(Kind.SPEED, f"{100 * self.speed:.0f} % of the top speed")
+            return KeyRequest(KeyCommand.SPEED, f"{100 * self.speed:.0f} % of the top speed")
         self._key = None  # what is not walking ends it
         if key in self._poses:
-            return Request(Kind.POSE, self._poses[key])
-        return REQUESTS.get(key, Request(Kind.UNKNOWN, key))
+            return KeyRequest(KeyCommand.POSE, self._poses[key])
+        return REQUESTS.get(key, KeyRequest(KeyCommand.UNKNOWN, key))
 
     def velocity(self, now: float) -> Velocity:
         if self._key is None or now >= self._until:

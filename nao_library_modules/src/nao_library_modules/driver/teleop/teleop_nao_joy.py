@@ -16,7 +16,7 @@ from ...base.field_checks import number_parameter
 from ...base.limits import limit
 from ...ros.health import Level, Report
 from ..base.rate import Rate
-from .joy_control import JoyControl, JoySettings, Request
+from .joy_control import JoyControl, JoyRequest, JoySettings
 from .teleop_clients import TeleopClients
 
 DEFAULT_RATE = 10.0
@@ -85,14 +85,14 @@ class TeleopNaoJoy:
             if self._moving and self._control.velocity.is_zero:
                 self._send()  # a stop does not wait for its turn
 
-    def _carry_out(self, request: Request) -> None:
-        if request is Request.ENABLE:
+    def _carry_out(self, request: JoyRequest) -> None:
+        if request is JoyRequest.ENABLE:
             self._clients.call("body_stiffness/enable", request.value)
             self._clients.say("Gamepad control enabled")
-        elif request is Request.DISABLE:
+        elif request is JoyRequest.DISABLE:
             self._clients.call("stop_walk_srv", request.value)
             self._clients.say("Gamepad control disabled")
-        elif request is Request.CROUCH:
+        elif request is JoyRequest.CROUCH:
             self._clients.take_pose(request.value, then="body_stiffness/disable")
         else:
             self._clients.take_pose(request.value)

@@ -9,7 +9,7 @@ from typing import TextIO
 
 import rospy
 
-from .keyboard_control import KeyboardControl, Kind, Request
+from .keyboard_control import KeyboardControl, KeyCommand, KeyRequest
 from .teleop_clients import TeleopClients
 from .terminal_keys import TerminalKeys
 
@@ -35,14 +35,14 @@ class TeleopNaoKeyboard:
         self._out = out
         self._clients = TeleopClients(self._tell)
         self._walking = False
-        self._actions: dict[Kind, Callable[[Request], None]] = {
-            Kind.STOP: self._stop,
-            Kind.POSE: lambda request: self._clients.take_pose(request.detail),
-            Kind.WAKE_UP: lambda request: self._clients.call("wakeup", "the robot is awake"),
-            Kind.REST: lambda request: self._clients.call("rest", "the robot rests"),
-            Kind.SPEED: lambda request: self._tell(request.detail),
-            Kind.HELP: lambda request: self._tell(self._control.help),
-            Kind.UNKNOWN: lambda request: self._tell(f"{request.detail!r} does nothing; h for help"),
+        self._actions: dict[KeyCommand, Callable[[KeyRequest], None]] = {
+            KeyCommand.STOP: self._stop,
+            KeyCommand.POSE: lambda request: self._clients.take_pose(request.detail),
+            KeyCommand.WAKE_UP: lambda request: self._clients.call("wakeup", "the robot is awake"),
+            KeyCommand.REST: lambda request: self._clients.call("rest", "the robot rests"),
+            KeyCommand.SPEED: lambda request: self._tell(request.detail),
+            KeyCommand.HELP: lambda request: self._tell(self._control.help),
+            KeyCommand.UNKNOWN: lambda request: self._tell(f"{request.detail!r} does nothing; h for help"),
         }
 
     def run(self, keys: TerminalKeys) -> None:
@@ -54,7 +54,7 @@ class TeleopNaoKeyboard:
                     request = self._control.press(key, time.monotonic())
                     if request is None:
                         continue
-                    if request.kind is Kind.QUIT:
+                    if request.kind is KeyCommand.QUIT:
                         return
                     self._actions[request.kind](request)
                 self._walk()
@@ -69,7 +69,7 @@ class TeleopNaoKeyboard:
             self._walking = not velocity.is_zero
             self._clients.walk(velocity)
 
-    def _stop(self, _: Request) -> None:
+    def _stop(self, _: KeyRequest) -> None:
         self._tell("stop")
         self._walking = False
         self._clients.walk(self._control.velocity(float("inf")))
