@@ -30,20 +30,19 @@ SHUTDOWN_LIMIT = 2.0
 
 
 class DesignatorServer:
-    """Process modules with a door for plans that run elsewhere.
+    """Process modules that carry out designators of other nodes.
 
-    Goals run side by side; the modules see to it that what needs the same limb takes turns.
+    Goals run at the same time; modules make commands for the same limb take turns.
 
     ROS API (relative names):
         Action `perform_designator` (nao_library_actions/PerformDesignator): its result has the answer, or the class of
-        the failure and its text; feedback tells which task has changed, and how.
+        the failure and its text; feedback names the task that has changed, and its state.
         Subscribes `designators` (std_msgs/String): the same as text, without an answer; failures are logged.
-        And what the modules themselves use: `joint_trajectory`, `walk_target`, `speech`, `speech_action`, `NaoLights`,
-        `NaoVision`, `joint_states`, /tf.
+        The modules use `joint_trajectory`, `walk_target`, `speech`, `speech_action`, `NaoLights`, `NaoVision`,
+        `joint_states`, /tf.
     """
 
     def __init__(self) -> None:
-        """Start the modules and offer the action."""
         self._robot = this_robot()
         self._closing = CancellationToken()
         start_process_modules(*make_process_modules(self._robot))
@@ -52,7 +51,6 @@ class DesignatorServer:
         rospy.Subscriber(TOPIC, String, self._on_text, queue_size=100)
 
     def close(self) -> None:
-        """End what is done, and the modules."""
         close_all(self._closing.trigger, lambda: self._server.close(SHUTDOWN_LIMIT), stop_process_modules)
 
     def _perform_goal(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> Outcome:

@@ -37,7 +37,7 @@ def use_robot(robot: RobotLink) -> RobotLink:
 
 
 def this_robot() -> RobotLink:
-    """The robot that they act on: that of `use_robot`, else the one of this node's namespace."""
+    """The robot of `use_robot`, else that of this node's namespace."""
     with _lock:
         if not _robots:
             _robots.append(RobotLink())
@@ -67,8 +67,7 @@ def open_gripper(side: str) -> float:
 def close_gripper(side: str, grasp: bool = False) -> Grip:
     """Close a hand, left or right, around something or not; with `grasp` there has to be something in it.
 
-    Returns:
-        How far it is open, 0..1; `holds` tells whether there is something in it.
+    Returns how far it is open, 0..1; `holds` says whether there is something in it.
     """
     return Manipulation(this_robot()).close_gripper(side, grasp)
 
@@ -77,8 +76,7 @@ def close_gripper(side: str, grasp: bool = False) -> Grip:
 def move_head(x: float, y: float, z: float | None = None) -> tuple[float, float]:
     """Look at a point: x m ahead and y m to the left of the torso, at the height of the eyes or z m over the torso.
 
-    Returns:
-        HeadYaw and HeadPitch, rad.
+    Returns HeadYaw and HeadPitch, rad.
     """
     point = [x, y] if z is None else [x, y, z]
     return Manipulation(this_robot()).move_head(_taken(a_position(), point))
@@ -88,8 +86,7 @@ def move_head(x: float, y: float, z: float | None = None) -> tuple[float, float]
 def move_arm(target: Point3 | Sequence[float], side: str) -> Point3:
     """Bring a hand to a point, (x, y, z) in m in the torso frame or with the name of a frame behind it.
 
-    Returns:
-        Where the hand is then, in the torso frame.
+    Returns where the hand is then, in the torso frame.
     """
     return Manipulation(this_robot()).move_arm(_taken(a_point(), target), side)
 
@@ -104,8 +101,7 @@ def go_stable() -> Mapping[str, float]:
 def walk_to(target: Place | Sequence[float]) -> Place:
     """Walk to a place, (x, y, yaw) in m and rad in odom or with the name of a frame behind it.
 
-    Returns:
-        Where the robot is then, in odom.
+    Returns where the robot is then, in odom.
     """
     place, frame = _taken(a_place(), target)
     return Navigation(this_robot()).walk_to(place, frame)
@@ -113,7 +109,7 @@ def walk_to(target: Place | Sequence[float]) -> Place:
 
 @def_top_level_plan
 def text_to_speech(sentence: str) -> None:
-    """Have a sentence said; does not wait until it is."""
+    """Say a sentence, without waiting for its end."""
     Speech(this_robot()).text_to_speech(sentence)
 
 

@@ -1,4 +1,4 @@
-"""What the process modules of a NAO can achieve, as goals, each under CRAM's kind of name and under its action's.
+"""What the process modules of a NAO can achieve, as goals, each under CRAM's name and under its action's. In ROS.
 
 These are the same:
 
@@ -7,7 +7,7 @@ These are the same:
     achieve(openGripper, "left")
     achieve(low_level.open_gripper, "left")
 
-The process modules have to run, as `run_and_tell` and `start_process_modules` see to. In ROS.
+The process modules have to run: `run_and_tell` and `start_process_modules` run them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .low_level import this_robot
 
 
 def _there(reached: bool) -> bool | None:
-    """True where nothing is to be done; otherwise nobody can tell: what achieves it fails by itself."""
+    """True where nothing is to be done; otherwise None, unknown: what achieves the goal fails by itself."""
     return True if reached else None
 
 
@@ -93,13 +93,7 @@ def said(sentence: str) -> None:
 
 
 def _by_action(goal: Goal, kind: str, values: Mapping[str, str]) -> Callable[..., Any]:
-    """A plan that performs an action.
-
-    Args:
-        goal: That it achieves.
-        kind: The action's type.
-        values: Key of the action -> name of the goal's argument that is its value.
-    """
+    """A plan that performs an action; `values` maps its keys to names of the goal's arguments."""
 
     def plan(*arguments: Any) -> Any:
         given = dict(zip(goal.parameters, arguments))

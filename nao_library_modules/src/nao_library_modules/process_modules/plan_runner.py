@@ -1,4 +1,4 @@
-"""Runs a plan on a robot: process modules, ROS time, the topic of the tree, and what is kept of the trace."""
+"""Runs a plan on a robot: process modules, ROS time, the topic of the tree, and the trace file."""
 
 from __future__ import annotations
 
@@ -35,16 +35,7 @@ END_LIMIT = 10.0
 
 
 class PlanRun:
-    """A plan that runs once on a robot.
-
-    Attributes:
-        trace: Of the run, when it is over.
-
-    Args:
-        robot: That it runs on; the one of this node's namespace if there is none.
-        trace_file: Where the trace is kept, as JSON; None for nowhere.
-        picture_file: Where its picture is kept, as PNG; None for nowhere.
-    """
+    """A plan that runs once on a robot: by default that of this node's namespace. `trace` is there when it is over."""
 
     def __init__(
         self, robot: RobotLink | None = None, trace_file: Path | None = None, picture_file: Path | None = None
@@ -56,13 +47,10 @@ class PlanRun:
         self.trace: Trace | None = None
 
     def run(self, body: Branch, name: str = "") -> Any:
-        """Run a plan with all process modules; what it answers. The end of the node ends it, and stops the robot.
+        """Run a plan with all process modules; its answer. The end of the node ends it, and stops the robot.
 
         If the process is killed instead, the servers see to that: those of the robot of `~pip` and `~pport`, by default
         the one of this namespace.
-
-        Raises:
-            PlanFailure: What it failed with.
         """
         if GoalTracker.owners is None:
             ip, port = robot_address(argparse.Namespace(pip=None, pport=None), robot_beside)
@@ -118,7 +106,7 @@ class PlanRun:
 
 
 def wake_up() -> None:
-    """Have the robot stand with its motors on: what walks and moves needs that. Waits for the driver and the robot.
+    """Have the robot stand with its motors on, which walking and moving need. Waits for the driver and the robot.
 
     Raises:
         LowLevelFailure: The robot cannot be reached, or does not stand up.
@@ -140,14 +128,11 @@ def wake_up() -> None:
 def run_and_tell(plan: Branch, name: str = "", trace: str = "", picture: str = "", overwrite: bool = False) -> int:
     """Run a plan and print its tree; the exit status of a program that does nothing else.
 
-    A file that is there already is told of, and the plan does not run.
+    The plan does not run when a file exists already, unless `overwrite`.
 
     Args:
-        plan: The plan.
-        name: Of its root.
         trace: File for the trace as JSON; empty for none.
         picture: File for its picture as PNG; empty for none.
-        overwrite: Whether files that are there are replaced.
     """
     try:
         trace_file, picture_file = (require_new(file, overwrite) if file else None for file in (trace, picture))

@@ -1,4 +1,4 @@
-"""What values of keys may be for a NAO: sides, points, places; and the numbers that words stand for."""
+"""Patterns of values for a NAO: sides, points, places; and the numbers that words stand for."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def a_point() -> Pattern:
 
 
 def a_position() -> Pattern:
-    """As the head's target in older plans: two numbers, a point at the height of the eyes; or a point."""
+    """Two numbers, a point at the height of the eyes (as the head's target in older plans); or a point."""
     point = a_point()
 
     def take(value: Any) -> Point3:
@@ -53,9 +53,9 @@ def a_position() -> Pattern:
 
 
 def a_place() -> Pattern:
-    """A place: x, y in m and a heading in rad in odom, with a frame behind them; a `Place`, or one with its frame.
+    """A place: x, y in m and a heading in rad in odom, or in a frame that follows; a `Place`, or one with its frame.
 
-    A `Position` or `Point3` is a point: the robot gets there with the heading of its way, which nan stands for.
+    A `Position` or `Point3` is a point: the robot arrives with the heading of its way, which nan stands for.
     """
 
     def take(value: Any) -> tuple[Place, str]:
@@ -79,11 +79,7 @@ def a_place() -> Pattern:
 
 
 def _finite(values: Sequence[Any]) -> list[float]:
-    """The values as numbers.
-
-    Raises:
-        Mismatch: One is none, or out of the bounds of places.
-    """
+    """The values as numbers; Mismatch if one is none, or out of the limits of places."""
     try:
         found = [float(value) for value in values]
     except (TypeError, ValueError, OverflowError):
@@ -95,10 +91,10 @@ def _finite(values: Sequence[Any]) -> list[float]:
 
 
 def points_of(desig: Designator) -> Iterator[Point3]:
-    """Points in space that designators of things and of locations stand for.
+    """Points of designators of things and of locations.
 
     Raises:
-        DesignatorError: It stands for none.
+        DesignatorError: A solution has no position.
     """
     for solution in desig.solutions():
         position = getattr(solution, "position", None)

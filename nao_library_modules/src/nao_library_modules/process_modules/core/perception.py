@@ -35,18 +35,14 @@ TRIES = 10
 def perceive(
     desig: Designator, quantifier: str = "", *, timeout: float = 2.0, search: bool = False, camera: str = ""
 ) -> Designator | list[Designator]:
-    """Look for the object that a designator describes, in a plan.
+    """Look for the object that a designator describes, in a plan. Its type: ball, face, person, landmark or code.
+
+    Returns a designator equated to the given one, which stands for what was seen; with "all" a list of designators.
 
     Args:
-        desig: Of an object, with its type: ball, face, person, landmark or code.
-        quantifier: "a" for the one that is seen best, "the" for the only one, "all" and "currently-visible" for all
-            of them; that of the designator if there is none.
+        quantifier: "a" for the one seen best, "the" for the only one, "all" and "currently-visible" for all.
         timeout: s to look.
         search: Whether the head turns to find it.
-        camera: top or bottom; empty for the active one.
-
-    Returns:
-        A designator that is equated to it and stands for what was seen; with "all" a list of designators.
 
     Raises:
         PerceptionObjectNotFound: It was not seen.
@@ -77,7 +73,7 @@ def perceive(
 
 
 def examine(desig: Designator, *keys: str) -> dict[str, Any]:
-    """Look at an object and tell what is known of some keys then; in a plan."""
+    """Look at an object, in a plan, and return what is known of some keys then."""
     found = perceive(desig, "a")
     assert isinstance(found, Designator)
     thing = found.reference()
@@ -85,7 +81,7 @@ def examine(desig: Designator, *keys: str) -> dict[str, Any]:
 
 
 def go_to(desig: Designator) -> Place:
-    """Walk to a location, in a plan: to the first of its places that can be reached; where the robot is then.
+    """Walk to a location, in a plan: to the first of its places that can be reached. Returns where the robot is then.
 
     Raises:
         NavigationHighLevelFailure: None of them can be reached.
@@ -108,21 +104,13 @@ def go_to(desig: Designator) -> Place:
 
 
 def at_location(desig: Designator, body: Branch, position: AnyFluent, distance: float = 0.2, turn: float = 0.6) -> Any:
-    """Do something at a location, in a plan: when the robot gets away from there, it goes back and begins again.
+    """Do something at a location, in a plan: a robot that leaves it goes back and begins again.
 
     Args:
-        desig: The location.
-        body: What to do there.
         position: A fluent with the `Place` of the robot, in the frame of the location.
-        distance: m that it may get away.
-        turn: rad that it may turn away.
-
-    Returns:
-        What the body answers.
 
     Raises:
         NavigationHighLevelFailure: The location was lost too often, or cannot be reached.
-        PlanFailure: What the body failed with.
     """
     if desig.kind != location:
         raise PlanError(f"at_location: {desig} is no location")
@@ -155,6 +143,6 @@ def _believe(seen: Any, desig: Designator) -> KnownObject:
 
 
 def _designator_of(thing: KnownObject, seen: Any, desig: Designator) -> Designator:
-    """It says what the asked one said, and the name that was seen: not what the thing is called in the beliefs."""
+    """Describes what the requested one describes, and the name that was seen: not the name in the beliefs."""
     description = {**desig.description, **({"name": seen.name} if seen.name else {})}
     return Designator(object_, description, resolve=lambda _: [thing])

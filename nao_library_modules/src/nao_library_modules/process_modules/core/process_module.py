@@ -1,8 +1,8 @@
-"""Process modules: autonomous threads that do what designators describe, one thing at a time or several at once.
+"""Process modules: threads that carry out designators, one thing at a time or several at once.
 
 A module is a class with `execute(command)`, which carries out one solution of a designator. It is plan code: it waits
-with `wait_until`, and is ended at these points when what it does is not wanted any more. Plans reach modules by
-`pm_execute`, and mostly by `perform`, which finds the module itself.
+with `wait_until`, and is ended there when its work is not wanted any more. Plans reach modules by `pm_execute`, and
+mostly by `perform`, which finds the module itself.
 """
 
 from __future__ import annotations
@@ -31,8 +31,6 @@ END_PATIENCE = 10.0
 
 
 class ModuleState(enum.Enum):
-    """What a module is doing."""
-
     OFFLINE = "offline"
     WAITING = "waiting"
     RUNNING = "running"
@@ -40,16 +38,7 @@ class ModuleState(enum.Enum):
 
 
 class Request:
-    """A designator that a module carries out, and what came of it.
-
-    Attributes:
-        command: The solution of the designator.
-        designator: It; None when a command was given.
-        over: A fluent, true at the end.
-        result: What `execute` answered.
-        failure: What it raised.
-        caller: Path of the task that asked.
-    """
+    """A designator that a module carries out, and what came of it."""
 
     def __init__(self, command: Command, designator: Designator | None, caller: str) -> None:
         self.command = command
@@ -63,15 +52,11 @@ class Request:
 
 
 class ProcessModule(ABC):
-    """A module that does one thing at a time; what else is asked waits for its turn.
+    """A module that does one thing at a time; other requests wait for their turn.
 
     Attributes:
-        name: That commands and `pm_execute` know it by.
-        status: A fluent with its `ModuleState`. FAILED until the next thing begins.
-        input: A fluent with the request that runs.
+        status: A fluent with its `ModuleState`; FAILED until the next request begins.
         result: A fluent with the last request that is over.
-        asynchronous: Whether it does several things at once.
-        clock: Whose time its waits have; set before it runs.
         observers: Called with each task of what it does whenever that has changed.
         watchers: Called with each request when it is over, in the thread that ended it.
     """
@@ -100,7 +85,7 @@ class ProcessModule(ABC):
 
     @abstractmethod
     def execute(self, command: Command) -> Any:
-        """Carry out a command, in a thread of the module; what it answers goes to the caller.
+        """Carry out a command, in a thread of the module; the answer goes to the caller.
 
         Raises:
             PlanFailure: It cannot be done.
@@ -120,15 +105,10 @@ class ProcessModule(ABC):
 
     @property
     def state(self) -> ModuleState:
-        """What it is doing."""
         return self.status.value
 
     def start(self) -> ProcessModule:
-        """Run `pm_run` in a thread of its own; see `stop`.
-
-        Raises:
-            ProcessModuleRunning: It runs already.
-        """
+        """Run `pm_run` in a thread of its own; see `stop`."""
         with self._lock:
             if self._thread is not None:
                 raise ProcessModuleRunning(f"the process module {self.name} runs already")
@@ -140,11 +120,7 @@ class ProcessModule(ABC):
         return self
 
     def stop(self) -> None:
-        """End it: what it does is cancelled, what waits fails. Waits for the end.
-
-        Raises:
-            ProcessModuleNotRunning: It does not run.
-        """
+        """End it, and wait for the end: what runs is cancelled, what waits fails."""
         with self._lock:
             thread = self._thread
             if thread is None:
@@ -167,7 +143,6 @@ class ProcessModule(ABC):
             self._left.set()
 
     def submit(self, request: Request) -> None:
-        """Have a request carried out when its turn comes."""
         with self._lock:
             if self._thread is not None and not self._ending:
                 self._waiting.append(request)
@@ -177,7 +152,7 @@ class ProcessModule(ABC):
         request.over.value = True
 
     def cancel(self, request: Request | None = None) -> None:
-        """Cancel a request, or all of them; returns at once, `request.over` tells when it has ended."""
+        """Cancel a request, or all of them; returns at once, `request.over` is true when it has ended."""
         with self._lock:
             chosen = [request] if request is not None else [*self._running, *self._waiting]
             dropped = [each for each in chosen if each in self._waiting]
@@ -213,7 +188,6 @@ class ProcessModule(ABC):
             self.on_stopped()
 
     def _due(self) -> list[Request]:
-        """Requests whose turn it is."""
         with self._lock:
             if not self.asynchronous:
                 due = [self._waiting.popleft()] if self._waiting and not self._running else []
@@ -300,7 +274,6 @@ def pm_run(module: ProcessModule) -> None:
 
 
 def pm_status(module: ProcessModule) -> ModuleState:
-    """What a module is doing."""
     return module.state
 
 
@@ -312,11 +285,8 @@ def pm_cancel(module: ProcessModule) -> None:
 def execute_on(module: ProcessModule, command: Command, designator: Designator | None = None) -> Any:
     """Have a module carry out a command, in a plan: waits until that is over.
 
-    An offline module is waited for, with a warning. When the calling task is ended, the command is cancelled and seen
-    to end first; a suspension cancels it, and it is sent again when the task is woken.
-
-    Returns:
-        What the module answered.
+    An offline module is waited for, with a warning. When the calling task is ended, the command is cancelled and its
+    end awaited; a suspension cancels it, and it is sent again when the task is woken.
 
     Raises:
         PlanFailure: What the module failed with.

@@ -1,7 +1,7 @@
-"""Projection: a plan is run in the simulator, faster than real time, before it runs on a robot.
+"""Projection: a plan runs in the simulator, faster than real time, before it runs on a robot.
 
-The program of the plan runs as it is, with another ROS master and another robot behind it: nothing in a plan knows
-which of them it is. Such a program takes `--trace FILE` and keeps its trace there, as `run_and_tell` does.
+The program of the plan runs unchanged, with another ROS master and another robot behind it. It takes `--trace FILE` and
+writes its trace there, as `run_and_tell` does.
 """
 
 from __future__ import annotations
@@ -33,10 +33,7 @@ def project(
     """Run the program of a plan on a simulated robot of its own; the trace of the plan, whether it succeeded or not.
 
     Args:
-        program: A Python program.
-        arguments: Of it.
-        world: That the robot is in.
-        launch: Further arguments of nao_sim.launch, by name.
+        launch: Further arguments of nao_sim.launch.
 
     Raises:
         ProjectionFailed: The simulator does not come up, or there is no trace.
@@ -52,14 +49,7 @@ def project(
 
 
 def run_program(program: Path, arguments: Sequence[str], master_uri: str, folder: Path, limit: float = LIMIT) -> Trace:
-    """Run the program of a plan with a ROS master; the trace that it keeps.
-
-    Args:
-        program: A Python program that takes `--trace FILE`.
-        arguments: Of it.
-        master_uri: Address of the ROS master.
-        folder: For the trace.
-        limit: s that it may take.
+    """Run a program that takes `--trace FILE` with a ROS master, for at most `limit` s; the trace that it keeps.
 
     Raises:
         ProjectionFailed: It kept no trace.
@@ -82,13 +72,7 @@ def run_program(program: Path, arguments: Sequence[str], master_uri: str, folder
 
 @dataclass(frozen=True)
 class Difference:
-    """A task that did not come out alike in two runs.
-
-    Attributes:
-        path: Of the task.
-        before: State and failure in the first run; empty if it was not there.
-        after: The same in the second run.
-    """
+    """A task with different outcomes in two runs; an outcome is state and failure, empty where there is no task."""
 
     path: str
     before: str
@@ -100,13 +84,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class Comparison:
-    """What two runs of a plan have in common.
-
-    Attributes:
-        differences: Tasks that did not come out alike, in the order of the tree.
-        before: s that the first run took, in its own time.
-        after: s that the second one took.
-    """
+    """What differs between two runs of a plan: tasks in the order of the tree, and the duration of each run, s."""
 
     differences: tuple[Difference, ...]
     before: float
@@ -114,12 +92,11 @@ class Comparison:
 
     @property
     def alike(self) -> bool:
-        """Whether everything came out alike."""
         return not self.differences
 
 
 def compare(before: Trace, after: Trace) -> Comparison:
-    """Compare two traces of a plan: which tasks there were, and what came of each."""
+    """Compare the tasks of two traces of a plan, and the outcome of each."""
     first, second = dict(_paths(before)), dict(_paths(after))
     differences = [
         Difference(path, _outcome(first.get(path)), _outcome(second.get(path)))

@@ -40,11 +40,6 @@ _aliases: dict[str, str] = {}
 
 
 def register_process_module(module: ProcessModule) -> ProcessModule:
-    """Make a module known by its name.
-
-    Raises:
-        ProcessModuleRunning: A module of that name runs.
-    """
     with _lock:
         there = _modules.get(module.name)
         if there is not None and there is not module and there.state is not ModuleState.OFFLINE:
@@ -54,11 +49,7 @@ def register_process_module(module: ProcessModule) -> ProcessModule:
 
 
 def get_process_module(name: Named) -> ProcessModule:
-    """The module of a name, or of an alias.
-
-    Raises:
-        UnknownProcessModule: There is none.
-    """
+    """The module of a name, or of an alias."""
     if isinstance(name, ProcessModule):
         return name
     with _lock:
@@ -70,12 +61,7 @@ def get_process_module(name: Named) -> ProcessModule:
 
 
 def get_running_process_module(name: Named) -> ProcessModule:
-    """The module of a name, which runs.
-
-    Raises:
-        UnknownProcessModule: There is none.
-        ProcessModuleNotRunning: It does not run.
-    """
+    """The module of a name; ProcessModuleNotRunning if it does not run."""
     module = get_process_module(name)
     if module.state is ModuleState.OFFLINE:
         raise ProcessModuleNotRunning(f"the process module {module.name} does not run")
@@ -83,7 +69,6 @@ def get_running_process_module(name: Named) -> ProcessModule:
 
 
 def running_process_modules() -> list[ProcessModule]:
-    """All modules that run."""
     with _lock:
         return [module for module in _modules.values() if module.state is not ModuleState.OFFLINE]
 
@@ -113,11 +98,7 @@ def with_process_module_aliases(**aliases: str) -> Iterator[None]:
 
 @contextmanager
 def with_process_modules_running(*modules: ProcessModule, **aliases: str) -> Iterator[tuple[ProcessModule, ...]]:
-    """Run modules while a block lasts: all have started when it begins, and have ended behind it.
-
-    Args:
-        *modules: That are to run.
-        **aliases: Other names for them, by alias.
+    """Run modules while a block lasts: they have started when it begins, and have ended after it.
 
     Raises:
         ProcessModuleRunning: One of them runs already.
@@ -145,7 +126,6 @@ def start_process_modules(*modules: ProcessModule) -> None:
 
 
 def stop_process_modules() -> None:
-    """End all modules that run."""
     for module in running_process_modules():
         module.stop()
 
@@ -163,7 +143,6 @@ def matching_process_module(desig: Designator) -> str:
 
 
 def available_process_module(name: Named) -> bool:
-    """Whether a module of that name runs."""
     try:
         get_running_process_module(name)
     except (UnknownProcessModule, ProcessModuleNotRunning):
@@ -175,7 +154,7 @@ def pm_execute(module: Named, desig: Union[Designator, Command]) -> Any:
     """Have a module do what a designator describes, in a plan: waits until it is done. See `execute_on`.
 
     Raises:
-        DesignatorError: It has no solution for this module.
+        DesignatorError: It has no solution that a module could carry out.
         PlanFailure: What the module failed with.
     """
     target = get_process_module(module)
@@ -185,7 +164,7 @@ def pm_execute(module: Named, desig: Union[Designator, Command]) -> Any:
 
 
 def pm_execute_matching(desig: Designator) -> Any:
-    """Have the module that fits do what a designator describes.
+    """Have the matching module do what a designator describes.
 
     Raises:
         NoMatchingProcessModule: The module does not run.
@@ -201,13 +180,10 @@ def pm_execute_matching(desig: Designator) -> Any:
 
 
 def perform(desig: Union[Designator, Command]) -> Any:
-    """Do what an action or a motion designator describes, in a plan.
+    """Do what an action or a motion designator describes, in a plan; the answer of the module or the plan.
 
     An action whose rules give a plan (a function) runs that plan. A key `goal` with an occasion says what is to hold:
     nothing is done when it holds already, and it has to hold afterwards.
-
-    Returns:
-        What the module or the plan answered.
 
     Raises:
         GoalNotAchieved: The goal does not hold afterwards.
@@ -234,11 +210,7 @@ def perform(desig: Union[Designator, Command]) -> Any:
 
 
 def monitor_process_module(module: Named, *desigs: Union[Designator, Command]) -> Any:
-    """Wait, in a plan, for the next end of what a module does; its result.
-
-    Args:
-        module: Which one.
-        *desigs: Only these count; all if there are none.
+    """Wait, in a plan, for the next end of a command of a module, or of one of `desigs`; its result.
 
     Raises:
         PlanFailure: What it failed with.

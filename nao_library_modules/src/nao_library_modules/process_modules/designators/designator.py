@@ -1,12 +1,12 @@
-"""Designators: descriptions of actions, motions, places and things, which are turned into numbers when they are needed.
+"""Designators: descriptions of actions, motions, places and things, resolved when they are needed.
 
     an(action, type="opening", gripper="left")
     a(location, near=the(object_, type="table"), distance=0.4)
     designator({"type": "action", "name": "to open", "side": "left"})     # as a list of keys and values, or as text
 
-A description says what is meant; `reference` works out what it stands for, by rules, and keeps to that answer. When it
-turns out not to work, `next_solution` gives the next designator of the same thing. Designators of the same thing are
-equated: `current_desig` is the newest one, `first_desig` the first.
+`reference` resolves a description by rules, and keeps that answer. When it does not work, `next_solution` gives the
+next designator of the same thing. Designators of the same thing are equated: `current_desig` is the newest one,
+`first_desig` the first.
 """
 
 from __future__ import annotations
@@ -38,22 +38,18 @@ Description = Union[Mapping[str, Any], Iterable[Any], str]
 class Designator:
     """A description of one kind of thing.
 
-    Designators do not change: copies, merges and next solutions are new ones. Two are the same thing if they were
+    Designators do not change: copies, merges and next solutions are new ones. Two designate the same thing if they were
     equated (`desig_equal`); `==` is Python's own.
 
     Attributes:
-        kind: action, motion, location or object.
-        description: Keys and values; values may be designators. In keys - and _ are alike: they are kept with _.
-        quantifier: "a" for any that fits, "the" for the only one, "all" for all of them.
-        parent: The one it was equated to, None at the first of a chain.
-        successor: The one that was equated to it last, None at the newest.
+        description: Keys and values; values may be designators. - in keys becomes _.
+        parent: The one it was equated to; None at the first of a chain.
+        successor: The one equated to it last; None at the newest.
         timestamp: When it was resolved, s since the epoch; None before.
 
     Args:
-        kind: See above.
-        description: See above.
-        quantifier: See above.
-        resolve: Gives the solutions, one after the other; those of the rules if there is none.
+        quantifier: "a" for any match, "the" for the only one, "all" for all.
+        resolve: Gives the solutions one by one; default: by the rules.
     """
 
     def __init__(
@@ -83,33 +79,27 @@ class Designator:
     # --- description --------------------------------------------------------------------------------------------------
 
     def __getitem__(self, key: str) -> Any:
-        """The value of a key.
-
-        Raises:
-            DesignatorError: It has no such key.
-        """
         if plain_key(key) not in self.description:
             raise DesignatorError(self, f"no key {key!r}: it has {', '.join(self.description) or 'none'}")
         return self.description[plain_key(key)]
 
     def get(self, key: str, default: Any = None) -> Any:
-        """The value of a key, or the default."""
         return self.description.get(plain_key(key), default)
 
     def __contains__(self, key: object) -> bool:
         return isinstance(key, str) and plain_key(key) in self.description
 
     def copy(self, **changes: Any) -> Designator:
-        """Another one with the same description and some keys changed; None takes a key away. It is not equated."""
+        """A copy with some keys changed; None removes a key. It is not equated."""
         merged = {**self.description, **changes}
         kept = {key: value for key, value in merged.items() if value is not None}
         return type(self)(self.kind, kept, self.quantifier, self._resolve)
 
     def merge(self, other: Designator) -> Designator:
-        """One that says what both say.
+        """A designator with the keys of both.
 
         Raises:
-            DesignatorError: They are of different kinds, or say different things of the same key.
+            DesignatorError: The kinds differ, or the values of a common key.
         """
         if other.kind != self.kind:
             raise DesignatorError(self, f"cannot be merged with {other}: the kinds differ")
@@ -122,7 +112,7 @@ class Designator:
     # --- solutions ----------------------------------------------------------------------------------------------------
 
     def reference(self) -> Any:
-        """What it stands for: the first solution, and always the same from then on.
+        """The first solution; always the same from then on.
 
         Raises:
             DesignatorError: There is none.
@@ -138,7 +128,7 @@ class Designator:
     def next_solution(self) -> Designator | None:
         """A designator of the same thing whose reference is the next solution; None if there is none.
 
-        Always the same one: branches that ask beside each other go on with one designator.
+        Always the same one: parallel branches go on with one designator.
         """
         with self._lock:
             if self._following is not None:
@@ -154,7 +144,7 @@ class Designator:
         return following
 
     def solutions(self) -> Iterator[Any]:
-        """All solutions from this one on, worked out one after the other."""
+        """All solutions from this one on, computed one by one."""
         for place in itertools.count(self._place):
             with self._lock:
                 if not self._has(place):
@@ -164,7 +154,6 @@ class Designator:
 
     @property
     def resolved(self) -> bool:
-        """Whether `reference` has been asked."""
         return self.timestamp is not None
 
     def _has(self, place: int) -> bool:
@@ -197,7 +186,7 @@ action, motion, location, object_ = KINDS
 
 
 def a(kind: str, **description: Any) -> Designator:
-    """Any thing that fits: `a(location, near=...)`."""
+    """Any match: `a(location, near=...)`."""
     return Designator(kind, description)
 
 
@@ -207,24 +196,24 @@ def an(kind: str, **description: Any) -> Designator:
 
 
 def the(kind: str, **description: Any) -> Designator:
-    """The only thing that fits: `the(object_, type="ball", colour="red")`."""
+    """The only match: `the(object_, type="ball", colour="red")`."""
     return Designator(kind, description, "the")
 
 
 def all_(kind: str, **description: Any) -> Designator:
-    """All things that fit."""
+    """All matches."""
     return Designator(kind, description, "all")
 
 
 def designator(description: Description, kind: str = "") -> Designator:
     """A designator from a mapping, a list of pairs, or text: YAML, or Lisp where it begins with a bracket.
 
-    The kind is that of the argument, else the value of the key `type` where that is a kind, else an action: so both
-    `{type: action, name: to open, side: left}` and `{type: opening, gripper: left}` are actions. Mappings inside that
-    name a kind, `{location: {...}}` or `{type: location, ...}`, are designators as well.
+    The kind is that of the argument, else the value of the key `type` if it is a kind, else action: both `{type:
+    action, name: to open, side: left}` and `{type: opening, gripper: left}` are actions. Nested mappings that name a
+    kind, `{location: {...}}` or `{type: location, ...}`, are designators as well.
 
     Raises:
-        PlanError: It is none of these, or text of more than is read.
+        PlanError: The description is none of these, or too large.
     """
     if isinstance(description, str):
         require_short(len(description))
@@ -237,29 +226,21 @@ def designator(description: Description, kind: str = "") -> Designator:
 
 
 def text_budget() -> Budget:
-    """What the texts of one designator may stand for together."""
+    """What all texts of one designator may expand to."""
     return Budget(MOST_VALUES, DEEPEST)
 
 
 def require_short(characters: int) -> None:
-    """See that the texts of a designator are not too long, all together.
-
-    Raises:
-        PlanError: They are.
-    """
+    """Raise PlanError if the texts of a designator are too long together."""
     if characters > LONGEST:
         raise PlanError(f"designator: the text has {characters} characters: at most {LONGEST} are read")
 
 
 def read_yaml(text: str, budget: Budget) -> Any:
-    """The value of a text.
-
-    Args:
-        text: YAML.
-        budget: How much it may stand for.
+    """The value of a YAML text, within a budget.
 
     Raises:
-        PlanError: It is no YAML, or stands for too much.
+        PlanError: It is not valid YAML, or too large.
     """
     try:
         return load_within(text, budget)
@@ -280,7 +261,7 @@ def _lisp_value(value: Any) -> Any:
 
 
 def plain_key(key: str) -> str:
-    """A key as it is kept: `left-target` and `left_target` are alike."""
+    """The key with _ for -."""
     return key.replace("-", "_")
 
 
@@ -313,11 +294,7 @@ def _nested(value: Any) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """A value that is no list and no mapping.
-
-    Raises:
-        PlanError: It is a whole number that is larger than any that is meant.
-    """
+    """A scalar; PlanError for a whole number out of range."""
     if isinstance(value, int) and value.bit_length() > BITS:
         raise PlanError(f"designator: a whole number has {value.bit_length()} bits: at most {BITS} are read")
     return value
@@ -329,11 +306,7 @@ _chains = threading.Lock()
 
 
 def equate(parent: Designator, successor: Designator) -> Designator:
-    """Say that two designators are of the same thing, and that the second one is the newer; the second.
-
-    Raises:
-        DesignatorError: They are of different kinds.
-    """
+    """Declare that two designators stand for the same thing, and that the second is newer; returns the second."""
     if parent.kind != successor.kind:
         raise DesignatorError(successor, f"cannot be equated to {parent}: the kinds differ")
     with _chains:
@@ -345,13 +318,11 @@ def equate(parent: Designator, successor: Designator) -> Designator:
 
 
 def current_desig(desig: Designator) -> Designator:
-    """The newest designator of the same thing."""
     with _chains:
         return _newest(desig)
 
 
 def first_desig(desig: Designator) -> Designator:
-    """The first designator of the same thing."""
     with _chains:
         return _first(desig)
 
@@ -366,7 +337,6 @@ def newest_effective_designator(desig: Designator) -> Designator | None:
 
 
 def desig_equal(one: Designator, other: Designator) -> bool:
-    """Whether two designators were equated."""
     with _chains:
         return _first(one) is _first(other)
 
@@ -384,13 +354,13 @@ def _newest(desig: Designator) -> Designator:
 
 
 class _Usual:
-    """How designators are resolved that have no way of their own."""
+    """Holds the default resolver."""
 
     solutions: Callable[[Designator], Iterable[Any]]
 
 
 def resolve_by(solutions: Callable[[Designator], Iterable[Any]]) -> None:
-    """Have designators resolved that have no way of their own: `rules`, which are about designators, do so."""
+    """Set the default resolver; called by `rules`, which imports this module."""
     _Usual.solutions = staticmethod(solutions)
 
 

@@ -1,8 +1,8 @@
-"""Designators as Lisp writes them: `(an action (type opening) (gripper left))`. Pure.
+"""Designators in Lisp notation: `(an action (type opening) (gripper left))`. Pure.
 
-Two forms are read. CRAM's begins with a quantifier and a kind, and has pairs behind them. The other has pairs alone, as
-in `(type: action (name: (to open)) (side: left))`: there the first key and value may stand without brackets of their
-own. Colons before or after a word do not count, nor does the package of `desig:an`.
+Two forms are read. CRAM's begins with a quantifier and a kind, followed by pairs. The other has pairs alone, as in
+`(type: action (name: (to open)) (side: left))`: there the first key and value may stand without brackets of their own.
+Colons before or after a word and the package of `desig:an` are ignored.
 """
 
 from __future__ import annotations
@@ -24,9 +24,8 @@ def read_lisp(text: str, values: int, levels: int) -> dict[str, Any]:
     """Keys and values of a designator: the kind under `type` with its pairs, or as one key with a mapping.
 
     Args:
-        text: It.
-        values: The most words, numbers and brackets that it may have.
-        levels: The most brackets in each other.
+        values: The most words, numbers and brackets allowed.
+        levels: The deepest nesting of brackets allowed.
 
     Returns:
         `{"quantifier": "a", "kind": "action", "pairs": {...}}`; quantifier and kind are empty where there are none.
@@ -41,7 +40,7 @@ def read_lisp(text: str, values: int, levels: int) -> dict[str, Any]:
 
 
 def _read(text: str, values: int, levels: int) -> list[Any]:
-    """Nested lists of words; numbers are numbers, what was in quotes is a `_Quoted`."""
+    """Nested lists of words; numbers are converted, quoted text is a `_Quoted`."""
     stack: list[list[Any]] = [[]]
     opened: list[int] = []
     position = 0
@@ -75,7 +74,7 @@ def _read(text: str, values: int, levels: int) -> list[Any]:
 
 
 class _Quoted(str):
-    """A text that was in quotes: it is no key and no number."""
+    """A text in quotes: neither a key nor a number."""
 
 
 def _value(word: str) -> Any:
@@ -109,7 +108,7 @@ def _pairs(forms: list[Any], text: str) -> dict[str, Any]:
 
 
 def _meant(values: list[Any], text: str) -> Any:
-    """What stands behind a key: one value, words that are one text, or a list."""
+    """The value of a key: one value, words that are one text, or a list."""
     if len(values) == 1:
         value = values[0]
         if isinstance(value, list):

@@ -1,12 +1,12 @@
-"""Locations: places that a description stands for, sampled one after the other and checked.
+"""Locations: places that match a description, sampled one by one and validated.
 
     a(location, near=the(object_, type="table"), distance=0.35)
     a(location, to="see", object=the(object_, type="ball"))
     a(location, to="reach", object=the(object_, type="ball"), side="left")
     a(location, pose=[1.0, 0.5, 1.57], frame="odom")
 
-Generators give candidates, those of the highest priority first; every validator says of each candidate what it thinks:
-a candidate is taken when nobody rejects it. Users add generators and validators of their own.
+Generators propose candidates, the highest priority first; a candidate is taken when no validator rejects it. Users add
+generators and validators of their own.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ STANDS_ON = 0.06
 
 
 class Verdict(enum.Enum):
-    """What a validator thinks of a candidate."""
+    """A validator's verdict on a candidate."""
 
     ACCEPT = "accept"
     REJECT = "reject"
@@ -50,8 +50,6 @@ class Verdict(enum.Enum):
 
 @dataclass(frozen=True)
 class Candidate:
-    """A place that may be meant, with its frame."""
-
     place: Place
     frame: str
 
@@ -65,21 +63,21 @@ _validators: list[tuple[int, str, Validator]] = []
 
 
 def register_location_generator(priority: int, generator: Generator, name: str = "") -> None:
-    """Add what gives candidates; one of the same name is replaced. The highest priority goes first."""
+    """Add a generator; it replaces one of the same name. The highest priority comes first."""
     _register(_generators, priority, name or generator.__name__, generator)
 
 
 def register_location_validation_function(priority: int, validator: Validator, name: str = "") -> None:
-    """Add what judges candidates; one of the same name is replaced. The highest priority is asked first."""
+    """Add a validator; it replaces one of the same name. The highest priority is asked first."""
     _register(_validators, priority, name or validator.__name__, validator)
 
 
 @rule(location, called="location")
 def sampled(desig: Designator) -> Iterator[tuple[Place, str]]:
-    """Places with their frames that the generators give and no validator rejects.
+    """Generated places that no validator rejects, with their frames.
 
     Raises:
-        DesignatorError: No generator knows what is meant, or all candidates were rejected: by whom, and how often.
+        DesignatorError: There is no candidate, or all were rejected: by which validator, and how often.
     """
     rejected: dict[str, int] = {}
     looked = taken = 0
@@ -106,7 +104,7 @@ def sampled(desig: Designator) -> Iterator[tuple[Place, str]]:
 
 
 def next_different_location_solution(desig: Designator, distance: float = 0.1, turn: float = 0.3) -> Designator | None:
-    """The next designator of the location whose place is another one by more than m or rad; None if there is none."""
+    """The next solution whose place differs by more than `distance` m or `turn` rad; None if there is none."""
     place, _ = desig.reference()
     following = desig.next_solution()
     while following is not None:
@@ -121,7 +119,7 @@ def next_different_location_solution(desig: Designator, distance: float = 0.1, t
 
 
 def pose_of_description(desig: Designator) -> Iterator[Candidate]:
-    """The place that is told: pose=[x, y, yaw], with frame."""
+    """A place given by pose=[x, y, yaw] and frame."""
     pose = desig.get("pose")
     if pose is None:
         return
@@ -133,7 +131,7 @@ def pose_of_description(desig: Designator) -> Iterator[Candidate]:
 
 
 def around_object(desig: Designator) -> Iterator[Candidate]:
-    """Places around a thing from which one looks at it: near=..., with distance in m from its edge."""
+    """Places around a thing, facing it: near=..., with distance in m from its edge."""
     thing = _thing(desig, "near")
     if thing is None:
         return
@@ -172,7 +170,7 @@ def to_reach(desig: Designator) -> Iterator[Candidate]:
 
 
 def not_in_collision(desig: Designator, candidate: Candidate) -> Verdict:
-    """Nothing that is known stands where the robot would."""
+    """No known thing stands where the robot would."""
     place, nao = candidate.place, numbers_of_nao()
     for thing in BELIEFS.all():
         if thing.position.frame != candidate.frame or not any(thing.size):
@@ -184,7 +182,7 @@ def not_in_collision(desig: Designator, candidate: Candidate) -> Verdict:
 
 
 def in_view(desig: Designator, candidate: Candidate) -> Verdict:
-    """What is to be seen is not hidden, nor too steep below the eyes."""
+    """The object is neither hidden nor too steep below the eyes."""
     thing = _thing(desig, "object", "obj", "target")
     if desig.get("to") != "see" or thing is None:
         return Verdict.UNKNOWN
@@ -198,7 +196,7 @@ def in_view(desig: Designator, candidate: Candidate) -> Verdict:
 
 
 def in_reach(desig: Designator, candidate: Candidate) -> Verdict:
-    """The hand is long enough."""
+    """The hand reaches the object."""
     thing = _thing(desig, "object", "obj", "target")
     if desig.get("to") != "reach" or thing is None:
         return Verdict.UNKNOWN
@@ -226,7 +224,7 @@ def _thing(desig: Designator, *keys: str) -> KnownObject | None:
 
 
 def _ring(thing: KnownObject, distances: Iterable[float]) -> Iterator[Candidate]:
-    """Places at distances from the edge of a thing, all around, with the thing ahead."""
+    """Places at distances from the edge of a thing, all around, facing it."""
     for distance in distances:
         for turn in _turns():
             # From the middle outwards until the edge is so far away.
@@ -239,13 +237,13 @@ def _ring(thing: KnownObject, distances: Iterable[float]) -> Iterator[Candidate]
 
 
 def _turns() -> Iterator[float]:
-    """Headings: ahead first, then more and more to both sides."""
+    """Headings: ahead first, then alternating to both sides."""
     for step in range(AROUND):
         yield wrapped(2.0 * math.pi / AROUND * ((step + 1) // 2) * (-1 if step % 2 else 1))
 
 
 def _between(thing: KnownObject, eye: Point3, target: Point3) -> bool:
-    """Whether the box of a thing is on the way from the eye to the target."""
+    """Whether the box of a thing hides the target from the eye."""
     if not any(thing.size):
         return False
     steps = max(2, int(eye.distance_to(target) / SIGHT_STEP))
@@ -265,7 +263,7 @@ def _candidates(desig: Designator) -> Iterator[Candidate]:
 
 
 def _judge(desig: Designator, candidate: Candidate) -> tuple[Verdict, str]:
-    """The verdict on a candidate, and whose it is: the first that rejects counts."""
+    """The verdict on a candidate, and the name of the deciding validator: the first that rejects."""
     doubt = ""
     for _, name, validator in tuple(_validators):
         verdict = validator(desig, candidate)

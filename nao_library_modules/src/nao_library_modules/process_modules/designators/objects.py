@@ -1,9 +1,9 @@
 """Objects: what is known of things in the world, and designators of them.
 
-    table = beliefs.know("table", type="table", position=Point3(0.95, 0.0, 0.15, "odom"), size=(0.7, 1.1, 0.3))
+    table = BELIEFS.know("table", type="table", position=Point3(0.95, 0.0, 0.15, "odom"), size=(0.7, 1.1, 0.3))
     the(object_, type="table").reference()              # the KnownObject
 
-A designator of an object stands for what is known to fit it; perception adds to that (see `perception.perceive`).
+A designator of an object is resolved to known objects that match; perception adds to them (see `perception.perceive`).
 """
 
 from __future__ import annotations
@@ -29,13 +29,10 @@ class KnownObject:
     """A thing in the world.
 
     Attributes:
-        name: That it is known by.
-        type: Such as table or ball.
-        position: Of its middle.
-        size: (length, width, height) in m of the box around it, (0, 0, 0) if that is not known.
-        yaw: How that box is turned, rad, in the frame of the position.
-        facts: What else is known, as colour, by key.
-        seen: When it was seen last, s of the clock of who saw it; None if it was not seen.
+        position: The middle of its box.
+        size: (length, width, height) of its box, m; (0, 0, 0) if unknown.
+        yaw: Rotation of the box, rad, in the frame of the position.
+        seen: When it was seen last, s of the observer's clock; None if never.
     """
 
     name: str
@@ -54,21 +51,21 @@ class KnownObject:
         return math.hypot(max(across, 0.0), max(along, 0.0))
 
     def value(self, key: str) -> Any:
-        """What is known of a key; None if nothing is."""
+        """What is known for a key, or None."""
         if key in ("type", "name", "position", "size", "yaw"):
             return getattr(self, key)
         return self.facts.get(key)
 
 
 class Beliefs:
-    """What a robot knows of things. Any thread may ask and tell."""
+    """What a robot knows of things; safe to use from any thread."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._objects: dict[str, KnownObject] = {}
 
     def know(self, name: str, **description: Any) -> KnownObject:
-        """Take a thing as known; one of that name is replaced. See `KnownObject` for what may be told."""
+        """Store a thing; one of that name is replaced. The description has fields of `KnownObject`, and facts."""
         own = {key: description.pop(key) for key in ("type", "position", "size", "yaw", "seen") if key in description}
         own.setdefault("type", name)
         if "position" not in own:
@@ -97,22 +94,20 @@ class Beliefs:
             return known
 
     def forget(self, name: str) -> None:
-        """Know a thing no longer."""
         with self._lock:
             self._objects.pop(name, None)
 
     def clear(self) -> None:
-        """Know nothing."""
         with self._lock:
             self._objects.clear()
 
     def all(self) -> list[KnownObject]:
-        """Everything that is known, in the order in which it came to be known."""
+        """All known things, in the order in which they were added."""
         with self._lock:
             return list(self._objects.values())
 
     def fitting(self, desig: Designator) -> list[KnownObject]:
-        """What fits a description: those that were seen last come first."""
+        """What matches a description; the last seen come first."""
         wanted = {key: value for key, value in desig.description.items() if key not in ("where", "position", "size")}
         fit = [thing for thing in self.all() if all(_alike(thing.value(key), value) for key, value in wanted.items())]
         return sorted(fit, key=lambda thing: -(thing.seen if thing.seen is not None else -math.inf))
@@ -138,11 +133,11 @@ BELIEFS = Beliefs()
 
 @rule(object_, called="known object")
 def known(desig: Designator) -> Iterator[KnownObject]:
-    """What is known to fit. Of `the` object there may be only one; `all` gives a list of all of them.
+    """Known objects that match. `the` allows only one; `all` gives one list of them.
 
     Raises:
-        DesignatorError: Nothing is known to fit.
-        AmbiguousPerception: Several fit a description that means one.
+        DesignatorError: Nothing known matches.
+        AmbiguousPerception: Several match a description that means one.
     """
     fit = BELIEFS.fitting(desig)
     if not fit:
@@ -154,7 +149,7 @@ def known(desig: Designator) -> Iterator[KnownObject]:
 
 
 def object_pose(desig: Designator) -> Point3:
-    """Where the object of a designator is."""
+    """The position of a designator's object."""
     return desig.reference().position
 
 

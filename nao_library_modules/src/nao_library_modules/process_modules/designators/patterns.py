@@ -1,4 +1,4 @@
-"""What the values of a designator's keys have to be for a rule to fit."""
+"""Patterns that the values of a designator's keys are matched with."""
 
 from __future__ import annotations
 
@@ -14,18 +14,17 @@ SETTING = limit("setting")
 
 
 class Mismatch(Exception):  # noqa: N818  caught by the matcher
-    """A value is not what a pattern wants; the text says what that would be."""
+    """A value does not match a pattern; the text names what would."""
 
 
 @dataclass(frozen=True)
 class Pattern:
-    """Something that a value is compared with.
+    """A pattern for a value.
 
     Attributes:
-        wanted: What it wants, in words.
-        take: Gives the value that the rule gets; raises Mismatch.
-        default: Value of a key that is not there; a key without one has to be there.
-        exact: How much it says: rules that say more are tried first.
+        take: Converts the value to what the rule receives; raises Mismatch.
+        default: For an absent key; a key without a default is required.
+        exact: Specificity: more specific rules are tried first.
     """
 
     wanted: str
@@ -34,17 +33,16 @@ class Pattern:
     exact: int = 1
 
     def or_else(self, default: Any) -> Pattern:
-        """The same, for a key that may be left out."""
+        """The same pattern, for an optional key."""
         return Pattern(f"{self.wanted}, or nothing for {default!r}", self.take, default, self.exact)
 
 
 def anything() -> Pattern:
-    """Any value."""
     return Pattern("anything", lambda value: value, exact=0)
 
 
 def text() -> Pattern:
-    """A text that is not empty."""
+    """A text that is not blank."""
 
     def take(value: Any) -> str:
         if not isinstance(value, str) or not value.strip():
@@ -67,7 +65,7 @@ def number(lowest: float = SETTING.lowest, highest: float = SETTING.highest, uni
 
 
 def numbers(count: int, unit: str = "") -> Pattern:
-    """So many numbers; also as a mapping of x, y and z."""
+    """A tuple of that many numbers; also from a mapping of x, y and z."""
 
     def take(value: Any) -> tuple[float, ...]:
         if isinstance(value, Mapping):
@@ -84,7 +82,7 @@ def numbers(count: int, unit: str = "") -> Pattern:
 
 
 def one_of(*values: Any) -> Pattern:
-    """One of some values; texts in any case, with - and _ for spaces."""
+    """One of some values; texts match in any case, with - and _ for spaces."""
 
     def take(value: Any) -> Any:
         for each in values:
@@ -96,7 +94,7 @@ def one_of(*values: Any) -> Pattern:
 
 
 def described(kind: str) -> Pattern:
-    """A designator of a kind."""
+    """A designator of that kind."""
 
     def take(value: Any) -> Designator:
         if not isinstance(value, Designator) or value.kind != kind:
@@ -107,7 +105,7 @@ def described(kind: str) -> Pattern:
 
 
 def as_pattern(value: Any) -> Pattern:
-    """A pattern; a plain value is one of itself."""
+    """A pattern; a plain value matches itself."""
     return value if isinstance(value, Pattern) else one_of(value)
 
 

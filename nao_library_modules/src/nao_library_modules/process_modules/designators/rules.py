@@ -1,12 +1,12 @@
-"""Rules: what turns a description into what can be done. Data that is matched, and small functions.
+"""Rules: turn a description into a command or a plan. Patterns to match, and small functions.
 
     @rule(action, type="opening", gripper=one_of("left", "right"))
     def opening(gripper):
         return Command("manipulation", "open_gripper", side=gripper)
 
-A rule fits when every key of its pattern does; keys that it does not name do not matter. Of those that fit the one with
-the highest priority comes first, then the one that says most, then the one that was added last: a user's rule goes
-before ours. What a rule gives are solutions, in its order; those of the next rule come after them.
+A rule matches when every key of its pattern does; other keys do not matter. Among the matching rules the highest
+priority comes first, then the most specific, then the one added last: a user's rule precedes ours. A rule returns
+solutions, in its order; those of the next rule follow.
 """
 
 from __future__ import annotations
@@ -28,13 +28,7 @@ DESIG = "desig"
 
 @dataclass(frozen=True)
 class Command:
-    """What a process module can do at once: the solution of an action or a motion.
-
-    Attributes:
-        module: Name of the process module.
-        name: Of what it does, as `open_gripper`.
-        arguments: Numbers and names, by name.
-    """
+    """A command of a process module: the solution of an action or a motion."""
 
     module: str
     name: str
@@ -52,18 +46,11 @@ def command(module: str, name: str, /, **arguments: Any) -> Command:
 
 @dataclass(frozen=True)
 class Rule:
-    """See the top of this file.
+    """A rule, as described at the top of this file.
 
     Attributes:
-        name: For people.
-        kind: Of designators that it is about.
-        patterns: By key.
-        solve: Gets the values of those keys that its arguments are named after, and the designator as `desig`; gives a
-            solution, or several of them, or None for none.
-        priority: The highest goes first.
-
-    Raises:
-        PlanError: An argument is no key.
+        solve: Receives the keys that its arguments are named after, and the designator as `desig`.
+        solution, several, or None.
     """
 
     name: str
@@ -82,21 +69,17 @@ class Rule:
         return list(inspect.signature(self.solve).parameters)
 
     def solutions(self, desig: Designator, values: Mapping[str, Any]) -> Iterable[Any]:
-        """What it gives for a designator that it fits; see `match` for the values."""
+        """What it returns for a matching designator; `values` are those of `match`."""
         known = {**values, DESIG: desig}
         return _several(self.solve(**{name: known[name] for name in self._arguments()}))
 
     @property
     def exact(self) -> int:
-        """How much it says."""
+        """Specificity."""
         return sum(pattern.exact for pattern in self.patterns.values())
 
     def match(self, desig: Designator) -> dict[str, Any]:
-        """The values of its keys.
-
-        Raises:
-            Mismatch: It does not fit, with the key and what it wants.
-        """
+        """The values of its keys; Mismatch with the key and what it wants."""
         values = {}
         for key, pattern in self.patterns.items():
             if key not in desig:
@@ -111,7 +94,7 @@ class Rule:
         return values
 
     def keys_that_fit(self, desig: Designator) -> int:
-        """How many keys of the pattern fit: what a rule that nearly fits is known by."""
+        """Specificity of the matching keys, which ranks rules that nearly match."""
         fit = 0
         for key, pattern in self.patterns.items():
             try:
@@ -124,18 +107,14 @@ class Rule:
 
 
 class Rules:
-    """All rules there are. Any thread may ask and add."""
+    """A set of rules; safe to use from any thread."""
 
     def __init__(self) -> None:
         self._rules: tuple[Rule, ...] = ()
         self._lock = threading.Lock()
 
     def add(self, new: Rule) -> Rule:
-        """Add a rule; one of the same name and kind takes the place of the old one.
-
-        Raises:
-            PlanError: Its kind is unknown.
-        """
+        """Add a rule; it replaces one of the same name and kind."""
         if new.kind not in KINDS:
             raise PlanError(f"the rule {new.name}: designators are of the kinds {', '.join(KINDS)}, not {new.kind!r}")
         with self._lock:
@@ -144,19 +123,18 @@ class Rules:
         return new
 
     def remove(self, old: Rule) -> None:
-        """Take a rule away."""
         with self._lock:
             self._rules = tuple(rule for rule in self._rules if rule is not old)
 
     def of(self, kind: str) -> list[Rule]:
-        """Rules about a kind of designators, in the order in which they are tried."""
+        """Rules for a kind of designator, in the order in which they are tried."""
         return [rule for rule in self._rules if rule.kind == kind]
 
     def solutions(self, desig: Designator) -> Iterator[Any]:
-        """Solutions of all rules that fit.
+        """Solutions of all matching rules.
 
         Raises:
-            DesignatorError: No rule fits: those that nearly did, and the key on which each failed.
+            DesignatorError: No rule matches; the text names the nearest, and the key on which each failed.
         """
         rules, misses = self.of(desig.kind), []
         for rule in rules:
@@ -184,15 +162,14 @@ def rule(
     rules: Rules = RULES,
     **patterns: Any,
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """A function as a rule.
+    """Register a function as a rule.
 
     Args:
-        kind: Of designators that it is about; several in a tuple.
-        keys: Patterns by key, for keys that are arguments of this function, as `priority`.
-        priority: The highest goes first.
-        called: Its name, for people; that of the function if there is none.
-        rules: Where it is added.
-        **patterns: By key: a pattern (see `patterns`), or a value that has to be just that.
+        kind: Of designators; several in a tuple.
+        keys: Patterns for keys with the name of an argument of this function, as `priority`.
+        priority: The highest is tried first.
+        called: Name in messages; default: the function's.
+        patterns: By key: a pattern (see `patterns`), or a value to be equal to.
     """
 
     def add(solve: Callable[..., Any]) -> Callable[..., Any]:

@@ -1,12 +1,12 @@
-"""CRAM's control constructs: in order, in parallel, whichever ends first, whichever succeeds.
+"""CRAM's control constructs: sequential, parallel, first to end, first to succeed.
 
-Every construct takes branches and gives an answer. A branch is a function without arguments, or one with its arguments
-bound by `do`:
+Every construct takes branches and returns an answer. A branch is a function without arguments, or one with its
+arguments bound by `do`:
 
     top_level(lambda: par(do(open_gripper, "left"), do(open_gripper, "right"), do(move_head, 2.0, 3.0)))
 
 Branches of par, pursue, try_all and partial_order have threads of their own. A branch that is not needed any more is
-evaporated, and the construct waits until it has ended: nothing of a construct runs on when the construct is over.
+evaporated, and the construct waits until it has ended: nothing of a construct outlives it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ PATIENCE = 5.0
 
 @dataclass(frozen=True)
 class Step:
-    """A function with its arguments, and how the task is called that carries it out."""
+    """A function with its arguments, and the name of the task that runs it."""
 
     name: str
     call: Callable[[], Any]
@@ -44,14 +44,7 @@ Branch = Union[Step, Callable[[], Any]]
 
 
 def do(function: Callable[..., Any], *arguments: Any, name: str = "", **keywords: Any) -> Step:
-    """A branch: a function with its arguments, to be called when its turn comes.
-
-    Args:
-        function: Any function, or a plan.
-        *arguments: Its arguments.
-        name: Of the task; that of the function if there is none.
-        **keywords: Its arguments by name.
-    """
+    """A branch: a function or a plan with its arguments, called when its turn comes. `name` is that of the task."""
     given = [told(value, LONGEST) for value in arguments]
     given += [f"{key}={told(value, LONGEST)}" for key, value in keywords.items()]
     # A plan makes a task of its own when it is called; the branch is that task already.
@@ -61,7 +54,7 @@ def do(function: Callable[..., Any], *arguments: Any, name: str = "", **keywords
 
 
 def name_of(function: Callable[..., Any]) -> str:
-    """How a function is called in the task tree."""
+    """The name of a function in the task tree."""
     name = getattr(function, "__name__", type(function).__name__)
     return "step" if name == "<lambda>" else name
 
@@ -72,19 +65,14 @@ def name_of(function: Callable[..., Any]) -> str:
 def top_level(
     body: Branch, *, name: str = "", clock: Any = None, observers: Iterable[Callable[[Task], None]] = ()
 ) -> Any:
-    """Run a plan, in this thread.
+    """Run a plan, in this thread; its answer.
 
     Args:
-        body: The plan.
-        name: Of its root task.
-        clock: Whose time it has, see `nao_library_modules.base.clock`; the computer's if there is none.
-        observers: Called with each task of the tree whenever it has changed.
-
-    Returns:
-        What the plan answers.
+        clock: See `nao_library_modules.base.clock`; default: the computer's.
+        observers: Called with each task of the tree at every change.
 
     Raises:
-        PlanFailure: What the plan failed with, or that somebody evaporated its root.
+        PlanFailure: The plan failed, or its root was evaporated.
         PlanError: This thread runs a plan already.
     """
     if here() is not None:
@@ -123,11 +111,7 @@ def seq(*branches: Branch) -> Any:
 
 
 def try_in_order(*branches: Branch) -> Any:
-    """One after the other until one succeeds; its answer.
-
-    Raises:
-        CompositeFailure: All failed.
-    """
+    """One after the other until one succeeds; its answer. CompositeFailure if all fail."""
 
     def body() -> Any:
         failures = []
@@ -142,11 +126,7 @@ def try_in_order(*branches: Branch) -> Any:
 
 
 def try_each_in_order(function: Callable[[Any], Any], items: Iterable[Any]) -> Any:
-    """A function on one item after the other until it succeeds; its answer.
-
-    Raises:
-        CompositeFailure: It failed with all.
-    """
+    """A function on one item after the other until it succeeds; its answer. CompositeFailure if it never does."""
     return try_in_order(*(do(function, item) for item in items))
 
 
@@ -154,7 +134,7 @@ def try_each_in_order(function: Callable[[Any], Any], items: Iterable[Any]) -> A
 
 
 def par(*branches: Branch) -> list[Any]:
-    """All at once; the answers of all, in order. Fails with the first failure, and ends the others then."""
+    """All at once; the answers in order. Fails with the first failure, and ends the others then."""
 
     def body() -> list[Any]:
         return _all_of(_Started(map(_as_step, branches)))
@@ -168,7 +148,7 @@ def par_loop(function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
 
 
 def pursue(*branches: Branch) -> Any:
-    """All at once until the first one is over, which decides: its answer, or its failure. The others are ended."""
+    """All at once until the first one ends: its answer, or its failure. The others are ended."""
 
     def body() -> Any:
         with _Started(map(_as_step, branches)) as tasks:
@@ -181,11 +161,7 @@ def pursue(*branches: Branch) -> Any:
 
 
 def try_all(*branches: Branch) -> Any:
-    """All at once until one succeeds: its answer. The others are ended.
-
-    Raises:
-        CompositeFailure: All failed.
-    """
+    """All at once until one succeeds: its answer. The others are ended. CompositeFailure if all fail."""
 
     def body() -> Any:
         with _Started(map(_as_step, branches)) as tasks:
@@ -205,11 +181,10 @@ def partial_order(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]
     """All at once, but some before others; the answers by name. Fails as `par`.
 
     Args:
-        branches: By name.
         order: Pairs (or longer chains) of names: each begins when the one before it has succeeded.
 
     Raises:
-        PlanError: A name is unknown, or the order goes round in a circle.
+        PlanError: A name is unknown, or the order has a cycle.
     """
     before = _predecessors(branches, order)
 
@@ -234,7 +209,7 @@ def partial_order(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]
 
 
 class _Started:
-    """Tasks that run beside each other while a block lasts; at its end what still runs is ended."""
+    """Tasks that run at the same time while a block lasts; at its end the remaining ones are ended."""
 
     def __init__(self, steps: Iterable[Step], tasks: Iterable[Task] = ()) -> None:
         self.tasks = [*tasks, *(_task(step) for step in steps)]
@@ -262,7 +237,6 @@ class _Started:
 
 
 def _all_of(started: _Started) -> list[Any]:
-    """The answers of all, or the first failure."""
     with started as tasks:
         statuses = [task.status for task in tasks]
         wait_until(lambda: any(failed(task) for task in tasks) or _over(tasks), statuses)
@@ -287,7 +261,7 @@ def _as_step(branch: Branch) -> Step:
 
 
 def _first(tasks: Iterable[Task]) -> Task:
-    """The one that ended first."""
+    """The task that ended first."""
     return min(tasks, key=lambda task: task.ending)  # type: ignore[arg-type, return-value]
 
 
@@ -296,7 +270,7 @@ def _succeeded(tasks: Iterable[Task]) -> list[Task]:
 
 
 def _bug(tasks: Iterable[Task]) -> list[Task]:
-    """Those that ended with something that is no failure of a plan: nobody may try something else then."""
+    """Tasks that ended with an error that is no failure of a plan: nothing may catch it."""
     return [task for task in tasks if task.failure is not None and not isinstance(task.failure, PlanFailure)]
 
 

@@ -38,23 +38,13 @@ from naoqi.errors import NaoError
 
 
 class PlanError(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A plan is written wrongly: a mistake of the programmer, which no failure handling takes for a failure."""
+    """A mistake of the programmer, which no failure handling catches."""
 
 
 class PlanFailure(NaoError):  # noqa: N818  CRAM's names, here and below
-    """Something that a plan can expect to go wrong, and can handle.
-
-    Attributes:
-        details: What handlers may want to know, by name.
-    """
+    """A failure that a plan can expect and handle. Its details, for handlers, are attributes as well."""
 
     def __init__(self, text: str = "", /, **details: Any) -> None:
-        """Keep the text and the facts.
-
-        Args:
-            text: What went wrong, for people; the class in words if there is none.
-            **details: What handlers may want to know; they are attributes as well.
-        """
         super().__init__(text or _in_words(type(self).__name__))
         self.details = details
         for name, value in details.items():
@@ -62,32 +52,21 @@ class PlanFailure(NaoError):  # noqa: N818  CRAM's names, here and below
 
 
 class SimplePlanFailure(PlanFailure):
-    """A failure with nothing but a text."""
+    """A failure with only a text."""
 
 
 class CompositeFailure(PlanFailure):
-    """Every branch of `try_all` or `try_in_order` failed.
-
-    Attributes:
-        failures: That of each branch, in the order of the branches.
-    """
+    """Every branch of `try_all` or `try_in_order` failed; `failures` has the order of the branches."""
 
     def __init__(self, failures: Iterable[PlanFailure]) -> None:
-        """Compose the text from those of the failures."""
         self.failures = tuple(failures)
         super().__init__(f"all {len(self.failures)} failed: {'; '.join(map(str, self.failures))}")
 
 
 class TaskEvaporatedFailure(PlanFailure):
-    """A task was ended from outside although its result was needed.
-
-    Attributes:
-        task: Path of the task in the tree.
-        reason: Why, in the words of who ended it.
-    """
+    """A task (its path) was ended from outside although its result was needed."""
 
     def __init__(self, task: str, reason: str) -> None:
-        """Compose the text."""
         super().__init__(f"the task {task} was evaporated: {reason}", task=task, reason=reason)
 
 
@@ -95,11 +74,7 @@ class TaskEvaporatedFailure(PlanFailure):
 
 
 class PolicyFailure(PlanFailure):
-    """A policy ended its body.
-
-    Attributes:
-        policy: Name of the policy.
-    """
+    """A policy (its name) ended its body."""
 
 
 class PolicyCheckConditionMet(PolicyFailure):
@@ -122,15 +97,9 @@ class PolicyNotFound(PolicyFailure):
 
 
 class DesignatorError(PlanFailure):
-    """A designator cannot be resolved.
-
-    Attributes:
-        designator: It.
-        problem: Why not.
-    """
+    """A designator cannot be resolved."""
 
     def __init__(self, designator: Any, problem: str) -> None:
-        """Compose the text."""
         super().__init__(f"{designator}: {problem}", designator=designator, problem=problem)
 
 
@@ -189,7 +158,7 @@ class ManipulationPoseUnreachable(ManipulationLowLevelFailure):
     """The hand cannot get there.
 
     Attributes:
-        nearest: The point that it can reach and that is nearest, (x, y, z) in m, in the frame of the target.
+        nearest: The closest point in reach, (x, y, z) in m, in the frame of the target.
         distance: From there to the target, m.
     """
 
@@ -270,23 +239,14 @@ class ObjectNowhereToBeFound(HighLevelFailure):
 
 
 class GoalNotAchieved(HighLevelFailure):
-    """What achieves a goal went through, and still the goal does not hold.
-
-    Attributes:
-        goal: The occasion.
-    """
+    """The plan of a goal succeeded, and the goal still does not hold."""
 
 
 def fail(failure: PlanFailure | type[PlanFailure] | str, text: str = "", /, **details: Any) -> NoReturn:
     """Signal a failure: `fail("no ball")`, `fail(ObjectUnreachable, "too high", height=0.8)`.
 
-    Args:
-        failure: A failure, a class of them, or the text of a SimplePlanFailure.
-        text: Text, with a class.
-        **details: What handlers may want to know, with a class or a text.
-
     Raises:
-        PlanFailure: What was asked for.
+        PlanFailure: The given one, or one of the given class; SimplePlanFailure for a text.
         PlanError: It is none of these.
     """
     if isinstance(failure, str):

@@ -1,7 +1,7 @@
-"""One thread of a plan: how it waits, and how it is ended and suspended while it does.
+"""A thread of a plan: how it waits, and how it is ended and suspended meanwhile.
 
-Everything in a plan that takes time goes through `wait_until`: only there, and where tasks begin and end, a plan can be
-ended, suspended and woken. Code that blocks by other means is deaf meanwhile.
+Everything in a plan that takes time goes through `wait_until`: a plan can be ended, suspended and woken only there, and
+where tasks begin and end. Code that blocks by other means cannot be interrupted.
 """
 
 from __future__ import annotations
@@ -19,10 +19,9 @@ _local = threading.local()
 
 
 class Evaporated(BaseException):  # noqa: N818  a signal that ends tasks, not an error
-    """Ends a task from inside. Plans do not catch it; what they have to put right belongs into `finally`.
+    """Ends a task from inside; `task` is the outermost one of this thread that has to end.
 
-    Attributes:
-        task: The outermost task of this thread that has to end.
+    Plans do not catch it; their clean-up belongs into `finally`.
     """
 
     def __init__(self, task: Any) -> None:
@@ -31,20 +30,16 @@ class Evaporated(BaseException):  # noqa: N818  a signal that ends tasks, not an
 
 
 class Interrupted(BaseException):  # noqa: N818  a signal, as above
-    """A suspension reached a `retry_after_suspension`: its body ends, and begins again when the task is woken."""
+    """A suspension reached `retry_after_suspension`: its body ends, and begins again when the task is woken."""
 
 
 class Flow:
     """A thread of a plan.
 
     Attributes:
-        clock: Of the tree.
-        tasks: That it runs, the outermost first.
-        deaf: How many blocks of `uninterrupted` it is in.
-        restarting: How many blocks of `retry_after_suspension` it is in.
-
-    Args:
-        clock: See above.
+        tasks: The tasks that it runs, the outermost first.
+        deaf: Depth of `uninterrupted` blocks.
+        restarting: Depth of `retry_after_suspension` blocks.
     """
 
     def __init__(self, clock: Any) -> None:
@@ -55,7 +50,7 @@ class Flow:
         self._signal = CancellationToken()
 
     def wake(self) -> None:
-        """Have it look again at what it waits for; any thread may call this."""
+        """Re-evaluate the condition it waits for; any thread may call this."""
         self._signal.trigger()
 
     def check(self) -> None:
@@ -68,7 +63,6 @@ class Flow:
         self._wait(lambda: True, None, waits=False)
 
     def wait(self, condition: Callable[[], Any], fluents: Iterable[AnyFluent], timeout: float | None) -> bool:
-        """See `wait_until`."""
         fluents = tuple(fluents)
         for fluent in fluents:
             fluent.listen(self.wake)
@@ -103,7 +97,7 @@ class Flow:
             timeout -= max(self.clock.now() - began, 0.0)
 
     def _pauses(self) -> bool:
-        """Whether it has to pause; raises where it has to end."""
+        """Whether it has to pause; raises if it has to end."""
         for task in self.tasks:
             if task.evaporating:
                 raise Evaporated(task)
@@ -119,37 +113,32 @@ def here() -> Flow | None:
 
 
 def set_here(flow: Flow | None) -> None:
-    """Say which flow this thread is."""
     _local.flow = flow
 
 
 def wait_until(condition: Callable[[], Any], fluents: Iterable[AnyFluent] = (), timeout: float | None = None) -> bool:
-    """Wait for a condition, in a plan.
+    """Wait for a condition, in a plan; whether it came true.
 
     Args:
-        condition: Looked at now, and again whenever one of the fluents pulses.
-        fluents: On which it depends.
-        timeout: s of the plan's clock; a suspension does not count. None to wait for ever.
-
-    Returns:
-        Whether the condition came true.
+        condition: Evaluated now, and at every pulse of a fluent.
+        timeout: s of the plan's clock, without suspensions; None for no limit.
     """
     return _flow().wait(condition, fluents, timeout)
 
 
 def checkpoint() -> None:
-    """A point where a plan that computes for long can be ended and suspended."""
+    """Let a plan that computes for long be ended and suspended here."""
     _flow().check()
 
 
 def sleep(duration: float) -> None:
-    """Let time of the plan's clock pass, s."""
+    """Wait, s of the plan's clock."""
     _flow().wait(lambda: False, (), duration)
 
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """In this block nothing ends or suspends the task: for what has to be put right in `finally`. Bound its waits."""
+    """Neither end nor suspend the task in this block: for clean-up in `finally`. Limit its waits."""
     flow = _flow()
     flow.deaf += 1
     try:
@@ -161,7 +150,7 @@ def uninterrupted() -> Iterator[None]:
 def retry_after_suspension(body: Callable[[], Any]) -> Any:
     """Run a body that cannot pause: a suspension ends it, and it begins again when the task is woken.
 
-    Its `finally` blocks run in between, so that a goal on the robot is cancelled and sent again.
+    Its `finally` blocks run in between: a goal on the robot is cancelled and sent again.
     """
     flow = _flow()
     while True:

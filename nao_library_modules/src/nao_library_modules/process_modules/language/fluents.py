@@ -1,11 +1,11 @@
 """Fluents: values that plans wait for. CRAM's, in Python.
 
     position = Fluent("position", 0.0)
-    wait_for(position > 1.5)                   # a network: it is worked out anew when `position` changes
+    wait_for(position > 1.5)                   # a network: computed again when `position` changes
     wait_for(fl_or(grasped, timed_out), timeout=5.0)
 
-A change is never missed between looking and waiting: who waits listens before he looks. What comes and goes before
-he looks again is not seen, unless he waits for `pulsed(fluent)`, which remembers.
+No change is missed between check and wait: a waiting task listens before it checks. A value that is gone again before
+the next check is not seen, except by `pulsed(fluent)`, which remembers.
 """
 
 from __future__ import annotations
@@ -22,13 +22,10 @@ Listener = Callable[[], None]
 
 
 class AnyFluent(ABC):
-    """What plain fluents, pulses and networks have in common: a value, and listeners.
+    """A value and listeners: the base of plain fluents, pulses and networks.
 
     Comparing and computing with `<`, `<=`, `>`, `>=`, `+`, `-`, `*`, `/`, `&`, `|` and `~` makes networks. `==` stays
     Python's own (fluents are kept in sets): write `fluent.eq(value)`.
-
-    Attributes:
-        name: For people.
     """
 
     def __init__(self, name: str) -> None:
@@ -37,16 +34,16 @@ class AnyFluent(ABC):
     @property
     @abstractmethod
     def value(self) -> Any:
-        """The value now; any thread may ask."""
+        """The value now; thread-safe."""
 
     @property
     @abstractmethod
     def pulses(self) -> int:
-        """How often it has pulsed: a number that grows with every change, and with every `pulse`."""
+        """Number of changes and calls of `pulse` so far."""
 
     @abstractmethod
     def listen(self, listener: Listener) -> None:
-        """Call something at every pulse, in the thread that makes the change: it has to be quick and may not wait."""
+        """Call something at every pulse, in the thread of the change: it has to be quick and may not block."""
 
     @abstractmethod
     def unlisten(self, listener: Listener) -> None:
@@ -109,12 +106,7 @@ class AnyFluent(ABC):
 
 
 class Fluent(AnyFluent):
-    """A value that can be set.
-
-    Args:
-        name: For people.
-        value: The first value.
-    """
+    """A value that can be set."""
 
     def __init__(self, name: str = "fluent", value: Any = None) -> None:
         super().__init__(name)
@@ -125,7 +117,7 @@ class Fluent(AnyFluent):
 
     @property
     def value(self) -> Any:
-        """The value; setting another one pulses, setting an equal one does nothing."""
+        """The value; setting a different one pulses, setting an equal one does nothing."""
         return self._value
 
     @value.setter
@@ -142,11 +134,10 @@ class Fluent(AnyFluent):
 
     @property
     def pulses(self) -> int:
-        """How often it has pulsed."""
         return self._pulses
 
     def update(self, change: Callable[[Any], Any]) -> Any:
-        """Set the value to what `change` makes of it, without another change in between; the new value."""
+        """Set the value to `change(value)`, atomically; the new value."""
         with self._lock:
             old = self._value
             self._value = new = change(old)
@@ -159,7 +150,7 @@ class Fluent(AnyFluent):
         return new
 
     def pulse(self) -> None:
-        """Have all who listen look again, and count as a change, though the value stays."""
+        """Pulse although the value stays."""
         with self._lock:
             self._pulses += 1
             listeners = self._listeners
@@ -167,12 +158,10 @@ class Fluent(AnyFluent):
             listener()
 
     def listen(self, listener: Listener) -> None:
-        """Call something at every pulse."""
         with self._lock:
             self._listeners = (*self._listeners, listener)
 
     def unlisten(self, listener: Listener) -> None:
-        """Call it no longer."""
         with self._lock:
             kept = list(self._listeners)
             kept.remove(listener)
@@ -180,13 +169,7 @@ class Fluent(AnyFluent):
 
 
 class Network(AnyFluent):
-    """A fluent whose value follows from those of others; it is worked out when somebody asks.
-
-    Args:
-        function: Gets the present values of the arguments.
-        arguments: Fluents and constants.
-        name: For people.
-    """
+    """A fluent computed from others, on request."""
 
     def __init__(self, function: Callable[..., Any], arguments: Iterable[Any], name: str) -> None:
         super().__init__(name)
@@ -196,35 +179,26 @@ class Network(AnyFluent):
 
     @property
     def value(self) -> Any:
-        """What follows from the present values."""
         return self._function(*(value_of(each) for each in self._arguments))
 
     @property
     def pulses(self) -> int:
-        """How often its inputs have pulsed."""
         return sum(each.pulses for each in self._inputs)
 
     def listen(self, listener: Listener) -> None:
-        """Call something whenever an input pulses."""
         for each in self._inputs:
             each.listen(listener)
 
     def unlisten(self, listener: Listener) -> None:
-        """Call it no longer."""
         for each in self._inputs:
             each.unlisten(listener)
 
 
 class Pulsed(AnyFluent):
-    """True from the pulse of a fluent until somebody takes it: a pulse is not missed because nobody looked.
+    """True from the pulse of a fluent until it is taken: no pulse is missed.
 
     Args:
-        fluent: Whose pulses count.
-        missed: What `take` does with pulses that came since: "never" forgets them, "once" leaves one of them,
-            "always" leaves them all.
-
-    Raises:
-        PlanError: `missed` is none of these.
+        missed: Pulses before `take`: "never" forgets them, "once" leaves one, "always" leaves all.
     """
 
     def __init__(self, fluent: AnyFluent, missed: str = "once") -> None:
@@ -238,12 +212,10 @@ class Pulsed(AnyFluent):
 
     @property
     def value(self) -> bool:
-        """Whether there is a pulse that nobody has taken."""
         return self._fluent.pulses > self._taken
 
     @property
     def pulses(self) -> int:
-        """Those of the fluent."""
         return self._fluent.pulses
 
     def take(self) -> bool:
@@ -256,17 +228,15 @@ class Pulsed(AnyFluent):
             return True
 
     def forget_missed(self) -> None:
-        """What `missed` says of pulses that came while who took the last one was busy."""
+        """With "never", drop the pulses that came during the reaction to the last one."""
         with self._lock:
             if self._missed == "never":
                 self._taken = self._fluent.pulses
 
     def listen(self, listener: Listener) -> None:
-        """Call something at every pulse."""
         self._fluent.listen(listener)
 
     def unlisten(self, listener: Listener) -> None:
-        """Call it no longer."""
         self._fluent.unlisten(listener)
 
 
@@ -274,33 +244,31 @@ class Pulsed(AnyFluent):
 
 
 def fl_funcall(function: Callable[..., Any], *arguments: Any, name: str = "") -> AnyFluent:
-    """A network of any function of fluents and constants."""
+    """A network of a function of fluents and constants."""
     text = ", ".join(map(_name, arguments))
     return Network(function, arguments, name or f"{getattr(function, '__name__', 'function')}({text})")
 
 
 def fl_and(*fluents: Any) -> AnyFluent:
-    """The first value that is not true, or the last value; as Python's `and`."""
+    """The first false value, or the last value; as Python's `and`."""
     return Network(_all, fluents, f"({' and '.join(map(_name, fluents))})")
 
 
 def fl_or(*fluents: Any) -> AnyFluent:
-    """The first value that is true, or the last value; as Python's `or`."""
+    """The first true value, or the last value; as Python's `or`."""
     return Network(_any, fluents, f"({' or '.join(map(_name, fluents))})")
 
 
 def fl_not(fluent: Any) -> AnyFluent:
-    """True while a value is not."""
     return Network(operator.not_, [fluent], f"not {_name(fluent)}")
 
 
 def fl_eq(first: Any, second: Any) -> AnyFluent:
-    """True while two values are equal."""
     return Network(operator.eq, [first, second], f"{_name(first)} == {_name(second)}")
 
 
 def fl_value_changed(fluent: AnyFluent) -> AnyFluent:
-    """True as soon as the value is another one than now."""
+    """True as soon as the value differs from the value now."""
     before = fluent.value
     return Network(lambda value: not _equal(value, before), [fluent], f"{fluent.name} changed")
 
@@ -311,7 +279,6 @@ def pulsed(fluent: AnyFluent, missed: str = "once") -> Pulsed:
 
 
 def value_of(thing: Any) -> Any:
-    """The value of a fluent, or the thing itself."""
     return thing.value if isinstance(thing, AnyFluent) else thing
 
 
@@ -330,7 +297,7 @@ def _any(*values: Any) -> Any:
 
 
 def _equal(first: Any, second: Any) -> bool:
-    """Whether a value stays the same; what cannot be compared in one word (arrays) changes whenever it is set."""
+    """Whether a value is the same; values without a single truth of equality (arrays) always differ."""
     if first is second:
         return True
     try:

@@ -1,7 +1,7 @@
-"""Goals: what shall be true of the world, and the plans that make it true. CRAM's `achieve`.
+"""Goals: conditions of the world, and plans that make them true. CRAM's `achieve`.
 
 @declare_goal
-def gripper_open(side):                      # answers whether it holds already
+def gripper_open(side):                      # whether it holds already
     return grippers[side].angle > 0.9
 
 @def_goal(gripper_open)                      # any side
@@ -12,7 +12,7 @@ def open_it(side):
 def open_left():
     ...
 
-achieve(gripper_open("left"))                # or, as plans of old were written: achieve(gripper_open, "left")
+achieve(gripper_open("left"))                # or, as in older plans: achieve(gripper_open, "left")
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Plan = Callable[..., Any]
 
 
 class _Anything:
-    """Fits every argument in the pattern of `def_goal`; there is one: ANY."""
+    """Matches every argument in the pattern of `def_goal`."""
 
     def __repr__(self) -> str:
         return "ANY"
@@ -39,7 +39,7 @@ ANY = _Anything()
 
 @dataclass(frozen=True)
 class Occasion:
-    """Something that can be true of the world: a goal with its arguments."""
+    """A goal with its arguments: a condition that can be true of the world."""
 
     goal: Goal
     arguments: tuple[Any, ...]
@@ -52,13 +52,11 @@ class Occasion:
 
 @dataclass(eq=False, repr=False)
 class Goal:
-    """A kind of occasion: call it with arguments to get one.
+    """A kind of occasion; a call with arguments returns one.
 
     Attributes:
-        name: Of the function that it was declared with.
-        check: Answers whether it holds; None if nobody can tell.
-        parameters: Names of its arguments.
-        plans: Patterns and the plans for them, the most specific first.
+        check: Whether an occasion holds; None for unknown.
+        plans: Patterns and their plans, the most specific first.
     """
 
     name: str
@@ -71,11 +69,6 @@ class Goal:
         return self.name
 
     def __call__(self, *arguments: Any, **keywords: Any) -> Occasion:
-        """The occasion with these arguments.
-
-        Raises:
-            PlanError: It takes other arguments.
-        """
         values = dict(zip(self.parameters, arguments))
         unknown = [name for name in keywords if name not in self.parameters or name in values]
         values = {**self.defaults, **values, **keywords}
@@ -88,9 +81,9 @@ class Goal:
 
 
 def declare_goal(check: Callable[..., Any]) -> Goal:
-    """Declare a goal by the function that tells whether it holds.
+    """Declare a goal by the function that checks whether it holds.
 
-    A function with nothing but a docstring in it answers None: nobody can tell, and the plans always run.
+    A function that has only a docstring returns None, unknown: its plans always run.
     """
     parameters = inspect.signature(check).parameters.values()
     odd = [each.name for each in parameters if each.kind not in (each.POSITIONAL_OR_KEYWORD, each.POSITIONAL_ONLY)]
@@ -102,19 +95,11 @@ def declare_goal(check: Callable[..., Any]) -> Goal:
 
 
 def def_goal(goal: Goal, *pattern: Any) -> Callable[[Plan], Plan]:
-    """Say how a goal is achieved, for arguments that fit a pattern.
+    """Decorator: a plan for a goal, for arguments that match a pattern.
 
     Args:
-        goal: What `declare_goal` gave.
-        *pattern: A value for each argument that has to be just that, ANY for one that may be anything, a function that
-            answers whether it fits. What is left out at the end may be anything. The plan gets the arguments for
-            which the pattern has no value.
-
-    Returns:
-        What makes a plan of a function.
-
-    Raises:
-        PlanError: It is no goal, or the pattern has too many places.
+        *pattern: For each argument a value to be equal to, ANY, or a predicate; missing ones at the end are ANY. The
+            plan receives the arguments without a value in the pattern.
     """
     if not isinstance(goal, Goal):
         raise PlanError(f"def_goal: {goal!r} is no goal: declare it with declare_goal")
@@ -135,23 +120,19 @@ _achieved_by: dict[Plan, Goal] = {}
 
 
 def achieved_by(function: Plan, goal: Goal) -> None:
-    """Have `achieve(function, ...)` mean the goal of what a function does."""
+    """Let `achieve(function, ...)` mean a goal."""
     _achieved_by[function] = goal
 
 
 def holds(goal: Occasion | Goal, *arguments: Any) -> bool:
-    """Whether an occasion is true of the world now, as far as its goal can tell."""
+    """Whether an occasion is true now; False if unknown."""
     occasion = _occasion(goal, arguments)
     check = occasion.goal.check
     return bool(check(*occasion.arguments)) if check is not None else False
 
 
 def perceive_state(goal: Occasion | Goal, *arguments: Any) -> dict[str, Any] | None:
-    """Look whether an occasion is true of the world now.
-
-    Returns:
-        Name of each argument -> its value, if it is; None if it is not, or nobody can tell.
-    """
+    """The arguments of an occasion by name, if it is true now; None if it is not, or unknown."""
     occasion = _occasion(goal, arguments)
 
     def body() -> dict[str, Any] | None:
@@ -161,18 +142,10 @@ def perceive_state(goal: Occasion | Goal, *arguments: Any) -> dict[str, Any] | N
 
 
 def achieve(goal: Occasion | Goal, *arguments: Any) -> Any:
-    """Make an occasion true: nothing is done when it holds already.
-
-    Args:
-        goal: An occasion, or a goal with its arguments.
-        *arguments: See above.
-
-    Returns:
-        What the plan answered; None if there was nothing to do.
+    """Make an occasion true: nothing is done when it holds already. The answer of its plan, or None.
 
     Raises:
-        PlanFailure: The plan failed.
-        GoalNotAchieved: It went through, and the occasion still does not hold.
+        GoalNotAchieved: The plan succeeded, and the occasion does not hold.
         PlanError: There is no plan for these arguments.
     """
     occasion = _occasion(goal, arguments)

@@ -1,15 +1,15 @@
-"""Failure handling: what a plan does when something goes wrong, and how often it tries again.
+"""Failure handling: what a plan does about a failure, and how often it tries again.
 
     def again(failure):
         go_elsewhere()
-        do_retry("navigation")                     # after the third time it goes on below
+        do_retry("navigation")                     # returns after the third time
         fail(NavigationHighLevelFailure, str(failure))
 
     with with_retry_counters(navigation=3):
         with_failure_handling(do(walk_to, table), {NavigationLowLevelFailure: again})
 
-A handler may try again (`retry`, `do_retry`), answer instead of the body (`give`), fail with something else, or simply
-return: then the failure is passed up.
+A handler may try again (`retry`, `do_retry`), answer for the body (`give`), fail with something else, or return: then
+the failure is passed up.
 """
 
 from __future__ import annotations
@@ -33,25 +33,19 @@ class _Retry(BaseException):
 
 
 class _Give(BaseException):
-    """A handler answers for the body."""
-
     def __init__(self, value: Any) -> None:
         super().__init__()
         self.value = value
 
 
 def with_failure_handling(body: Branch, handlers: Mapping[Kinds, Callable[[PlanFailure], Any]]) -> Any:
-    """Run a body; on a failure, run the first handler that fits.
+    """Run a body; on a failure, run the first handler that matches. The answer is the body's, or that of `give`.
 
     Args:
-        body: A branch, see `control`.
-        handlers: By class of failures, or by a tuple of classes; the first that fits counts.
-
-    Returns:
-        What the body answers, or what a handler gives.
+        handlers: By class of failures, or by a tuple of classes.
 
     Raises:
-        PlanFailure: No handler fits or it passes the failure up, or it fails itself.
+        PlanFailure: No handler matches or it passes the failure up, or it fails itself.
     """
     for kinds in handlers:
         for kind in kinds if isinstance(kinds, tuple) else (kinds,):
@@ -110,12 +104,7 @@ def with_retry_counters(**counters: int) -> Iterator[None]:
 
 
 def do_retry(counter: str, before: Callable[[], Any] | None = None) -> None:
-    """In a handler: run the body again if the counter allows it, and count it down; else do nothing.
-
-    Args:
-        counter: Name of a counter of `with_retry_counters`.
-        before: What to do before.
-    """
+    """In a handler: run the body again, after `before`, if the counter allows it, and count it down; else return."""
     entry = _counter(counter)
     _check_handling("do_retry")
     with current_task().tree.lock:  # branches beside each other may share it
@@ -128,18 +117,18 @@ def do_retry(counter: str, before: Callable[[], Any] | None = None) -> None:
 
 
 def get_counter(counter: str) -> int:
-    """How often `do_retry` will still try."""
+    """How many tries `do_retry` has left."""
     return _counter(counter)[0]
 
 
 def reset_counter(counter: str) -> None:
-    """Let it try as often as at the beginning."""
+    """Set a counter back to its start."""
     entry = _counter(counter)
     entry[0] = entry[1]
 
 
 def _check_handling(what: str) -> None:
-    """Signals that no handler waits for would leave the plan."""
+    """PlanError outside of a handler: the signal would leave the plan."""
     task: Task | None = current_task()
     while task is not None:
         if HANDLING in task.scope:

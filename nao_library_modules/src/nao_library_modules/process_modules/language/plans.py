@@ -1,4 +1,4 @@
-"""Plans as functions: what `def_plan` decorates is a task of its own wherever it is called."""
+"""Plans as functions: every call of a function decorated with `def_plan` is a task."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ log = logging.getLogger(__name__)
 
 
 def def_plan(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A function whose calls are tasks in the tree, with their arguments. To be called in plans only."""
+    """A function whose calls are tasks in the tree, with their arguments. Callable in plans only."""
 
     @functools.wraps(function)
     def plan(*arguments: Any, **keywords: Any) -> Any:
@@ -32,12 +32,7 @@ def def_plan(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class StartedPlan:
-    """A plan that runs beside whoever has started it.
-
-    Args:
-        name: For people.
-        run: The plan, to which an observer of its tree is given.
-    """
+    """A plan in a thread of its own; `run` receives an observer of its tree."""
 
     def __init__(self, name: str, run: Callable[[Callable[[Task], None]], Any]) -> None:
         self.name = name
@@ -48,26 +43,25 @@ class StartedPlan:
         threading.Thread(target=self._run, args=(run,), name=f"plan {name}", daemon=True).start()
 
     def done(self) -> bool:
-        """Whether it is over."""
         return self._answer.done()
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait for its end, at most so many s of this computer; whether it is over."""
+        """Wait for its end, at most so many s of this computer; whether it has ended."""
         return bool(futures.wait([self._answer], timeout).done)
 
     def result(self, timeout: float | None = None) -> Any:
-        """Wait for its end, at most so many s of this computer; what it answered.
+        """Wait for its end, at most so many s of this computer; its answer.
 
         Raises:
             PlanFailure: What it failed with.
-            NaoError: It is not over in time; it goes on.
+            NaoError: It has not ended in time; it goes on.
         """
         if not self.wait(timeout):
             raise NaoError(f"the plan {self.name} is not over after {timeout:g} s; it goes on")
         return self._answer.result()
 
     def cancel(self) -> None:
-        """End it; `wait` tells when it has come to that."""
+        """End it; `wait` waits for that."""
         with self._lock:
             self._cancelled = True
             root = self._root
@@ -95,7 +89,7 @@ class StartedPlan:
 def def_top_level_plan(function: Callable[..., Any]) -> Callable[..., Any]:
     """A plan that may be called anywhere: outside of plans it begins a tree of its own.
 
-    `plan.start(...)` does not wait for its end: it gives a `StartedPlan`.
+    `plan.start(...)` does not wait for its end: it returns a `StartedPlan`.
     """
     plan = def_plan(function)
 

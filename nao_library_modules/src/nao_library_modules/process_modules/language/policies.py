@@ -1,9 +1,9 @@
-"""Policies: a plan under a condition that is watched beside it.
+"""Policies: run a plan while a condition is watched.
 
 with_policy(timeout_policy(10.0), do(walk_to, table))
 with_policy(Policy("upright", check=robot_has_fallen, recover=stop_walking), do(walk_to, table))
 
-One that has a name may be used where its function is not known:
+A policy with a name can be used without its function:
 
 @define_policy("near")
 def near(place, distance):
@@ -30,16 +30,14 @@ PERIOD = 0.1
 
 @dataclass(frozen=True)
 class Policy:
-    """What is watched while a body runs.
+    """A condition to watch while a body runs.
 
     Attributes:
-        name: For people.
-        check: A fluent, or a function that is asked again and again; the body ends when it is true.
-        init: Run before; the body does not begin when it answers False.
-        recover: Run when the condition has come true, after the body has ended.
-        clean_up: Run at the end in any case; nothing ends or suspends it.
-        period: Time between two calls of a function, s.
-        failure: What the body fails with.
+        check: A fluent, or a function that is polled; the body ends when it is true.
+        init: Runs first; the body does not begin when it returns False.
+        recover: Runs when the condition has come true, after the end of the body.
+        clean_up: Runs at the end in any case, uninterrupted.
+        period: Between two polls, s.
     """
 
     name: str
@@ -55,7 +53,7 @@ _named: dict[str, Callable[..., Policy]] = {}
 
 
 def define_policy(name: str) -> Callable[[Callable[..., Policy]], Callable[..., Policy]]:
-    """Make a function that gives a policy known by a name; a newer one takes the place of an older one."""
+    """Register a function that returns a policy under a name; it replaces an earlier one."""
 
     def keep(function: Callable[..., Policy]) -> Callable[..., Policy]:
         _named[name] = function
@@ -65,11 +63,7 @@ def define_policy(name: str) -> Callable[[Callable[..., Policy]], Callable[..., 
 
 
 def named_policy(name: str) -> Callable[..., Policy]:
-    """What gives the policy of a name.
-
-    Raises:
-        PolicyNotFound: There is none.
-    """
+    """The function of a policy's name."""
     if name not in _named:
         raise PolicyNotFound(f"no policy {name!r}{of_those(name, sorted(_named))}", policy=name)
     return _named[name]
@@ -77,7 +71,7 @@ def named_policy(name: str) -> Callable[..., Policy]:
 
 @define_policy("timeout")
 def timeout_policy(time: float) -> Policy:
-    """The body may take so long, s of the plan's clock."""
+    """Limits the time of the body, s of the plan's clock."""
 
     def over() -> bool:
         sleep(time)
@@ -87,15 +81,11 @@ def timeout_policy(time: float) -> Policy:
 
 
 def with_policy(policy: Policy, body: Branch) -> Any:
-    """Run a body while a policy watches.
-
-    Returns:
-        What the body answers.
+    """Run a body while a policy watches; the answer of the body.
 
     Raises:
-        PolicyInitFailed: The policy could not begin.
+        PolicyInitFailed: `init` returned False.
         PolicyCheckConditionMet: The condition came true; the body has been ended.
-        PlanFailure: The body failed, or what belongs to the policy did.
     """
     watched = f"policy {policy.name!r}"
     met = object()
@@ -127,16 +117,12 @@ def with_policy(policy: Policy, body: Branch) -> Any:
 
 
 def with_named_policy(name: str, parameters: Iterable[Any], body: Branch) -> Any:
-    """As `with_policy`, with the policy of a name for these parameters.
-
-    Raises:
-        PolicyNotFound: There is none.
-    """
+    """As `with_policy`, with the policy of a name for these parameters; PolicyNotFound if there is none."""
     return with_policy(named_policy(name)(*parameters), body)
 
 
 def with_policies(policies: Iterable[Policy], body: Branch) -> Any:
-    """Run a body while several policies watch, the first one outermost; see `with_policy`."""
+    """As `with_policy` for several policies, the first one outermost."""
     inner = body
     for policy in reversed(list(policies)):
         inner = do(with_policy, policy, inner)
@@ -147,9 +133,5 @@ NamedPolicies = Iterable[Tuple[str, Iterable[Any]]]
 
 
 def with_named_policies(policies: NamedPolicies, body: Branch) -> Any:
-    """As `with_policies`, with pairs of a name and parameters.
-
-    Raises:
-        PolicyNotFound: There is none of a name.
-    """
+    """As `with_policies`, with pairs of a name and parameters; PolicyNotFound if there is none of a name."""
     return with_policies([named_policy(name)(*parameters) for name, parameters in policies], body)

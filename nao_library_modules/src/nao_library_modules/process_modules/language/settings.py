@@ -20,69 +20,41 @@ FILE = config_file("process_modules.yaml")
 
 @dataclass(frozen=True)
 class Settings:
-    """What words of designators mean in numbers.
+    """What words of designators mean in numbers: lengths in m, times in s, angles in rad."""
 
-    Attributes:
-        gripper: Openings 0..1 by word, as open and closed.
-        gripper_tolerance: How far a gripper may be from there.
-        gripper_time: s that it takes.
-        head: (yaw, pitch) by word, as forward, rad.
-        head_speed: rad/s; a motion takes at least `shortest_motion`.
-        head_tolerance: rad.
-        camera: Where the camera is on the head, see `space.head_angles`: forward, up, neck (m), tilt (rad).
-        arm_targets: Points for the left hand by word, in the torso frame, m; of the right hand mirrored.
-        arm_speed: rad/s.
-        arm_tolerance: m that the hand may be away from its target.
-        shoulder: Of the left arm in the torso frame, m.
-        pointing_reach: m from the shoulder to a hand that points at something.
-        shortest_motion: s.
-        stable: Angles of all joints of the stable pose, rad, by joint.
-        stable_time: s that it takes.
-        eyes: m over the torso's frame.
-        robot_radius: m around the middle of the robot that has to be free.
-        robot_height: m over the floor up to which it has to be free.
-        eye_height: m over the floor, of a robot that stands.
-        seeing_distances: m from which things are looked at, in the order in which they are tried.
-        steepest_look: rad down that the top camera looks with the whole head bowed.
-        shoulder_height: m over the floor, of a robot that stands.
-        shoulder_aside: m from the middle of the robot.
-        reaching_distances: m in front of the robot that things are reached, in the order in which they are tried.
-        longest_reach: m from a shoulder to the hand.
-        walk_tolerance: m and rad that the robot may be away from its target.
-        walk_speed: m/s and rad/s that a walk has at least: with the distance it tells when it takes too long.
-    """
-
-    gripper: Dict[str, float]
-    gripper_tolerance: float
-    gripper_time: float
-    head: Dict[str, Tuple[float, float]]
-    head_speed: float
+    gripper: Dict[str, float]  # openings 0..1 by word: open, closed
+    gripper_tolerance: float  # of the opening
+    gripper_time: float  # of a motion
+    head: Dict[str, Tuple[float, float]]  # (yaw, pitch) by word, as forward
+    head_speed: float  # rad/s
     head_tolerance: float
-    camera: Dict[str, float]
-    arm_targets: Dict[str, Tuple[float, float, float]]
-    arm_speed: float
-    arm_tolerance: float
-    shoulder: Tuple[float, float, float]
-    pointing_reach: float
+    camera: Dict[str, float]  # on the head, see `space.head_angles`: forward, up, neck, tilt
+    arm_targets: Dict[
+        str, Tuple[float, float, float]
+    ]  # points for the left hand by word, in the torso frame; mirrored for the right one
+    arm_speed: float  # rad/s
+    arm_tolerance: float  # of the hand
+    shoulder: Tuple[float, float, float]  # the left one, in the torso frame
+    pointing_reach: float  # from the shoulder to the hand that points
     shortest_motion: float
-    stable: Dict[str, float]
-    stable_time: float
-    eyes: float
-    robot_radius: float
-    robot_height: float
-    eye_height: float
-    seeing_distances: Tuple[float, ...]
-    steepest_look: float
-    shoulder_height: float
-    shoulder_aside: float
-    reaching_distances: Tuple[float, ...]
-    longest_reach: float
-    walk_tolerance: Tuple[float, float]
-    walk_speed: Tuple[float, float]
+    stable: Dict[str, float]  # angles of all joints of the stable pose
+    stable_time: float  # of the motion there
+    eyes: float  # above the torso's frame
+    robot_radius: float  # around the middle of the robot, has to be free
+    robot_height: float  # above the floor, has to be free up to there
+    eye_height: float  # above the floor, of a standing robot
+    seeing_distances: Tuple[float, ...]  # to look at things from, in order of preference
+    steepest_look: float  # downward, of the top camera with the head fully bowed
+    shoulder_height: float  # above the floor, of a standing robot
+    shoulder_aside: float  # from the middle of the robot
+    reaching_distances: Tuple[float, ...]  # of things ahead, in order of preference
+    longest_reach: float  # from a shoulder to the hand
+    walk_tolerance: Tuple[float, float]  # m and rad at the target
+    walk_speed: Tuple[float, float]  # m/s and rad/s at least: with the distance, the time limit of a walk
 
 
 def load_settings(file: Path | str = FILE) -> Settings:
-    """Settings of a file; those of the package if there is none.
+    """Read settings.
 
     Raises:
         NaoError: The file cannot be read, or a key is unknown or missing.
@@ -106,11 +78,7 @@ def load_settings(file: Path | str = FILE) -> Settings:
 
 @lru_cache(maxsize=None)
 def numbers_of_nao() -> Settings:
-    """Settings of the package, for rules that have no robot to ask; read once.
-
-    Raises:
-        NaoError: As `load_settings`.
-    """
+    """Settings of the package, for rules without a robot; read once."""
     return load_settings()
 
 

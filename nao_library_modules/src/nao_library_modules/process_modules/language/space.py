@@ -1,4 +1,4 @@
-"""Points and turns in space. Pure; lengths in m, angles in rad."""
+"""Points and rotations in space. Pure; lengths in m, angles in rad."""
 
 from __future__ import annotations
 
@@ -8,14 +8,7 @@ from typing import NamedTuple
 
 
 class Point3(NamedTuple):
-    """A point in a frame.
-
-    Attributes:
-        x: m.
-        y: m.
-        z: m.
-        frame: Of /tf.
-    """
+    """A point in a frame of /tf."""
 
     x: float
     y: float
@@ -23,7 +16,7 @@ class Point3(NamedTuple):
     frame: str = "torso"
 
     def distance_to(self, other: Sequence[float]) -> float:
-        """From here to a point of the same frame, m."""
+        """To a point of the same frame."""
         return math.dist(self[:3], other[:3])
 
     def __str__(self) -> str:
@@ -31,13 +24,11 @@ class Point3(NamedTuple):
 
 
 class Position(NamedTuple):
-    """Where something is meant to be, as plans say it: `Position(2, 3)`. It is a point, and has no heading.
+    """Where something is meant to be, as plans write it: `Position(2, 3)`. A point without a heading.
 
     Attributes:
-        x: m.
-        y: m.
-        z: m; None leaves the height to who takes it: the eyes for the head, the floor for walking.
-        frame: Of /tf; empty leaves it to who takes it: torso for arms and head, odom for walking.
+        z: None for the default height: the eyes for the head, the floor for walking.
+        frame: Of /tf; empty for the default: torso for arms and head, odom for walking.
     """
 
     x: float
@@ -60,17 +51,11 @@ def turned(point: Sequence[float], quaternion: Sequence[float]) -> tuple[float, 
 
 
 def head_angles(x: float, y: float, z: float, camera: Sequence[float]) -> tuple[float, float]:
-    """Yaw and pitch of a head that looks at a point.
+    """HeadYaw and HeadPitch, positive to the left and down, of a head that looks at a point of the torso frame.
 
     Args:
-        x: Of the point, in the torso frame, m.
-        y: m.
-        z: m.
-        camera: (forward, up) of the camera from the neck joint that yaw and pitch turn about, and the height of that
-            joint in the torso frame, m; and the angle by which the camera looks down, rad.
-
-    Returns:
-        HeadYaw, HeadPitch; positive to the left and down.
+        camera: (forward, up) of the camera from the neck joint, which yaw and pitch turn about; the height of that
+            joint in the torso frame; the angle by which the camera looks down.
     """
     forward, up, neck, tilt = camera
     yaw = math.atan2(y, x)

@@ -1,10 +1,10 @@
-"""Tasks: the nodes of a plan's tree, what state they are in, and how they are ended, suspended and woken.
+"""Tasks: the nodes of a plan's tree, their states, and how they are ended, suspended and woken. Without ROS.
 
 A task runs either in the thread of its parent (a step of a sequence, a plan that calls another one) or in a thread of
 its own (a branch of `par`). States are CRAM's: created, running, suspended, succeeded, failed, evaporated.
 
-Ending a task (`evaporate`) raises a signal in it at the next point where it waits or begins another task; cleaning up
-(`finally`) may wait once more inside `uninterrupted()`. All of this is plain Python without ROS.
+Ending a task (`evaporate`) raises a signal in it at the next point where it waits or begins another task; clean-up
+(`finally`) may wait once more inside `uninterrupted()`.
 """
 
 from __future__ import annotations
@@ -22,8 +22,6 @@ from .fluents import Fluent
 
 
 class TaskState(enum.Enum):
-    """What a task is doing."""
-
     CREATED = "created"
     RUNNING = "running"
     SUSPENDED = "suspended"
@@ -33,7 +31,7 @@ class TaskState(enum.Enum):
 
     @property
     def over(self) -> bool:
-        """Whether it never changes again."""
+        """Whether it is final."""
         return self in OVER
 
 
@@ -44,23 +42,11 @@ class Task:
     """A piece of a plan.
 
     Attributes:
-        name: For people, and for paths.
-        parent: The task that it belongs to; None at the root of a tree.
-        children: Tasks that belong to it, in the order in which they were made.
-        status: A fluent with its `TaskState`.
-        result: What it answered, once it has succeeded.
-        failure: What went wrong, once it has failed.
-        reason: Why it was evaporated or suspended the last time, in words.
-        created: When it was made, s of the tree's clock; `began` and `ended` as well, None until then.
-        ending: As the how manieth task of its tree it ended, None until then: two may end at the same time.
-        facts: What the trace tells about it, by name: arguments, designators, ...
-        scope: What constructs keep for the tasks below, by name.
-
-    Args:
-        name: See above.
-        body: What it does.
-        parent: See above.
-        tree: That it belongs to; given at the root only.
+        reason: Why it was evaporated or last suspended.
+        created: s of the tree's clock, as `began` and `ended`, which are None until then.
+        ending: Rank in the order of ends in the tree, None until then: two may end at the same time.
+        facts: For the trace, by name: arguments, designators, ...
+        scope: Variables of constructs for the tasks below, by name.
     """
 
     def __init__(self, name: str, body: Callable[[], Any], parent: Task | None, tree: Any = None) -> None:
@@ -95,7 +81,6 @@ class Task:
 
     @property
     def state(self) -> TaskState:
-        """What it is doing."""
         return self.status.value
 
     @property
@@ -111,11 +96,7 @@ class Task:
             yield from child
 
     def find(self, name: str) -> Task:
-        """The task of that name, here or below; the newest of several.
-
-        Raises:
-            PlanError: There is none.
-        """
+        """The task of that name, here or below; the newest of several."""
         found = [task for task in self if task.name == name]
         if not found:
             names = dict.fromkeys(task.name for task in self)
@@ -128,11 +109,10 @@ class Task:
     # --- running ------------------------------------------------------------------------------------------------------
 
     def run(self) -> Any:
-        """Do it in this thread; its result.
+        """Run it in this thread; its answer.
 
         Raises:
             PlanFailure: It failed, or was evaporated alone.
-            PlanError: It has been run before.
         """
         flow = here()
         if flow is None:
@@ -160,7 +140,7 @@ class Task:
             flow.tasks.pop()
 
     def start(self) -> Task:
-        """Do it in a thread of its own; see `join`."""
+        """Run it in a thread of its own; see `join`."""
         flow = Flow(self.tree.clock)
         with self.tree.lock:
             if self._thread is not None or self._flow is not None:
@@ -170,11 +150,7 @@ class Task:
         return self
 
     def join(self, timeout: float | None = None) -> bool:
-        """Wait until it is over and its thread has ended; whether it is.
-
-        Args:
-            timeout: s of the tree's clock; None for ever.
-        """
+        """Wait until it is over and its thread has ended, at most so many s of the tree's clock; whether it is over."""
         flow = here() or Flow(self.tree.clock)
         if not flow.wait(lambda: self.state.over, [self.status], timeout):
             return False
@@ -183,10 +159,10 @@ class Task:
         return True
 
     def value(self) -> Any:
-        """What it answered.
+        """Its answer.
 
         Raises:
-            PlanFailure: What it failed with; a TaskEvaporatedFailure if it was evaporated.
+            PlanFailure: Its failure; a TaskEvaporatedFailure if it was evaporated.
             PlanError: It is not over.
         """
         state = self.state
@@ -202,11 +178,7 @@ class Task:
     # --- from outside -------------------------------------------------------------------------------------------------
 
     def evaporate(self, reason: str = "evaporated") -> None:
-        """End it and all below; returns at once, `join` waits. What is over stays as it is.
-
-        Args:
-            reason: Why, for people.
-        """
+        """End it and all below; returns at once, `join` waits. Finished tasks stay as they are."""
         with self.tree.lock:
             tasks = [task for task in self if not task.state.over and not task._evaporating]
             for task in tasks:
@@ -220,15 +192,11 @@ class Task:
             flow.wake()
 
     def suspend(self, reason: str = "suspended") -> None:
-        """Have it and all below pause at the next point where they wait; every suspension has to be woken."""
+        """Pause it and all below at the next point where they wait; each suspension needs a `wake_up`."""
         self._change_suspensions(1, reason)
 
     def wake_up(self, reason: str = "woken") -> None:
-        """Take one suspension back; it goes on when there is none left, here and above.
-
-        Raises:
-            PlanError: It is not suspended.
-        """
+        """Take one suspension back; it goes on when none is left, here and above."""
         self._change_suspensions(-1, reason)
 
     @property
@@ -238,13 +206,12 @@ class Task:
 
     @property
     def evaporating(self) -> bool:
-        """Whether it is to end."""
         return self._evaporating
 
     # --- inside -------------------------------------------------------------------------------------------------------
 
     def _run_alone(self, flow: Flow) -> None:
-        """The thread of a task: everything that goes wrong is kept for who joins."""
+        """The thread of a task: errors are kept for `value`."""
         set_here(flow)
         try:
             self.run()
@@ -300,15 +267,8 @@ class TaskTree:
     """All tasks of one run of a plan.
 
     Attributes:
-        clock: Whose time it has.
         lock: Held for bookkeeping only.
-        root: The task of the whole plan.
-        observers: Called with a task whenever it has changed, in the thread that changed it.
-
-    Args:
-        name: Of the plan.
-        body: What it does.
-        clock: With `now()` and `wait(duration, interrupt)`, see `nao_library_modules.base.clock`.
+        observers: Called with a task at every change, in the thread of the change.
     """
 
     def __init__(self, name: str, body: Callable[[], Any], clock: Any) -> None:
@@ -320,17 +280,12 @@ class TaskTree:
         self.root = Task(name, body, None, self)
 
     def changed(self, task: Task) -> None:
-        """Tell the observers."""
         for observe in tuple(self.observers):
             observe(task)
 
 
 def current_task() -> Task:
-    """The innermost task that this thread runs.
-
-    Raises:
-        PlanError: It runs none.
-    """
+    """The innermost task of this thread; PlanError outside of plans."""
     flow = here()
     if flow is None or not flow.tasks:
         raise PlanError("this is outside of a plan: begin it with top_level, or run_and_tell")
@@ -343,5 +298,5 @@ def failed(task: Task) -> bool:
 
 
 def failure_of(task: Task) -> PlanFailure | BaseException:
-    """What a task that ended without success failed with."""
+    """The failure of a task that ended without success."""
     return task.failure if task.failure is not None else TaskEvaporatedFailure(task.path, task.reason)

@@ -1,4 +1,4 @@
-"""Values as people want to read them in trees of tasks and in errors."""
+"""Values as short text, for trees of tasks and for errors."""
 
 from __future__ import annotations
 
@@ -12,15 +12,14 @@ LONG_NUMBER = re.compile(r"-?\d+\.\d{4,}(?:e-?\d+)?")
 
 
 def told(value: Any, longest: int = 160) -> str:
-    """A value as Python prints it, with short numbers, cut when it is long."""
+    """The repr of a value with short numbers, cut to a length."""
     return cut(short_numbers(repr(value)[: SHORTENED * longest]), longest)
 
 
 def short_numbers(text: str) -> str:
-    """A text whose numbers have three digits behind the point at most."""
+    """A text with its numbers rounded to three decimals."""
     return LONG_NUMBER.sub(lambda found: f"{float(found.group()):.{DIGITS}f}".rstrip("0").rstrip("."), text)
 
 
 def cut(text: str, longest: int) -> str:
-    """A text that is not longer."""
     return text if len(text) <= longest else f"{text[: longest - 1]}…"

@@ -1,4 +1,4 @@
-"""What a run of a plan leaves: a tree of what was done, when, and what came of it; as text and as JSON."""
+"""The trace of a plan's run: the tree of its tasks, their times and outcomes; as text and as JSON."""
 
 from __future__ import annotations
 
@@ -25,14 +25,11 @@ class Record:
     """One task, as it was when the record was taken.
 
     Attributes:
-        number: In the order in which tasks were made, from 0.
-        parent: Number of the task that it belongs to; None at the root.
-        name: Of the task.
-        state: created, running, suspended, succeeded, failed or evaporated.
-        created: s since the root was made; `began` and `ended` as well, None until then.
-        result: What it answered, as text; empty for nothing.
-        failure: What went wrong, as text with the class in front; why it was evaporated.
-        facts: What else is known, as text by name.
+        number: In the order of creation, from 0.
+        parent: Number of the parent task; None at the root.
+        created: s since the creation of the root, as `began` and `ended`, which are None until then.
+        result: As text; empty for none.
+        failure: Class and text of the failure; or why it was evaporated or suspended.
     """
 
     number: int
@@ -54,24 +51,21 @@ class Trace:
     records: tuple[Record, ...]
 
     def children(self, number: int | None) -> list[Record]:
-        """Records whose parent has that number."""
         return [record for record in self.records if record.parent == number]
 
     def named(self, name: str) -> list[Record]:
-        """Records of tasks of that name."""
         return [record for record in self.records if record.name == name]
 
     def __str__(self) -> str:
-        """The tree for people, a line a task."""
+        """The tree as text, one line per task."""
         return "\n".join(self._lines(None, 0))
 
     def to_json(self) -> str:
-        """The tree as JSON: {"tasks": [...]}, a record each, see `Record`."""
+        """The tree as JSON: {"tasks": [...]}, with a `Record` each."""
         return json.dumps({"tasks": [asdict(record) for record in self.records]}, indent=1)
 
     @staticmethod
     def from_json(text: str) -> Trace:
-        """The trace that `to_json` wrote."""
         return Trace(tuple(Record(**entry) for entry in json.loads(text)["tasks"]))
 
     def _lines(self, parent: int | None, depth: int) -> Iterator[str]:
@@ -81,7 +75,7 @@ class Trace:
 
 
 def trace_of(root: Task) -> Trace:
-    """The trace of a tree, from any thread, while it runs or afterwards."""
+    """The trace of a tree, from any thread, during the run or afterwards."""
     with root.tree.lock:
         tasks = list(root)
         return Trace(tuple(record_of(task, root.created) for task in tasks))

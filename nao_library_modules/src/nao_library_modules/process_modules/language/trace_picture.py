@@ -1,4 +1,4 @@
-"""Draws the trace of a plan: a line a task, with a bar from its begin to its end. Needs Pillow."""
+"""Draws the trace of a plan: one line per task, with a bar from its start to its end. Needs Pillow."""
 
 from __future__ import annotations
 
@@ -35,10 +35,7 @@ FINE = 2
 
 
 def draw(trace: Trace) -> Image.Image:
-    """The picture of a trace.
-
-    Args:
-        trace: With at least one task; of very long ones the first tasks.
+    """The picture of a trace; of a very long one the first tasks.
 
     Raises:
         NaoError: It has no task.
@@ -63,7 +60,7 @@ def save(trace: Trace, path: Path) -> None:
     """Draw a trace into a PNG file.
 
     Raises:
-        NaoError: It has no task.
+        NaoError: The trace has no task.
         FileTrouble: The file cannot be written.
     """
     # A few colours are enough, and a third of the size.
@@ -72,7 +69,7 @@ def save(trace: Trace, path: Path) -> None:
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Draw a trace that was kept as JSON."""
+    """Draw a trace that was saved as JSON."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("trace", type=Path, help="JSON file of a trace")
     parser.add_argument("picture", type=Path, help="PNG file to write")
@@ -138,7 +135,7 @@ def _fine(x: float, y: float) -> tuple[float, float]:
 
 
 def _fitting(pen: ImageDraw.ImageDraw, text: str, width: float) -> str:
-    """As much of a text as there is room for, in pixels of the picture."""
+    """The text, cut to a width in pixels of the picture."""
     if pen.textlength(text, _font()) <= width * FINE:
         return text
     while text and pen.textlength(f"{text}…", _font()) > width * FINE:

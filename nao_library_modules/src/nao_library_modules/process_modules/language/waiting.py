@@ -11,14 +11,10 @@ from .fluents import AnyFluent, Pulsed
 
 
 def wait_for(fluent: AnyFluent, timeout: float | None = None) -> Any:
-    """Wait until a fluent is true.
+    """Wait until a fluent is true; its value, or False after the timeout.
 
     Args:
-        fluent: A fluent or a network; of a `pulsed` one a pulse is taken.
-        timeout: s of the plan's clock; None to wait for ever.
-
-    Returns:
-        Its value; False if the time was over before.
+        timeout: s of the plan's clock; None for no limit.
     """
     seen: list[Any] = []
 
@@ -36,11 +32,8 @@ def wait_for(fluent: AnyFluent, timeout: float | None = None) -> Any:
 def whenever(fluent: AnyFluent, body: Callable[[], Any], missed: str = "once") -> NoReturn:
     """Run a body at every pulse at which a fluent is true, and now if it is; never ends by itself.
 
-    Args:
-        fluent: What to watch. Put `whenever` beside something else: `pursue(do(whenever, ...), plan)`.
-        body: What to do.
-        missed: About pulses that come while the body runs: "never" forgets them, "once" runs it once more, "always"
-            once for each.
+    Put it beside something else: `pursue(do(whenever, ...), plan)`. Of a `pulsed` fluent see `Pulsed` for `missed`: of
+    the pulses that come while the body runs, "never" forgets all, "once" runs it once more, "always" once for each.
     """
 
     def watch() -> NoReturn:

@@ -28,13 +28,7 @@ class Lights(RobotModule):
         self.commands = {"set_color": self.set_color, "set_intensity": self.set_intensity}
 
     def set_color(self, color: str, lights: Sequence[str] = (FACE,), time: float = 0.0, revert: bool = False) -> None:
-        """Give lights a colour.
-
-        Args:
-            color: By name, or #RRGGBB.
-            lights: Lights and groups as the robot names them.
-            time: s to wait afterwards.
-            revert: Whether they get their former colour back then.
+        """Give lights a colour, by name or #RRGGBB; wait `time` s, then restore the former one with `revert`.
 
         Raises:
             LightsLowLevelFailure: There is no such light or colour, or it failed.

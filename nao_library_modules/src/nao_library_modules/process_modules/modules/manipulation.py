@@ -1,4 +1,4 @@
-"""Manipulation: arms, head and hands, through the action `joint_trajectory` of nao_controller."""
+"""Manipulation: arms, head and hands, by the action `joint_trajectory` of nao_controller."""
 
 from __future__ import annotations
 
@@ -35,14 +35,9 @@ STIRRED = 0.02
 
 
 class Grip(float):
-    """How far a hand is open, 0..1, that was closed.
-
-    Attributes:
-        holds: Whether there is something in it.
-    """
+    """Opening of a closed hand, 0..1, and whether it holds something."""
 
     def __new__(cls, opening: float, holds: bool) -> Grip:
-        """Keep both."""
         grip = super().__new__(cls, opening)
         grip.holds = holds
         return grip
@@ -50,7 +45,7 @@ class Grip(float):
     holds: bool
 
     def told(self) -> dict[str, float | bool]:
-        """As JSON has it: opening and holds."""
+        """For JSON."""
         return {"opening": float(self), "holds": self.holds}
 
     def __str__(self) -> str:
@@ -60,7 +55,7 @@ class Grip(float):
 class Manipulation(RobotModule):
     """Moves arms to points, turns the head, opens and closes hands, and takes the stable pose.
 
-    Motions of different limbs run beside each other.
+    Motions of different limbs run at the same time.
     """
 
     name = "manipulation"
@@ -80,7 +75,7 @@ class Manipulation(RobotModule):
         }
 
     def resources(self, command: Command) -> frozenset[str]:
-        """The limb that a command moves."""
+        """The limbs that a command moves."""
         side = self.side_of(command.arguments)
         arms = {f"{side} arm"} if side else {f"{each} arm" for each in SIDES}
         limbs = {"gripper": {f"{side} hand"}, "head": {"head"}, "arm": arms, "at": arms}
@@ -91,7 +86,10 @@ class Manipulation(RobotModule):
     # --- hands --------------------------------------------------------------------------------------------------------
 
     def open_gripper(self, side: str) -> float:
-        """Open a hand; answers how far it is open, 0..1.
+        """Open a hand; returns its opening, 0..1.
+
+        Raises:
+            GripperGoalNotReached: It does not open.
 
         Raises:
             GripperGoalNotReached: It does not open.
@@ -99,14 +97,10 @@ class Manipulation(RobotModule):
         return self.move_gripper(side, self.robot.settings.gripper["open"])
 
     def close_gripper(self, side: str, grasp: bool = False) -> Grip:
-        """Close a hand, around something or not; answers how far it is open, 0..1, and whether it holds something.
-
-        Args:
-            side: left or right.
-            grasp: Whether there is to be something in it.
+        """Close a hand, around something or not; returns its opening, 0..1, and whether it holds something.
 
         Raises:
-            GripperClosedCompletely: There is nothing in it, and there is to be.
+            GripperClosedCompletely: With `grasp`: there is nothing in it.
             GripperGoalNotReached: It does not move.
         """
         settings = self.robot.settings
@@ -123,7 +117,7 @@ class Manipulation(RobotModule):
         return Grip(opening, holds)
 
     def move_gripper(self, side: str, opening: float) -> float:
-        """Open a hand so far, 0..1; answers how far it is open.
+        """Move a hand to an opening, 0..1; returns the opening that it reached.
 
         Raises:
             GripperGoalNotReached: It does not get there.
@@ -147,10 +141,10 @@ class Manipulation(RobotModule):
     # --- head ---------------------------------------------------------------------------------------------------------
 
     def move_head(self, target: Point3) -> tuple[float, float]:
-        """Look at a point with the top camera; answers HeadYaw and HeadPitch, rad.
+        """Look at a point with the top camera; returns HeadYaw and HeadPitch, rad.
 
         Raises:
-            PtuGoalUnreachable: The head does not turn that far; `nearest` has the angles that it could have.
+            PtuGoalUnreachable: The head does not turn that far; `nearest` has the closest angles.
             PtuGoalNotReached: It did not get there.
         """
         settings = self.robot.settings
@@ -159,12 +153,7 @@ class Manipulation(RobotModule):
         return self.turn_head(*head_angles(*point[:3], camera))
 
     def turn_head(self, yaw: float, pitch: float) -> tuple[float, float]:
-        """Turn the head to two angles, rad; answers where it is then.
-
-        Raises:
-            PtuGoalUnreachable: The head does not turn that far.
-            PtuGoalNotReached: It did not get there.
-        """
+        """Turn the head to two angles, rad; returns the angles that it reached. Raises as `move_head`."""
         settings, chain = self.robot.settings, self.robot.chain(TORSO, "Head")
         wanted = (float(yaw), float(pitch))
         nearest = tuple(min(max(each, low), high) for each, low, high in zip(wanted, chain.lower, chain.upper))
@@ -182,7 +171,7 @@ class Manipulation(RobotModule):
     # --- arms ---------------------------------------------------------------------------------------------------------
 
     def move_arm(self, target: Point3, side: str) -> Point3:
-        """Bring a hand to a point; answers where it is then, in the torso frame.
+        """Bring a hand to a point; returns where it is then, in the torso frame.
 
         Raises:
             ManipulationPoseUnreachable: The arm is too short; `nearest` is the point that it can reach, in the frame
@@ -211,12 +200,7 @@ class Manipulation(RobotModule):
         return hand
 
     def point_at(self, target: Point3, side: str = "") -> Point3:
-        """Point at something with the arm that is nearer to it, or that of a side; answers where the hand is then.
-
-        Raises:
-            ManipulationPoseUnreachable: The arm does not point that way.
-            ManipulationGoalNotReached: It did not get there.
-        """
+        """Point at something with the nearer arm, or that of a side; returns where the hand is then."""
         point = self.robot.point_in(target, TORSO)
         side = side or ("left" if point.y >= 0.0 else "right")
         _, y, z = self.robot.settings.shoulder
@@ -229,11 +213,7 @@ class Manipulation(RobotModule):
     # --- joints -------------------------------------------------------------------------------------------------------
 
     def move_joints(self, angles: Mapping[str, float], time: float = 0.0) -> Mapping[str, float]:
-        """Move joints to angles, rad by name; answers where they are then.
-
-        Args:
-            angles: See above.
-            time: s that it takes; 0 for what the arms' speed gives.
+        """Move joints to angles, rad by name, in `time` s (0: by the arms' speed); returns the reached angles.
 
         Raises:
             ManipulationGoalNotReached: They did not get there.
@@ -242,11 +222,7 @@ class Manipulation(RobotModule):
         return self._move(wanted, time or self._time(wanted, self.robot.settings.arm_speed), ManipulationGoalNotReached)
 
     def go_stable(self) -> Mapping[str, float]:
-        """Take the pose from which everything else can begin; answers the angles, rad by name.
-
-        Raises:
-            ManipulationGoalNotReached: The robot did not get there.
-        """
+        """Take the pose from which everything else can begin; returns the angles, rad by name."""
         settings = self.robot.settings
         return self._move(dict(settings.stable), settings.stable_time, ManipulationGoalNotReached)
 

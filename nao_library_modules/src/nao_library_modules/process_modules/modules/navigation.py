@@ -1,4 +1,4 @@
-"""Navigation: walking to places, through the action `walk_target` of nao_path_follower."""
+"""Navigation: walking to places, by the action `walk_target` of nao_path_follower."""
 
 from __future__ import annotations
 
@@ -21,11 +21,7 @@ ODOM = "odom"
 
 
 class Navigation(RobotModule):
-    """Walks to places.
-
-    Attributes:
-        position: A fluent with the last (Place, frame) that a walk told.
-    """
+    """Walks to places; `position` is a fluent with the (Place, frame) of the last feedback of a walk."""
 
     name = "navigation"
 
@@ -35,11 +31,7 @@ class Navigation(RobotModule):
         self.commands = {"walk_to": self.walk_to}
 
     def walk_to(self, target: Place, frame: str = ODOM) -> Place:
-        """Walk to a place; answers where the robot is then, in odom.
-
-        Args:
-            target: Where to, m and rad; a heading of nan stands for that of the way there.
-            frame: Of the target.
+        """Walk to a place; returns where the robot is then, in odom. A heading of nan stands for that of the way there.
 
         Raises:
             NavigationPoseUnreachable: The goal was refused.

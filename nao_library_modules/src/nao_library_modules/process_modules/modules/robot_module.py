@@ -1,4 +1,4 @@
-"""What the process modules of a robot have in common: a table of commands."""
+"""The base of the robot's process modules: a table of commands."""
 
 from __future__ import annotations
 
@@ -14,16 +14,7 @@ from ..robot.robot_link import RobotLink
 
 
 class RobotModule(AsynchronousProcessModule):
-    """A module whose commands are functions; one more is one key-value pair.
-
-    Attributes:
-        robot: The robot.
-        commands: Function by name of the command; its arguments are those of the command.
-
-    Args:
-        robot: See above.
-        name: Of the module; that of its class if there is none.
-    """
+    """A module whose commands are functions; one more is one key-value pair in `commands`."""
 
     def __init__(self, robot: RobotLink, name: str = "") -> None:
         super().__init__(name)
@@ -32,12 +23,6 @@ class RobotModule(AsynchronousProcessModule):
         self.commands: dict[str, Callable[..., Any]] = {}
 
     def execute(self, command: Command) -> Any:
-        """Carry out a command.
-
-        Raises:
-            PlanError: There is no such command, or it takes other arguments.
-            PlanFailure: It cannot be done.
-        """
         function = self.commands.get(command.name)
         if function is None:
             known = of_those(command.name, sorted(self.commands))
@@ -49,10 +34,10 @@ class RobotModule(AsynchronousProcessModule):
         return function(**command.arguments)
 
     def resources(self, command: Command) -> frozenset[str]:
-        """Everything for one command at a time, unless a module knows better."""
+        """One command at a time, unless a module knows better."""
         return frozenset({self.name})
 
     @staticmethod
     def side_of(arguments: Mapping[str, Any]) -> str:
-        """The side that a command is about; empty for none."""
+        """The side in a command's arguments; empty for none."""
         return str(arguments.get("side", ""))

@@ -1,4 +1,4 @@
-"""Speech: saying texts, through the topic `speech` of nao_speech, or its action when the end is to be waited for."""
+"""Speech: saying texts, by the topic `speech` of nao_speech, or by its action to wait for the end."""
 
 from __future__ import annotations
 
@@ -29,21 +29,13 @@ class Speech(RobotModule):
         self.commands = {"say": self.say, "text_to_speech": self.text_to_speech}
 
     def text_to_speech(self, text: str) -> None:
-        """Have a text said; does not wait until it is.
-
-        Raises:
-            SpeechLowLevelFailure: Nobody listens to the topic.
-        """
+        """Say a text without waiting for its end; SpeechLowLevelFailure if there is no subscriber."""
         if not self.robot.topic(TOPIC, String).tell(String(text), LISTENER_LIMIT):
             where = rospy.resolve_name(TOPIC)
             raise SpeechLowLevelFailure(f"nobody speaks what comes on {where}: is nao_speech running?")
 
     def say(self, text: str) -> None:
-        """Say a text and wait until it is said; a cancel silences it.
-
-        Raises:
-            SpeechLowLevelFailure: It was not said.
-        """
+        """Say a text and wait for its end; a cancel silences it."""
         end = self.robot.action(ACTION, SpeechWithFeedbackAction).call(SpeechWithFeedbackGoal(say=text), LONGEST)
         if not end.succeeded:
             raise SpeechLowLevelFailure(f"{text!r} was not said: {end}", text=text)

@@ -1,4 +1,4 @@
-"""Vision: looking for things, through the action of the server NaoVision."""
+"""Vision: looking for things, by the action of the server NaoVision."""
 
 from __future__ import annotations
 
@@ -33,11 +33,9 @@ class SeenThing:
     """Something that was seen.
 
     Attributes:
-        type: ball, face, landmark or code.
-        name: Whose face it is, a landmark's number, what a code says; empty if that is not known.
-        position: Where it is, in odom; None if only the direction is known.
-        time: When it was seen, s of ROS time.
-        confidence: 0..1.
+        name: Of a face, a landmark's number, a code's text; empty if unknown.
+        position: In odom; None if only the direction is known.
+        time: s of ROS time.
         alpha: rad, positive to the left of the camera's axis.
         beta: rad, positive below it.
     """
@@ -63,14 +61,11 @@ class Vision(RobotModule):
     def detect(
         self, type: str, name: str = "", timeout: float = 2.0, search: bool = False, camera: str = "", size: float = 0.0
     ) -> list[SeenThing]:
-        """Look for things of a type; those that are seen.
+        """Look for things of a type in `DETECTORS` for `timeout` s; returns those seen.
 
         Args:
-            type: One of `DETECTORS`.
             name: Only that one: a face's name, a landmark's number, a code's text.
-            timeout: s.
             search: Whether the head turns to find them.
-            camera: top or bottom; empty for the active one.
             size: Of the real thing, m; 0 for what is usual.
 
         Raises:
@@ -93,7 +88,7 @@ class Vision(RobotModule):
         return [self._seen(each) for each in end.result.objects]
 
     def _seen(self, found: Any) -> SeenThing:
-        """What NaoVision tells; places in odom, for the robot's own frame moves."""
+        """In odom: the robot's own frame moves."""
         where = found.position
         position = None
         if found.located:

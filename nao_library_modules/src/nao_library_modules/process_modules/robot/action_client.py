@@ -32,13 +32,7 @@ CANCEL_LIMIT = 5.0
 
 @dataclass(frozen=True)
 class ActionEnd:
-    """How a goal ended.
-
-    Attributes:
-        status: One of `actionlib_msgs/GoalStatus`.
-        text: What the server said about it.
-        result: Its result; None if it has none.
-    """
+    """How a goal ended: one of `actionlib_msgs/GoalStatus`, the server's text, and its result (None if it has none)."""
 
     status: int
     text: str
@@ -46,7 +40,6 @@ class ActionEnd:
 
     @property
     def succeeded(self) -> bool:
-        """Whether it succeeded."""
         return self.status == GoalStatus.SUCCEEDED
 
     def __str__(self) -> str:
@@ -56,17 +49,11 @@ class ActionEnd:
 class PlanActionClient:
     """Client of an action for plans; several goals may run at once.
 
-    It stands on actionlib's ActionClient: SimpleActionClient knows one goal at a time, and looks for its end every
-    tenth of a second.
-
-    Attributes:
-        name: Of the action, as it was asked for.
-        timeout: Longest time a goal may take, s of the plan's clock; None for ever.
+    Based on actionlib's ActionClient: SimpleActionClient knows one goal at a time, and polls for its end every tenth of
+    a second.
 
     Args:
-        name: Of the action; relative to the namespace.
-        action: Its class, as JointTrajectoryAction.
-        timeout: See above.
+        timeout: Longest time a goal may take, s of the plan's clock; None for ever.
     """
 
     def __init__(self, name: str, action: type, timeout: float | None = None) -> None:
@@ -85,11 +72,10 @@ class PlanActionClient:
     ) -> ActionEnd:
         """Send a goal and wait for its end, in a plan.
 
-        A plan that ends cancels it, and sees it end. A suspension cancels it; it is sent again afterwards.
+        A plan that ends cancels it and waits for its end. A suspension cancels it; it is sent again afterwards.
 
         Args:
-            goal: The goal.
-            timeout: s; that of the client if there is none.
+            timeout: s; default: that of the client.
             on_feedback: Gets the feedback, in actionlib's thread.
             on_end: Gets the end, also that of a goal that was cancelled because the plan ends.
 
@@ -102,11 +88,7 @@ class PlanActionClient:
         return subtask(Step(f"action {self.name}", body))
 
     def wait_for_server(self, timeout: float = SERVER_LIMIT) -> None:
-        """Wait until there is a server, in a plan.
-
-        Raises:
-            ActionlibActionTimedOut: There is none.
-        """
+        """Wait until there is a server, in a plan; ActionlibActionTimedOut if there is none."""
         deadline = time.monotonic() + timeout
         while not wait_until(lambda: self._there.value and server_connection(self._client), [self._there], LOOK_PERIOD):
             if time.monotonic() < deadline:
@@ -115,11 +97,6 @@ class PlanActionClient:
             raise ActionlibActionTimedOut(f"there is no server for {where} after {timeout:g} s", action=self.name)
 
     def _wait_for_end(self, done: Fluent, connection: Any, limit: float | None) -> None:
-        """Wait for the end of a goal, at most `limit` s.
-
-        Raises:
-            LowLevelFailure: The server has gone, and with it the goal: nothing would ever come.
-        """
         while limit is None or limit > 0.0:
             period = LOOK_PERIOD if limit is None else min(LOOK_PERIOD, limit)
             if wait_until(lambda: done.value, [done], period):
@@ -173,14 +150,7 @@ _clients: dict[str, PlanActionClient] = {}
 
 
 def make_simple_action_client(name: str, ros_name: str, action: type, timeout: float | None = None) -> PlanActionClient:
-    """Make a client known by a name; one that is known already is given back.
-
-    Args:
-        name: That plans know it by.
-        ros_name: Of the action.
-        action: Its class.
-        timeout: Longest time a goal may take, s; None for ever.
-    """
+    """The client known by a name, made if it is new; `timeout` is the longest time of a goal, s, or None."""
     with _lock:
         if name not in _clients:
             _clients[name] = PlanActionClient(ros_name, action, timeout)
@@ -188,11 +158,6 @@ def make_simple_action_client(name: str, ros_name: str, action: type, timeout: f
 
 
 def get_simple_action_client(name: str) -> PlanActionClient:
-    """The client of a name.
-
-    Raises:
-        KeyError: There is none.
-    """
     with _lock:
         if name not in _clients:
             raise KeyError(f"no action client {name!r}{of_those(name, _clients)}")
@@ -200,7 +165,7 @@ def get_simple_action_client(name: str) -> PlanActionClient:
 
 
 def call_simple_action_client(name: str, goal: Any, timeout: float | None = None) -> ActionEnd:
-    """Send a goal with the client of a name, and wait for its end; see `PlanActionClient.call`."""
+    """See `PlanActionClient.call`."""
     return get_simple_action_client(name).call(goal, timeout)
 
 

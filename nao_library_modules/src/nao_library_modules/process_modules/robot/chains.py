@@ -1,7 +1,7 @@
-"""Chains of joints out of a robot description (URDF): where their tip is, and how to get it somewhere. Pure.
+"""Chains of joints from a robot description (URDF): where their tip is, and how to move it to a point. Pure.
 
-The arm of a NAO has five joints and the hand is wanted at a point: what the hand's direction is stays free. Solutions
-are found by damped least squares (Nakamura and Hanafusa 1986) from several beginnings; angles stay within the limits.
+The arm of a NAO has five joints and the hand is wanted at a point: its direction stays free. Solutions are found by
+damped least squares (Nakamura and Hanafusa 1986) from several starts; angles stay within the limits.
 """
 
 from __future__ import annotations
@@ -27,15 +27,7 @@ LONGEST_STEP = 0.3
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint of a chain.
-
-    Attributes:
-        name: Its name; empty for one that does not move.
-        origin: (4, 4) of its frame in that of the joint before.
-        axis: (3,) it turns about, in its own frame.
-        lower: rad.
-        upper: rad.
-    """
+    """A joint of a chain; `name` is empty for a fixed one."""
 
     name: str
     origin: np.ndarray
@@ -46,34 +38,16 @@ class Joint:
 
 @dataclass(frozen=True)
 class Solution:
-    """What came of a search.
-
-    Attributes:
-        angles: By joint, rad.
-        point: Where the tip is then, m.
-        distance: From there to where it was wanted, m.
-    """
-
     angles: Mapping[str, float]
     point: tuple[float, float, float]
     distance: float
 
 
 class Chain:
-    """Joints from a base to a tip.
-
-    Attributes:
-        joints: Names of those that move, from the base on.
-        lower: (n,) rad.
-        upper: (n,) rad.
-
-    Args:
-        description: The URDF.
-        base: Link that points are told in.
-        tip: Link whose origin is wanted somewhere.
+    """Joints from a base link to the origin of a tip link; `joints` are the moving ones, from the base on.
 
     Raises:
-        NaoError: It is no URDF, or there is no such chain.
+        NaoError: The description is no URDF, or has no such chain.
     """
 
     def __init__(self, description: str, base: str, tip: str) -> None:
@@ -88,14 +62,10 @@ class Chain:
         return self._frames(self._listed(angles))[-1][0]
 
     def reach(self, point: Sequence[float], now: Sequence[float] | Mapping[str, float]) -> Solution:
-        """Angles that bring the tip to a point, or as near as they can.
+        """Angles that bring the tip to a point (x, y, z) in the base, m, or as near as they can.
 
-        Args:
-            point: (x, y, z) in the base, m.
-            now: Angles that the search begins from, and which a solution is to be near to.
-
-        Returns:
-            The first solution that is there; the nearest one if none is.
+        The search begins from the angles `now`, and prefers solutions near them. Returns the first solution that
+        reaches the point; the nearest one if none does.
         """
         target = np.asarray(point, dtype=float)
         best: Solution | None = None

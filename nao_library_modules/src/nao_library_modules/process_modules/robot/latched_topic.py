@@ -15,12 +15,7 @@ OTHERS_LIMIT = 2.0
 
 
 class LatchedTopic:
-    """Publishes when the listeners are connected, which takes a moment after the publisher has been made.
-
-    Args:
-        topic: Its name.
-        kind: Type of its messages.
-    """
+    """Publishes when the listeners are connected, which takes a moment after the publisher has been made."""
 
     def __init__(self, topic: str, kind: type) -> None:
         self._publisher = rospy.Publisher(topic, kind, queue_size=10)

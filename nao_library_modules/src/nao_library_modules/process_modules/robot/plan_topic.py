@@ -20,10 +20,7 @@ SHORTEST = 0.1
 class PlanTopic:
     """Publishes the tree of a plan, latched: after changes, ten times a second at most, and at its end.
 
-    Give it to `top_level` as an observer; `close` it afterwards.
-
-    Args:
-        topic: Where to.
+    Pass it to `top_level` as an observer; `close` it afterwards.
     """
 
     def __init__(self, topic: str = TOPIC) -> None:
@@ -35,7 +32,6 @@ class PlanTopic:
         self._thread.start()
 
     def __call__(self, task: Task) -> None:
-        """A task has changed."""
         if self._root is None or task.parent is None:
             self._root = task.tree.root if hasattr(task.tree, "root") else task
         self._changed.set()

@@ -1,4 +1,4 @@
-"""What process modules share of a robot: its actions, its joints, its frames, and its numbers. In ROS."""
+"""What process modules share of a robot: its actions, joints, frames, and numbers. In ROS."""
 
 from __future__ import annotations
 
@@ -34,13 +34,8 @@ class RobotLink:
     """A robot as process modules know it: names are relative to the namespace of the node.
 
     Attributes:
-        settings: Numbers, see `settings`.
-        clock: ROS time.
-        joints: A fluent with the last joint states: angles in rad by name.
+        joints: A fluent with the last joint states: name -> angle, rad.
         held: Side of a hand that was closed last -> how far it stayed open, 0..1.
-
-    Args:
-        settings: See above; those of the package if there are none.
     """
 
     def __init__(self, settings: Settings | None = None) -> None:
@@ -58,14 +53,14 @@ class RobotLink:
         self._subscriber = rospy.Subscriber("joint_states", JointState, self._on_joints, queue_size=1)
 
     def action(self, name: str, kind: type) -> PlanActionClient:
-        """Client of an action; there is one for each."""
+        """The client of an action; one for each name."""
         with self._lock:
             if name not in self._clients:
                 self._clients[name] = PlanActionClient(name, kind)
             return self._clients[name]
 
     def topic(self, name: str, kind: type) -> LatchedTopic:
-        """A topic to publish on; there is one for each."""
+        """A topic to publish on; one for each name."""
         with self._lock:
             if name not in self._topics:
                 self._topics[name] = LatchedTopic(name, kind)
@@ -82,11 +77,11 @@ class RobotLink:
         return self.joints.value
 
     def learn(self, state: JointState) -> None:
-        """Take joint states that something else told, as the result of an action: they may be ahead of the topic."""
+        """Take joint states from another source, as the result of an action: they may be ahead of the topic."""
         self._take(state, told=True)
 
     def chain(self, base: str, tip: str) -> Chain:
-        """Joints between two links, out of the robot description.
+        """Joints between two links of the robot description.
 
         Raises:
             LowLevelFailure: There is no description.
@@ -101,22 +96,14 @@ class RobotLink:
         return self._chains[key]
 
     def place(self, frame: str) -> Place:
-        """Where the robot is now, seen from above, in a frame.
-
-        Raises:
-            LowLevelFailure: The frame is not connected with the robot.
-        """
+        """Where the robot is now, seen from above, in a frame; LowLevelFailure if the frame is unknown."""
         found = self._transform(frame, ROBOT)
         turn = found.rotation
         yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
         return Place(found.translation.x, found.translation.y, 0.0 if yaw is None else yaw)
 
     def point_in(self, point: Point3, frame: str) -> Point3:
-        """A point in another frame, as the frames are now.
-
-        Raises:
-            LowLevelFailure: The frames are not connected.
-        """
+        """A point in another frame, as the frames are now; LowLevelFailure if they are not connected."""
         if point.frame == frame:
             return point
         found = self._transform(frame, point.frame)
@@ -125,7 +112,11 @@ class RobotLink:
         return Point3(x + move.x, y + move.y, z + move.z, frame)
 
     def _transform(self, to: str, of: str) -> Any:
-        """The transform that brings points of one frame into another."""
+        """The transform that brings points of one frame into another, as soon as there is one.
+
+        Raises:
+            LowLevelFailure: The frames are not connected.
+        """
         target, source = tf_prefix() + to.lstrip("/"), tf_prefix() + of.lstrip("/")
         problem = ""
 
