@@ -6,6 +6,6 @@ plans, `{type: trajectory, to: open, side: left}`; and a name, `{name: to open, 
 
 from __future__ import annotations
 
-from . import arms, hands, head, telling, walking  # rules are there when their files are read
+from . import manipulation, speech_lights_vision, walking  # each registers its rules
 
-__all__ = ["arms", "hands", "head", "telling", "walking"]
+__all__ = ["manipulation", "speech_lights_vision", "walking"]

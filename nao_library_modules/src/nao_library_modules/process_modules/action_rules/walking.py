@@ -1,4 +1,4 @@
-"""Rules about walking."""
+"""Rules for navigation."""
 
 from __future__ import annotations
 

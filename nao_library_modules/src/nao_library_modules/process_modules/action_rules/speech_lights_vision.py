@@ -1,4 +1,4 @@
-"""Rules about speech, lights and seeing."""
+"""Rules for speech, lights and seeing."""
 
 from __future__ import annotations
 
