@@ -19,7 +19,7 @@ from nao_library_modules.base.places import Place
 from nao_library_modules.process_modules import action_rules  # noqa: F401
 from nao_library_modules.process_modules.core.registry import get_process_module, perform, with_process_modules_running
 from nao_library_modules.process_modules.designators.designator import action, an, designator
-from nao_library_modules.process_modules.language.control import do, par, pursue, seq, top_level
+from nao_library_modules.process_modules.language.control import do, par, pursue, seq, top_level, wait_for
 from nao_library_modules.process_modules.language.failures import (
     GripperClosedCompletely,
     ManipulationPoseUnreachable,
@@ -30,7 +30,6 @@ from nao_library_modules.process_modules.language.failures import (
 from nao_library_modules.process_modules.language.flow import wait_until as wait_in_plan
 from nao_library_modules.process_modules.language.tasks import TaskState
 from nao_library_modules.process_modules.language.trace import trace_of
-from nao_library_modules.process_modules.language.waiting import wait_for
 from nao_library_modules.process_modules.low_level import (
     close_gripper,
     go_stable,

@@ -30,7 +30,7 @@ FORMER = {
     "process_modules.robot_link": "process_modules.robot.robot_link",
     "process_modules.space": "process_modules.language.space",
     "process_modules.trace": "process_modules.language.trace",
-    "process_modules.waiting": "process_modules.language.waiting",
+    "process_modules.waiting": "process_modules.language.control",
     "simple_action_client": "ros.simple_action_client",
     "whole_file": "base.whole_file",
 }

@@ -50,6 +50,8 @@ from .language.control import (
     try_all,
     try_each_in_order,
     try_in_order,
+    wait_for,
+    whenever,
 )
 from .language.failures import CompositeFailure, PlanError, PlanFailure, SimplePlanFailure, fail
 from .language.flow import checkpoint, retry_after_suspension, sleep, uninterrupted, wait_until
@@ -78,7 +80,6 @@ from .language.policies import (
 from .language.space import Point3, Position
 from .language.tasks import Task, TaskState, current_task
 from .language.trace import Trace, trace_of
-from .language.waiting import wait_for, whenever
 
 # Loaded when it is asked for: plans alone need no ROS.
 __getattr__ = door(

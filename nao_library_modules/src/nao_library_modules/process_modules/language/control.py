@@ -14,12 +14,13 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Callable, Union
+from typing import Any, Callable, NoReturn, Union
 
 from ...base.clock import WallClock
 from ...base.suggestion import of_those
 from .failures import CompositeFailure, PlanError, PlanFailure
-from .flow import Flow, here, set_here, uninterrupted, wait_until
+from .flow import Flow, checkpoint, here, set_here, uninterrupted, wait_until
+from .fluents import AnyFluent, Pulsed
 from .tasks import Task, TaskState, TaskTree, current_task, failed, failure_of
 from .telling import told
 
@@ -203,6 +204,50 @@ def partial_order(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]
         return dict(zip(tasks, _all_of(started)))
 
     return subtask(Step("partial_order", body))
+
+
+# --- waiting for fluents ----------------------------------------------------------------------------------------------
+
+
+def wait_for(fluent: AnyFluent, timeout: float | None = None) -> Any:
+    """Wait until a fluent is true; its value, or False after the timeout.
+
+    Args:
+        timeout: s of the plan's clock; None for no limit.
+    """
+    seen: list[Any] = []
+
+    def look() -> bool:
+        if isinstance(fluent, Pulsed):
+            value: Any = fluent.take()
+        else:
+            value = fluent.value
+        seen[:] = [value]
+        return bool(value)
+
+    return seen[0] if wait_until(look, [fluent], timeout) else False
+
+
+def whenever(fluent: AnyFluent, body: Callable[[], Any], missed: str = "once") -> NoReturn:
+    """Run a body at every pulse at which a fluent is true, and now if it is; never ends by itself.
+
+    Put it beside something else: `pursue(do(whenever, ...), plan)`. Of a `pulsed` fluent see `Pulsed` for `missed`: of
+    the pulses that come while the body runs, "never" forgets all, "once" runs it once more, "always" once for each.
+    """
+
+    def watch() -> NoReturn:
+        pulses = Pulsed(fluent, missed)
+        if fluent.value:
+            body()
+            pulses.forget_missed()
+        while True:
+            wait_for(pulses)
+            if fluent.value:
+                body()
+            pulses.forget_missed()
+            checkpoint()
+
+    return subtask(Step(f"whenever {fluent.name}", watch))
 
 
 # --- inside -----------------------------------------------------------------------------------------------------------

@@ -19,11 +19,10 @@ from dataclasses import dataclass
 from typing import Any, Tuple, Type, Union
 
 from ...base.suggestion import of_those
-from .control import Branch, Step, do, pursue, subtask
+from .control import Branch, Step, do, pursue, subtask, wait_for
 from .failures import PlanTimedOut, PolicyCheckConditionMet, PolicyInitFailed, PolicyNotFound
 from .flow import sleep, uninterrupted
 from .fluents import AnyFluent
-from .waiting import wait_for
 
 PERIOD = 0.1
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Callable
 
+import rosgraph
 import rospy
 import tf2_ros
 from sensor_msgs.msg import JointState
@@ -14,20 +15,60 @@ from ...base.places import Place, yaw_of_quaternion
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..language.failures import LowLevelFailure
-from ..language.flow import wait_until
+from ..language.flow import sleep, wait_until
 from ..language.fluents import Fluent
 from ..language.settings import Settings, load_settings
 from ..language.space import Point3, turned
 from .action_client import PlanActionClient
 from .chains import Chain
-from .latched_topic import LatchedTopic
 
 STATE_LIMIT = 5.0
 """s to wait for the first joint states, and for frames."""
 OLDEST = 10.0
 """s that joint states may be late; what is older is of a clock that was set back."""
+LISTENER_PERIOD = 0.02
+OTHERS_LIMIT = 2.0
+"""s to wait, when the first listener is there, for others that the master knows: one that was killed never comes."""
 ROBOT = "base_footprint"
 TORSO = "torso"
+
+
+class LatchedTopic:
+    """Publishes when the listeners are connected, which takes a moment after the publisher has been made."""
+
+    def __init__(self, topic: str, kind: type) -> None:
+        self._publisher = rospy.Publisher(topic, kind, queue_size=10)
+        self._settled = False
+
+    def tell(self, message: Any, limit: float) -> bool:
+        """Publish a message; waits in a plan. False if nobody has listened for `limit` s."""
+        if not self._listened():
+            self._settled = False
+            if not self._wait(self._listened, limit):
+                return False
+        if not self._settled:
+            self._wait(self._all_listen, OTHERS_LIMIT)
+            self._settled = True
+        self._publisher.publish(message)
+        return True
+
+    def _listened(self) -> bool:
+        return self._publisher.get_num_connections() > 0
+
+    def _all_listen(self) -> bool:
+        subscribers = dict(rosgraph.Master(rospy.get_name()).getSystemState()[1])
+        known = subscribers.get(self._publisher.resolved_name, ())
+        return self._publisher.get_num_connections() >= len(known)
+
+    @staticmethod
+    def _wait(condition: Callable[[], bool], limit: float) -> bool:
+        waited = 0.0
+        while not condition():
+            if waited >= limit:
+                return False
+            sleep(LISTENER_PERIOD)
+            waited += LISTENER_PERIOD
+        return True
 
 
 class RobotLink:
