@@ -62,8 +62,8 @@ class DesignatorServer:
         except (PlanFailure, PlanError) as failure:
             result = PerformDesignatorResult(failure=type(failure).__name__, text=str(failure))
             return Outcome(result, interrupt.is_set(), "" if interrupt.is_set() else str(failure))
-        told = answer.told() if isinstance(answer, Grip) else answer
-        return Outcome(PerformDesignatorResult(result=json_of(told)))
+        value = answer.as_json() if isinstance(answer, Grip) else answer
+        return Outcome(PerformDesignatorResult(result=json_of(value)))
 
     def _perform(self, desig: Designator, interrupt: CancellationToken, tell: Callable[[Task], None]) -> Any:
         roots: list[Task] = []

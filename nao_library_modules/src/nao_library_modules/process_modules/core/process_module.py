@@ -20,14 +20,14 @@ from ..designators.designator import Designator
 from ..designators.rules import Command
 from ..language.control import Step, do, subtask, top_level
 from ..language.failures import PlanFailure, ProcessModuleNotRunning, ProcessModuleRunning, TaskEvaporatedFailure
-from ..language.flow import here, retry_after_suspension, uninterrupted, wait_until
+from ..language.flow import retry_after_suspension, uninterrupted, wait_until
 from ..language.fluents import Fluent
 from ..language.tasks import Task
 
 log = logging.getLogger(__name__)
 
 END_PATIENCE = 10.0
-"""s that a module has to put things right after a cancel, before that is told."""
+"""s that a module has to put things right after a cancel, before a warning."""
 
 
 class ModuleState(enum.Enum):
@@ -40,10 +40,9 @@ class ModuleState(enum.Enum):
 class Request:
     """A designator that a module carries out, and what came of it."""
 
-    def __init__(self, command: Command, designator: Designator | None, caller: str) -> None:
+    def __init__(self, command: Command, designator: Designator | None) -> None:
         self.command = command
         self.designator = designator
-        self.caller = caller
         self.over = Fluent("request is over", False)
         self.result: Any = None
         self.failure: BaseException | None = None
@@ -296,9 +295,7 @@ def execute_on(module: ProcessModule, command: Command, designator: Designator |
         if module.state is ModuleState.OFFLINE:
             log.warning("the process module %s is offline: %s waits for it", module.name, command)
             wait_until(lambda: module.state is not ModuleState.OFFLINE, [module.status])
-        flow = here()
-        caller = flow.tasks[-1].path if flow is not None and flow.tasks else ""
-        request = Request(command, designator, caller)
+        request = Request(command, designator)
         module.submit(request)
         try:
             wait_until(lambda: request.over.value, [request.over])

@@ -194,8 +194,8 @@ def perform(desig: Union[Designator, Command]) -> Any:
     if not isinstance(desig, Designator) or desig.kind not in ("action", "motion"):
         raise PlanError(f"perform: {desig!r} is no designator of an action or a motion")
     desig = current_desig(desig)
-    told = desig.get("goal")
-    goal = told if isinstance(told, Occasion) else None  # of walks it is a place
+    value = desig.get("goal")
+    goal = value if isinstance(value, Occasion) else None  # of walks it is a place
 
     def body() -> Any:
         if goal is not None and holds(goal):

@@ -22,7 +22,7 @@ import yaml
 from ...base.limits import limit
 from ...base.yaml_values import Budget, load_within
 from ..language.failures import DesignatorError, PlanError
-from ..language.telling import told
+from ..language.short_text import short_repr
 from .lisp import read_lisp
 
 KINDS = ("action", "motion", "location", "object")
@@ -245,7 +245,7 @@ def read_yaml(text: str, budget: Budget) -> Any:
     try:
         return load_within(text, budget)
     except yaml.YAMLError as error:
-        raise PlanError(f"designator: {told(text)} is no YAML that is read here: {error}") from error
+        raise PlanError(f"designator: {short_repr(text)} is no YAML that is read here: {error}") from error
 
 
 def _of_lisp(form: Mapping[str, Any], kind: str) -> Designator:
@@ -274,7 +274,7 @@ def _mapping(description: Description) -> dict[str, Any]:
     except (TypeError, ValueError):
         content = None
     if not content or not all(isinstance(key, str) for key in content):
-        there = told(description)
+        there = short_repr(description)
         raise PlanError(f"designator: {there} has no keys and values, as {{type: action, name: to open}} has")
     return content
 
@@ -327,15 +327,6 @@ def first_desig(desig: Designator) -> Designator:
         return _first(desig)
 
 
-def newest_effective_designator(desig: Designator) -> Designator | None:
-    """The newest designator of the same thing that has been resolved; None if none has."""
-    with _chains:
-        each: Designator | None = _newest(desig)
-        while each is not None and not each.resolved:
-            each = each.parent
-        return each
-
-
 def desig_equal(one: Designator, other: Designator) -> bool:
     with _chains:
         return _first(one) is _first(other)
@@ -365,4 +356,4 @@ def resolve_by(solutions: Callable[[Designator], Iterable[Any]]) -> None:
 
 
 def _shown(value: Any) -> str:
-    return f"({value})" if isinstance(value, Designator) else told(value)
+    return f"({value})" if isinstance(value, Designator) else short_repr(value)

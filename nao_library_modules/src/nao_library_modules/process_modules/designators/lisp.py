@@ -11,7 +11,7 @@ import re
 from typing import Any
 
 from ..language.failures import PlanError
-from ..language.telling import told
+from ..language.short_text import short_repr
 
 TOKEN = re.compile(r'\s*(?:(?P<bracket>[()])|"(?P<text>(?:[^"\\]|\\.)*)"|(?P<word>[^\s()"]+))')
 NUMBER, FRACTION = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"), re.compile(r"[.eE]")
@@ -35,7 +35,7 @@ def read_lisp(text: str, values: int, levels: int) -> dict[str, Any]:
     """
     forms = _read(text, values, levels)
     if len(forms) != 1 or not isinstance(forms[0], list):
-        raise PlanError(f"designator: {told(text)} is not one form in brackets")
+        raise PlanError(f"designator: {short_repr(text)} is not one form in brackets")
     return _designator(forms[0], text)
 
 
@@ -48,16 +48,20 @@ def _read(text: str, values: int, levels: int) -> list[Any]:
     while position < end:
         values -= 1
         if values < 0 or len(opened) > levels:
-            raise PlanError(f"designator: {told(text)} has {'too many values' if values < 0 else 'too many levels'}")
+            raise PlanError(
+                f"designator: {short_repr(text)} has {'too many values' if values < 0 else 'too many levels'}"
+            )
         match = TOKEN.match(text, position)
         if match is None:
-            raise PlanError(f"designator: {told(text)} has an open quotation mark at {position + 1}")
+            raise PlanError(f"designator: {short_repr(text)} has an open quotation mark at {position + 1}")
         if match["bracket"] == "(":
             opened.append(match.start("bracket") + 1)
             stack.append([])
         elif match["bracket"] == ")":
             if not opened:
-                raise PlanError(f"designator: {told(text)} has a bracket too many at {match.start('bracket') + 1}")
+                raise PlanError(
+                    f"designator: {short_repr(text)} has a bracket too many at {match.start('bracket') + 1}"
+                )
             opened.pop()
             form = stack.pop()
             stack[-1].append(form)
@@ -69,7 +73,7 @@ def _read(text: str, values: int, levels: int) -> list[Any]:
             stack[-1].append(_Quoted(re.sub(r"\\(.)", r"\1", match["text"])))
         position = match.end()
     if opened:
-        raise PlanError(f"designator: {told(text)}: the bracket at {opened[-1]} is not closed")
+        raise PlanError(f"designator: {short_repr(text)}: the bracket at {opened[-1]} is not closed")
     return stack[0]
 
 
@@ -80,7 +84,9 @@ class _Quoted(str):
 def _value(word: str) -> Any:
     if NUMBER.fullmatch(word):
         if len(word) > LONGEST_NUMBER:
-            raise PlanError(f"designator: the number {told(word)} has {len(word)} characters: {LONGEST_NUMBER} at most")
+            raise PlanError(
+                f"designator: the number {short_repr(word)} has {len(word)} characters: {LONGEST_NUMBER} at most"
+            )
         return float(word) if FRACTION.search(word) else int(word)
     return {"t": True, "nil": False}.get(word.lower(), word)
 
@@ -102,7 +108,7 @@ def _pairs(forms: list[Any], text: str) -> dict[str, Any]:
         elif isinstance(entry, list) and len(entry) >= 2 and isinstance(entry[0], str):
             key, values = entry[0], entry[1:]
         else:
-            raise PlanError(f"designator: {told(text)}: {_shown(entry)} is no key with a value")
+            raise PlanError(f"designator: {short_repr(text)}: {_shown(entry)} is no key with a value")
         pairs[key.lower()] = _meant(values, text)
     return pairs
 

@@ -22,8 +22,8 @@ from typing import Any, Callable, Iterable
 from ...base.places import Place, wrapped
 from ..language.failures import DesignatorError
 from ..language.settings import numbers_of_nao
+from ..language.short_text import short_repr
 from ..language.space import Point3
-from ..language.telling import told
 from .designator import Designator, location
 from .objects import BELIEFS, KnownObject
 from .patterns import Mismatch, number
@@ -82,7 +82,8 @@ def sampled(desig: Designator) -> Iterator[tuple[Place, str]]:
     rejected: dict[str, int] = {}
     looked = taken = 0
     doubtful = []
-    for candidate in islice(_candidates(desig), MOST_TRIES):
+    candidates = (each for _, _, generator in tuple(_generators) for each in generator(desig))
+    for candidate in islice(candidates, MOST_TRIES):
         looked += 1
         verdict, who = _judge(desig, candidate)
         if verdict is Verdict.REJECT:
@@ -126,7 +127,7 @@ def pose_of_description(desig: Designator) -> Iterator[Candidate]:
     try:
         x, y, yaw = map(float, [*pose, 0.0][:3])
     except (TypeError, ValueError, OverflowError):
-        raise DesignatorError(desig, f"its pose is {told(pose)}, not [x, y, yaw] in m and rad") from None
+        raise DesignatorError(desig, f"its pose is {short_repr(pose)}, not [x, y, yaw] in m and rad") from None
     yield Candidate(Place(x, y, yaw), str(desig.get("frame", "odom")))
 
 
@@ -139,7 +140,7 @@ def around_object(desig: Designator) -> Iterator[Candidate]:
     try:
         away = number().take(distance)
     except Mismatch:
-        raise DesignatorError(desig, f"its distance is {told(distance)}, not a number in m") from None
+        raise DesignatorError(desig, f"its distance is {short_repr(distance)}, not a number in m") from None
     yield from _ring(thing, [away + numbers_of_nao().robot_radius])
 
 
@@ -255,11 +256,6 @@ def _between(thing: KnownObject, eye: Point3, target: Point3) -> bool:
         if in_height and not thing.distance_to(x, y) and math.dist((x, y, z), target[:3]) > STANDS_ON:
             return True
     return False
-
-
-def _candidates(desig: Designator) -> Iterator[Candidate]:
-    for _, _, generator in tuple(_generators):
-        yield from generator(desig)
 
 
 def _judge(desig: Designator, candidate: Candidate) -> tuple[Verdict, str]:

@@ -18,11 +18,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..language.failures import DesignatorError, PlanError
-from ..language.telling import told
+from ..language.short_text import short_repr
 from .designator import KINDS, Designator, plain_key, resolve_by
 from .patterns import Mismatch, Pattern, as_pattern
 
-MOST_TOLD = 4
+MOST_SHOWN = 4
 DESIG = "desig"
 
 
@@ -35,7 +35,7 @@ class Command:
     arguments: Mapping[str, Any] = field(default_factory=dict)
 
     def __str__(self) -> str:
-        inside = ", ".join(f"{name}={told(value)}" for name, value in self.arguments.items())
+        inside = ", ".join(f"{name}={short_repr(value)}" for name, value in self.arguments.items())
         return f"{self.module}: {self.name}({inside})"
 
 
@@ -90,7 +90,7 @@ class Rule:
             try:
                 values[key] = pattern.take(desig[key])
             except Mismatch:
-                raise Mismatch(f"{key} is {told(desig[key])}, not {pattern.wanted}") from None
+                raise Mismatch(f"{key} is {short_repr(desig[key])}, not {pattern.wanted}") from None
         return values
 
     def keys_that_fit(self, desig: Designator) -> int:
@@ -145,7 +145,7 @@ class Rules:
                 continue
             yield from rule.solutions(desig, values)
         if len(misses) == len(rules):
-            raise DesignatorError(desig, _told(desig, misses))
+            raise DesignatorError(desig, _no_match(desig, misses))
 
 
 RULES = Rules()
@@ -187,10 +187,10 @@ def _several(solved: Any) -> Iterable[Any]:
     return solved if isinstance(solved, (list, tuple, Iterator)) else (solved,)
 
 
-def _told(desig: Designator, misses: list[tuple[Rule, str]]) -> str:
+def _no_match(desig: Designator, misses: list[tuple[Rule, str]]) -> str:
     if not misses:
         return f"there is no rule about {desig.kind}s"
-    near = sorted(misses, key=lambda miss: -miss[0].keys_that_fit(desig))[:MOST_TOLD]
-    told = "; ".join(f"rule {rule.name!r}: {miss}" for rule, miss in near)
+    near = sorted(misses, key=lambda miss: -miss[0].keys_that_fit(desig))[:MOST_SHOWN]
+    nearest = "; ".join(f"rule {rule.name!r}: {miss}" for rule, miss in near)
     more = f" ({len(misses) - len(near)} more)" if len(misses) > len(near) else ""
-    return f"no rule fits: {told}{more}"
+    return f"no rule fits: {nearest}{more}"

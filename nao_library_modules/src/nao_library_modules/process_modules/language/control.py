@@ -21,8 +21,8 @@ from ...base.suggestion import of_those
 from .failures import CompositeFailure, PlanError, PlanFailure
 from .flow import Flow, checkpoint, here, set_here, uninterrupted, wait_until
 from .fluents import AnyFluent, Pulsed
+from .short_text import short_repr
 from .tasks import Task, TaskState, TaskTree, current_task, failed, failure_of
-from .telling import told
 
 log = logging.getLogger(__name__)
 
@@ -46,8 +46,8 @@ Branch = Union[Step, Callable[[], Any]]
 
 def do(function: Callable[..., Any], *arguments: Any, name: str = "", **keywords: Any) -> Step:
     """A branch: a function or a plan with its arguments, called when its turn comes. `name` is that of the task."""
-    given = [told(value, LONGEST) for value in arguments]
-    given += [f"{key}={told(value, LONGEST)}" for key, value in keywords.items()]
+    given = [short_repr(value, LONGEST) for value in arguments]
+    given += [f"{key}={short_repr(value, LONGEST)}" for key, value in keywords.items()]
     # A plan makes a task of its own when it is called; the branch is that task already.
     body = getattr(function, "plan_body", function)
     facts = {"arguments": ", ".join(given)} if given else {}

@@ -122,15 +122,7 @@ class Fluent(AnyFluent):
 
     @value.setter
     def value(self, value: Any) -> None:
-        with self._lock:
-            same = _equal(self._value, value)
-            self._value = value
-            if same:
-                return
-            self._pulses += 1
-            listeners = self._listeners
-        for listener in listeners:
-            listener()
+        self.update(lambda _: value)
 
     @property
     def pulses(self) -> int:

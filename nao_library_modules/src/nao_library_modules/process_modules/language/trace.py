@@ -6,8 +6,8 @@ import json
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 
+from .short_text import cut, short_numbers, short_repr
 from .tasks import Task
-from .telling import cut, short_numbers, told
 
 MARKS = {
     "created": ".",
@@ -70,7 +70,7 @@ class Trace:
 
     def _lines(self, parent: int | None, depth: int) -> Iterator[str]:
         for record in self.children(parent):
-            yield f"{'  ' * depth}{MARKS[record.state]} {record.name}{_told(record)}"
+            yield f"{'  ' * depth}{MARKS[record.state]} {record.name}{_details(record)}"
             yield from self._lines(record.number, depth + 1)
 
 
@@ -78,10 +78,10 @@ def trace_of(root: Task) -> Trace:
     """The trace of a tree, from any thread, during the run or afterwards."""
     with root.tree.lock:
         tasks = list(root)
-        return Trace(tuple(record_of(task, root.created) for task in tasks))
+        return Trace(tuple(_record(task, root.created) for task in tasks))
 
 
-def record_of(task: Task, start: float = 0.0) -> Record:
+def _record(task: Task, start: float) -> Record:
     """The record of one task; times count from `start`, s."""
     failure = ""
     if task.failure is not None:
@@ -96,13 +96,13 @@ def record_of(task: Task, start: float = 0.0) -> Record:
         created=round(task.created - start, 6),
         began=_since(task.began, start),
         ended=_since(task.ended, start),
-        result=told(task.result, LONGEST) if task.result is not None else "",
+        result=short_repr(task.result, LONGEST) if task.result is not None else "",
         failure=cut(short_numbers(failure), LONGEST),
         facts={name: cut(fact if isinstance(fact, str) else repr(fact), LONGEST) for name, fact in task.facts.items()},
     )
 
 
-def _told(record: Record) -> str:
+def _details(record: Record) -> str:
     parts = []
     if "arguments" in record.facts:
         parts.append(f"({record.facts['arguments']})")

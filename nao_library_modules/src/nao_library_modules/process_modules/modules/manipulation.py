@@ -44,8 +44,7 @@ class Grip(float):
 
     holds: bool
 
-    def told(self) -> dict[str, float | bool]:
-        """For JSON."""
+    def as_json(self) -> dict[str, float | bool]:
         return {"opening": float(self), "holds": self.holds}
 
     def __str__(self) -> str:

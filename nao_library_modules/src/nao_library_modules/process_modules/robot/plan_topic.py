@@ -32,8 +32,7 @@ class PlanTopic:
         self._thread.start()
 
     def __call__(self, task: Task) -> None:
-        if self._root is None or task.parent is None:
-            self._root = task.tree.root if hasattr(task.tree, "root") else task
+        self._root = task.tree.root
         self._changed.set()
 
     def close(self) -> None:

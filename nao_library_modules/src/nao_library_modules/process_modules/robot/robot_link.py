@@ -119,7 +119,7 @@ class RobotLink:
 
     def learn(self, state: JointState) -> None:
         """Take joint states from another source, as the result of an action: they may be ahead of the topic."""
-        self._take(state, told=True)
+        self._take(state, learned=True)
 
     def chain(self, base: str, tip: str) -> Chain:
         """Joints between two links of the robot description.
@@ -166,20 +166,20 @@ class RobotLink:
             there, problem = self._buffer.can_transform_core(target, source, rospy.Time())
             return there
 
-        # /tf comes in a thread of its own and tells nobody; joint states come as often.
+        # /tf comes in a thread of its own and has no fluent; joint states come as often.
         if not wait_until(known, [self.joints], STATE_LIMIT):
             raise LowLevelFailure(f"the frame {of} cannot be told in {to}: {problem or 'is a driver running?'}")
         return self._buffer.lookup_transform_core(target, source, rospy.Time()).transform
 
     def _on_joints(self, message: JointState) -> None:
-        self._take(message, told=False)
+        self._take(message, learned=False)
 
-    def _take(self, state: JointState, told: bool) -> None:
+    def _take(self, state: JointState, learned: bool) -> None:
         stamp, angles = state.header.stamp.to_sec(), dict(zip(state.name, state.position))
         with self._lock:
-            if told:
+            if learned:
                 self._known_since = stamp
             elif 0.0 < self._known_since - stamp < OLDEST:  # from before what is known; a clock set back is older
                 return
             # Within the lock: neither takes the place of what is newer.
-            self.joints.update(lambda known: angles if not told else {**known, **angles} if known else known)
+            self.joints.update(lambda known: angles if not learned else {**known, **angles} if known else known)

@@ -11,7 +11,7 @@ SHORTENED = 8
 LONG_NUMBER = re.compile(r"-?\d+\.\d{4,}(?:e-?\d+)?")
 
 
-def told(value: Any, longest: int = 160) -> str:
+def short_repr(value: Any, longest: int = 160) -> str:
     """The repr of a value with short numbers, cut to a length."""
     return cut(short_numbers(repr(value)[: SHORTENED * longest]), longest)
 
