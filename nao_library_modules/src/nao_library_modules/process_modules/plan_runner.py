@@ -29,7 +29,7 @@ WAKE_UP = "wakeup"
 ROBOT_LIMIT = 60.0
 """s to wait for the driver, and until it has reached the robot."""
 RETRY = 0.5
-"""s between two tries: that the driver has reached the robot is told by nothing but its answer."""
+"""s between two tries: only the answer of the driver shows that it has reached the robot."""
 END_LIMIT = 10.0
 """s that a plan may take to end when its node ends."""
 
@@ -93,7 +93,7 @@ class PlanRun:
     def _end(self) -> None:
         if self._root is not None:
             self._root.evaporate("the node ends")
-            # Behind this, topics are closed, and nobody would be told that a goal has ended.
+            # After this, topics are closed, and the end of a goal could not be published.
             self._over.wait(END_LIMIT)
 
     def _keep(self, trace: Trace) -> None:

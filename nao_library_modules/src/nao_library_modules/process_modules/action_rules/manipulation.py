@@ -32,8 +32,8 @@ def _arm_target(desig: Designator, side: str, target: Any) -> Point3:
     try:
         return a_point().take(target)
     except Mismatch:
-        told = f"one of {', '.join(words)}, {a_point().wanted}, or a designator"
-        raise DesignatorError(desig, f"the {side} hand is to get to {target!r}: not {told}") from None
+        allowed = f"one of {', '.join(words)}, {a_point().wanted}, or a designator"
+        raise DesignatorError(desig, f"the {side} hand is to get to {target!r}: not {allowed}") from None
 
 
 @rule(BOTH, type=one_of("moving tcp"), left_target=anything())
@@ -173,8 +173,8 @@ def _looking(desig: Designator, at: Any) -> Iterator[Command]:
     try:
         yield command(MANIPULATION, "move_head", target=a_position().take(at))
     except Mismatch:
-        told = f"one of {', '.join(words)}, {a_position().wanted}, or a designator"
-        raise DesignatorError(desig, f"it looks at {at!r}: not {told}") from None
+        allowed = f"one of {', '.join(words)}, {a_position().wanted}, or a designator"
+        raise DesignatorError(desig, f"it looks at {at!r}: not {allowed}") from None
 
 
 @rule(BOTH, type="looking", target=anything())

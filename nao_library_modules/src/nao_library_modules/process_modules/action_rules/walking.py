@@ -23,8 +23,8 @@ def _going(desig: Designator, target: Any) -> Iterator[Command]:
     try:
         place, frame = a_place().take(target)
     except Mismatch:
-        told = f"{a_place().wanted}, or a designator of a location"
-        raise DesignatorError(desig, f"it goes to {target!r}: not {told}") from None
+        allowed = f"{a_place().wanted}, or a designator of a location"
+        raise DesignatorError(desig, f"it goes to {target!r}: not {allowed}") from None
     yield command(NAVIGATION, "walk_to", target=place, frame=frame)
 
 

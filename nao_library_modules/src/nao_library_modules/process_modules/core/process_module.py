@@ -198,7 +198,7 @@ class ProcessModule(ABC):
                     if not needs & taken:
                         self._waiting.remove(each)
                         due.append(each)
-                    taken |= needs  # nobody overtakes who needs the same
+                    taken |= needs  # requests for the same resource keep their order
             self._running += due
             return due
 

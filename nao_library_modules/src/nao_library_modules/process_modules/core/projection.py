@@ -66,8 +66,8 @@ def run_program(program: Path, arguments: Sequence[str], master_uri: str, folder
     try:
         return Trace.from_json(trace.read_text(encoding="utf-8"))
     except (OSError, ValueError, KeyError, TypeError) as error:
-        told = done.stderr.strip().rpartition("\n")[2] or f"it ended with status {done.returncode}"
-        raise ProjectionFailed(f"{program.name} kept no trace: {told}") from error
+        reason = done.stderr.strip().rpartition("\n")[2] or f"it ended with status {done.returncode}"
+        raise ProjectionFailed(f"{program.name} kept no trace: {reason}") from error
 
 
 @dataclass(frozen=True)

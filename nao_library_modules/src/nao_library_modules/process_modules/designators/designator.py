@@ -105,8 +105,8 @@ class Designator:
             raise DesignatorError(self, f"cannot be merged with {other}: the kinds differ")
         for key in self.description.keys() & other.description.keys():
             if self.description[key] != other.description[key]:
-                told = f"{self.description[key]!r} and {other.description[key]!r}"
-                raise DesignatorError(self, f"cannot be merged with {other}: {key} is {told}")
+                values = f"{self.description[key]!r} and {other.description[key]!r}"
+                raise DesignatorError(self, f"cannot be merged with {other}: {key} is {values}")
         return self.copy(**other.description)
 
     # --- solutions ----------------------------------------------------------------------------------------------------
@@ -166,7 +166,7 @@ class Designator:
             except StopIteration:
                 return False
             except DesignatorError:
-                self._solutions = None  # who asks again gets the same answer, or a better one
+                self._solutions = None  # the next call tries again
                 raise
         return True
 

@@ -100,8 +100,8 @@ def sampled(desig: Designator) -> Iterator[tuple[Place, str]]:
         known = ", ".join(name for _, name, _ in _generators)
         raise DesignatorError(desig, f"nobody knows which place is meant (there are generators: {known})")
     if not taken:
-        told = ", ".join(f"{who} rejected {count}" for who, count in rejected.items())
-        raise DesignatorError(desig, f"none of {looked} places will do: {told}")
+        rejections = ", ".join(f"{who} rejected {count}" for who, count in rejected.items())
+        raise DesignatorError(desig, f"none of {looked} places will do: {rejections}")
 
 
 def next_different_location_solution(desig: Designator, distance: float = 0.1, turn: float = 0.3) -> Designator | None:

@@ -29,7 +29,7 @@ log = logging.getLogger(__name__)
 LONGEST = 80
 """Characters of an argument in the tree."""
 PATIENCE = 5.0
-"""s after which it is told that a branch does not end."""
+"""s until a warning that a branch does not end."""
 
 
 @dataclass(frozen=True)

@@ -70,9 +70,9 @@ def load_settings(file: Path | str = FILE) -> Settings:
     unknown = [key for key in content if key not in names]
     missing = [name for name in names if name not in content]
     if unknown or missing:
-        told = [f"unknown {key!r}{did_you_mean(str(key), names)}" for key in unknown]
-        told += [f"missing {', '.join(missing)}"] * bool(missing)
-        raise NaoError(f"{path.name}: {'; '.join(told)} (keys are {', '.join(names)})")
+        problems = [f"unknown {key!r}{did_you_mean(str(key), names)}" for key in unknown]
+        problems += [f"missing {', '.join(missing)}"] * bool(missing)
+        raise NaoError(f"{path.name}: {'; '.join(problems)} (keys are {', '.join(names)})")
     return Settings(**{name: _tuples(content[name]) for name in names})
 
 

@@ -41,7 +41,7 @@ class Navigation(RobotModule):
         settings = self.robot.settings
         here = self.robot.place(frame)
         if math.isnan(target.yaw):
-            far = here.distance_to(target) > settings.walk_tolerance[0]  # who is there already need not turn
+            far = here.distance_to(target) > settings.walk_tolerance[0]  # a robot that is there need not turn
             target = target._replace(yaw=math.atan2(target.y - here.y, target.x - here.x) if far else here.yaw)
         # The robot's own frames move along: what counts at the end is where the target was at the beginning.
         wanted = self.robot.place(ODOM).then(target.seen_from(here))

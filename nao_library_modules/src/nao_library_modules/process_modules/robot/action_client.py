@@ -124,8 +124,8 @@ class PlanActionClient:
 
         watch, cancelled = GoalTracker(end), False
         connection = server_connection(self._client)
-        told = None if on_feedback is None else lambda _, feedback: on_feedback(feedback)
-        handle = self._client.send_goal(goal, watch.look, told)
+        feedback_callback = None if on_feedback is None else lambda _, feedback: on_feedback(feedback)
+        handle = self._client.send_goal(goal, watch.look, feedback_callback)
         try:
             self._wait_for_end(done, connection, limit)
         finally:
