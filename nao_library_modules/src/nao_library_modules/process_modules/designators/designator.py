@@ -327,6 +327,15 @@ def first_desig(desig: Designator) -> Designator:
         return _first(desig)
 
 
+def newest_effective_designator(desig: Designator) -> Designator | None:
+    """The newest designator of the same thing that has been resolved; None if none has."""
+    with _chains:
+        each: Designator | None = _newest(desig)
+        while each is not None and not each.resolved:
+            each = each.parent
+        return each
+
+
 def desig_equal(one: Designator, other: Designator) -> bool:
     with _chains:
         return _first(one) is _first(other)

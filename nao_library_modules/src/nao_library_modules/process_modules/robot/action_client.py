@@ -167,3 +167,8 @@ def get_simple_action_client(name: str) -> PlanActionClient:
 def call_simple_action_client(name: str, goal: Any, timeout: float | None = None) -> ActionEnd:
     """See `PlanActionClient.call`."""
     return get_simple_action_client(name).call(goal, timeout)
+
+
+def destroy_simple_action_clients() -> None:
+    with _lock:
+        _clients.clear()
