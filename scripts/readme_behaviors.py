@@ -11,8 +11,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-from nao_library_modules.pictures.contact_sheet import contact_sheet, save_small
-from nao_library_modules.pictures.demo_behaviors import FILM, BehaviorShow
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "nao_library_modules" / "examples"))
+from example_parts.contact_sheet import contact_sheet, save_small
+from example_parts.demo_behaviors import FILM, BehaviorShow
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
 NAME = "behaviors.png"

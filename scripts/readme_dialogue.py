@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import math
 import queue
+import sys
 from pathlib import Path
 from typing import Any, Callable
 
 import qi
 
-from nao_library_modules.pictures.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, Turn
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "nao_library_modules" / "examples"))
+from example_parts.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, Turn
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene
 

@@ -20,7 +20,8 @@ import qi
 from readme_dialogue import Dialogue
 from readme_sight import draw_sight
 
-from nao_library_modules.pictures import dialogue_record
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "nao_library_modules" / "examples"))
+from example_parts import dialogue_record
 from nao_sim_bridge.server import ServerOptions, SimulatorServer
 from nao_sim_bridge.sim.simulation import Scene
 

@@ -18,9 +18,11 @@ import threading
 from pathlib import Path
 from typing import Mapping
 
-from nao_library_modules.pictures.demo_behaviors import FILM, SHEET, BehaviorShow
-from nao_library_modules.pictures.demo_lights import Step, steps
-from nao_library_modules.pictures.demo_support import (
+# In the devel space rosrun starts a relay from another folder.
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from example_parts.demo_behaviors import FILM, SHEET, BehaviorShow
+from example_parts.demo_lights import Step, steps
+from example_parts.demo_support import (
     SOUND,
     Stack,
     count_green_pixels,

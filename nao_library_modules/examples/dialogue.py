@@ -23,7 +23,10 @@ from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point
 
 import nao_library_actions.msg as actions
-from nao_library_modules.pictures.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, save
+
+# In the devel space rosrun starts a relay from another folder.
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from example_parts.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, save
 from nao_library_modules.whole_file import require_new
 from nao_library_msgs.msg import AudioInFunction, AudioOutFunction, MotionFunction
 from nao_library_msgs.srv import AdvanceTime, PersonSays

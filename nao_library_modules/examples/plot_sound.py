@@ -12,8 +12,10 @@ from pathlib import Path
 
 import soundfile
 
-from nao_library_modules.pictures.dialogue_record import load
-from nao_library_modules.pictures.sound_picture import draw
+# In the devel space rosrun starts a relay from another folder.
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from example_parts.dialogue_record import load
+from example_parts.sound_picture import draw
 from nao_library_modules.whole_file import WholeFile, require_new
 from naoqi.errors import NaoError
 

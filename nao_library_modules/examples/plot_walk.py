@@ -12,8 +12,10 @@ import sys
 import time
 from pathlib import Path
 
-from nao_library_modules.pictures.walk_picture import draw
-from nao_library_modules.pictures.walk_record import LEFT, OTHER, RIGHT, Place, Sample, load, moved, save
+# In the devel space rosrun starts a relay from another folder.
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from example_parts.walk_picture import draw
+from example_parts.walk_record import LEFT, OTHER, RIGHT, Place, Sample, load, moved, save
 from nao_library_modules.whole_file import WholeFile, require_new
 from naoqi import ALProxy
 from naoqi.errors import NaoError

@@ -44,7 +44,7 @@ class Layer:
 ROOMS = tuple(
     """
     base nao processes owners robot functions ros server
-    lights audio audio_out audio_in motion vision.capture vision.detection vision tactile pictures
+    lights audio audio_out audio_in motion vision.capture vision.detection vision tactile
     driver.base driver.joints driver.walk driver.path_follower driver.camera driver.audio driver.memory driver.sensors
     driver.life driver.teleop driver
     process_modules.language process_modules.designators process_modules.core process_modules.robot

@@ -27,6 +27,8 @@ from PIL import Image
 from services import action_client
 from simulator import Simulator
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "nao_library_modules" / "examples"))
+from example_parts import walk_record
 from nao_library_actions.msg import (
     NaoBehaviorGoal,
     NaoLedAction,
@@ -40,7 +42,6 @@ from nao_library_modules.behaviors.server import NaoBehavior
 from nao_library_modules.driver.camera import camera_info_files
 from nao_library_modules.driver.camera.camera_calibration import ideal
 from nao_library_modules.motion.server import NaoMotion
-from nao_library_modules.pictures import walk_record
 from nao_library_modules.process_modules.language import trace_picture
 from nao_library_modules.process_modules.language.control import do, seq, top_level
 from nao_library_modules.process_modules.language.trace import trace_of

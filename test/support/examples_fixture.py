@@ -10,6 +10,7 @@ import rospkg
 from nao_sim_bridge.testing import SimulatedRobot
 
 EXAMPLES = Path(rospkg.RosPack().get_path("nao_library_modules")) / "examples"
+sys.path.append(str(EXAMPLES))
 SENSOR = "Device/SubDeviceList/{}/Position/Sensor/Value"
 
 

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from nao_library_modules.pictures.dialogue_record import (
+from example_parts.dialogue_record import (
     DOES,
     HEARS,
     PERSON,
@@ -18,7 +18,7 @@ from nao_library_modules.pictures.dialogue_record import (
     load,
     save,
 )
-from nao_library_modules.pictures.sound_picture import spectrogram
+from example_parts.sound_picture import spectrogram
 
 RATE = 16000
 TURNS = [

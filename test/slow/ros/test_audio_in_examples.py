@@ -10,7 +10,7 @@ import soundfile
 from examples_fixture import start
 from sound_fixture import Room, bursts, level, recording
 
-from nao_library_modules.pictures import dialogue_record
+from example_parts import dialogue_record
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 HEAD_YAW = "Device/SubDeviceList/HeadYaw/Position/Sensor/Value"

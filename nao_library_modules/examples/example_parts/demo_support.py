@@ -7,8 +7,8 @@ import time
 from pathlib import Path
 from typing import Callable, Sequence
 
-from ..base.whole_file import write_whole
-from ..processes.own_stack import OwnStack
+from nao_library_modules.base.whole_file import write_whole
+from nao_library_modules.processes.own_stack import OwnStack
 
 WORLD = "lab"
 # Everything the loudspeakers play.

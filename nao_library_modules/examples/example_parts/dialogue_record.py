@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Callable, List, Sequence
 
-from ..base.whole_file import write_whole
+from nao_library_modules.base.whole_file import write_whole
 
 FORMAT = "nao_library dialogue 1"
 ROBOT, PERSON = "robot", "person"

@@ -8,7 +8,7 @@ from typing import Dict, List, Sequence, Tuple
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from nao_library_modules.pictures.dialogue_record import DOES, HEARS, PERSON, ROBOT, SAYS, Turn
+from .dialogue_record import DOES, HEARS, PERSON, ROBOT, SAYS, Turn
 
 MOST_CHANNELS = 4
 MICROPHONES = ("left", "right", "front", "rear")

@@ -11,9 +11,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, List, Optional, Sequence, Tuple
 
+from nao_library_modules.base.whole_file import write_whole
 from naoqi.errors import NaoError
-
-from ..base.whole_file import write_whole
 
 Point = Tuple[float, float]
 # x, y in m, heading in rad.

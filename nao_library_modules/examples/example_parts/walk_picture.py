@@ -7,7 +7,7 @@ from typing import Iterable, List, Sequence, Tuple
 
 from PIL import Image, ImageDraw, ImageFont
 
-from nao_library_modules.pictures.walk_record import LEFT, RIGHT, Footprint, Place, Point, Sample, footprints, moved
+from .walk_record import LEFT, RIGHT, Footprint, Place, Point, Sample, footprints, moved
 
 # Contact patch of the left sole around the point below the ankle, m, counter-clockwise; the right one is its mirror
 # image. Source: measured on the robot's surface model.

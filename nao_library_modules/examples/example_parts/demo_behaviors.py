@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..processes.own_stack import OwnStack
+from nao_library_modules.processes.own_stack import OwnStack
+
 from .contact_sheet import Part, contact_sheet, save_small
 
 FILM, SHEET = "behaviors.mp4", "behaviors.png"
