@@ -24,8 +24,6 @@ def require_file(field: str, name: str, suffixes: Sequence[str]) -> str:
     """Name of a file on the robot: relative, or in the home folder of its user; whether it is there the robot knows.
 
     Args:
-        field: Name of the field.
-        name: What it holds.
         suffixes: Allowed ends of the name, in lower case: ".wav".
 
     Returns:

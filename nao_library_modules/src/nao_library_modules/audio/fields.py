@@ -10,12 +10,7 @@ from .checks import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SETTABLE, allowed_
 
 
 def file_of_kind(suffixes: Sequence[str], meaning: str) -> Field:
-    """Name of a file on the robot, as `require_file` takes it.
-
-    Args:
-        suffixes: Allowed ends of the name, in lower case.
-        meaning: The help.
-    """
+    """Name of a file on the robot, as `require_file` takes it."""
     return free(meaning, allowed=allowed_files(suffixes), check=lambda name, value: require_file(name, value, suffixes))
 
 

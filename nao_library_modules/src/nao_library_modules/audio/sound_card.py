@@ -102,13 +102,7 @@ class NaoAudio:
         return self.call(self.robot.proxy(DEVICE), method, *args)
 
     def put_back(self, module: str, method: str, *args: Any) -> None:
-        """Have a quick method called when the running function and the wait after it are over, however they end.
-
-        Args:
-            module: Name of the NAOqi module.
-            method: Its method, which puts something back.
-            args: The arguments that it is put back with.
-        """
+        """Have a quick method called when the running function and the wait after it are over, however they end."""
         self.after_wait(lambda: self.call_now(self.robot.proxy(module), method, *args))
 
     functions = {

@@ -22,42 +22,20 @@ CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 
 
 def require_number(field: str, value: float, lowest: float, highest: float, allowed: str = "") -> float:
-    """A number between two others, both included.
-
-    Args:
-        field: Name of the field.
-        value: What it holds.
-        lowest: The least it may hold.
-        highest: The most it may hold.
-        allowed: What it may hold, in words; the two numbers if none are given.
-    """
+    """A number between two others, both included; `allowed` says in words what the field may hold."""
     if not lowest <= value <= highest:  # also for NaN
         raise BadGoal(field, value, allowed or f"{lowest:g}..{highest:g}")
     return float(value)
 
 
 def require_within(field: str, value: float, limit: Limit, allowed: str = "") -> float:
-    """A number within the declared bounds of its kind.
-
-    Args:
-        field: Name of the field.
-        value: What it holds.
-        limit: Of the kind of number.
-        allowed: What it may hold, in words; the bounds if none are given.
-    """
+    """A number within the declared bounds of its kind."""
     lowest, highest, unit = limit
     return require_number(field, value, lowest, highest, allowed or f"{lowest:g}..{highest:g} {unit}".strip())
 
 
 def require_zero_or(field: str, value: float, limit: Limit, zero: str = "") -> float:
-    """As `require_within`; 0 is allowed as well.
-
-    Args:
-        field: Name of the field.
-        value: What it holds.
-        limit: Of the kind of number.
-        zero: What 0 stands for, in words: ": the default".
-    """
+    """As `require_within`; 0 is allowed as well; `zero` says what it stands for: ": the default"."""
     lowest, highest, unit = limit
     allowed = f"{lowest:g}..{highest:g} {unit}".strip()
     return float(value) if value == 0.0 else require_number(field, value, lowest, highest, f"{allowed}, or 0{zero}")
@@ -69,13 +47,7 @@ def require_each(field: str, values: Iterable[float], limit: Limit) -> list[floa
 
 
 def require_length(field: str, length: int, limit: Limit) -> None:
-    """A list that is not too long.
-
-    Args:
-        field: Name of the field.
-        length: Of what it holds, or of what that stands for.
-        limit: Of the kind of list.
-    """
+    """A list that is not too long; `length` is that of the field or of what it stands for."""
     if length > limit.highest:
         problem = " ".join(f"{length} {limit.unit} are too many".split())
         raise BadGoal(field, length, f"at most {limit.highest:.0f}", problem=problem)
@@ -87,10 +59,7 @@ def require_rising(
     """Moments that follow each other, at least one.
 
     Args:
-        field: Name of the field.
         times: s from the start.
-        limit: What each may be.
-        most: How many there may be.
         shared: Whether the same moments are for all of several joints.
     """
     require_length(field, len(times), most)
@@ -106,9 +75,6 @@ def number_parameter(name: str, value: Any, limit: Limit, also: float | None = N
     """A number that is a parameter of a node, within the declared bounds of its kind.
 
     Args:
-        name: Name of the parameter.
-        value: Its value.
-        limit: Of the kind of number.
         also: A further number that it may be.
 
     Raises:
@@ -126,9 +92,6 @@ def require_count(field: str, values: Sequence[float], count: int, what: str, pl
     """So many numbers, or so many for each of several places.
 
     Args:
-        field: Name of the field.
-        values: What it holds.
-        count: How many are needed.
         what: They in words, with units.
         places: What they are repeated for, in words: "step"; empty where they are not.
     """
@@ -159,14 +122,7 @@ def require_whole(field: str, value: float, lowest: int, highest: int, unit: str
 
 
 def require_known(field: str, value: str, known: Sequence[str], kind: str = "") -> str:
-    """One of several words, without blanks around it.
-
-    Args:
-        field: Name of the field.
-        value: What it holds.
-        known: What it may hold.
-        kind: What it names, in words: "voice".
-    """
+    """One of several words, without blanks around it; `kind` is what it names: "voice"."""
     word = value.strip()
     if word not in known:
         problem = f"{word!r} is {f'no {kind}' if kind else 'not known'}{did_you_mean(word, known)}"

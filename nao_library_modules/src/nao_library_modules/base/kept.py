@@ -17,12 +17,7 @@ log = logging.getLogger(__name__)
 
 
 class Kept:
-    """The file of one node.
-
-    Args:
-        path: Of the file.
-        run: What is the same in a node that was started again, and in no other run.
-    """
+    """The file of one node; `run` is the same in a node that was started again, and in no other run."""
 
     def __init__(self, path: Path, run: str) -> None:
         self._path = path

@@ -20,11 +20,7 @@ class Limit(NamedTuple):
 
 
 def limit(kind: str) -> Limit:
-    """The bounds of a kind of number.
-
-    Raises:
-        KeyError: There is no such kind.
-    """
+    """The bounds of a kind of number."""
     declared = _declared()[kind]
     return Limit(declared["lowest"], declared["highest"], declared["unit"])
 

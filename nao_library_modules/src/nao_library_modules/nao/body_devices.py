@@ -67,9 +67,5 @@ FOOT_CONTACT = "footContact"
 
 
 def weight_keys(side: str) -> list[str]:
-    """Keys of what rests on a foot, kg: on its corners, and in all.
-
-    Args:
-        side: left or right.
-    """
+    """Keys of what rests on a foot, kg: on its corners, and in all."""
     return [sensor_key(f"{side[0].upper()}Foot/FSR/{part}") for part in (*CORNERS, "TotalWeight")]

@@ -29,20 +29,12 @@ class CameraMount:
 
 @dataclass(frozen=True)
 class Head:
-    """The head of a NAO.
-
-    Attributes:
-        height: Of the pitch axis above the torso's origin, m.
-        cameras: Name -> its mount.
-    """
-
-    height: float
+    height: float  # of the pitch axis above the torso's origin, m
     cameras: dict[str, CameraMount]
 
 
 @lru_cache(maxsize=None)
 def load_head() -> Head:
-    """The head as its file tells."""
     content = json.loads(config_file(FILE).read_text(encoding="utf-8"))
     cameras = {name: CameraMount(**mount) for name, mount in content["cameras"].items()}
     return Head(content["height"], cameras)
@@ -52,8 +44,6 @@ def look_at(head: Head, camera: CameraMount, point: tuple[float, float, float]) 
     """Head angles that bring a point into the middle of a camera's picture.
 
     Args:
-        head: The head.
-        camera: One of its cameras.
         point: In the torso frame, m.
 
     Returns:

@@ -32,11 +32,6 @@ class JointNames:
     """Chains of one robot. Any thread may ask; at worst two ask the robot at the same time."""
 
     def __init__(self, robot: Any) -> None:
-        """Ask nothing yet.
-
-        Args:
-            robot: Its proxies and connection, see `nao_library_modules.robot`.
-        """
         self._robot = robot
         self._known: tuple[int, Mapping[str, tuple[str, ...]]] | None = None
 

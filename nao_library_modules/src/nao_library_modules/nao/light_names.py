@@ -29,13 +29,10 @@ PLAIN_WORDS = {
 class UnknownLight(NaoError):  # noqa: N818  named like the errors of the proxy layer
     """No light or group has that name.
 
-    Attributes:
-        name: The name that was asked for.
-        hint: The closest names, or where to find the names.
+    `hint` has the closest names, or where to find the names.
     """
 
     def __init__(self, name: str, known: Iterable[str]) -> None:
-        """Compose the text with the closest names."""
         self.name = name
         in_its_words = re.sub("lights?", "Leds", name, flags=re.IGNORECASE)
         matches = ", ".join(map(repr, closest(in_its_words, known)))

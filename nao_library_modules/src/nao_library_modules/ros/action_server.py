@@ -32,16 +32,11 @@ class ActionServer(actionlib.ActionServer):
     """actionlib's, whose timer does not raise when the node closes its topics while it tells of its goals."""
 
     def publish_status(self) -> None:
-        """As actionlib's."""
         publish_status(super().publish_status)
 
 
 def publish_status(publish: Callable[[], None]) -> None:
-    """Publish the status of a server's goals, if the node has not closed its topics meanwhile.
-
-    Args:
-        publish: actionlib's way.
-    """
+    """Publish the status of a server's goals, if the node has not closed its topics meanwhile."""
     try:
         publish()
     except rospy.ROSException:
@@ -71,14 +66,7 @@ class PromptActionServer(actionlib.SimpleActionServer):
     """
 
     def __init__(self, name: str, action: type, *arguments: Any, **options: Any) -> None:
-        """As actionlib's.
-
-        Args:
-            name: Name of the action.
-            action: Its type.
-            arguments: As actionlib takes them.
-            options: As actionlib takes them; `soonest_end`, s of wall time.
-        """
+        """As actionlib's; the option `soonest_end` is in s of wall time."""
         self._soonest_end = options.pop("soonest_end", SOONEST_END)
         self._taken_up = 0.0
         self._no_goal = type(action().action_goal)()
@@ -130,17 +118,14 @@ class PromptActionServer(actionlib.SimpleActionServer):
     # The names are actionlib's.
 
     def set_succeeded(self, *arguments: Any, **options: Any) -> None:
-        """As actionlib's."""
         let_the_client_note_the_goal(self._taken_up, self._soonest_end)
         super().set_succeeded(*arguments, **options)
 
     def set_aborted(self, *arguments: Any, **options: Any) -> None:
-        """As actionlib's."""
         let_the_client_note_the_goal(self._taken_up, self._soonest_end)
         super().set_aborted(*arguments, **options)
 
     def set_preempted(self, *arguments: Any, **options: Any) -> None:
-        """As actionlib's."""
         let_the_client_note_the_goal(self._taken_up, self._soonest_end)
         super().set_preempted(*arguments, **options)
 

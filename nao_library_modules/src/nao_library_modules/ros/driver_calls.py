@@ -27,7 +27,6 @@ class DriverCall:
         self._answer: Future = Future()
 
     def done(self) -> bool:
-        """Whether it is over."""
         return self._answer.done()
 
     def wait(self, timeout: float | None = None) -> bool:
@@ -49,7 +48,6 @@ class DriverCall:
         self._answer.add_done_callback(lambda _: callback(self))
 
     def cancel(self) -> None:
-        """Give it up."""
         self.end(error=NaoError(f"{self} was given up"))
 
     def end(self, value: Any = None, error: NaoError | None = None) -> None:
@@ -79,10 +77,7 @@ class ServiceCall(DriverCall):
     """A service that is called in a thread of its own; it cannot be taken back.
 
     Args:
-        name: Relative name.
-        kind: Its type.
         read: What the call answers, of the text of the error, which is empty if there is none; may raise NaoError.
-        arguments: What the service gets.
     """
 
     def __init__(self, name: str, kind: type, read: Callable[[str], Any], *arguments: Any) -> None:
@@ -124,7 +119,6 @@ class GoalCall(DriverCall):
         self._handle: Any = None
 
     def send(self, goal: Any) -> None:
-        """Send the goal."""
         self._handle = self._action.client.send_goal(goal, self._look)
 
     def cancel(self) -> None:

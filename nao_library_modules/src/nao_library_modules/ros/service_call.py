@@ -21,9 +21,6 @@ def call_service(name: str, kind: type, request: Any, limit: float = LIMIT) -> A
     """Call a service, if it is there.
 
     Args:
-        name: Of the service, relative to the namespace.
-        kind: Its type.
-        request: The request.
         limit: s of the computer for the answer.
 
     Raises:

@@ -22,12 +22,6 @@ class SimpleActionClient(actionlib.SimpleActionClient):
     """
 
     def __init__(self, name: str, action: type) -> None:
-        """As actionlib's.
-
-        Args:
-            name: Name of the action.
-            action: Its type.
-        """
         self._sending = threading.RLock()
         super().__init__(name, action)
 

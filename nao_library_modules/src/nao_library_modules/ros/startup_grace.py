@@ -19,11 +19,6 @@ PATIENCE = 30.0
 
 
 def require_patience(value: Any) -> float:
-    """A time to wait from a parameter, s.
-
-    Raises:
-        NaoError: If it is none.
-    """
     return number_parameter("~patience", value, limit("wait"))
 
 
@@ -33,7 +28,6 @@ class StartupGrace:
     Any thread may wait. Time is that of the computer, for simulated time may not have begun.
 
     Args:
-        robot: With its address and connection.
         patience: s from now on for which goals wait.
     """
 
