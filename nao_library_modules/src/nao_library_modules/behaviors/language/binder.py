@@ -47,9 +47,7 @@ def bind(
     """Make a program of a behaviour. Nothing is asked of servers or robot.
 
     Args:
-        behavior: The behaviour.
         values: Name -> value of some or all of its parameters.
-        library: For its boxes.
         tables: Functions of the servers; without them only messages and fields are checked.
 
     Raises:
@@ -109,8 +107,6 @@ class _Binder:
         """The program of a behaviour, on its own or in a box.
 
         Args:
-            behavior: The behaviour.
-            values: Of all its parameters.
             prefix: Path of the box.
             boxes: Names of the behaviours that it is in, itself the last.
         """

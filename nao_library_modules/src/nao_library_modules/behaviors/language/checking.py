@@ -27,7 +27,6 @@ def check(
     """Check a behaviour as a whole, without servers: functions, fields, boxes, times, and names that all robots have.
 
     Args:
-        behavior: The behaviour.
         library: Gives the behaviours of its boxes by name.
         values: Of its parameters; the defaults for those that are not named.
         tables: Functions of the servers, if they are known already.
@@ -59,9 +58,7 @@ def check_given(
         behavior: The behaviour.
         library: Gives the behaviours of its boxes by name.
         given: Values of its parameters.
-        tables: Functions of the servers.
         ask: Has the servers check their goals; None: only what is true of any robot is looked at.
-        read_wrong: What was wrong with its file.
 
     Raises:
         BehaviorError: With everything that is wrong.
@@ -91,7 +88,6 @@ def problems_of(
     """What is wrong with a behaviour; nothing if it can be run.
 
     Args:
-        load: Gives the behaviour.
         library: For its boxes.
         tables: Functions of the servers, if they are known already.
         given: Values of its parameters as "name=value".
@@ -124,9 +120,7 @@ class Facts:
     """What there is to know about a stored behaviour.
 
     Attributes:
-        name: Its name.
         behavior: It; None if its file cannot be read.
-        servers: Names of the actions that it uses.
         problem: What is wrong with it, in one text that may be cut; empty if it can be run.
         problems: All that is wrong with it, one by one; none if it can be run.
         preview: What it would do; empty where nobody asked for that.
@@ -143,13 +137,7 @@ class Facts:
 
 
 def facts_of(name: str, library: Library, tables: FunctionTables) -> Facts:
-    """Look at a stored behaviour.
-
-    Args:
-        name: Its name.
-        library: Where it, and its boxes, are.
-        tables: Functions of the servers.
-    """
+    """Look at a stored behaviour."""
     behavior = None
     try:
         behavior = library(name)
@@ -169,11 +157,6 @@ def outlook_facts(
     """As `facts_of`, with what it would do.
 
     Args:
-        name: What it is called.
-        load: Gives the behaviour.
-        library: For its boxes.
-        tables: Functions of the servers.
-        given: Values of its parameters as "name=value".
         ask: Has the servers check their goals, as `check_given` takes it.
     """
     behavior = None

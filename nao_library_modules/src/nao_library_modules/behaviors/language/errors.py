@@ -56,19 +56,11 @@ class BehaviorError(NaoError):
     """A behaviour cannot be run.
 
     Attributes:
-        name: Of the behaviour.
         problems: What is wrong, in the order of the file.
         readable: The `model.Behavior` with all that could be read of its file; None if nothing is known of that.
     """
 
     def __init__(self, name: str, problems: Sequence[Problem], readable: Any = None) -> None:
-        """Compose the text.
-
-        Args:
-            name: Of the behaviour.
-            problems: At least one.
-            readable: See there.
-        """
         told = "; ".join(map(str, problems[:MOST_TOLD]))
         more = f"; and {len(problems) - MOST_TOLD} more" if len(problems) > MOST_TOLD else ""
         super().__init__(cut(f"behavior {name}: {told}{more}"))
@@ -81,7 +73,6 @@ class NoSuchBehavior(NaoError):
     """Nothing is stored under a name.
 
     Attributes:
-        name: The name.
         known: Names there are, sorted.
     """
 
@@ -94,23 +85,8 @@ class NoSuchBehavior(NaoError):
 
 
 class StepFailed(PlanFailure):
-    """A step of a running behaviour failed.
-
-    Attributes:
-        path: Of the step.
-        what: What it is.
-        problem: Why it failed.
-    """
+    """A step of a running behaviour failed."""
 
     def __init__(self, path: str, what: str, problem: str, file: str = "", line: int = 0) -> None:
-        """Compose the text.
-
-        Args:
-            path: Of the step.
-            what: What it is.
-            problem: Why it failed.
-            file: That the step is in, if it is in one.
-            line: Of the file.
-        """
         text = f"{place(file, line)}step {path} ({what}): {problem}"
         super().__init__(text, path=path, what=what, problem=problem)

@@ -57,10 +57,6 @@ class BadExpression(BadGoal):
 def substitute(value: Any, values: Mapping[str, Any]) -> Any:
     """A value with everything in `${}` worked out, also inside lists and mappings.
 
-    Args:
-        value: Plain values of YAML.
-        values: Name -> value of the parameters.
-
     Raises:
         BadExpression: If something cannot be worked out.
         NotKnown: It depends on a value that is wrong.

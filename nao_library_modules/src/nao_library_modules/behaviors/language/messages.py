@@ -26,7 +26,6 @@ def message_of(message_type: type, fields: Any, where: str = "", taken: Sequence
     """A message with some fields filled; the others have their defaults.
 
     Args:
-        message_type: Of the message.
         fields: Name -> plain value; times and durations in s.
         where: What errors put before the names of fields.
         taken: Fields that make sense here, where not all do: errors name these.

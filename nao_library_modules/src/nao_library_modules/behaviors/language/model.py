@@ -74,9 +74,7 @@ class Functions(Step):
     """One goal for a server: a function, or a chain of them.
 
     Attributes:
-        server: Name of the action.
         functions: Fields of each function message.
-        chained: Whether it was written as a chain.
     """
 
     server: str = ""
@@ -109,11 +107,7 @@ class Wait(Step):
 
 @dataclass(frozen=True)
 class Barrier(Step):
-    """On a timeline: when all above has ended. In branches of a parallel: where those that have it wait for each other.
-
-    Attributes:
-        name: Of the barrier.
-    """
+    """On a timeline: when all above has ended. In a parallel: where the branches that have it wait for each other."""
 
     name: str = ""
 
@@ -170,7 +164,6 @@ class Repeat(Composite):
     """A sequence several times.
 
     Attributes:
-        count: How often.
         variable: Parameter that has the number of the round, counted from 1; may be empty.
     """
 
@@ -185,12 +178,7 @@ class Repeat(Composite):
 
 @dataclass(frozen=True)
 class Box(Step):
-    """Another behaviour.
-
-    Attributes:
-        name: Of the behaviour.
-        arguments: Values for its parameters.
-    """
+    """Another behaviour."""
 
     name: str = ""
     arguments: Mapping[str, Any] = field(default_factory=dict)
@@ -206,10 +194,7 @@ class Behavior:
     """A behaviour.
 
     Attributes:
-        name: Of its file.
         help: What it does, in a line.
-        parameters: By name.
-        body: What it does.
         tags: What it is filed under.
         file: Path of its file; empty if it is none.
     """

@@ -34,13 +34,8 @@ class Parameter:
     """A parameter of a behaviour.
 
     Attributes:
-        name: That `${name}` stands for.
         default: Value where none is given; its kind is that of the parameter. `UNKNOWN`: the file is wrong about it.
-        help: What it is for.
         choices: Values that it may have; empty: any.
-        lowest: The least that a number may be.
-        highest: The most that it may be.
-        unit: Of a number.
         line: Of its file, where it is declared; 0 if it is not known.
     """
 
@@ -136,8 +131,6 @@ def given_as_text(
     """Name -> value of what is given as "name=value".
 
     Args:
-        parameters: By name.
-        texts: What is given.
         problems: Where to note what is unknown, comes twice, or has a value that will not do; that becomes `UNKNOWN`.
         file: That declares the parameters.
     """

@@ -19,11 +19,7 @@ class UnknownYet(Exception):
 
 
 class PlannedStore:
-    """What checks ask instead of the store.
-
-    Args:
-        store: As it is now.
-    """
+    """What checks ask instead of the store."""
 
     def __init__(self, store: BehaviorStore) -> None:
         self._store = store
@@ -34,7 +30,6 @@ class PlannedStore:
         """The one that belongs to the check of a chain.
 
         Args:
-            store: As it is now.
             context: Lives as long as the check.
         """
         return context.setdefault(KEY, cls(store))
@@ -96,7 +91,6 @@ class PlannedStore:
         """A behaviour will be there.
 
         Args:
-            name: Its name.
             text: None if it is recorded.
         """
         self._changes[name] = _UNKNOWN if text is None else text

@@ -18,8 +18,6 @@ class Node:
     Attributes:
         path: Where it stands, boxes and rounds included.
         behavior: File that it is in.
-        label: Its label; may be empty.
-        what: What it is.
         policy: What happens when it fails.
         limit: s after which it is ended and counts as done; None for no limit.
         at: When it begins, on a timeline.
@@ -68,7 +66,6 @@ class BarrierNode(Node):
     """A barrier.
 
     Attributes:
-        name: Of the barrier.
         home: Path of the parallel whose branches meet here; None on a timeline.
         branch: Number of the branch that it is in, counted from 1.
     """
@@ -114,7 +111,6 @@ class RepeatNode(Node):
     """A sequence several times.
 
     Attributes:
-        count: How often.
         round: The sequence of a round, counted from 1.
     """
 
@@ -140,7 +136,6 @@ def walk_rounds(
     """As `walk`, with all rounds of repetitions; those after the first one as plain nodes, which are quickly made.
 
     Args:
-        node: Where to begin.
         left_out: Whether the repetition at a path is to be passed over with all its rounds.
         rounds: Where in its path `node` has the number of a round that is not the first one, and that number.
     """

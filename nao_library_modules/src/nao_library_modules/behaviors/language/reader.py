@@ -30,7 +30,6 @@ def read(text: str, name: str, file: str = "") -> Behavior:
 
     Args:
         text: YAML, see docs/behaviors.md.
-        name: Of the behaviour.
         file: Path of the file that the text is from, for errors.
 
     Raises:

@@ -50,7 +50,6 @@ class FunctionTables:
 
     Args:
         describe: Has a server that runs describe its functions.
-        running: Tells which servers run.
     """
 
     def __init__(self, describe: Describe = nobody_describes, running: Running = tuple) -> None:
@@ -99,10 +98,6 @@ class FunctionTables:
     def check(self, server: ServerType, messages: Sequence[Any]) -> tuple[list[FunctionFailed], list[int]]:
         """Check a goal as far as that is possible without any robot and without what goals before it have done.
 
-        Args:
-            server: That it is for.
-            messages: Its function messages.
-
         Returns:
             What is wrong with it, whichever robot it is for; and the places, counted from 1, of the functions whose
             checks only the server can finish.
@@ -121,7 +116,6 @@ class FunctionTables:
         """Check goals as their server would for a robot that is as all of its family are.
 
         Args:
-            name: Of the server.
             goals: In the order in which they would be sent.
         """
         server = self.server(name)

@@ -44,7 +44,6 @@ class StepReader:
 
     Args:
         parameters: Names that `${}` may use.
-        problems: Where to note it.
     """
 
     def __init__(self, parameters: Mapping[str, Any], problems: list[Problem]) -> None:
@@ -66,8 +65,6 @@ class StepReader:
         """The steps of a list. What cannot be read is noted, and nothing is known of it.
 
         Args:
-            content: The list.
-            path: Of the step that they are in.
             separator: Between that path and their numbers.
             timed: Whether they are entries of a timeline.
         """

@@ -22,7 +22,6 @@ class Validation:
     """What came of asking.
 
     Attributes:
-        problems: What is wrong with goals.
         unvalidated: Servers that did not check their goals, and why.
         unchecked: Path of a step and its function, for all that nobody could check to the end and all that would be
             skipped.
@@ -39,13 +38,7 @@ def ask_nobody(_server: str, _goals: Sequence[Any]) -> GoalCheck:
 
 
 def validate(program: Node, ask: Ask, tables: FunctionTables) -> Validation:
-    """Have all goals of a program checked. What a server does not check is compared with what all robots have.
-
-    Args:
-        program: What would run.
-        ask: Asks one server.
-        tables: What is known without servers.
-    """
+    """Have all goals of a program checked. What a server does not check is compared with what all robots have."""
     problems: list[Problem] = []
     unvalidated: list[str] = []
     unchecked: list[str] = []
@@ -82,10 +75,6 @@ def goals_of(node: Node, skipped: bool = False) -> Iterator[tuple[Goal, bool]]:
     """Goals of a program in the order in which they are sent, as far as that is known.
 
     Of repetitions those of the first round, and those of the last one that differ.
-
-    Args:
-        node: Where to begin.
-        skipped: Whether a failure of it is skipped.
 
     Yields:
         Goal, and whether the behaviour goes on if it fails.

@@ -18,10 +18,6 @@ _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 def step_of(server: str, goal: Any) -> dict[str, Any]:
     """A goal as a step of a file: a function, or a chain of them.
 
-    Args:
-        server: Name of the action.
-        goal: The goal message.
-
     Raises:
         BadGoal: If steps may not use the server.
     """
@@ -36,13 +32,7 @@ def step_of(server: str, goal: Any) -> dict[str, Any]:
 
 
 def text_of(help_: str, steps: Sequence[Mapping[str, Any]], tags: Sequence[str] = ()) -> str:
-    """The text of a behaviour without parameters.
-
-    Args:
-        help_: What it does, in a line.
-        steps: As in a file.
-        tags: What it is filed under.
-    """
+    """The text of a behaviour without parameters."""
     content: dict[str, Any] = {"help": help_}
     if tags:
         content["tags"] = list(tags)
@@ -51,11 +41,6 @@ def text_of(help_: str, steps: Sequence[Mapping[str, Any]], tags: Sequence[str] 
 
 def from_goal(server: str, goal: Any, help_: str = "") -> str:
     """Write down one goal as a behaviour; what is returned can be stored: `store.save(name, text)`.
-
-    Args:
-        server: Name of the action.
-        goal: The goal message.
-        help_: What it does, in a line.
 
     Raises:
         BadGoal: If steps may not use the server.

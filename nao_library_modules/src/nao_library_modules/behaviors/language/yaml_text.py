@@ -116,10 +116,6 @@ _Loader.add_constructor("tag:yaml.org,2002:int", lambda loader, node: int(loader
 def load(text: str, name: str) -> Any:
     """The value of a text.
 
-    Args:
-        text: YAML.
-        name: What errors call it.
-
     Raises:
         BehaviorError: If it is no YAML, or too much of it.
     """

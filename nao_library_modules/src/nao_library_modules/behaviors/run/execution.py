@@ -39,9 +39,6 @@ class Execution:
         report: What became of the steps; complete when `run` is over, however it ends.
 
     Args:
-        program: What to run.
-        clients: For its goals.
-        clock: ROS time.
         tell: Gets everything that happens to steps.
     """
 
@@ -85,9 +82,7 @@ class Execution:
         """Run a step to its end, with the retries that it is allowed.
 
         Args:
-            node: The step.
             due: When it was to begin, s from the beginning of the behaviour; now if there is no such time.
-            begun: Called when it begins.
         """
         wanted = self.report.now() if due is None else due
         retries = node.policy.retries

@@ -14,11 +14,7 @@ Ticket = Tuple[float, Tuple[int, ...], object]
 
 
 class FifoLock:
-    """A turn with each of several servers; who came first is first, at the same time by the order of the file.
-
-    Args:
-        servers: Their names.
-    """
+    """A turn with each of several servers; who came first is first, at the same time by the order of the file."""
 
     def __init__(self, servers: Iterable[str]) -> None:
         # (ticket of who has the turn or None, tickets of who waits)
@@ -29,9 +25,7 @@ class FifoLock:
         """Have the turn with a server in a block; waits for it, in a plan.
 
         Args:
-            server: Its name.
             now: Time of asking, s.
-            path: Of the step that asks.
         """
         queue = self._queues[server]
         ticket = (now, tuple(number for _, number in path), object())

@@ -63,12 +63,7 @@ def check_delete(self: KeepingFunctions, str_param: str, context: dict[str, Any]
 
 
 class KeepingFunctions:
-    """Functions that store, rename, copy and delete behaviours. Parameters are fields of BehaviorFunction.
-
-    Attributes:
-        store: Behaviours by name.
-        tables: Functions of the servers.
-    """
+    """Functions that store, rename, copy and delete behaviours. Parameters are fields of BehaviorFunction."""
 
     store: BehaviorStore
     tables: FunctionTables

@@ -25,8 +25,6 @@ class Heard:
     """A goal that was sent.
 
     Attributes:
-        server: Name of the action.
-        goal: The goal message.
         time: When it was sent, s.
         ended: When it ended; None if that did not come.
         status: How it ended, of GoalStatus.
@@ -42,14 +40,7 @@ class Heard:
 class Recording:
     """A recording that goes on. Any thread may call its methods.
 
-    Attributes:
-        name: Of the behaviour that it becomes.
-        overwrite: Whether it replaces one of that name.
-
     Args:
-        name: See above.
-        servers: Names of the actions whose goals count.
-        overwrite: See above.
         tell: Called with the server and each goal that counts, in the thread that it comes in.
     """
 
@@ -71,9 +62,6 @@ class Recording:
         """A goal was sent.
 
         Args:
-            server: Name of the action.
-            goal_id: What actionlib calls the goal.
-            goal: The goal message.
             time: s of ROS time.
         """
         with self._lock:

@@ -61,7 +61,6 @@ class NotingFunctions:
     """Functions that record behaviours. Parameters are fields of BehaviorFunction.
 
     Attributes:
-        store: Behaviours by name.
         recording: The one that goes on; None if none does.
         cut_short: What a recording that was interrupted has left, for the result of the chain.
     """

@@ -24,14 +24,12 @@ class Record:
     """What became of one step; times in s from the beginning of the behaviour, -1 if there is none.
 
     Attributes:
-        node: The step.
         state: "ended", "failed", "skipped", "preempted" or "not run"; "began" while it runs.
         began: When it began, the first time.
         tried: When its last attempt began.
         ended: When it ended, the last time.
         late: s that it began after its time.
         attempts: How often it was tried.
-        error: Why it failed.
         results: What its functions answered; FunctionResult messages of the last attempt.
     """
 
@@ -51,7 +49,6 @@ class Event:
     """Something that happened to a step.
 
     Attributes:
-        node: The step.
         state: One of the constants of this module.
         time: s from the beginning of the behaviour.
         text: Why, by how much, or what its server told.
@@ -88,7 +85,6 @@ class Report:
         """A step begins, perhaps once more.
 
         Args:
-            node: The step.
             late: s that it begins after its time.
         """
         now = self.now()

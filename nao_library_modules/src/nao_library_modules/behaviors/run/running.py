@@ -70,8 +70,6 @@ class RunningFunctions:
     """Functions that run and show behaviours. Parameters are fields of BehaviorFunction.
 
     Attributes:
-        store: Behaviours by name.
-        tables: Functions of the servers.
         steps: What became of the steps of behaviours that this goal has run.
         shown: Behaviours that this goal has asked for.
         replaced: Behaviour that the goal before ran when this one came; empty if none.
@@ -142,7 +140,6 @@ class RunningFunctions:
         Args:
             name: Of one that is stored.
             text: YAML.
-            file: That the text is from.
             parameters: Values as "name=value".
             validate: Whether its servers look at its goals.
         """
@@ -197,12 +194,7 @@ def step_message(record: Record) -> BehaviorStep:
 
 
 def info_message(facts: Facts, shipped: bool) -> BehaviorInfo:
-    """What there is to know about a behaviour, as a message.
-
-    Args:
-        facts: What there is to know.
-        shipped: Whether it comes with the library.
-    """
+    """What there is to know about a behaviour, as a message."""
     info = BehaviorInfo(name=facts.name, servers=list(facts.servers), shipped=shipped, problem=facts.problem)
     if facts.behavior is not None:
         info.help, info.tags = facts.behavior.help, list(facts.behavior.tags)

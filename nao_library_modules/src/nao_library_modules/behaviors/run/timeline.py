@@ -23,7 +23,6 @@ class Timeline:
     """One run of a timeline.
 
     Args:
-        node: The timeline.
         report: Its clock counts.
         step: Runs a step: `step(node, due, begun)`.
         zero: When the timeline began, s from the beginning of the behaviour.
