@@ -73,8 +73,6 @@ def build_message(function: TypedFunction, kind: Any, taken: Sequence[str] = ())
     """The function message of a typed function.
 
     Args:
-        function: It.
-        kind: Type of the message.
         taken: Fields that the function reads, where that is known: errors name these.
 
     Raises:

@@ -20,8 +20,6 @@ def ask(stack: Stack, server: str, goals: Sequence[Any]) -> GoalCheck:
     """Have a server check goals.
 
     Args:
-        stack: The servers of the robot.
-        server: Its name, as `Stack.server` takes it.
         goals: In the order in which they would be sent.
 
     Raises:

@@ -21,7 +21,6 @@ def wanted_file(file: str, overwrite: bool, kinds: Sequence[str] = ()) -> Path |
     Asked for before anything is done: a recording that finds no place is lost.
 
     Args:
-        file: As it was typed.
         overwrite: Whether it may be there already.
         kinds: What its name may end in, without the dot; empty where the server decides.
 
@@ -57,7 +56,6 @@ def bring(path: str, target: Path | None, overwrite: bool = False) -> str:
     """Move a file that a server has written to where it is wanted; where that is, as a text.
 
     Args:
-        path: Where it is.
         target: As `wanted_file` answers it.
         overwrite: Whether it replaces a file that is there by now; else it gets a number.
 

@@ -35,7 +35,6 @@ class GoalEnd:
     Attributes:
         server: Relative name of the action.
         state: succeeded, aborted, preempted, ...
-        text: What the server said about it.
         result: Its fields as plain values.
         elapsed: s of this computer.
     """
@@ -55,11 +54,6 @@ class GoalEnd:
 def run_functions(settings: Settings, server: str, functions: Sequence[Any]) -> GoalEnd:
     """Send function messages as one goal and wait for its end.
 
-    Args:
-        settings: Of this run.
-        server: The server, as `Stack.server` takes it.
-        functions: The function messages.
-
     Raises:
         CommandFailed: It failed or took too long.
         Interrupted: Somebody pressed Ctrl-C; the goal is over then.
@@ -75,9 +69,6 @@ def carry_out(settings: Settings, server: str, functions: Sequence[Any], quiet: 
     """Run functions and print what came of it.
 
     Args:
-        settings: Of this run.
-        server: The server, as `Stack.server` takes it.
-        functions: The function messages.
         quiet: Nobody asked for anything: print nothing, except in JSON.
     """
     end = run_functions(settings, server, functions)
@@ -111,8 +102,6 @@ class GoalRun:
     """One goal of one server, from a node that lives as long as the program.
 
     Args:
-        settings: Of this run.
-        server: The server, as `Stack.server` takes it.
         called: As `Progress` takes it.
 
     Attributes:
@@ -234,8 +223,6 @@ def function_message(settings: Settings, server: str, **fields: Any) -> Any:
     """A function message of a server.
 
     Args:
-        settings: Of this run.
-        server: The server, as `Stack.server` takes it.
         fields: Its fields; those that are None keep their defaults.
     """
     kind = message_class(settings.stack.describe(server, brief=True).message)

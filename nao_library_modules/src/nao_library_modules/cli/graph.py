@@ -39,9 +39,6 @@ class _Transport(xmlrpc.client.Transport):
 class Graph:
     """The master of this shell, asked when something is wanted of it.
 
-    Attributes:
-        uri: Address of the master.
-
     Args:
         limit: s that an answer may take.
     """
@@ -85,8 +82,6 @@ class Graph:
 
         Args:
             service: Its full name.
-            kind: Its type.
-            request: The request.
             patient: Wait for the answer as long as the connection stands, for a service that takes its time.
 
         Raises:

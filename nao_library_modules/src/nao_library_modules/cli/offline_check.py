@@ -22,12 +22,7 @@ from .stack import Stack
 
 
 def check_offline(stack: Stack, request: Any) -> Any:
-    """What `NaoBehavior/list` would answer; behaviours of the user are those in the usual folder.
-
-    Args:
-        stack: What is there.
-        request: ListBehaviorsRequest with a name or a text.
-    """
+    """What `NaoBehavior/list` would answer; behaviours of the user are those in the usual folder."""
     store = BehaviorStore(Path(PARAMETERS["behavior_dir"]).expanduser(), config_file(SHIPPED))
     name = PurePath(request.file).stem if request.text else request.name
     load = (lambda: read(request.text, name, request.file)) if request.text else (lambda: store.load(name))

@@ -85,7 +85,6 @@ def say_result(result: Mapping[str, Any], end: str = "", failed: bool = False) -
     """Print what a goal answered: each function's values, then the fields that the result has of its own.
 
     Args:
-        result: The result as plain values.
         end: What is told at the end, of a success here, of a failure in any case: an error in it is not told twice.
         failed: Of its own fields only the lists are told, what was made and found until then: the rest is state. Where
             no function was done, nothing was.
