@@ -6,6 +6,7 @@ import json
 import os
 import shlex
 import shutil
+import socket
 import subprocess
 import sys
 from functools import partial
@@ -77,6 +78,7 @@ def test_the_steps_of_the_container_file_make_a_robot_in_a_bare_debian(tmp_path)
         target = tree / place.relative_to("/")
         target.parent.mkdir(parents=True, exist_ok=True)
         copy(place, target)
+    (tree / "etc/hosts").write_text(f"127.0.0.1 localhost {socket.gethostname()}\n")  # as container engines do
     folder, entry, command = "/", [], []
     for name, told in instructions():
         if name == "FROM":
