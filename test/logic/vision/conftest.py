@@ -6,7 +6,7 @@ import pytest
 from camera_topics import CAMERA, OUT, HandClock, Topics, numbered_image
 
 from nao_library_modules.vision.capture.files import VisionFiles
-from nao_library_modules.vision.capture.recorder import Recording, VideoWish
+from nao_library_modules.vision.capture.recorder import Recording, VideoSpec
 from nao_library_modules.vision.capture.stream import Stream
 
 
@@ -50,8 +50,8 @@ def stream(topics, clock, started):
 @pytest.fixture
 def recording(topics, clock, files, started):
     def make(name="walk.mp4", rate=0.0, **fields):
-        wish = VideoWish(files.folder / name if name else None, "mp4", "h264", **fields)
-        return started(Recording("r", CAMERA, rate, topics, clock, files, wish))
+        spec = VideoSpec(files.folder / name if name else None, "mp4", "h264", **fields)
+        return started(Recording("r", CAMERA, rate, topics, clock, files, spec))
 
     return make
 

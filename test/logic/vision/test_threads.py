@@ -9,7 +9,7 @@ from camera_topics import CAMERA, OUT, numbers_of, wait_for
 
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.vision.capture import queue as vision_queue
-from nao_library_modules.vision.capture.jobs import MOST_THREADS, VisionThreads
+from nao_library_modules.vision.capture.jobs import MOST_JOBS, CaptureJobs
 from nao_library_modules.vision.capture.stream import Stream
 
 FRAME = 64 * 48 * 3
@@ -52,7 +52,7 @@ def test_a_thread_tells_how_it_is(started, topics, send, clock):
 
 
 def test_the_table_knows_its_threads(topics, clock):
-    threads = VisionThreads()
+    threads = CaptureJobs()
 
     def made(ident):
         return Stream(ident, CAMERA, 0.0, topics, clock, f"/{ident}", 0, 0)
@@ -71,7 +71,7 @@ def test_the_table_knows_its_threads(topics, clock):
     again = made("alpha")
     threads.add(again)
     assert threads.get("alpha") is again
-    for number in range(MOST_THREADS - 2):
+    for number in range(MOST_JOBS - 2):
         threads.add(made(f"t{number}"))
     with pytest.raises(BadGoal, match="too many"):
         threads.add(made("one more"))

@@ -14,7 +14,7 @@ from ..processes.launcher import LaunchPath, launched_nodes
 from ..server.extractor_use import subscriber_name
 from ..server.nao_basic import NaoBasic
 from .capture.files import DEFAULT_RECORD_DIR, VisionFiles
-from .capture.jobs import VisionThreads
+from .capture.jobs import CaptureJobs
 from .capture.settings import SettingFunctions
 from .capture.snapshots import PictureFunctions
 from .capture.streaming import StreamingFunctions
@@ -112,7 +112,7 @@ class NaoVision(
         super().__init__(ip, port, autostart, launchpath or CAMERAS, **options)
         self.topics = topics
         self.files = VisionFiles(record_dir)
-        self.threads = VisionThreads()
+        self.threads = CaptureJobs()
         self.camera_topics = {"top": camera_top, "bottom": camera_bottom}
         self.camera_servers = {"top": camera_top_node, "bottom": camera_bottom_node}
         self.active_camera = "top"

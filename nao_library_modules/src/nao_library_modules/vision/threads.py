@@ -19,9 +19,9 @@ from nao_library_msgs.msg import RecordedVideo, VisionThread
 
 from ..ros.ros_clock import RosClock
 from .capture.files import DEFAULT_RECORD_DIR, VisionFiles
-from .capture.job import FrameThread
-from .capture.jobs import VisionThreads
-from .capture.recorder import Recording, VideoWish
+from .capture.job import CaptureJob
+from .capture.jobs import CaptureJobs
+from .capture.recorder import Recording, VideoSpec
 from .capture.stream import Stream
 from .capture.topics import VisionTopics
 from .capture.video import VIDEO_TYPES, codec_name
@@ -34,7 +34,7 @@ class ImageThread:
         name: Its name.
     """
 
-    def __init__(self, thread: FrameThread, threads: VisionThreads) -> None:
+    def __init__(self, thread: CaptureJob, threads: CaptureJobs) -> None:
         """Take over a thread that runs."""
         self.name = thread.ident
         self._thread = thread
@@ -68,7 +68,7 @@ class ImageThreads:
         self._topics = topics or VisionTopics()
         self._clock = clock or RosClock()
         self._files = VisionFiles(folder)
-        self._threads = VisionThreads()
+        self._threads = CaptureJobs()
 
     def stream(
         self, name: str, topic: str, topic_out: str, width: int = 0, height: int = 0, rate: float = 0.0
@@ -115,8 +115,8 @@ class ImageThreads:
             NaoError: A thread of that name runs, the topic holds no pictures, or the file cannot be written.
         """
         kind = self._files.file_type(file, "", VIDEO_TYPES)
-        wish = VideoWish(self._files.path(file, kind), kind, codec_name(codec, kind), width, height, overwrite)
-        return self._start(Recording(name, topic, rate, self._topics, self._clock, self._files, wish))
+        spec = VideoSpec(self._files.path(file, kind), kind, codec_name(codec, kind), width, height, overwrite)
+        return self._start(Recording(name, topic, rate, self._topics, self._clock, self._files, spec))
 
     def reports(self) -> list[VisionThread]:
         """How all are now, by name."""
@@ -132,7 +132,7 @@ class ImageThreads:
     def __exit__(self, *_: Any) -> None:
         self.close()
 
-    def _start(self, thread: FrameThread) -> ImageThread:
+    def _start(self, thread: CaptureJob) -> ImageThread:
         self._threads.add(thread)
         try:
             thread.start()

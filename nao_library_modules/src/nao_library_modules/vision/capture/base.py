@@ -8,7 +8,7 @@ from typing import Any
 from ...base.cancellation import CancellationToken
 from .cameras import camera_name
 from .files import VisionFiles
-from .jobs import VisionThreads
+from .jobs import CaptureJobs
 from .taken import Taken
 
 
@@ -36,7 +36,7 @@ class VisionBase:
     camera_topic: Callable[[str], str]
     camera_servers: Mapping[str, str]
     files: VisionFiles
-    threads: VisionThreads
+    threads: CaptureJobs
     topics: Any  # VisionTopics
     taken: Taken
     tell: Callable[..., None]  # of NaoVision: feedback

@@ -12,7 +12,7 @@ from typing import Any, Dict, Protocol, Tuple
 from ...base.errors import BadGoal
 from ...base.field_checks import require_known
 from .files import VisionFiles
-from .jobs import MOST_THREADS, VisionThreads, taken, too_many, unknown
+from .jobs import MOST_JOBS, CaptureJobs, taken, too_many, unknown
 from .pictures import PICTURE_TYPES
 from .video import CODECS, VIDEO_TYPES, codec_name, known_codecs
 
@@ -22,7 +22,7 @@ Plan = Dict[str, Tuple[str, bool]]
 class HasThreads(Protocol):
     """The module, as far as the checks need it."""
 
-    threads: VisionThreads
+    threads: CaptureJobs
     files: VisionFiles
     topics: Any
 
@@ -61,7 +61,7 @@ def _plan_new(self: HasThreads, ident: str, kind: str, runs: bool, context: dict
     name = ident.strip()
     if plan.get(name, ("", False))[1]:
         raise taken(name)
-    if name not in plan and len(plan) >= MOST_THREADS:
+    if name not in plan and len(plan) >= MOST_JOBS:
         raise too_many(name)
     plan[name] = (kind, runs)
 

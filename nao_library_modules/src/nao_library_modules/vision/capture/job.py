@@ -32,7 +32,7 @@ LAST_FRAME_LIMIT = 1.0
 """s to wait at a stop for frames that are on their way; a camera that is later than that has another clock."""
 
 
-class FrameThread(ABC):
+class CaptureJob(ABC):
     """Takes the frames of a topic in a thread of its own, from its start to its stop, as often as it is started.
 
     Threads: `_arrived` is called by the one that receives messages, `_handle` and `_end` by the worker. The rest is for

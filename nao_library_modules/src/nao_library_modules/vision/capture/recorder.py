@@ -12,14 +12,14 @@ from nao_library_msgs.msg import RecordedVideo, VisionThread
 
 from ...base.whole_file import WholeFile
 from .files import VisionFiles
-from .job import FrameThread
+from .job import CaptureJob
 from .pictures import picture_of, scaled, visible
 from .queue import Frame
 from .video import VideoFile
 
 
 @dataclass(frozen=True)
-class VideoWish:
+class VideoSpec:
     """What a recording is to be.
 
     Attributes:
@@ -39,7 +39,7 @@ class VideoWish:
     overwrite: bool = False
 
 
-class Recording(FrameThread):
+class Recording(CaptureJob):
     """Writes frames into a file; each start makes a new one."""
 
     kind = "recording"
@@ -53,7 +53,7 @@ class Recording(FrameThread):
         topics: Any,
         clock: Any,
         files: VisionFiles,
-        wish: VideoWish,
+        spec: VideoSpec,
         again: bool = False,
     ) -> None:
         """Make it ready.
@@ -65,21 +65,21 @@ class Recording(FrameThread):
             topics: Gives subscriptions.
             clock: ROS time.
             files: Folder for the file.
-            wish: What it is to be.
+            spec: What it is to be.
             again: Whether it has been started before, by a node that has died: its file stays.
         """
         super().__init__(ident, topic, rate, topics, clock)
         self._files = files
-        self._wish = wish
+        self._spec = spec
         self._file: WholeFile | None = None
         self._video: VideoFile | None = None
         self._again = again
 
     @property
     def settings(self) -> dict[str, Any]:
-        """As FrameThread has it."""
+        """As CaptureJob has it."""
         common = {"ident": self.ident, "topic": self.topic, "rate": self._rate}
-        return {**common, "wish": {**asdict(self._wish), "path": self._wish.path and str(self._wish.path)}}
+        return {**common, "spec": {**asdict(self._spec), "path": self._spec.path and str(self._spec.path)}}
 
     @property
     def video(self) -> RecordedVideo:
@@ -89,8 +89,8 @@ class Recording(FrameThread):
         message = RecordedVideo(
             id=self.ident,
             path=report.path,
-            file_type=self._wish.file_type,
-            codec=self._wish.codec,
+            file_type=self._spec.file_type,
+            codec=self._spec.codec,
             topic=self.topic,
             dropped=report.dropped,
             error=report.error or ("" if video is not None else f"no frame came from {self.topic}: there is no file"),
@@ -107,17 +107,17 @@ class Recording(FrameThread):
     def _begin(self) -> None:
         again, self._again = self._again, True
         self._video = None
-        wish = self._wish
-        path = wish.path or self._files.named_by_time(self.ident, wish.file_type)
+        spec = self._spec
+        path = spec.path or self._files.named_by_time(self.ident, spec.file_type)
         # Only the first start was asked about: what it wrote must not be replaced by the second.
-        self._file = self._files.create(path, wish.overwrite and not again, numbered=again or wish.path is None)
+        self._file = self._files.create(path, spec.overwrite and not again, numbered=again or spec.path is None)
         self._wanted = self._file.path
 
     def _handle(self, frame: Frame) -> tuple[int, int] | None:
-        picture = visible(scaled(picture_of(frame.message), self._wish.width, self._wish.height))
+        picture = visible(scaled(picture_of(frame.message), self._spec.width, self._spec.height))
         if self._video is None:
             height, width = picture.shape[:2]
-            self._video = VideoFile(self._file, self._wish.file_type, self._wish.codec, width, height)
+            self._video = VideoFile(self._file, self._spec.file_type, self._spec.codec, width, height)
         written = self._video.write(picture, frame.stamp)
         return (self._video.width, self._video.height) if written else None
 
@@ -136,4 +136,4 @@ class Recording(FrameThread):
             self._files.done(self._wanted)
 
     def _fill(self, report: VisionThread) -> None:
-        report.path = str(self._file.path if self._file is not None else self._wish.path or "")
+        report.path = str(self._file.path if self._file is not None else self._spec.path or "")

@@ -9,12 +9,12 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 from nao_library_msgs.msg import VisionThread
 
 from .camera_info import COMPRESSED, info_topic, scaled_info
-from .job import FrameThread
+from .job import CaptureJob
 from .pictures import encoded, encoding_of, is_compressed, picture_of, scaled, visible, wanted_size
 from .queue import Frame
 
 
-class Stream(FrameThread):
+class Stream(CaptureJob):
     """Passes frames on to a topic.
 
     Frames whose form does not change are passed on as they came. Those that do are worked on only while somebody
@@ -52,7 +52,7 @@ class Stream(FrameThread):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """As FrameThread has it."""
+        """As CaptureJob has it."""
         width, height = self._wanted
         common = {"ident": self.ident, "topic": self.topic, "rate": self._rate}
         return {**common, "topic_out": self.topic_out, "width": width, "height": height}

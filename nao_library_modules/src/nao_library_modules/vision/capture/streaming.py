@@ -42,8 +42,8 @@ from .fields import (
     VideoType,
     Width,
 )
-from .jobs import AnyThread
-from .recorder import Recording, VideoWish
+from .jobs import CaptureJob
+from .recorder import Recording, VideoSpec
 from .stream import Stream
 from .video import VIDEO_TYPES, codec_name
 
@@ -115,9 +115,9 @@ class StreamingFunctions(VisionBase):
         """Make a recording ready; startThread begins it."""
         kind = self.files.file_type(str_param, file_type, VIDEO_TYPES)
         path = self.files.path(str_param, kind) if str_param.strip() else None
-        wish = VideoWish(path, kind, codec_name(codec, kind), width, height, overwrite)
+        spec = VideoSpec(path, kind, codec_name(codec, kind), width, height, overwrite)
         source = self.source(camera, topic)
-        self.threads.add(Recording(id.strip(), source, rate, self.topics, self.clock, self.files, wish))
+        self.threads.add(Recording(id.strip(), source, rate, self.topics, self.clock, self.files, spec))
         self._keep()
 
     @checked_by(check_stop_recording)
@@ -159,7 +159,7 @@ class StreamingFunctions(VisionBase):
         self.taken.threads += found
         return [report.id for report in found]
 
-    def _stop(self, thread: AnyThread) -> None:
+    def _stop(self, thread: CaptureJob) -> None:
         thread.stop()
         self._keep()
         if isinstance(thread, Recording):
@@ -179,12 +179,12 @@ class StreamingFunctions(VisionBase):
             except (NaoError, KeyError, TypeError) as error:
                 log.warning("a stream or recording is not there again: %s: %s", told, error)
 
-    def _thread(self, wish: dict[str, Any] | None = None, **settings: Any) -> AnyThread:
+    def _thread(self, spec: dict[str, Any] | None = None, **settings: Any) -> CaptureJob:
         settings.update(topics=self.topics, clock=self.clock)
-        if wish is None:
+        if spec is None:
             return Stream(**settings)
-        path = wish["path"] and Path(wish["path"])
-        return Recording(files=self.files, wish=VideoWish(**{**wish, "path": path}), again=True, **settings)
+        path = spec["path"] and Path(spec["path"])
+        return Recording(files=self.files, spec=VideoSpec(**{**spec, "path": path}), again=True, **settings)
 
     def _keep(self) -> None:
         self.kept.save([{"settings": each.settings, "runs": each.runs} for each in self.threads.known.values()])
