@@ -7,7 +7,7 @@ import math
 import pytest
 
 from nao_library_modules.motion.facts import JointLimits
-from nao_library_modules.vision.detection.base import Wanted
+from nao_library_modules.vision.detection.detectors import Wanted, seen_messages
 from nao_library_modules.vision.detection.events import (
     BALL,
     CODE,
@@ -23,7 +23,6 @@ from nao_library_modules.vision.detection.events import (
     landmark_detections,
     movement_detections,
 )
-from nao_library_modules.vision.detection.results import seen_messages
 from nao_library_modules.vision.detection.space import LocalizedDetection, located, merged
 from nao_library_modules.vision.detection.track_plan import aim, fraction, off_axis, search_angles, the_one, travel_time
 

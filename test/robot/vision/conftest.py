@@ -26,7 +26,7 @@ def vision(goals_to, topics, tmp_path):
 
     goals = goals_to(NaoVision, NaoVisionGoal, topics=topics, record_dir=str(tmp_path / "files"))
     yield goals
-    goals.module.threads.close()
+    goals.module.jobs.close()
 
 
 @pytest.fixture

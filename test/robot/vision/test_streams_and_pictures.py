@@ -120,7 +120,7 @@ def test_a_mistake_is_told_before_anything_begins(vision, topics):
     for functions, problem in chains + CHAINS:
         text = vision.refused(*functions)
         assert text.startswith(f"function {len(functions)} (") and problem in text
-    assert vision.module.threads.known == {} and topics.subscribers == {}
+    assert vision.module.jobs.known == {} and topics.subscribers == {}
 
 
 def test_a_picture_is_the_cameras_and_newer_than_the_goal(robot, vision, topics, camera, files):
@@ -162,7 +162,7 @@ def test_the_active_camera_is_the_robots_as_well(robot, vision):
     result = vision.succeed(f("setActiveCamera", camera="bottom"), f("getActiveCamera"))
     assert (result.memList, robot.ALVideoDevice.getActiveCamera()) == (["bottom"], 1)
     vision.succeed(f("setActiveCamera", camera="top"), f("setActiveCamera", camera="bottom", revert=True))
-    assert (vision.module.active_camera, robot.ALVideoDevice.getActiveCamera()) == ("top", 0)
+    assert (vision.module.cameras.active, robot.ALVideoDevice.getActiveCamera()) == ("top", 0)
     assert vision.succeed(f("getCameras")).memList == [
         f'["top", "{TOP}", "CameraTop_optical_frame"]', f'["bottom", "{BOTTOM}", "CameraBottom_optical_frame"]',
     ]  # fmt: skip

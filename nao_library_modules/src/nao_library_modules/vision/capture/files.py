@@ -89,6 +89,18 @@ class VisionFiles:
         if path.exists() and not overwrite:
             raise BadGoal("str_param", path.name, "another name, or overwrite", problem=f"{path} is there already")
 
+    def plan(self, path: Path, overwrite: bool, planned: set[Path]) -> None:
+        """Check that a file may be written after the planned ones, and add it to these.
+
+        Raises:
+            BadGoal: As `require_free`, or if an earlier function of the chain writes it.
+        """
+        self.require_free(path, overwrite)
+        if path in planned and not overwrite:
+            problem = f"an earlier function writes {path}"
+            raise BadGoal("str_param", path.name, "another name, or overwrite", problem=problem)
+        planned.add(path)
+
     def named_by_time(self, prefix: str, file_type: str) -> Path:
         """Path for a file that a goal does not name: what it is, and the time of day."""
         now = time.time()

@@ -1,4 +1,4 @@
-"""A thread that takes frames of a camera one after the other: what streams and recordings have in common. No ROS."""
+"""What streams and recordings have in common: a thread that handles the frames of a camera in order. No ROS."""
 
 from __future__ import annotations
 
@@ -19,43 +19,44 @@ from .times import RateLimit, RateMeter
 log = logging.getLogger(__name__)
 
 STALLED_AFTER = 2.0
-"""s of ROS time without a frame."""
+"""s of ROS time without a frame after which a camera has stalled."""
 SLOW_CAMERA = 5.0
-"""A camera with few frames a second stalls after so many of its periods."""
-LOOK_EVERY = 1.0
-"""s of wall-clock time between two looks whether frames still come."""
+"""Periods without a frame after which a camera with few frames a second has stalled."""
+STALL_CHECK = 1.0
+"""s of wall-clock time between two checks whether frames still come."""
 STAMP_STEP = 1e-6
 """s; more than what rounding does to stamps, which are whole nanoseconds."""
 END_LIMIT = 10.0
-"""s that the frames which wait may take when a thread is stopped."""
+"""s that the waiting frames may take when a job is stopped."""
 LAST_FRAME_LIMIT = 1.0
 """s to wait at a stop for frames that are on their way; a camera that is later than that has another clock."""
 
 
+def taken(ident: str) -> BadGoal:
+    """The error for the name of a job that runs."""
+    return BadGoal("id", ident, "stop it first, or take another name", problem=f"{ident!r} runs already")
+
+
 class CaptureJob(ABC):
-    """Takes the frames of a topic in a thread of its own, from its start to its stop, as often as it is started.
+    """Handles the frames of a topic in a thread of its own from each start to the next stop.
 
-    Threads: `_arrived` is called by the one that receives messages, `_handle` and `_end` by the worker. The rest is for
-    the thread that executes goals; `stop` also for the one that ends the node. The condition guards what they share.
-
-    Attributes:
-        ident: The user's name for it.
-        topic: Where frames come from.
-        kind: stream or recording.
+    Threads: the receiver of messages calls `_arrived`, the worker `_handle` and `_end`, the executor of goals all else;
+    the thread that ends the node may call `stop`. The condition guards what they share.
     """
 
     kind = ""
+    """stream or recording"""
     whole = False
-    """Whether it takes what the camera saw until it was stopped, also what comes a moment later."""
+    """Whether a stop waits for frames that were taken before it and have not come yet."""
 
     def __init__(self, ident: str, topic: str, rate: float, topics: Any, clock: Any) -> None:
-        """Make it ready; nothing is received yet.
+        """Nothing is received before `start`.
 
         Args:
-            ident: The user's name for it.
-            topic: Where frames come from.
+            ident: The user's name for the job.
+            topic: Full name of the source.
             rate: Frames a second at most; 0: all.
-            topics: Gives subscriptions and publishers.
+            topics: VisionTopics, or what takes its place.
             clock: ROS time.
         """
         self.ident = ident
@@ -69,63 +70,47 @@ class CaptureJob(ABC):
         self._subscription: Any = None
         self._forget()
 
-    # To be filled in
-
     @abstractmethod
     def _begin(self) -> None:
-        """Open what frames go to. Called before the first one can come.
-
-        Raises:
-            NaoError: If that cannot be; then the thread does not start.
-        """
+        """Open the target, before the first frame can come; if a NaoError is raised the job does not start."""
 
     @abstractmethod
     def _handle(self, frame: Frame) -> tuple[int, int] | None:
-        """Pass a frame on.
-
-        Returns:
-            Its width and height there; None if it was dropped.
+        """Pass a frame on; width and height at the target, None if the frame was dropped.
 
         Raises:
-            BadPicture: If it cannot be read; the next one may.
-            NaoError: If there can be no further one.
+            BadPicture: The frame cannot be read; the job goes on.
+            NaoError: The job fails.
         """
 
     @abstractmethod
     def _end(self) -> None:
-        """Close what frames went to.
-
-        Raises:
-            NaoError: If that fails.
-        """
+        """Close the target."""
 
     @property
     @abstractmethod
     def settings(self) -> dict[str, Any]:
-        """What it was made with, in words of JSON: arguments of its class."""
+        """Arguments of the constructor that JSON can hold, to make the job again after the death of the node."""
 
     @abstractmethod
     def _fill(self, report: VisionThread) -> None:
-        """Add what only this kind has to tell."""
+        """Fill the fields that only this kind of job has."""
 
     # Life
 
     @property
     def runs(self) -> bool:
-        """Whether it takes frames."""
         with self._changed:
             return self._state == "running"
 
     def start(self) -> None:
-        """Take frames from now on.
+        """Begin to take frames.
 
         Raises:
             NaoError: If it runs already, or cannot.
         """
         if self.runs:
-            raise BadGoal(
-                "id", self.ident, "stop it first, or take another name", problem=f"{self.ident!r} runs already"
-            )
+            raise taken(self.ident)
         self._finish()  # what failed before may still have something open
         self._forget()
         self._begin()
@@ -142,10 +127,10 @@ class CaptureJob(ABC):
             raise
 
     def stop(self, at_once: bool = False) -> None:
-        """Take no frames any more; those that have come are passed on first. No effect if it does not run.
+        """End after the frames that have come; no effect on a job that does not run.
 
         Args:
-            at_once: Whether not to wait for those that are on their way.
+            at_once: Whether not to wait for frames that are on their way.
         """
         with self._changed:
             if self._state == "running" and self.whole and not at_once:
@@ -155,7 +140,7 @@ class CaptureJob(ABC):
         self._finish()
 
     def let_go(self) -> None:
-        """Take no frames any more, without waiting for anything; `stop` has to follow."""
+        """Take no further frames, without any wait; `stop` has to follow."""
         with self._changed:
             if self._state == "running":
                 self._state = "stopped"
@@ -163,11 +148,7 @@ class CaptureJob(ABC):
             self._changed.notify_all()
 
     def wait_until(self, deadline: float) -> None:
-        """Wait for those that have come to be passed on; what has no time before then is dropped.
-
-        Args:
-            deadline: As `time.monotonic`, s.
-        """
+        """Wait until the frames that have come are handled; drop those left at the deadline (`time.monotonic`, s)."""
         worker = self._worker
         if worker is not None:
             worker.join(max(0.0, deadline - time.monotonic()))
@@ -175,7 +156,7 @@ class CaptureJob(ABC):
                 self._queue.drop_all()
 
     def _wait_for_the_last(self) -> None:
-        """Wait until frames come that are newer than this moment; with the condition held."""
+        """Wait for a frame that was taken after this moment; with the condition held."""
         now = self._clock.now()
         late = self._last_arrival - self._last_stamp
         if not self._arrivals or self._stalled(now) or not -STAMP_STEP <= late < LAST_FRAME_LIMIT:
@@ -199,7 +180,7 @@ class CaptureJob(ABC):
                 log.warning("%s %r has not ended after %g s", self.kind, self.ident, END_LIMIT)
 
     def report(self) -> VisionThread:
-        """What there is to tell about it now."""
+        """State, counts, rate and size now."""
         now = self._clock.now()
         with self._changed:
             stalled = self._stalled(now)
@@ -225,7 +206,6 @@ class CaptureJob(ABC):
     # Frames
 
     def _forget(self) -> None:
-        """Begin to count anew."""
         self._queue = FrameQueue()
         self._limit = RateLimit(self._rate)
         self._meter = RateMeter()
@@ -236,10 +216,10 @@ class CaptureJob(ABC):
         self._ended: float | None = None
         self._last_arrival = self._last_stamp = 0.0
         self._until: float | None = None
-        self._told_stalled = False
+        self._stall_reported = False
 
     def _arrived(self, message: Any) -> None:
-        """Take a message; called from the thread that receives messages, so it does nothing but queue it."""
+        """Queue a message, and nothing that takes time: rospy calls this from the thread that receives."""
         now = self._clock.now()
         frame = frame_of(message, now)
         with self._changed:
@@ -256,16 +236,16 @@ class CaptureJob(ABC):
             self._changed.notify_all()
 
     def _next(self) -> Frame | None:
-        """The frame whose turn it is; None when there will be no further one."""
+        """The oldest frame that waits, or the next to come; None when no further one will come."""
         while True:
             with self._changed:
                 if not self._queue and self._state == "running":
-                    self._changed.wait(LOOK_EVERY)
+                    self._changed.wait(STALL_CHECK)
                 if self._queue:
                     return self._queue.take()
                 if self._state != "running":
                     return None
-            self._look_whether_stalled()
+            self._report_stall()
 
     def _work(self) -> None:
         problem = ""
@@ -311,16 +291,16 @@ class CaptureJob(ABC):
             self._meter.count(frame.stamp)
 
     def _stalled(self, now: float) -> bool:
-        """Whether frames have come and do not come any more; with the condition held."""
+        """Whether frames have come and no longer come; with the condition held."""
         if not self._arrivals or self._state != "running":
             return False
         rate = self._meter.rate
         return now - self._last_arrival > max(STALLED_AFTER, SLOW_CAMERA / rate if rate else 0.0)
 
-    def _look_whether_stalled(self) -> None:
+    def _report_stall(self) -> None:
         with self._changed:
             stalled = self._stalled(self._clock.now())
-            is_new = stalled != self._told_stalled
-            self._told_stalled = stalled
+            is_new = stalled != self._stall_reported
+            self._stall_reported = stalled
         if is_new and stalled:
             log.warning("%s %r: no frames come from %s any more", self.kind, self.ident, self.topic)

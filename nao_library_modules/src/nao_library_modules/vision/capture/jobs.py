@@ -8,7 +8,7 @@ import time
 
 from ...base.errors import BadGoal
 from ...base.suggestion import did_you_mean
-from .job import CaptureJob
+from .job import CaptureJob, taken
 
 log = logging.getLogger(__name__)
 
@@ -66,7 +66,7 @@ class CaptureJobs:
             self._jobs.pop(ident, None)
 
     def close(self) -> None:
-        """Stop all jobs together, and soon: a node that does not end in time is killed, and its files are incomplete."""
+        """Stop all jobs together and soon: the files of a node that is killed meanwhile would be incomplete."""
         with self._lock:
             self._closed = True
         jobs = list(self.known.values())
@@ -87,11 +87,6 @@ def unknown(ident: str, known: object) -> BadGoal:
     names = list(known)
     problem = f"there is no stream or recording {ident!r}{did_you_mean(ident, names)}"
     return BadGoal("id", ident, f"one of {', '.join(names)}" if names else "there are none", problem=problem)
-
-
-def taken(ident: str) -> BadGoal:
-    """The error for the name of a job that runs."""
-    return BadGoal("id", ident, "stop it first, or take another name", problem=f"{ident!r} runs already")
 
 
 def too_many(ident: str) -> BadGoal:

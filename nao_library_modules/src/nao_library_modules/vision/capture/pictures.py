@@ -16,6 +16,8 @@ from ...base.limits import limit
 
 cv2 = Later("cv2")
 
+COMPRESSED = "/compressed"
+"""Topics whose name ends so have pictures as JPEG, as image_transport's do."""
 DEFAULT_QUALITY = 95
 DECODED = ("JPEG", "PNG", "WEBP")
 """Kinds of compressed messages."""

@@ -1,28 +1,27 @@
 """Functions that set the cameras.
 
-What belongs to a camera of the robot (brightness, exposure, ...) is set at the robot, by ALVideoDevice: it counts for
-whoever looks through that camera, and needs no node that does. Resolution and frame rate are those of the node that
-reads the camera: they are its own subscription at the robot, so that it alone can change them, by dynamic_reconfigure;
-any other camera's node that has parameters of these names can stand in.
+Parameters of a camera of the robot (brightness, exposure, ...) are set at the robot, by ALVideoDevice: they apply to
+all its users, and need no node. Resolution and frame rate belong to the subscription of the node that reads the camera,
+so that only the node can change them, by dynamic_reconfigure; any node with parameters of these names will do.
 """
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from naoqi.errors import NaoError
 
 from ...base.errors import BadGoal
-from .base import VisionBase
+from ...functions.parts import Part
+from .base import Cameras
 from .cameras import (
     CAMERAS,
     OPTICAL_FRAMES,
     PARAMETERS,
     RESOLUTIONS,
     VIDEO,
-    camera_name,
     parameter_number,
     resolution_name,
     resolution_of,
@@ -39,37 +38,52 @@ from .fields import (
     Value,
 )
 
+if TYPE_CHECKING:
+    from ...server.nao_basic import NaoBasic
+
 log = logging.getLogger(__name__)
 
 RESOLUTION, FRAME_RATE = "resolution", "frame_rate"
 """Parameters of the node that reads a camera."""
 
 
-class SettingFunctions(VisionBase):
+class SettingFunctions(Part):
     """Settings of the cameras. Parameters are fields of VisionFunction."""
+
+    def __init__(self, module: NaoBasic, cameras: Cameras, servers: Mapping[str, str]) -> None:
+        """Keep what the functions need.
+
+        Args:
+            module: Calls the robot.
+            cameras: The cameras of goals.
+            servers: Camera -> where its node takes dynamic_reconfigure.
+        """
+        self._module = module
+        self._cameras = cameras
+        self._servers = servers
 
     # Which camera
 
     def get_cameras(self) -> list[list[str]]:
         """Name, topic and optical frame of each camera."""
-        return [[name, self.source(name, ""), OPTICAL_FRAMES[name]] for name in CAMERAS]
+        return [[name, self._cameras.source(name, ""), OPTICAL_FRAMES[name]] for name in CAMERAS]
 
     def set_active_camera(self, camera: NamedCamera, revert: Revert) -> None:
         """Choose the camera that functions take which name none; the robot's own choice too, if it is there."""
-        before, name = self.active_camera, camera_name(camera, self.active_camera)
+        before, name = self._cameras.active, self._cameras.name(camera)
         if revert:
-            self.after_wait(lambda: self._activate(before, self.call_now))
-        self._activate(name, self.call)
+            self._module.after_wait(lambda: self._activate(before, self._module.call_now))
+        self._activate(name, self._module.call)
 
     def get_active_camera(self) -> str:
         """The camera that functions take which name none."""
-        return self.active_camera
+        return self._cameras.active
 
     def _activate(self, name: str, call: Callable[..., Any]) -> None:
-        self.active_camera = name
-        if self.robot.connection.state == "connected":  # topics of other cameras need no robot
+        self._cameras.active = name
+        if self._module.robot.connection.state == "connected":  # topics of other cameras need no robot
             try:
-                call(self.robot.proxy(VIDEO), "setActiveCamera", CAMERAS[name])
+                call(self._module.robot.proxy(VIDEO), "setActiveCamera", CAMERAS[name])
             except NaoError as error:
                 log.warning("the robot has its own active camera now: %s", error)
 
@@ -100,15 +114,15 @@ class SettingFunctions(VisionBase):
         self._set(camera, PARAMETERS["AutoWhiteBalance"], int(enable), revert)
 
     def _ask(self, method: str, camera: str, *args: Any) -> Any:
-        index = CAMERAS[camera_name(camera, self.active_camera)]
-        return self.call(self.robot.proxy(VIDEO), method, index, *args)
+        index = CAMERAS[self._cameras.name(camera)]
+        return self._module.call(self._module.robot.proxy(VIDEO), method, index, *args)
 
     def _set(self, camera: str, number: int, value: int, revert: bool) -> None:
-        name = camera_name(camera, self.active_camera)
+        name = self._cameras.name(camera)
         if revert:
             before = int(self._ask("getParameter", name, number))
-            proxy = self.robot.proxy(VIDEO)
-            self.after_wait(lambda: self.call_now(proxy, "setParameter", CAMERAS[name], number, before))
+            proxy = self._module.robot.proxy(VIDEO)
+            self._module.after_wait(lambda: self._module.call_now(proxy, "setParameter", CAMERAS[name], number, before))
         if self._ask("setParameter", name, number, value) is False:
             problem = f"the {name} camera refuses"
             raise BadGoal("values", [value], f"see getParameterRange of parameter {number}", problem=problem)
@@ -132,20 +146,20 @@ class SettingFunctions(VisionBase):
         return float(self._configured(camera, FRAME_RATE))
 
     def _configured(self, camera: str, parameter: str) -> Any:
-        server = self.camera_servers[camera_name(camera, self.active_camera)]
-        known = self.topics.settings(server)
+        server = self._servers[self._cameras.name(camera)]
+        known = self._cameras.topics.settings(server)
         if parameter not in known:
             text = f"the node of {server} has no parameter {parameter}; it has {', '.join(sorted(known))}"
             raise NaoError(text)
         return known[parameter]
 
     def _configure(self, camera: str, parameter: str, value: float, revert: bool) -> None:
-        server = self.camera_servers[camera_name(camera, self.active_camera)]
+        server = self._servers[self._cameras.name(camera)]
         before = self._configured(camera, parameter)
         value = type(before)(value)  # dynamic_reconfigure takes whole numbers and others for different things
         if revert:
-            self.after_wait(lambda: self.topics.set(server, {parameter: before}))
-        reached = self.topics.set(server, {parameter: value}).get(parameter, value)
+            self._module.after_wait(lambda: self._cameras.topics.set(server, {parameter: before}))
+        reached = self._cameras.topics.set(server, {parameter: value}).get(parameter, value)
         if reached != value:
             raise NaoError(f"the camera's node {server} keeps {parameter} at {reached} instead of {value}")
 

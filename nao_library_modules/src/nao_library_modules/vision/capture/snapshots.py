@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nao_library_msgs.msg import PictureFile
 from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
 from ...functions.chain import checked_by
-from .base import VisionBase
-from .cameras import camera_name
-from .checks import check_picture, check_pictures, numbered
+from ...functions.parts import Part
+from .base import Cameras, ChainResults
 from .fields import (
     DEFAULT_TIMEOUT,
     Camera,
@@ -30,30 +28,24 @@ from .fields import (
     Topic,
     Width,
 )
+from .files import VisionFiles
 from .pictures import PICTURE_TYPES, encoded, encoding_of, picture_of, scaled
 from .queue import Frame, frame_of
+
+if TYPE_CHECKING:
+    from ...server.nao_basic import NaoBasic
 
 TAKING = "taking pictures"
 """Status in the feedback."""
 OLD_FRAMES = 5
-"""So many frames may be from before they were asked for: they were on their way. A camera that goes on like that has
-another clock, and is taken at its word."""
+"""So many frames may be older than the request: they were on their way. A camera that sends more of them has another
+clock, and its stamps do not count."""
 
 
 class NoPicture(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A camera sent nothing in time.
-
-    Attributes:
-        topic: Its topic.
-    """
+    """A camera sent nothing within the timeout (s)."""
 
     def __init__(self, topic: str, timeout: float) -> None:
-        """Compose the text.
-
-        Args:
-            topic: The camera's.
-            timeout: How long it was waited, s.
-        """
         super().__init__(f"no picture came from {topic} within {timeout:g} s: is its camera running?")
         self.topic = topic
 
@@ -62,13 +54,6 @@ class Frames:
     """The newest frame of a topic, for one function that waits for it."""
 
     def __init__(self, topic: str, clock: Any, interrupt: CancellationToken) -> None:
-        """Nothing has come yet.
-
-        Args:
-            topic: Where they come from, for texts.
-            clock: ROS time.
-            interrupt: Ends waits.
-        """
         self._topic = topic
         self._clock = clock
         self._interrupt = interrupt
@@ -77,19 +62,19 @@ class Frames:
         self._old = 0
 
     def take(self, message: Any) -> None:
-        """Take a message; called from the thread that receives it."""
+        """Take a message. Called from the thread that receives it."""
         self._newest = frame_of(message, self._clock.now())
         self._news.trigger()
 
     def next(self, since: float, timeout: float) -> Frame:
-        """The next frame that was taken since a time, or has come after too many others.
+        """The next frame that is not older than a time, or comes after OLD_FRAMES older ones.
 
         Args:
             since: ROS time, s.
             timeout: s to wait for it.
 
         Raises:
-            NoPicture: If none came.
+            NoPicture: None came.
             Preempted: Or whatever reason the interrupt has.
         """
         end = self._clock.now() + timeout
@@ -109,10 +94,30 @@ class Frames:
                 self._clock.wait(remaining, self._news)
 
 
-class PictureFunctions(VisionBase):
+class PictureFunctions(Part):
     """Pictures in files. Parameters are fields of VisionFunction."""
 
-    @checked_by(check_picture)
+    left_by_goals = frozenset({"files"})
+
+    def __init__(self, module: NaoBasic, cameras: Cameras, files: VisionFiles, results: ChainResults) -> None:
+        self.files = files
+        self._module = module
+        self._cameras = cameras
+        self._results = results
+
+    def _check_pictures(
+        self, str_param: str, file_type: str, count: int, overwrite: bool, context: dict[str, Any]
+    ) -> None:
+        kind = self.files.file_type(str_param, file_type, PICTURE_TYPES)
+        if str_param.strip():
+            path = self.files.path(str_param, kind)
+            for number in range(1, (count or 1) + 1):
+                self.files.plan(_numbered(path, number, count or 1), overwrite, context.setdefault("files", set()))
+
+    def _check_picture(self, str_param: str, file_type: str, overwrite: bool, context: dict[str, Any]) -> None:
+        self._check_pictures(str_param, file_type, 1, overwrite, context)
+
+    @checked_by(_check_picture)
     def take_picture(
         self,
         str_param: PictureName,
@@ -130,7 +135,7 @@ class PictureFunctions(VisionBase):
             str_param, camera, topic, file_type, quality, width, height, timeout, 1, 0.0, overwrite
         )
 
-    @checked_by(check_pictures)
+    @checked_by(_check_pictures)
     def take_pictures(
         self,
         str_param: PictureNames,
@@ -146,57 +151,48 @@ class PictureFunctions(VisionBase):
         overwrite: Overwrite,
     ) -> list[str]:
         """Take several pictures; answers their files."""
-        source = self.source(camera, topic)
+        module, cameras = self._module, self._cameras
+        source = cameras.source(camera, topic)
         kind = self.files.file_type(str_param, file_type, PICTURE_TYPES)
         named = self.files.path(str_param, kind) if str_param.strip() else None
-        prefix = camera_name(camera, self.active_camera) if not topic.strip() else "picture"
+        prefix = cameras.name(camera) if not topic.strip() else "picture"
         count = count or 1
         answers = []
-        began = self.clock.now()
-        with self._frames(source) as frames:
+        began = module.clock.now()
+        frames = Frames(source, module.clock, module.interrupt)
+        with closing(cameras.topics.subscribe(source, frames.take)):
             for number in range(1, count + 1):
                 due = began + (number - 1) * interval
-                self._wait_until(due)
+                module.wait(due - module.clock.now())
                 frame = frames.next(due, timeout or DEFAULT_TIMEOUT)
                 picture = scaled(picture_of(frame.message), width, height)
-                path = numbered(named, number, count) if named else self.files.named_by_time(prefix, kind)
+                path = _numbered(named, number, count) if named else self.files.named_by_time(prefix, kind)
                 data = encoded(picture, kind, quality)
                 path = self.files.write(path, data, overwrite and named is not None, numbered=named is None)
-                self._note(frame, path, kind, source, picture)
+                self._results.pictures.append(
+                    PictureFile(
+                        header=frame.message.header,
+                        path=str(path),
+                        file_type=kind,
+                        topic=source,
+                        width=picture.shape[1],
+                        height=picture.shape[0],
+                        encoding=encoding_of(frame.message),
+                    )
+                )
                 answers.append(str(path))
                 if count > 1:
-                    self.tell(TAKING, done=number)
+                    module.publish_feedback(status=TAKING, done=number)
         return answers
-
-    @contextmanager
-    def _frames(self, source: str) -> Iterator[Frames]:
-        frames = Frames(source, self.clock, self.interrupt)
-        subscription = self.topics.subscribe(source, frames.take)
-        try:
-            yield frames
-        finally:
-            subscription.close()
-
-    def _wait_until(self, due: float) -> None:
-        remaining = due - self.clock.now()
-        if remaining > 0.0 and not self.clock.wait(remaining, self.interrupt):
-            self.interrupt.check()
-
-    def _note(self, frame: Frame, path: Path, kind: str, source: str, picture: Any) -> None:
-        height, width = picture.shape[:2]
-        self.taken.pictures.append(
-            PictureFile(
-                header=frame.message.header,
-                path=str(path),
-                file_type=kind,
-                topic=source,
-                width=width,
-                height=height,
-                encoding=encoding_of(frame.message),
-            )
-        )
 
     functions = {
         "takePicture": take_picture,
         "takePictures": take_pictures,
     }
+
+
+def _numbered(path: Path, number: int, count: int) -> Path:
+    """Path of one of several pictures: name-001 and so on; the path itself if there is only one picture."""
+    if count == 1:
+        return path
+    return path.with_name(f"{path.stem}-{number:0{max(3, len(str(count)))}d}{path.suffix}")

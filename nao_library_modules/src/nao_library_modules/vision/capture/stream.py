@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
+import posixpath
 from typing import Any
 
-from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, RegionOfInterest
 
 from nao_library_msgs.msg import VisionThread
 
-from .camera_info import COMPRESSED, info_topic, scaled_info
 from .job import CaptureJob
-from .pictures import encoded, encoding_of, is_compressed, picture_of, scaled, visible, wanted_size
+from .pictures import COMPRESSED, encoded, encoding_of, is_compressed, picture_of, scaled, visible, wanted_size
 from .queue import Frame
 
 
 class Stream(CaptureJob):
     """Passes frames on to a topic.
 
-    Frames whose form does not change are passed on as they came. Those that do are worked on only while somebody
-    listens. Beside the pictures goes the camera_info of their camera, if it has one, in the size of the stream.
-
-    Attributes:
-        topic_out: Where they go.
+    Frames whose form does not change are published as they came; others are converted only while the topic has
+    subscribers. The camera_info of the camera, if there is one, is published beside them in the size of the stream.
     """
 
     kind = "stream"
@@ -29,18 +26,7 @@ class Stream(CaptureJob):
     def __init__(
         self, ident: str, topic: str, rate: float, topics: Any, clock: Any, topic_out: str, width: int, height: int
     ) -> None:
-        """Make it ready.
-
-        Args:
-            ident: The user's name for it.
-            topic: Where frames come from.
-            rate: Frames a second at most; 0: all.
-            topics: Gives subscriptions and publishers.
-            clock: ROS time.
-            topic_out: Where they go; as JPEG if its name ends in /compressed.
-            width: Pixels, as `vision_pictures.wanted_size` takes it.
-            height: Pixels, likewise.
-        """
+        """Take what CaptureJob takes, the topic to publish (as JPEG if it ends in /compressed), and `wanted_size`."""
         super().__init__(ident, topic, rate, topics, clock)
         self.topic_out = topic_out
         self._wanted = (width, height)
@@ -52,7 +38,6 @@ class Stream(CaptureJob):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """As CaptureJob has it."""
         width, height = self._wanted
         common = {"ident": self.ident, "topic": self.topic, "rate": self._rate}
         return {**common, "topic_out": self.topic_out, "width": width, "height": height}
@@ -126,3 +111,41 @@ class Stream(CaptureJob):
 
     def _fill(self, report: VisionThread) -> None:
         report.topic_out = self.topic_out
+
+
+def info_topic(topic: str) -> str:
+    """Topic of the camera_info beside a topic of pictures (full name), where ROS's tools look for it.
+
+    Empty for a topic whose last part does not begin with "image": no camera publishes it.
+    """
+    base = topic[: -len(COMPRESSED)] if topic.endswith(COMPRESSED) else topic
+    folder, name = posixpath.split(base)
+    return posixpath.join(folder, "camera_info") if name.startswith("image") else ""
+
+
+def scaled_info(info: Any, header: Any, width: int, height: int) -> CameraInfo:
+    """The sensor_msgs/CameraInfo of a camera for pictures of another size (pixels), with the header of the picture."""
+    across, down = width / info.width if info.width else 1.0, height / info.height if info.height else 1.0
+    k, p, region = list(info.K), list(info.P), info.roi
+    # Of both matrices the first row counts columns of the picture, the second one rows.
+    k = [value * (across, down, 1.0)[index // 3] for index, value in enumerate(k)]
+    p = [value * (across, down, 1.0)[index // 4] for index, value in enumerate(p)]
+    return CameraInfo(
+        header=header,
+        width=width,
+        height=height,
+        distortion_model=info.distortion_model,
+        D=list(info.D),
+        K=k,
+        R=list(info.R),
+        P=p,
+        binning_x=info.binning_x,
+        binning_y=info.binning_y,
+        roi=RegionOfInterest(
+            x_offset=round(region.x_offset * across),
+            y_offset=round(region.y_offset * down),
+            width=round(region.width * across),
+            height=round(region.height * down),
+            do_rectify=region.do_rectify,
+        ),
+    )

@@ -3,27 +3,17 @@
 from __future__ import annotations
 
 import logging
+import re
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Dict, Tuple
 
 from naoqi.errors import NaoError
 
 from ...base.errors import BadGoal
+from ...base.field_checks import require_known
 from ...functions.chain import checked_by
-from .base import VisionBase
-from .checks import (
-    check_delete,
-    check_list,
-    check_new_recording,
-    check_new_stream,
-    check_start,
-    check_start_recording,
-    check_stop,
-    check_stop_recording,
-    check_subscribe,
-    check_unsubscribe,
-    topic_out_of,
-)
+from ...functions.parts import Part
+from .base import Cameras, ChainResults
 from .fields import (
     Camera,
     Height,
@@ -42,18 +32,127 @@ from .fields import (
     VideoType,
     Width,
 )
-from .jobs import CaptureJob
+from .files import VisionFiles
+from .job import CaptureJob, taken
+from .jobs import MOST_JOBS, CaptureJobs, too_many, unknown
 from .recorder import Recording, VideoSpec
 from .stream import Stream
-from .video import VIDEO_TYPES, codec_name
+from .video import CODECS, VIDEO_TYPES, codec_name, known_codecs
+
+if TYPE_CHECKING:
+    from ...server.nao_basic import NaoBasic
 
 log = logging.getLogger(__name__)
 
+Plan = Dict[str, Tuple[str, bool]]
+"""Name -> kind and whether it runs: what the chain will have made of the streams and recordings."""
 
-class StreamingFunctions(VisionBase):
+
+class StreamingFunctions(Part):
     """Streams and recordings. Parameters are fields of VisionFunction."""
 
-    @checked_by(check_subscribe)
+    left_by_goals = frozenset({"jobs", "files"})
+
+    def __init__(
+        self, module: NaoBasic, cameras: Cameras, files: VisionFiles, jobs: CaptureJobs, results: ChainResults
+    ) -> None:
+        self.jobs = jobs
+        self.files = files
+        self._module = module
+        self._cameras = cameras
+        self._results = results
+
+    # Checks before a chain; `context["threads"]` holds its plan, `context["files"]` the files that it writes
+
+    def _plan(self, context: dict[str, Any]) -> Plan:
+        if "threads" not in context:
+            context["threads"] = {ident: (job.kind, job.runs) for ident, job in self.jobs.known.items()}
+        return context["threads"]
+
+    def _plan_new(self, ident: str, kind: str, runs: bool, context: dict[str, Any]) -> None:
+        plan = self._plan(context)
+        name = ident.strip()
+        if plan.get(name, ("", False))[1]:
+            raise taken(name)
+        if name not in plan and len(plan) >= MOST_JOBS:
+            raise too_many(name)
+        plan[name] = (kind, runs)
+
+    def _planned(self, ident: str, context: dict[str, Any], kind: str = "") -> str:
+        """The name of a job that there will be, without blanks around it."""
+        plan = self._plan(context)
+        name = ident.strip()
+        if name not in plan:
+            raise unknown(name, plan)
+        if kind and plan[name][0] != kind:
+            names = [other for other, (own, _) in plan.items() if own == kind]
+            allowed = f"one of {', '.join(names)}" if names else f"there is no {kind}"
+            raise BadGoal("id", ident, allowed, problem=f"{name!r} is a {plan[name][0]}")
+        return name
+
+    def _check_create_stream(
+        self, id: str, camera: str, topic: str, topic_out: str, context: dict[str, Any], runs: bool = False
+    ) -> None:
+        self._plan_new(id, "stream", runs, context)
+        resolved = self._cameras.topics.resolved
+        target = resolved(_topic_out(id, topic_out))
+        if target == self._cameras.source(camera, topic):
+            raise BadGoal("topic_out", topic_out, "another topic", problem="frames come from there")
+        for job in self.jobs.known.values():
+            if job.kind == "stream" and job.ident != id.strip() and resolved(job.topic_out) == target:
+                raise BadGoal("topic_out", topic_out, "another topic", problem=f"{job.ident!r} publishes {target}")
+
+    def _check_subscribe(self, id: str, camera: str, topic: str, topic_out: str, context: dict[str, Any]) -> None:
+        self._check_create_stream(id, camera, topic, topic_out, context, runs=True)
+
+    def _check_create_recording(
+        self,
+        id: str,
+        str_param: str,
+        file_type: str,
+        codec: str,
+        overwrite: bool,
+        context: dict[str, Any],
+        runs: bool = False,
+    ) -> None:
+        kind = self.files.file_type(str_param, file_type, VIDEO_TYPES)
+        _require_codec(codec, kind)
+        self._plan_new(id, "recording", runs, context)
+        if str_param.strip():
+            self.files.plan(self.files.path(str_param, kind), overwrite, context.setdefault("files", set()))
+
+    def _check_start_recording(
+        self, id: str, str_param: str, file_type: str, codec: str, overwrite: bool, context: dict[str, Any]
+    ) -> None:
+        self._check_create_recording(id, str_param, file_type, codec, overwrite, context, runs=True)
+
+    def _check_start(self, id: str, context: dict[str, Any]) -> None:
+        name = self._planned(id, context)
+        kind, runs = self._plan(context)[name]
+        if runs:
+            raise taken(name)
+        self._plan(context)[name] = (kind, True)
+
+    def _check_stop(self, id: str, context: dict[str, Any], kind: str = "") -> None:
+        name = self._planned(id, context, kind)
+        self._plan(context)[name] = (self._plan(context)[name][0], False)
+
+    def _check_unsubscribe(self, id: str, context: dict[str, Any]) -> None:
+        self._check_stop(id, context, "stream")
+
+    def _check_stop_recording(self, id: str, context: dict[str, Any]) -> None:
+        self._check_stop(id, context, "recording")
+
+    def _check_delete(self, id: str, context: dict[str, Any]) -> None:
+        del self._plan(context)[self._planned(id, context)]
+
+    def _check_list(self, id: str, context: dict[str, Any]) -> None:
+        if id.strip():
+            self._planned(id, context)
+
+    # Functions
+
+    @checked_by(_check_subscribe)
     def subscribe(
         self, id: NewStream, camera: Camera, topic: Topic, topic_out: TopicOut, rate: Rate, width: Width, height: Height
     ) -> list[str]:
@@ -62,25 +161,25 @@ class StreamingFunctions(VisionBase):
         self.start_thread(id)
         return answer
 
-    @checked_by(check_new_stream)
+    @checked_by(_check_create_stream)
     def create_stream(
         self, id: NewStream, camera: Camera, topic: Topic, topic_out: TopicOut, rate: Rate, width: Width, height: Height
     ) -> list[str]:
         """Make a stream ready; startThread begins it. Answers its topic."""
-        target = self.topics.resolved(topic_out_of(id, topic_out))
-        source = self.source(camera, topic)
+        target = self._cameras.topics.resolved(_topic_out(id, topic_out))
+        source = self._cameras.source(camera, topic)
         if source == target:  # the active camera may be another one than at the check
             raise BadGoal("topic_out", topic_out, "another topic", problem="frames come from there")
-        self.threads.add(Stream(id.strip(), source, rate, self.topics, self.clock, target, width, height))
+        self.jobs.add(Stream(id.strip(), source, rate, self._cameras.topics, self._module.clock, target, width, height))
         self._keep()
         return [target]
 
-    @checked_by(check_unsubscribe)
+    @checked_by(_check_unsubscribe)
     def unsubscribe(self, id: StreamId) -> None:
         """Stop a stream; it can be started again."""
-        self._stop(self.threads.get(id.strip()))
+        self._stop(self.jobs.get(id.strip()))
 
-    @checked_by(check_start_recording)
+    @checked_by(_check_start_recording)
     def start_recording(
         self,
         id: NewRecording,
@@ -98,7 +197,7 @@ class StreamingFunctions(VisionBase):
         self.create_recording(id, str_param, camera, topic, rate, width, height, file_type, codec, overwrite)
         return self.start_thread(id)
 
-    @checked_by(check_new_recording)
+    @checked_by(_check_create_recording)
     def create_recording(
         self,
         id: NewRecording,
@@ -116,78 +215,78 @@ class StreamingFunctions(VisionBase):
         kind = self.files.file_type(str_param, file_type, VIDEO_TYPES)
         path = self.files.path(str_param, kind) if str_param.strip() else None
         spec = VideoSpec(path, kind, codec_name(codec, kind), width, height, overwrite)
-        source = self.source(camera, topic)
-        self.threads.add(Recording(id.strip(), source, rate, self.topics, self.clock, self.files, spec))
+        source = self._cameras.source(camera, topic)
+        self.jobs.add(Recording(id.strip(), source, rate, self._cameras.topics, self._module.clock, self.files, spec))
         self._keep()
 
-    @checked_by(check_stop_recording)
+    @checked_by(_check_stop_recording)
     def stop_recording(self, id: RecordingId) -> list[Any]:
         """Stop a recording; answers file, frames and length (s)."""
-        thread = self.threads.get(id.strip())
-        self._stop(thread)
-        video = thread.video
+        job = self.jobs.get(id.strip())
+        self._stop(job)
+        video = job.video
         return [video.path, video.frames, video.duration]
 
-    @checked_by(check_start)
+    @checked_by(_check_start)
     def start_thread(self, id: ThreadId) -> list[str]:
         """Start a stream or recording, also once more: a recording then makes a further file. Answers where it goes."""
-        thread = self.threads.get(id.strip())
-        thread.start()
+        job = self.jobs.get(id.strip())
+        job.start()
         self._keep()
-        report = thread.report()
+        report = job.report()
         return [report.path or report.topic_out]
 
-    @checked_by(check_stop)
+    @checked_by(_check_stop)
     def stop_thread(self, id: ThreadId) -> None:
         """Stop a stream or recording; it can be started again."""
-        self._stop(self.threads.get(id.strip()))
+        self._stop(self.jobs.get(id.strip()))
 
-    @checked_by(check_delete)
+    @checked_by(_check_delete)
     def delete_thread(self, id: ThreadId) -> None:
         """Stop a stream or recording, and forget it; files stay."""
-        thread = self.threads.get(id.strip())
-        if thread.runs:
-            self._stop(thread)
-        self.threads.remove(thread.ident)
+        job = self.jobs.get(id.strip())
+        if job.runs:
+            self._stop(job)
+        self.jobs.remove(job.ident)
         self._keep()
 
-    @checked_by(check_list)
+    @checked_by(_check_list)
     def list_threads(self, id: SomeThread) -> list[str]:
         """How streams and recordings are, or the one that is named; answers their names."""
         wanted = id.strip()
-        found = [thread.report() for thread in self.threads.known.values() if wanted in ("", thread.ident)]
-        self.taken.threads += found
+        found = [job.report() for job in self.jobs.known.values() if wanted in ("", job.ident)]
+        self._results.threads += found
         return [report.id for report in found]
 
-    def _stop(self, thread: CaptureJob) -> None:
-        thread.stop()
+    def _stop(self, job: CaptureJob) -> None:
+        job.stop()
         self._keep()
-        if isinstance(thread, Recording):
-            self.taken.recordings.append(thread.video)
+        if isinstance(job, Recording):
+            self._results.recordings.append(job.video)
 
     # After the death of the node
 
     def make_again(self) -> None:
-        """Make the streams and recordings that the node had before it died; those that ran go on, in a further file."""
-        for told in self.kept.load() or ():
+        """Make the jobs again that the node had before it died; those that ran go on, recordings in a further file."""
+        for former in self._module.kept.load() or ():
             try:
-                thread = self._thread(**told["settings"])
-                self.threads.add(thread)
-                if told["runs"]:
-                    thread.start()
-                    log.info("%s %r goes on", thread.kind, thread.ident)
+                job = self._job(**former["settings"])
+                self.jobs.add(job)
+                if former["runs"]:
+                    job.start()
+                    log.info("%s %r goes on", job.kind, job.ident)
             except (NaoError, KeyError, TypeError) as error:
-                log.warning("a stream or recording is not there again: %s: %s", told, error)
+                log.warning("a stream or recording is not made again: %s: %s", former, error)
 
-    def _thread(self, spec: dict[str, Any] | None = None, **settings: Any) -> CaptureJob:
-        settings.update(topics=self.topics, clock=self.clock)
+    def _job(self, spec: dict[str, Any] | None = None, **settings: Any) -> CaptureJob:
+        settings.update(topics=self._cameras.topics, clock=self._module.clock)
         if spec is None:
             return Stream(**settings)
         path = spec["path"] and Path(spec["path"])
         return Recording(files=self.files, spec=VideoSpec(**{**spec, "path": path}), again=True, **settings)
 
     def _keep(self) -> None:
-        self.kept.save([{"settings": each.settings, "runs": each.runs} for each in self.threads.known.values()])
+        self._module.kept.save([{"settings": each.settings, "runs": each.runs} for each in self.jobs.known.values()])
 
     functions = {
         "subscribe": subscribe,
@@ -201,3 +300,18 @@ class StreamingFunctions(VisionBase):
         "deleteThread": delete_thread,
         "listThreads": list_threads,
     }
+
+
+def _topic_out(ident: str, topic_out: str) -> str:
+    """Topic of a stream: as named, or after its id."""
+    return topic_out.strip() or f"NaoVision/{re.sub(r'[^A-Za-z0-9_]', '_', ident.strip())}/image_raw"
+
+
+def _require_codec(codec: str, file_type: str) -> None:
+    """A codec that this computer has, and that the type of file can hold."""
+    name = codec_name(codec, file_type)
+    here = known_codecs(file_type)
+    if name in CODECS and name not in here:
+        problem = f"{file_type} files cannot have {name} here"
+        raise BadGoal("codec", codec, f"one of {', '.join(here)}", problem=problem)
+    require_known("codec", name, here, "codec")

@@ -13,7 +13,7 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 from naoqi.errors import NaoError
 
 from ...base.errors import BadGoal
-from .camera_info import COMPRESSED
+from .pictures import COMPRESSED
 
 BUFFER = 1 << 24
 """Bytes to read at once: a smaller buffer than a picture makes rospy read it in many pieces, and late."""

@@ -3,22 +3,37 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from naoqi.errors import NaoError
 
 from ...base.suggestion import did_you_mean
+from ...functions.parts import Part
 from ..capture.fields import Camera
-from .base import DETECTORS, Wanted, timeout_of
+from .detectors import DETECTORS, Detectors, Wanted
 from .events import FACE
-from .fields import AnyPerson, HeadSize, Looks, NameConfidence, Person, Timeout
-from .goals import camera_index, require_name
+from .fields import (
+    AnyPerson,
+    HeadSize,
+    Looks,
+    NameConfidence,
+    Person,
+    Timeout,
+    camera_index,
+    require_name,
+    timeout_of,
+)
 from .things import DetectionFunctions
 
 FACES = DETECTORS[FACE].module
 
 
-class FaceFunctions(DetectionFunctions):
-    """Faces. Parameters are fields of VisionFunction. What is learnt the robot keeps."""
+class FaceFunctions(Part):
+    """Faces. Parameters are fields of VisionFunction. The robot keeps the faces that it learns."""
+
+    def __init__(self, detectors: Detectors, detections: DetectionFunctions) -> None:
+        self._detectors = detectors
+        self._detections = detections
 
     def detect_faces(
         self,
@@ -31,7 +46,7 @@ class FaceFunctions(DetectionFunctions):
     ) -> list[str]:
         """See faces; answers whose they are, "face" for each that nobody knows."""
         wanted = Wanted(FACE, str_param.strip(), confidence, size, camera_index(camera))
-        return self.detect(wanted, timeout, count)
+        return self._detections.detect(wanted, timeout, count)
 
     def learn_face(self, str_param: Person, camera: Camera, timeout: Timeout) -> list[bool]:
         """Learn the face that is in view under a name; answers whether there was one, alone, that could be learnt."""
@@ -50,17 +65,20 @@ class FaceFunctions(DetectionFunctions):
         """Forget a person's face."""
         name = require_name(str_param)
         self._require_known(name)
-        if not self.call(self.robot.proxy(FACES), "forgetPerson", name):
+        if not self._call("forgetPerson", name):
             raise NaoError(f"{FACES} did not forget the face of {name!r}")
 
     def forget_all_faces(self) -> None:
         """Forget all faces."""
-        if not self.call(self.robot.proxy(FACES), "clearDatabase"):
+        if not self._call("clearDatabase"):
             raise NaoError(f"{FACES} did not forget the faces")
 
     def list_faces(self) -> list[str]:
         """Whose faces are learnt."""
-        return [str(name) for name in self.call(self.robot.proxy(FACES), "getLearnedFacesList")]
+        return [str(name) for name in self._call("getLearnedFacesList")]
+
+    def _call(self, method: str, *args: Any) -> Any:
+        return self._detectors.call(self._detectors.robot.proxy(FACES), method, *args)
 
     def _require_known(self, name: str) -> None:
         known = self.list_faces()
@@ -69,15 +87,15 @@ class FaceFunctions(DetectionFunctions):
             raise NaoError(f"no face of {name!r} is learnt{did_you_mean(name, known)}: {learnt}")
 
     def _learn(self, method: str, name: str, camera: str, timeout: float) -> list[bool]:
-        proxy = self.robot.proxy(FACES)
-        self.tell_seen("looking")
-        with self.watching(Wanted(FACE, camera=camera_index(camera))) as watch:
-            for detections in watch.until(self.clock.now() + timeout_of(timeout)):
-                self.tell_seen("looking", detections)
-                # Of several the robot could not tell which is meant.
-                if len(detections) == 1 and self.call(proxy, method, name):
+        detectors = self._detectors
+        detectors.publish_seen("looking")
+        with detectors.watching(Wanted(FACE, camera=camera_index(camera))) as watch:
+            for detections in watch.until(detectors.clock.now() + timeout_of(timeout)):
+                detectors.publish_seen("looking", detections)
+                # The robot does not say which of several faces it would learn.
+                if len(detections) == 1 and self._call(method, name):
                     (face,) = detections
-                    self.note([replace(face, detection=replace(face.detection, name=name))])
+                    detectors.note([replace(face, detection=replace(face.detection, name=name))])
                     return [True]
         return [False]
 

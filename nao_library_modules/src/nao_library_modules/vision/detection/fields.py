@@ -1,17 +1,67 @@
-"""What the fields of a VisionFunction mean to the functions that see things, and to those whose eyes follow them."""
+"""What the fields of a VisionFunction mean to the functions that detect and follow something."""
 
 from __future__ import annotations
 
+from ...base.errors import BadGoal
+from ...base.field_checks import require_text
 from ...base.limits import limit
+from ...base.suggestion import did_you_mean
 from ...functions.fields import Annotated, flag, free, number
+from ..capture.cameras import CAMERAS, camera_name
 from ..capture.fields import DEFAULT_TIMEOUT
-from .events import BALL, FACE, LANDMARK
-from .goals import LONGEST_NAME, LOOKED_FOR, MARK, THING, require_mark, require_name, wanted_thing
+from .events import BALL, CODE, FACE, LANDMARK
 from .space import DEFAULT_SIZES
 
+LONGEST_NAME = 100
+LOOKED_FOR = (BALL, FACE, LANDMARK, CODE)
+"""What lookFor looks for."""
+MARK = "the number of a landmark, or nothing for all"
+THING = f"{', '.join(LOOKED_FOR)}; a name, a number or a text may follow: {FACE} NAME"
 WAIT = f"up to {limit('timeout').highest:g} s, or 0"
 SEARCH_TIMEOUT = 20.0
-"""s that lookFor looks, where a message leaves it to us: the whole way round takes about 15."""
+"""Default of lookFor, s: a search of the whole range takes about 15."""
+
+
+def camera_index(camera: str) -> int | None:
+    """Index of a camera that a message names; None for the active one."""
+    return CAMERAS[camera_name(camera, "top")] if camera.strip() else None
+
+
+def timeout_of(timeout: float) -> float:
+    """How long a function waits, s."""
+    return timeout or DEFAULT_TIMEOUT
+
+
+def require_mark(number: str) -> str:
+    """The number of a landmark, without blanks and leading zeros; empty for any."""
+    bare = number.strip()
+    if bare and not (bare.isascii() and bare.isdigit() and len(bare) < 10):
+        raise BadGoal("str_param", number, MARK)
+    return str(int(bare)) if bare else ""
+
+
+def require_name(name: str) -> str:
+    """The name of a person, without blanks around it."""
+    bare = require_text("str_param", name, "the name of a person")
+    if len(bare) > LONGEST_NAME:
+        problem = f"{bare[:20]!r}... is too long"
+        raise BadGoal("str_param", name, f"up to {LONGEST_NAME} characters", problem=problem)
+    if not bare.isprintable():
+        raise BadGoal("str_param", name, "a name of characters that can be printed")
+    return bare
+
+
+def wanted_thing(text: str) -> tuple[str, str]:
+    """Kind and name (or nothing) of what lookFor looks for."""
+    kind, _, name = text.strip().partition(" ")
+    name = name.strip()
+    if kind not in LOOKED_FOR:
+        problem = f"{kind!r} is nothing to look for{did_you_mean(kind, LOOKED_FOR)}"
+        raise BadGoal("str_param", text, THING, problem=problem)
+    if kind == BALL and name:
+        raise BadGoal("str_param", text, BALL, problem="balls have no names")
+    return kind, require_mark(name) if kind == LANDMARK else name
+
 
 _TIMEOUT = number("timeout", f"longest look, in ROS time; 0: {DEFAULT_TIMEOUT:g}", allowed=f"{WAIT} for the default")
 _CONFIDENCE = number("share", "least confidence; what is seen with less does not count")
@@ -76,8 +126,9 @@ Search = Annotated[bool, flag("whether the head turns to look for what is out of
 Speed = Annotated[
     float,
     number(
-        "share",
+        "fraction",
         "greatest fraction of the head's top speed",
+        zero=" for a moderate one",
         allowed="0..1 of the top speed, or 0 for a moderate one",
     ),
 ]

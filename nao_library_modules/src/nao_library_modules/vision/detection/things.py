@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
+from ...functions.parts import Part
 from ..capture.fields import Camera
-from .base import DETECTORS, DetectionBase, Wanted, timeout_of
-from .cameras import InUse
+from .detectors import DETECTORS, Detectors, InUse, Wanted
 from .events import BALL, CODE, LANDMARK, MOVEMENT
-from .fields import AnyCode, AnyMark, BallSize, CodeSize, Confidence, Looks, MarkSize, Sensitivity, Timeout
-from .goals import camera_index, require_mark
+from .fields import (
+    AnyCode,
+    AnyMark,
+    BallSize,
+    CodeSize,
+    Confidence,
+    Looks,
+    MarkSize,
+    Sensitivity,
+    Timeout,
+    camera_index,
+    require_mark,
+    timeout_of,
+)
 from .space import merged
 
-TYPED: frozenset[str] = frozenset()
-"""Functions here whose answers stay out of memList: none, the names of what was seen are for both."""
 
-
-class DetectionFunctions(DetectionBase):
+class DetectionFunctions(Part):
     """Detections. Parameters are fields of VisionFunction. Nothing seen in time is an answer, too."""
+
+    def __init__(self, detectors: Detectors) -> None:
+        self._detectors = detectors
 
     def detect_ball(
         self, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, size: BallSize
@@ -43,41 +55,32 @@ class DetectionFunctions(DetectionBase):
         wanted = Wanted(MOVEMENT, "", confidence, 0.0, camera_index(camera))
         if sensitivity <= 0.0:
             return self.detect(wanted, timeout, count)
-        module = DETECTORS[MOVEMENT].module
-        proxy = self.robot.proxy(module)
-        before = float(self.call(proxy, "getColorSensitivity"))
-        others = self.others_of(module)
+        detectors, module = self._detectors, DETECTORS[MOVEMENT].module
+        proxy = detectors.robot.proxy(module)
+        before = float(detectors.call(proxy, "getColorSensitivity"))
+        others = detectors.others_of(module)
         if others:
             raise InUse(module, others, f"has the sensitivity {before:g}")
-        self.begin(module, "setColorSensitivity", [float(sensitivity)], "setColorSensitivity", before)
-        with self.ended_by(
-            lambda: self.call_now(proxy, "setColorSensitivity", before), f"{module} keeps its sensitivity"
+        detectors.begin(module, "setColorSensitivity", [float(sensitivity)], "setColorSensitivity", before)
+        with detectors.ended_by(
+            lambda: detectors.call_now(proxy, "setColorSensitivity", before), f"{module} keeps its sensitivity"
         ):
             return self.detect(wanted, timeout, count)
 
     def detect(self, wanted: Wanted, timeout: float, count: int) -> list[str]:
-        """Look until something was seen often enough, or the time is over.
-
-        Args:
-            wanted: What counts.
-            timeout: s; 0 for the default.
-            count: In how many pictures something is to be seen; 0 for one.
-
-        Returns:
-            What the things that were seen are called.
-        """
-        pictures = []
-        self.tell_seen("looking")
-        with self.watching(wanted) as watch:
-            for detections in watch.until(self.clock.now() + timeout_of(timeout)):
+        """Look until something was seen in so many pictures (0: one) or the timeout (s) is over; answers labels."""
+        detectors, pictures = self._detectors, []
+        detectors.publish_seen("looking")
+        with detectors.watching(wanted) as watch:
+            for detections in watch.until(detectors.clock.now() + timeout_of(timeout)):
                 pictures.append(detections)
-                self.tell_seen("looking", detections)
+                detectors.publish_seen("looking", detections)
                 if len(pictures) >= max(count, 1):
                     break
         if not pictures:
-            self.remark(f"no {wanted.kind} seen within {timeout_of(timeout):g} s")
-        # Nobody can tell which movement of one picture is which of the next.
-        return self.note(merged(pictures[-1:] if wanted.kind == MOVEMENT else pictures))
+            detectors.module.remark(f"no {wanted.kind} seen within {timeout_of(timeout):g} s")
+        # Movements of one picture cannot be matched with those of the next.
+        return detectors.note(merged(pictures[-1:] if wanted.kind == MOVEMENT else pictures))
 
     functions = {
         "detectBall": detect_ball,

@@ -1,12 +1,20 @@
-"""Functions whose eyes follow: the head turns to a ball or a face, and looks for what is out of view."""
+"""Functions that follow something with the head: it turns to a ball or a face, and searches what is out of view."""
 
 from __future__ import annotations
 
+import logging
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
 
+from naoqi.errors import NaoError
+
+from ...functions.parts import Part
+from ...motion.facts import MOTION, JointLimits
+from ...motion.look_at import HEAD
 from ..capture.fields import Camera
-from .base import Wanted, Watch, timeout_of
+from .detectors import Detectors, Wanted, Watch
 from .events import BALL, FACE
 from .fields import (
     SEARCH_TIMEOUT,
@@ -25,11 +33,14 @@ from .fields import (
     Thing,
     ThingConfidence,
     ThingSize,
+    camera_index,
+    timeout_of,
+    wanted_thing,
 )
-from .goals import camera_index, wanted_thing
 from .space import LocalizedDetection, merged
-from .track_head import HeadUse, Neck
-from .track_plan import MIDDLE, off_axis, search_angles, the_one
+from .track_plan import MIDDLE, STILL, Angles, aim, fraction, off_axis, search_angles, the_one, travel_time, within
+
+log = logging.getLogger(__name__)
 
 LOST = 0.7
 """s without being seen after which it is lost: single pictures may show nothing."""
@@ -37,14 +48,69 @@ GLANCE = 0.5
 """s that the head rests where it looks for something."""
 SETTLING = 2.0
 """s that lookFor gives the head to bring what it found into the middle of the picture."""
+DEFAULT_SPEED = 0.2
+"""Fraction of the head's top speed where a message has none."""
+WAY_BACK = 0.3
+"""Fraction of the top speed with which the head goes back to where it was."""
 
 
-class TrackingFunctions(HeadUse):
+class Neck:
+    """Turns the head for one function. Used from the thread that executes goals."""
+
+    def __init__(self, motion: Callable[..., Any], speed: float) -> None:
+        """Read the limits of the head.
+
+        Args:
+            motion: Calls a method of ALMotion.
+            speed: Greatest fraction of the head's top speed, 0..1.
+        """
+        self._motion = motion
+        self.speed = speed
+        limits = [motion("getLimits", joint)[0] for joint in HEAD]
+        self.ranges = [JointLimits(float(lower), float(upper), float(top)) for lower, upper, top, *_ in limits]
+
+    def angles(self, measured: bool) -> Angles:
+        """Where the head is measured, or commanded to be."""
+        yaw, pitch = map(float, self._motion("getAngles", list(HEAD), measured))
+        return yaw, pitch
+
+    def turn(self, angles: Angles, speed: float) -> None:
+        """Begin to turn the head; it goes on by itself."""
+        self._motion("setAngles", list(HEAD), list(angles), speed)
+
+    def follow(self, detection: LocalizedDetection) -> bool:
+        """Turn towards a detection; whether that is beyond what the head can turn.
+
+        The aim is the place of the thing, not its angle off the axis: it stays the same while the head is on its way,
+        so that an old picture does no harm.
+        """
+        try:
+            wanted = aim(detection)
+        except ValueError as error:
+            log.debug("%s: the head stays where it is", error)
+            return True
+        angle = off_axis(detection)
+        yaw, pitch = (within(joint, value) for joint, value in zip(self.ranges, wanted))
+        if angle > STILL:
+            self.turn((yaw, pitch), fraction(angle, self.ranges, self.speed))
+        return (yaw, pitch) != wanted
+
+    def search(self, place: Angles) -> float:
+        """Turn to a place of the search; how long that takes, s."""
+        way = travel_time(self.angles(True), place, self.ranges, self.speed)
+        self.turn(place, self.speed)
+        return way
+
+
+class TrackingFunctions(Part):
     """Following with the head. Parameters are fields of VisionFunction.
 
-    Attributes as in DetectionBase. The feedback tells what the robot does: looking (nothing yet), following, lost,
-    searching.
+    Status of the feedback: looking (nothing seen yet), following, lost, searching.
     """
+
+    def __init__(self, detectors: Detectors) -> None:
+        self._detectors = detectors
+        self._module = detectors.module
 
     def track_ball(
         self,
@@ -94,35 +160,69 @@ class TrackingFunctions(HeadUse):
         limit = timeout or SEARCH_TIMEOUT
         pictures: list[list[LocalizedDetection]] = []
         found: float | None = None
-        with self.head(speed, revert) as neck, self.watching(wanted) as watch:
-            chase = Chase(self, neck, watch, kind, search=True)
-            for detection, at_limit in chase.detections(self.clock.now() + limit, limit):
-                now = self.clock.now()
+        with self._head(speed, revert) as neck, self._detectors.watching(wanted) as watch:
+            chase = Chase(self._detectors, neck, watch, kind, search=True)
+            for detection, at_limit in chase.detections(self._module.clock.now() + limit, limit):
+                now = self._module.clock.now()
                 found = now if found is None else found
                 if off_axis(detection) <= MIDDLE or at_limit or now - found > SETTLING:
                     pictures.append([detection])
                     if len(pictures) >= max(count, 1):
                         break
-        return self.note(merged(pictures))
+        return self._detectors.note(merged(pictures))
 
     def _track(
         self, wanted: Wanted, timeout: float, duration: float, search: bool, speed: float, revert: bool
     ) -> list[float]:
         last: LocalizedDetection | None = None
         in_view = 0.0
-        end = self.clock.now() + duration if duration > 0.0 else math.inf
+        end = self._module.clock.now() + duration if duration > 0.0 else math.inf
         try:
-            with self.head(speed, revert) as neck, self.watching(wanted) as watch:
-                chase = Chase(self, neck, watch, wanted.kind, search)
+            with self._head(speed, revert) as neck, self._detectors.watching(wanted) as watch:
+                chase = Chase(self._detectors, neck, watch, wanted.kind, search)
                 before = -math.inf
                 for detection, _ in chase.detections(end, timeout_of(timeout)):
-                    last, now = detection, self.clock.now()
+                    last, now = detection, self._module.clock.now()
                     in_view += now - before if now - before <= LOST else 0.0
                     before = now
-        finally:  # who preempts it wants to know where it was last
+        finally:  # also a goal that is preempted has the last place in its result
             if last is not None:
-                self.note([last])
+                self._detectors.note([last])
         return [in_view]
+
+    @contextmanager
+    def _head(self, speed: float, revert: bool) -> Iterator[Neck]:
+        """Have the head during a block; it is stiff, and stops at the end.
+
+        Args:
+            speed: Greatest fraction of its top speed, 0..1; 0 for a moderate one.
+            revert: Whether it goes back to where it was after the function's `time`.
+        """
+        module = self._module
+        proxy = module.robot.proxy(MOTION)
+
+        def motion(method: str, *args: Any) -> Any:
+            return module.call(proxy, method, *args)
+
+        def now(method: str, *args: Any) -> Any:
+            return module.call_now(proxy, method, list(HEAD), *args)
+
+        neck = Neck(motion, speed or DEFAULT_SPEED)
+        before = neck.angles(False)
+        limp = [joint for joint, value in zip(HEAD, motion("getStiffnesses", list(HEAD))) if not value > 0.0]
+        if limp:
+            undo = "setStiffnesses", limp, [0.0] * len(limp)
+            self._detectors.begin(MOTION, "setStiffnesses", [limp, [1.0] * len(limp)], *undo)
+            module.after_wait(lambda: module.call_now(proxy, *undo))
+        if revert:
+            module.after_wait(lambda: now("angleInterpolationWithSpeed", list(before), WAY_BACK))
+        try:
+            yield neck
+        finally:
+            try:
+                now("setAngles", now("getAngles", False), 1.0)
+            except NaoError as error:
+                log.warning("the head may go on turning: %s", error)
 
     functions = {
         "trackBall": track_ball,
@@ -132,51 +232,42 @@ class TrackingFunctions(HeadUse):
 
 
 class Chase:
-    """Sees something again and again, the head behind it."""
+    """Detects something again and again, and turns the head after it; `search`: also to find it."""
 
-    def __init__(self, base: HeadUse, neck: Neck, watch: Watch, kind: str, search: bool) -> None:
-        """Begin.
-
-        Args:
-            base: Tells what happens.
-            neck: Turns the head.
-            watch: Sees.
-            kind: What is chased.
-            search: Whether the head turns to look for it.
-        """
-        self._base = base
+    def __init__(self, detectors: Detectors, neck: Neck, watch: Watch, kind: str, search: bool) -> None:
+        self._detectors = detectors
         self._neck = neck
         self._watch = watch
         self._places = search_angles(kind, neck.ranges) if search else None
         self._last: LocalizedDetection | None = None
 
     def detections(self, end: float, patience: float) -> Iterator[tuple[LocalizedDetection, bool]]:
-        """Each time that it is seen, and whether the head is as far as it can turn.
+        """Each detection, and whether the head is as far as it can turn.
 
         Args:
             end: ROS time of the end, s.
-            patience: s without being seen after which it ends as well.
+            patience: s without a detection after which it ends as well.
         """
-        clock = self._base.clock
+        clock = self._detectors.clock
         status = "looking"
-        self._base.tell_seen(status)
+        self._detectors.publish_seen(status)
         seen, glance = clock.now(), clock.now() + GLANCE
         while clock.now() < min(end, seen + patience):
             detection = self._next(min(end, seen + patience, glance))
             if detection is not None:
                 status, seen = "following", clock.now()
                 at_limit = self._neck.follow(detection)
-                self._base.tell_seen(status, [detection])
+                self._detectors.publish_seen(status, [detection])
                 yield detection, at_limit
                 glance = seen + LOST
             elif clock.now() >= glance:
                 if status == "following":
                     status = "lost"
-                    self._base.tell_seen(status)
+                    self._detectors.publish_seen(status)
                 glance = math.inf
                 if self._places is not None:
                     status = "searching"
-                    self._base.tell_seen(status)
+                    self._detectors.publish_seen(status)
                     glance = clock.now() + self._neck.search(next(self._places)) + GLANCE
 
     def _next(self, end: float) -> LocalizedDetection | None:

@@ -1,0 +1,326 @@
+"""The robot's extractors that detect something: having them work through a camera, and placing what they detect."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from genpy import Time
+from geometry_msgs.msg import Point
+from std_msgs.msg import Header
+
+from nao_library_msgs.msg import SeenObject
+from naoqi.errors import NaoError, UnknownMethod
+
+from ...functions.memory_functions import MEMORY
+from ...motion.facts import MOTION
+from ...nao.camera_facts import CAMERA_NAMES, RESOLUTIONS
+from ...server.extractor_use import Event, Events, ExtractorUse
+from ..capture.base import Cameras, ChainResults
+from ..capture.cameras import CAMERAS, OPTICAL_FRAMES, VIDEO
+from .events import (
+    BALL,
+    CODE,
+    FACE,
+    LANDMARK,
+    MOVEMENT,
+    NOTHING,
+    Detection,
+    DetectionArray,
+    Lens,
+    Pose,
+    Region,
+    ball_detections,
+    code_detections,
+    face_detections,
+    landmark_detections,
+    movement_detections,
+)
+from .space import DEFAULT_SIZES, LocalizedDetection, located
+
+if TYPE_CHECKING:
+    from ...server.nao_basic import NaoBasic
+
+log = logging.getLogger(__name__)
+
+MOVEMENT_KEY = "MovementDetection/MovementInfo"
+TORSO, ROBOT = 0, 2
+"""NAOqi's FRAME_TORSO and FRAME_ROBOT."""
+BASE = "base_footprint"
+"""Frame on the floor between the robot's feet, as its description and nao_joint_states name it."""
+
+
+@dataclass(frozen=True)
+class Detector:
+    """One of the robot's extractors."""
+
+    module: str
+    event: str
+    read: Callable[[Any], DetectionArray] | None = None
+    """Reads the value of the event; None where that is not enough."""
+
+
+DETECTORS = {
+    BALL: Detector("ALRedBallDetection", "redBallDetected", ball_detections),
+    FACE: Detector("ALFaceDetection", "FaceDetected", face_detections),
+    LANDMARK: Detector("ALLandMarkDetection", "LandmarkDetected", landmark_detections),
+    CODE: Detector("ALBarcodeReader", "BarcodeReader/BarcodeDetected"),
+    MOVEMENT: Detector("ALMovementDetection", "MovementDetection/MovementDetected"),
+}
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a function looks for.
+
+    Attributes:
+        kind: ball, face, landmark, code or movement.
+        name: Only the thing of this name; empty for all.
+        confidence: Least confidence, 0..1; a face with less is unknown, anything else does not count.
+        size: Real size, m; 0 for the usual one.
+        camera: Index of the camera; None for the active one.
+    """
+
+    kind: str
+    name: str = ""
+    confidence: float = 0.0
+    size: float = 0.0
+    camera: int | None = None
+
+    def picks(self, detection: Detection) -> Detection | None:
+        """A detection as it counts; None if it does not."""
+        if detection.kind == FACE and detection.confidence < self.confidence:
+            detection = replace(detection, name="")
+        elif detection.confidence < self.confidence:
+            return None
+        return None if self.name and detection.name != self.name else detection
+
+
+class InUse(NaoError):
+    """An extractor works for others, and what a function needs would disturb them."""
+
+    def __init__(self, module: str, others: Sequence[str], how: str) -> None:
+        """Compose the text.
+
+        Args:
+            module: NAOqi module.
+            others: Its other subscribers.
+            how: What it does for them that would have to change.
+        """
+        super().__init__(f"{module} {how} for {', '.join(others)}: it cannot be changed while they need it")
+
+
+class Watch:
+    """An extractor that works for a function, as long as that needs it."""
+
+    def __init__(self, detectors: Detectors, wanted: Wanted, events: Events, camera: int) -> None:
+        self._detectors = detectors
+        self._wanted = wanted
+        self._events = events
+        self._camera = camera  # index
+
+    def until(self, end: float) -> Iterator[list[LocalizedDetection]]:
+        """The detections that count, as they come: a list for each picture that has one, until a ROS time (s).
+
+        Raises:
+            Preempted: Or whatever reason the interrupt has.
+            NaoError: If the robot cannot be asked.
+        """
+        module = self._detectors.module
+        for event in self._events.until(end):
+            detections = self._detectors.placed(self._wanted, self._camera, event)
+            if detections:
+                first, seen = module.happened[0], detections[0].time
+                module.happened = (first or seen, seen)
+                yield detections
+
+
+class Detectors(ExtractorUse):
+    """The robot's extractors for the functions of NaoVision, and the robot's cameras that they look through."""
+
+    def __init__(
+        self, module: NaoBasic, cameras: Cameras, results: ChainResults, subscriber: str, frame_prefix: str
+    ) -> None:
+        """Take what a module offers.
+
+        Args:
+            module: Calls the robot.
+            cameras: Has the active camera.
+            results: Gets what is seen.
+            subscriber: Begin of the names of subscriptions: of each robot's clients no two have the same.
+            frame_prefix: Prefix of the robot's frames, with its slash; may be empty.
+        """
+        self.module = module
+        self.robot, self.robot_clock = module.robot, module.robot_clock
+        self.clock, self.interrupt = module.clock, module.interrupt
+        self.call, self.call_now = module.call, module.call_now
+        self.subscriber = subscriber
+        self._cameras = cameras
+        self._results = results
+        self._prefix = frame_prefix
+        self._lenses: dict[tuple[int, int], Lens] = {}
+
+    @contextmanager
+    def watching(self, wanted: Wanted) -> Iterator[Watch]:
+        """Have an extractor work during a block."""
+        detector = DETECTORS[wanted.kind]
+        with self.looking_through(detector.module, wanted.camera) as camera, self.events_of(detector.event) as events:
+            with self.subscribed(detector.module, wanted.kind):
+                yield Watch(self, wanted, events, camera)
+
+    def note(self, detections: Sequence[LocalizedDetection]) -> list[str]:
+        """Put detections into the result; answers their labels."""
+        self._results.objects += seen_messages(detections, self._prefix)
+        return [detection.label for detection in detections]
+
+    def publish_seen(self, status: str, detections: Sequence[LocalizedDetection] = ()) -> None:
+        """Publish as feedback what is seen now, or was in the picture of these detections."""
+        stamp = detections[0].time if detections else None
+        self.module.publish_feedback(stamp=stamp, status=status, objects=seen_messages(detections, self._prefix))
+
+    def placed(self, wanted: Wanted, camera: int, event: Event) -> list[LocalizedDetection]:
+        """The detections of an event that count, and where they are.
+
+        Args:
+            wanted: What counts.
+            camera: Index of the camera that the extractor looks through; detections of others do not count.
+            event: Of the extractor.
+        """
+        try:
+            array = self._read(wanted.kind, camera, event.value)
+        except ValueError as error:
+            log.warning("%s", error)
+            return []
+        if array.camera != camera or array.in_robot is None or array.in_torso is None:
+            return []
+        lens = self._lens(camera)
+        # An event without the time of its picture counts from when it was raised.
+        time = self.event_time(event) if array.time is None else self.robot_clock.ros_time(self.call, array.time)
+        size = wanted.size or DEFAULT_SIZES.get(wanted.kind, 0.0)
+        found = []
+        for detection in filter(None, map(wanted.picks, array.detections)):
+            region = detection.region or self._region(camera, detection)
+            found.append(located(detection, camera, time, region, lens, size, array.in_torso, array.in_robot))
+        return found
+
+    def end_leftovers(self) -> bool:
+        """End subscriptions that a killed server of this name has left; whether the robot was asked."""
+        for detector in DETECTORS.values():
+            try:
+                proxy = self.robot.proxy(detector.module)
+                for name, *_ in self.call_now(proxy, "getSubscribersInfo"):
+                    if name.startswith(self.subscriber_for("")):
+                        self.call_now(proxy, "unsubscribe", name)
+            except NaoError as error:
+                log.debug("%s may work for nobody: %s", detector.module, error)
+        return self.robot.connection.state == "connected"
+
+    def _read(self, kind: str, camera: int, value: Any) -> DetectionArray:
+        read = DETECTORS[kind].read
+        if read is not None:
+            return read(value)
+        if kind == MOVEMENT:
+            return movement_detections(self.call(self.robot.proxy(MEMORY), "getData", MOVEMENT_KEY))
+        if not value:
+            return NOTHING
+        resolution = int(self.call(self.robot.proxy(DETECTORS[CODE].module), "getResolution"))
+        detections = code_detections(value, *_size(resolution), self._lens(camera))
+        return DetectionArray(None, camera, self._pose(camera, TORSO), self._pose(camera, ROBOT), detections)
+
+    # The robot's cameras
+
+    @contextmanager
+    def looking_through(self, module: str, wanted: int | None) -> Iterator[int]:
+        """Have an extractor look through a camera during a block; its former camera comes back afterwards.
+
+        Raises:
+            InUse: It looks through another camera for other subscribers.
+        """
+        owner = module
+        try:
+            now = int(self.call(self.robot.proxy(module), "getActiveCamera"))
+        except UnknownMethod:  # it looks through the robot's active camera
+            owner = VIDEO
+            now = int(self.call(self.robot.proxy(VIDEO), "getActiveCamera"))
+        camera = CAMERAS[self._cameras.active] if wanted is None else wanted
+        if camera == now:
+            yield now
+            return
+        others = self.others_of(module)
+        if others:
+            if wanted is None:
+                yield now
+                return
+            raise InUse(module, others, f"looks through {CAMERA_NAMES[now]}")
+        if self.begin(owner, "setActiveCamera", [camera], "setActiveCamera", now) is False:
+            raise NaoError(f"{owner} cannot look through {CAMERA_NAMES[camera]}")
+        proxy = self.robot.proxy(owner)
+        with self.ended_by(lambda: self.call_now(proxy, "setActiveCamera", now), f"{owner} keeps its camera"):
+            yield camera
+
+    def others_of(self, module: str) -> list[str]:
+        """Subscribers of an extractor that are not this server's."""
+        subscribers = self.call(self.robot.proxy(module), "getSubscribersInfo")
+        return [name for name, *_ in subscribers if not name.startswith(self.subscriber_for(""))]
+
+    def _pose(self, camera: int, frame: int) -> Pose:
+        position = self.call(self.robot.proxy(MOTION), "getPosition", CAMERA_NAMES[camera], frame, True)
+        x, y, z, wx, wy, wz = map(float, position)
+        return x, y, z, wx, wy, wz
+
+    def _lens(self, camera: int) -> Lens:
+        key = (self.robot.connection.generation, camera)  # behind a new connection is another robot perhaps
+        if key not in self._lenses:
+            proxy = self.robot.proxy(VIDEO)
+            methods = ("getHorizontalFOV", "getVerticalFOV")
+            self._lenses[key] = Lens(*(float(self.call(proxy, method, camera)) for method in methods))
+        return self._lenses[key]
+
+    def _region(self, camera: int, detection: Detection) -> Region:
+        """Where a detection is in the picture, from the robot: angles of some detections are not all geometry's."""
+        angles = [detection.alpha, detection.beta, detection.size_x, detection.size_y]
+        numbers = self.call(self.robot.proxy(VIDEO), "getImageInfoFromAngularInfo", camera, angles)
+        return Region(*map(float, numbers))
+
+
+def _size(resolution: int) -> tuple[int, int]:
+    for number, width, height in RESOLUTIONS.values():
+        if number == resolution:
+            return width, height
+    raise ValueError(f"no resolution {resolution} is known")
+
+
+def seen_messages(detections: Sequence[LocalizedDetection], prefix: str) -> list[SeenObject]:
+    """Detections as messages; the prefix is that of the robot's frames, with its slash, or empty."""
+    return [_seen_message(detection, prefix) for detection in detections]
+
+
+def _seen_message(detection: LocalizedDetection, prefix: str) -> SeenObject:
+    seen, region = detection.detection, detection.region
+    camera = next(name for name, number in CAMERAS.items() if number == detection.camera)
+    return SeenObject(
+        header=Header(stamp=Time.from_sec(detection.time), frame_id=prefix + OPTICAL_FRAMES[camera]),
+        kind=seen.kind,
+        name=seen.name,
+        confidence=seen.confidence,
+        camera=camera,
+        looks=detection.looks,
+        alpha=seen.alpha,
+        beta=seen.beta,
+        size_x=seen.size_x,
+        size_y=seen.size_y,
+        heading=seen.heading,
+        x=region.x,
+        y=region.y,
+        width=region.width,
+        height=region.height,
+        located=detection.distance is not None,
+        distance=detection.distance or 0.0,
+        camera_position=Point(*detection.in_optical),
+        base_frame=prefix + BASE,
+        position=Point(*detection.in_robot),
+        camera_origin=Point(*detection.camera_in_robot),
+    )
