@@ -8,7 +8,7 @@
         print(film.stop().duration)
 
 No robot is needed. Topics are of sensor_msgs/Image or CompressedImage and need not be there yet. Each thread has a
-name, runs beside the others and tells how it is (`report`).
+name, runs beside the others and reports its state (`report`).
 """
 
 from __future__ import annotations
@@ -28,31 +28,22 @@ from .capture.video import VIDEO_TYPES, codec_name
 
 
 class ImageThread:
-    """A stream or a recording that runs.
+    """A stream or a recording that runs."""
 
-    Attributes:
-        name: Its name.
-    """
-
-    def __init__(self, thread: CaptureJob, threads: CaptureJobs) -> None:
-        """Take over a thread that runs."""
-        self.name = thread.ident
-        self._thread = thread
-        self._threads = threads
+    def __init__(self, job: CaptureJob, jobs: CaptureJobs) -> None:
+        self.name = job.ident
+        self._job = job
+        self._jobs = jobs
 
     def report(self) -> VisionThread:
         """State, frames, rate and size now."""
-        return self._thread.report()
+        return self._job.report()
 
     def stop(self) -> VisionThread | RecordedVideo:
-        """End it; a recording's file is complete then.
-
-        Returns:
-            How it was; of a recording, what its file holds.
-        """
-        self._thread.stop()
-        self._threads.remove(self.name)
-        return self._thread.video if isinstance(self._thread, Recording) else self._thread.report()
+        """End it, and answer its report; of a recording the file, which is complete."""
+        self._job.stop()
+        self._jobs.remove(self.name)
+        return self._job.video if isinstance(self._job, Recording) else self._job.report()
 
 
 class ImageThreads:
@@ -68,7 +59,7 @@ class ImageThreads:
         self._topics = topics or VisionTopics()
         self._clock = clock or RosClock()
         self._files = VisionFiles(folder)
-        self._threads = CaptureJobs()
+        self._jobs = CaptureJobs()
 
     def stream(
         self, name: str, topic: str, topic_out: str, width: int = 0, height: int = 0, rate: float = 0.0
@@ -77,9 +68,9 @@ class ImageThreads:
 
         Args:
             name: Of the thread.
-            topic: Where pictures come from.
-            topic_out: Where they go; as JPEG if it ends in /compressed.
-            width: Pixels; 0: as the height wants it, or as they are.
+            topic: Of the camera.
+            topic_out: Of the stream; as JPEG if it ends in /compressed.
+            width: Pixels; 0: in proportion to the height, or as it is.
             height: Pixels; 0: likewise.
             rate: Pictures a second at most; 0: all.
 
@@ -103,7 +94,7 @@ class ImageThreads:
 
         Args:
             name: Of the thread.
-            topic: Where pictures come from.
+            topic: Of the camera.
             file: Name in the folder, .mp4 or .avi.
             width: As `stream` takes it.
             height: Likewise.
@@ -119,12 +110,12 @@ class ImageThreads:
         return self._start(Recording(name, topic, rate, self._topics, self._clock, self._files, spec))
 
     def reports(self) -> list[VisionThread]:
-        """How all are now, by name."""
-        return [thread.report() for thread in self._threads.known.values()]
+        """State of all now, in the order of their names."""
+        return [job.report() for job in self._jobs.known.values()]
 
     def close(self) -> None:
         """End all; files are complete afterwards."""
-        self._threads.close()
+        self._jobs.close()
 
     def __enter__(self) -> ImageThreads:
         return self
@@ -132,11 +123,11 @@ class ImageThreads:
     def __exit__(self, *_: Any) -> None:
         self.close()
 
-    def _start(self, thread: CaptureJob) -> ImageThread:
-        self._threads.add(thread)
+    def _start(self, job: CaptureJob) -> ImageThread:
+        self._jobs.add(job)
         try:
-            thread.start()
+            job.start()
         except Exception:
-            self._threads.remove(thread.ident)
+            self._jobs.remove(job.ident)
             raise
-        return ImageThread(thread, self._threads)
+        return ImageThread(job, self._jobs)

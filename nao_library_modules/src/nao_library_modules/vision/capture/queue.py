@@ -1,4 +1,4 @@
-"""Frames that wait for their turn: bounded, the oldest go first. No ROS, no locks: who uses it has one."""
+"""A bounded queue of frames, from which the oldest are dropped. No ROS, no locks: the user has one."""
 
 from __future__ import annotations
 
@@ -9,48 +9,36 @@ from typing import Any
 from ...base.limits import limit
 
 MOST_FRAMES = int(limit("waiting pictures").highest)
-"""That wait; of more the oldest go."""
 MOST_BYTES = int(limit("bytes of waiting pictures").highest)
-"""Of pictures that wait; two always may."""
+"""Of the waiting pictures; two may always wait."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """A message of a camera.
+    """A message of a camera."""
 
-    Attributes:
-        message: sensor_msgs/Image or sensor_msgs/CompressedImage.
-        stamp: When it was taken, s; when it came, if the camera does not say.
-    """
-
-    message: Any
-    stamp: float
+    message: Any  # sensor_msgs/Image or sensor_msgs/CompressedImage
+    stamp: float  # ROS time at which it was taken, s; of its arrival if the message has none
 
 
 def frame_of(message: Any, now: float) -> Frame:
-    """A message that came at a ROS time, in s."""
+    """The frame of a message that came at a ROS time, in s."""
     return Frame(message, message.header.stamp.to_sec() or now)
 
 
 class FrameQueue:
-    """Frames in the order in which they came.
-
-    Attributes:
-        dropped: How many were too many.
-    """
+    """Frames in the order in which they came."""
 
     def __init__(self) -> None:
-        """Begin empty."""
         self.dropped = 0
         self._frames: deque[Frame] = deque()
         self._bytes = 0
 
     def __len__(self) -> int:
-        """How many wait."""
         return len(self._frames)
 
     def put(self, frame: Frame) -> None:
-        """Add a frame; the oldest make room."""
+        """Add a frame; the oldest are dropped where there are too many."""
         self._frames.append(frame)
         self._bytes += len(frame.message.data)
         while len(self) > MOST_FRAMES or (self._bytes > MOST_BYTES and len(self) > 2):
@@ -58,7 +46,6 @@ class FrameQueue:
             self.dropped += 1
 
     def drop_all(self) -> None:
-        """Let nobody have those that wait."""
         while self:
             self.take()
             self.dropped += 1

@@ -20,21 +20,12 @@ from .video import VideoFile
 
 @dataclass(frozen=True)
 class VideoSpec:
-    """What a recording is to be.
+    """How a recording is written."""
 
-    Attributes:
-        path: The file; None: named by the time of its start.
-        file_type: mp4 or avi.
-        codec: One that there is.
-        width: Pixels, as `vision_pictures.wanted_size` takes it.
-        height: Pixels, likewise.
-        overwrite: Whether a file that is there may be replaced.
-    """
-
-    path: Path | None
-    file_type: str
-    codec: str
-    width: int = 0
+    path: Path | None  # None: named by the time of the start
+    file_type: str  # mp4 or avi
+    codec: str  # one of `known_codecs`
+    width: int = 0  # pixels, as `wanted_size` takes them
     height: int = 0
     overwrite: bool = False
 
@@ -56,18 +47,7 @@ class Recording(CaptureJob):
         spec: VideoSpec,
         again: bool = False,
     ) -> None:
-        """Make it ready.
-
-        Args:
-            ident: The user's name for it.
-            topic: Where frames come from.
-            rate: Frames a second at most; 0: all.
-            topics: Gives subscriptions.
-            clock: ROS time.
-            files: Folder for the file.
-            spec: What it is to be.
-            again: Whether it has been started before, by a node that has died: its file stays.
-        """
+        """Take what CaptureJob takes; again: a node that has died started it before, and its file stays."""
         super().__init__(ident, topic, rate, topics, clock)
         self._files = files
         self._spec = spec
@@ -77,13 +57,12 @@ class Recording(CaptureJob):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """As CaptureJob has it."""
         common = {"ident": self.ident, "topic": self.topic, "rate": self._rate}
         return {**common, "spec": {**asdict(self._spec), "path": self._spec.path and str(self._spec.path)}}
 
     @property
     def video(self) -> RecordedVideo:
-        """What the file of the latest start holds."""
+        """The file of the latest start."""
         report = self.report()
         video = self._video
         message = RecordedVideo(
@@ -109,7 +88,7 @@ class Recording(CaptureJob):
         self._video = None
         spec = self._spec
         path = spec.path or self._files.named_by_time(self.ident, spec.file_type)
-        # Only the first start was asked about: what it wrote must not be replaced by the second.
+        # Only the first start was checked before the chain: a second one must not replace its file.
         self._file = self._files.create(path, spec.overwrite and not again, numbered=again or spec.path is None)
         self._wanted = self._file.path
 

@@ -1,4 +1,4 @@
-"""When frames of a camera are passed on, and at which time they stand in a video. Numbers only."""
+"""Limit and measurement of frame rates, and the times of frames in a video. Numbers only."""
 
 from __future__ import annotations
 
@@ -9,27 +9,18 @@ STRANGEST_GAP = 3600.0
 FAR_BACK = 1.0
 """s; stamps that jump further back belong to a clock that was set back, as that of a simulation that starts again."""
 SLACK = 0.1
-"""Share of the period that a frame may come early: stamps are not that even."""
+"""Fraction of the period that a frame may be early: stamps are not even."""
 
 
 class RateLimit:
-    """Tells which frames to pass on so that they are at most so many a second."""
+    """Selects frames so that they are at most so many a second; rate 0: all."""
 
     def __init__(self, rate: float) -> None:
-        """Begin with the next frame.
-
-        Args:
-            rate: Frames a second; 0: all.
-        """
         self._period = 1.0 / rate if rate > 0.0 else 0.0
         self._due: float | None = None
 
     def passes(self, stamp: float) -> bool:
-        """Whether a frame is passed on.
-
-        Args:
-            stamp: When it was taken, s.
-        """
+        """Whether a frame of a time (s) is passed on."""
         if not self._period:
             return True
         due = self._due
@@ -44,22 +35,14 @@ class VideoTimes:
     """Times of frames in a video: as the camera stamps them, from 0, and always growing."""
 
     def __init__(self, step: float) -> None:
-        """Begin with the next frame.
-
-        Args:
-            step: s, the smallest difference that the video can tell.
-        """
+        """Begin with the next frame; the step is the resolution of times in the video, s."""
         self._step = step
         self._shift: float | None = None
         self._last = 0.0
         self._period = 0.0
 
     def place(self, stamp: float) -> float | None:
-        """Time of a frame in the video, s; None if it comes too early after the last one to have one.
-
-        Args:
-            stamp: When it was taken, s.
-        """
+        """Time in the video of a frame of a time (s); None if it is less than a step after the last one."""
         if self._shift is None:
             self._shift = stamp
             return 0.0
@@ -76,18 +59,12 @@ class VideoTimes:
 
 
 class RateMeter:
-    """How many frames a second there are, of late."""
+    """The rate of the latest 30 frames."""
 
-    def __init__(self, frames: int = 30) -> None:
-        """Begin without any.
-
-        Args:
-            frames: The mean is over so many.
-        """
-        self._stamps: deque[float] = deque(maxlen=frames)
+    def __init__(self) -> None:
+        self._stamps: deque[float] = deque(maxlen=30)
 
     def count(self, stamp: float) -> None:
-        """Note a frame, taken at a time in s."""
         if self._stamps and stamp < self._stamps[-1]:
             self._stamps.clear()  # the clock was set back
         self._stamps.append(stamp)

@@ -29,22 +29,19 @@ class SettingsTrouble(NaoError):  # noqa: N818  named like the errors of the pro
 
 
 class Publisher:
-    """Publishes pictures, or what belongs to them."""
+    """A publisher of pictures or camera_info."""
 
     def __init__(self, publisher: rospy.Publisher) -> None:
-        """Take over a publisher."""
         self._publisher = publisher
 
     def publish(self, message: Any) -> None:
-        """Publish; a slow subscriber holds nobody up."""
+        """Publish; a slow subscriber does not block."""
         self._publisher.publish(message)
 
     def is_heard(self) -> bool:
-        """Whether anybody listens."""
         return self._publisher.get_num_connections() > 0
 
     def close(self) -> None:
-        """Publish no more."""
         self._publisher.unregister()
 
 
@@ -52,19 +49,12 @@ class Subscription:
     """Takes messages from a topic until it is closed; may be closed twice."""
 
     def __init__(self, topic: str, kind: type, take: Callable[[Any], None]) -> None:
-        """Begin.
-
-        Args:
-            topic: Where they come from.
-            kind: Their message.
-            take: Called with each, from the thread that receives it: it must not take long.
-        """
+        """Subscribe; `take` is called from the thread that receives: it must not take long."""
         self._lock = threading.Lock()
-        # Of several subscriptions to one topic ROS makes one connection, and calls all that want the message.
+        # rospy makes one connection for all subscriptions to a topic.
         self._subscriber: rospy.Subscriber | None = rospy.Subscriber(topic, kind, take, buff_size=BUFFER)
 
     def close(self) -> None:
-        """Take no more."""
         with self._lock:
             subscriber, self._subscriber = self._subscriber, None
         if subscriber is not None:
@@ -83,11 +73,10 @@ class VisionTopics:
         return Subscription(topic, self._kind(topic), take)
 
     def subscribe_info(self, topic: str, take: Callable[[Any], None]) -> Subscription:
-        """Take what cameras tell of themselves (sensor_msgs/CameraInfo) from a topic, which need not be there."""
+        """Take sensor_msgs/CameraInfo from a topic, which need not be there."""
         return Subscription(topic, CameraInfo, take)
 
     def publisher(self, topic: str, kind: type) -> Publisher:
-        """Publish messages of a kind on a topic."""
         return Publisher(rospy.Publisher(topic, kind, queue_size=QUEUE))
 
     def images_of(self, nodes: frozenset[str]) -> list[str]:
@@ -99,25 +88,21 @@ class VisionTopics:
         return sorted(images, key=lambda name: (not name.endswith("/image_raw"), name))
 
     def resolved(self, topic: str) -> str:
-        """Full name of a topic."""
         return rospy.resolve_name(topic)
 
     def settings(self, server: str) -> dict[str, Any]:
-        """What a node that takes dynamic_reconfigure is set to: name -> value.
+        """The settings of a node that takes dynamic_reconfigure: name -> value.
 
         Raises:
-            SettingsTrouble: If there is none.
+            SettingsTrouble: There is no such node.
         """
         return self._configured(server, {})
 
     def set(self, server: str, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Set some of it.
-
-        Returns:
-            What it is set to then.
+        """Change some settings; answers all afterwards.
 
         Raises:
-            SettingsTrouble: If there is no such node, or it refuses.
+            SettingsTrouble: There is no such node, or it refuses.
         """
         return self._configured(server, values)
 
@@ -140,7 +125,7 @@ class VisionTopics:
         return {key: value for key, value in decoded.items() if key != "groups"}
 
     def _kind(self, topic: str) -> type:
-        """Message of a topic's pictures; where nobody publishes yet its name tells."""
+        """Message type of a topic of pictures; by its name where nobody publishes yet."""
         full = rospy.resolve_name(topic)
         try:
             types = dict(rosgraph.Master(rospy.get_name()).getTopicTypes())

@@ -18,7 +18,7 @@ from .pictures import fitted
 from .times import VideoTimes
 
 av = Later("av")
-# What the encoders have to say of themselves is no matter of the node's log.
+# The encoders' reports on themselves do not belong into the node's log.
 logging.getLogger("libav").setLevel(logging.ERROR)
 
 VIDEO_TYPES = ("mp4", "avi")
@@ -26,24 +26,16 @@ VIDEO_TYPES = ("mp4", "avi")
 
 @dataclass(frozen=True)
 class Codec:
-    """A way to compress a video.
+    """A way to compress a video."""
 
-    Attributes:
-        encoder: Its name in FFmpeg.
-        pixels: Format of its pixels.
-        bits: A pixel and frame, roughly; 0: the encoder has a measure of its own.
-        options: Of the encoder.
-        file_types: What it can be put into.
-    """
-
-    encoder: str
-    pixels: str
-    bits: float
+    encoder: str  # name in FFmpeg
+    pixels: str  # format of the pixels
+    bits: float  # per pixel and frame, roughly; 0: the encoder has a measure of its own
     options: dict[str, str]
     file_types: tuple[str, ...]
 
 
-# An AVI file has a grid of times, in which H.264 cannot leave places empty.
+# An AVI file has a grid of times; H.264 cannot leave places of it empty.
 CODECS = {
     "h264": Codec("libx264", "yuv420p", 0.0, {"preset": "ultrafast", "tune": "zerolatency", "crf": "20"}, ("mp4",)),
     "mpeg4": Codec("mpeg4", "yuv420p", 0.35, {}, ("mp4", "avi")),
@@ -63,7 +55,7 @@ CONTAINER_OPTIONS = {
     "avi": {"flush_packets": "1"},
 }
 KEY_FRAMES = 30
-"""Every so many frames one stands for itself."""
+"""Frames from one key frame to the next."""
 
 
 class VideoTrouble(NaoError):  # noqa: N818  named like the errors of the proxy layer
@@ -76,7 +68,7 @@ def known_codecs(file_type: str) -> list[str]:
 
 
 def codec_name(text: str, file_type: str) -> str:
-    """A codec by one of its names; empty: the preferred one that this computer has. It need not be known."""
+    """Usual name of a codec, also of an unknown one; of an empty text the preferred codec that this computer has."""
     bare = text.strip().lower()
     if bare:
         return SYNONYMS.get(bare, bare)
@@ -98,24 +90,24 @@ class VideoFile:
     Attributes:
         width: Pixels; even, as codecs need it.
         height: Pixels, likewise.
-        frames: How many are in it.
-        dropped: How many came too early after the one before, or twice.
+        frames: Number of frames in it.
+        dropped: Frames that came too early after the one before, or twice.
         began: Stamp of the first frame, s.
         duration: s from the first frame to the end of the last one.
     """
 
     def __init__(self, file: WholeFile, file_type: str, codec: str, width: int, height: int) -> None:
-        """Begin.
+        """Open the video; the file is closed with it.
 
         Args:
-            file: Where to write; it is closed with the video.
+            file: Open for writing.
             file_type: One of VIDEO_TYPES.
             codec: One of `known_codecs`.
             width: Pixels of the first picture; an odd one is left out.
             height: Pixels, likewise.
 
         Raises:
-            VideoTrouble: If there can be no such video.
+            VideoTrouble: FFmpeg cannot make such a video.
         """
         self.width, self.height = max(2, width - width % 2), max(2, height - height % 2)
         self.frames = self.dropped = 0
@@ -145,12 +137,11 @@ class VideoFile:
 
     @property
     def duration(self) -> float:
-        """Length in s."""
         return self._places[-1] + self._period if self.frames else 0.0
 
     @property
     def _period(self) -> float:
-        """How long the last frame is shown, s: as the one before it."""
+        """Duration of the last frame, s: that of the one before it."""
         return self._places[-1] - self._places[-2] if self.frames > 1 else 0.0
 
     def write(self, picture: np.ndarray, stamp: float) -> bool:
@@ -164,8 +155,8 @@ class VideoFile:
             Whether it has a place in the video.
 
         Raises:
-            VideoTrouble: If it cannot be compressed.
-            FileTrouble: Of the file.
+            VideoTrouble: It cannot be compressed.
+            FileTrouble: It cannot be written.
         """
         time = self._times.place(stamp)
         if time is None:
@@ -186,11 +177,11 @@ class VideoFile:
         return True
 
     def close(self) -> None:
-        """End the video and the file. Of a video that could not be written to its end, what can be played is kept.
+        """End the video and the file; of one that could not be written to its end the playable part is kept.
 
         Raises:
-            VideoTrouble: If its end cannot be written.
-            FileTrouble: Of the file.
+            VideoTrouble: The end cannot be compressed.
+            FileTrouble: The end cannot be written.
         """
         try:
             try:
@@ -221,7 +212,7 @@ class VideoFile:
             raise _trouble(error) from error
 
     def _mux(self, packet: Any) -> None:
-        """Pass a packet on; what is complete with it goes to the file."""
+        """Pass a packet on; the part of the file that it completes is written."""
         self._container.mux(packet)
         self._muxed += 1
         if self._file.flush():
