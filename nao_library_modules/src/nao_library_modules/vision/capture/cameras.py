@@ -1,4 +1,4 @@
-"""The robot's cameras as goals name them: cameras, resolutions and parameters. Pure."""
+"""Names of cameras, resolutions and parameters in goals. Pure."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ PARAMETERS = {
     "AutoFocus": 40,
     "Focus": 43,
 }
-"""A camera's parameter, by NAOqi's name without kCamera and ID -> NAOqi's number. Not every camera has all of them:
-that the robot knows, which also takes other numbers."""
+"""Parameter of a camera, NAOqi's name without kCamera and ID -> NAOqi's number. Not every camera has all of them, and
+the robot takes other numbers as well."""
 KNOWN_PARAMETERS = f"one of {', '.join(PARAMETERS)}, also by NAOqi's name or number"
 MOST_PARAMETERS = 64
 _SPELLINGS = {name.lower(): number for name, number in PARAMETERS.items()}
@@ -59,11 +59,7 @@ _OTHERWISE.update(setdefaultparams="setAllParametersToDefault")
 
 
 def camera_name(text: str, active: str) -> str:
-    """Name of a camera.
-
-    Args:
-        text: As a goal has it: name, NAOqi's number, or empty.
-        active: What empty stands for.
+    """Name of a camera from its name or NAOqi's number in a goal; the active one for an empty text.
 
     Raises:
         BadGoal: If there is no such camera.
@@ -79,10 +75,7 @@ def camera_name(text: str, active: str) -> str:
 
 
 def resolution_name(text: str) -> str:
-    """Name of a resolution, without the k: VGA.
-
-    Args:
-        text: As a goal has it: name, NAOqi's number, or 640x480.
+    """Name of a resolution, without the k (VGA), from its name, NAOqi's number or 640x480.
 
     Raises:
         BadGoal: If there is no such resolution.
@@ -96,18 +89,15 @@ def resolution_name(text: str) -> str:
 
 
 def resolution_of(number: int) -> str:
-    """Name of a resolution by NAOqi's number; the number itself where it has none here."""
+    """Name of a resolution by NAOqi's number; the number itself where it has none."""
     return next((name for name, (own, *_) in RESOLUTIONS.items() if own == number), str(number))
 
 
 def parameter_number(text: str) -> int:
-    """NAOqi's number of a camera's parameter.
-
-    Args:
-        text: As a goal has it: brightness, kCameraBrightnessID, 0.
+    """NAOqi's number of a parameter from brightness, kCameraBrightnessID or 0.
 
     Raises:
-        BadGoal: If there is no such parameter, or other functions are for it.
+        BadGoal: If there is no such parameter, or another function sets it.
     """
     bare = re.sub(r"^k?camera_?|_?id$", "", text.strip(), flags=re.IGNORECASE).replace("_", "").lower()
     if bare in _OTHERWISE:

@@ -1,4 +1,4 @@
-"""What the fields of a VisionFunction mean to streams, recordings, pictures and the settings of the cameras."""
+"""Fields of a VisionFunction for streams, recordings, pictures and the settings of the cameras."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from .video import CODECS, VIDEO_TYPES
 
 PIXELS, PICTURES, TIMEOUT = limit("pixels"), limit("pictures"), limit("timeout")
 DEFAULT_TIMEOUT = 10.0
-"""s to wait for a frame, or for something to be seen, where a message leaves it to us."""
+"""s to wait for a frame, or for a detection, where a message has none."""
 LONGEST_ID = 64
 LARGEST_VALUE = 1 << 31
 TOPIC = re.compile(r"[~/]?[A-Za-z]\w*(/\w+)*")
@@ -41,7 +41,7 @@ WHOLE = "one whole number"
 
 
 def _require_id(name: str, ident: str) -> None:
-    """A name that can be part of names of files and topics."""
+    """Check that a name can be part of names of files and topics."""
     bare = require_text(name, ident, IDS)
     if len(bare) > LONGEST_ID or "/" in bare or CONTROL.search(bare) or bare.startswith((".", "~")):
         raise BadGoal(name, ident, IDS)

@@ -1,4 +1,4 @@
-"""The folder that pictures and videos of goals go to, and the names of files in it. No ROS."""
+"""The folder for pictures and videos of goals, and the names of files in it. No ROS."""
 
 from __future__ import annotations
 
@@ -20,14 +20,10 @@ SHORT = f"up to {LONGEST_NAME - 10} bytes"
 
 
 class VisionFiles:
-    """Files of one server. May be used by several threads.
-
-    Attributes:
-        folder: Where they are; absolute.
-    """
+    """Files of one server. Any thread."""
 
     def __init__(self, folder: str) -> None:
-        """Make nothing yet; what killed servers have left is tidied up.
+        """Remove what killed servers have left; nothing is made yet.
 
         Args:
             folder: "~" stands for the home of the user; relative to the working directory, which is ROS_HOME for a
@@ -35,14 +31,14 @@ class VisionFiles:
         """
         self.folder = Path(folder).expanduser().absolute()
         self._lock = threading.Lock()
-        self._open: set[Path] = set()  # what a recording of this server writes: nobody may replace it
+        self._open: set[Path] = set()  # being written: must not be replaced
         tidy(self.folder)
 
     def file_type(self, name: str, file_type: str, known: Sequence[str]) -> str:
-        """Kind of a file: as its field says, as its name ends, or the first of those known.
+        """Type of a file: that of the field, of the end of the name, or the first known one.
 
         Raises:
-            BadGoal: If it is not known, or name and field differ.
+            BadGoal: It is not known, or name and field differ.
         """
         field = known_type("file_type", file_type, known)
         end = known_type("str_param", Path(name.strip()).suffix, known)
@@ -55,11 +51,11 @@ class VisionFiles:
         """Path of a file that a goal names; its folder may have to be made.
 
         Args:
-            name: Relative to the folder, or absolute and inside it, with or without the end that tells its type.
-            file_type: Its type.
+            name: Relative to the folder, or absolute and inside it, with or without a suffix.
+            file_type: Suffix where the name has none.
 
         Raises:
-            BadGoal: If it leads out of the folder or cannot be a name.
+            BadGoal: It leads out of the folder or cannot be a name.
         """
         allowed = f"a name of a file in {self.folder}"
         bare = name.strip()
@@ -80,7 +76,7 @@ class VisionFiles:
         """Check that a file may be written.
 
         Raises:
-            BadGoal: If it is there and may not be replaced, or a recording writes it.
+            BadGoal: It exists and may not be replaced, or a recording writes it.
         """
         with self._lock:
             busy = path in self._open
@@ -102,22 +98,22 @@ class VisionFiles:
         planned.add(path)
 
     def named_by_time(self, prefix: str, file_type: str) -> Path:
-        """Path for a file that a goal does not name: what it is, and the time of day."""
+        """Path of a file that a goal does not name: a prefix and the local time."""
         now = time.time()
         stamp = time.strftime("%Y-%m-%d_%H-%M-%S", time.localtime(now))
         return self.folder.resolve() / f"{prefix}_{stamp}.{int(now * 1000) % 1000:03d}.{file_type}"
 
     def create(self, path: Path, overwrite: bool = False, numbered: bool = False) -> WholeFile:
-        """A file that is to be written; `done` has to be told of its end.
+        """Open a file for writing; call `done` at its end.
 
         Args:
-            path: Which.
-            overwrite: Whether one that is there is replaced.
-            numbered: Whether one that is there lets this one become name-2, name-3, ...
+            path: See `path`.
+            overwrite: Whether an existing file is replaced.
+            numbered: Whether this file becomes name-2, name-3, ... beside an existing one.
 
         Raises:
-            BadGoal: If it is there and is neither to be replaced nor to be numbered.
-            FileTrouble: If it cannot be written.
+            BadGoal: It exists and is neither to be replaced nor to be numbered.
+            FileTrouble: It cannot be written.
         """
         with self._lock:
             free, number = path, 1
@@ -132,12 +128,12 @@ class VisionFiles:
         return file
 
     def done(self, path: Path) -> None:
-        """Note that a file is complete: it may be replaced from now on."""
+        """Take note that a file is complete: it may be replaced from now on."""
         with self._lock:
             self._open.discard(path)
 
     def write(self, path: Path, data: bytes, overwrite: bool = False, numbered: bool = False) -> Path:
-        """Write a whole file; takes what `create` takes, and the bytes. Answers its path."""
+        """Write a whole file, as `create` takes it; answers its path."""
         file = self.create(path, overwrite, numbered)
         wanted = file.path
         try:
@@ -149,10 +145,10 @@ class VisionFiles:
 
 
 def known_type(field: str, text: str, known: Sequence[str]) -> str:
-    """A type of file by its usual name; empty for none.
+    """Usual name of a type of file; empty for none.
 
     Raises:
-        BadGoal: If it is not known.
+        BadGoal: It is not known.
     """
     bare = text.strip().lower().lstrip(".")
     kind = SYNONYMS.get(bare, bare)
@@ -163,6 +159,6 @@ def known_type(field: str, text: str, known: Sequence[str]) -> str:
 
 
 def require_short(field: str, name: str) -> None:
-    """A path whose parts file systems take, also with what may be put behind its name."""
+    """Check that file systems take each part of a path, also with a number and a suffix behind it."""
     if any(len(os.fsencode(part)) > LONGEST_NAME - len("-000.webp") for part in Path(name.strip()).parts):
         raise BadGoal(field, name, SHORT, problem="the name is too long")

@@ -14,7 +14,7 @@ from naoqi.errors import NaoError
 from ...base.errors import BadGoal
 from .pictures import BadPicture
 from .queue import Frame, FrameQueue, frame_of
-from .times import RateLimit, RateMeter
+from .times import RateLimit, RecentRate
 
 log = logging.getLogger(__name__)
 
@@ -208,7 +208,7 @@ class CaptureJob(ABC):
     def _forget(self) -> None:
         self._queue = FrameQueue()
         self._limit = RateLimit(self._rate)
-        self._meter = RateMeter()
+        self._meter = RecentRate()
         self._arrivals = self._frames = self._dropped = 0
         self._size = (0, 0)
         self._error = ""

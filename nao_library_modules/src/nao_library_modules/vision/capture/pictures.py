@@ -1,4 +1,4 @@
-"""Pictures of camera messages as arrays, their size, and their form in a file. No ROS: messages are only read."""
+"""Decoding, scaling and encoding of pictures of camera messages. No ROS: messages are only read."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ COMPRESSED = "/compressed"
 """Topics whose name ends so have pictures as JPEG, as image_transport's do."""
 DEFAULT_QUALITY = 95
 DECODED = ("JPEG", "PNG", "WEBP")
-"""Kinds of compressed messages."""
+"""Formats of compressed messages, by Pillow's names."""
 PICTURE_TYPES = ("png", "jpg", "bmp", "tiff", "webp")
 LARGEST, MOST_PIXELS = int(limit("pixels").highest), 2**25
-"""Pixels of a side, and of all; no camera has more."""
+"""Pixels of a side, and in all; no camera has more."""
 LARGEST_COMPRESSED = 2**26
 """Bytes of a compressed picture."""
 
@@ -32,21 +32,10 @@ Picture = np.ndarray
 
 
 class BadPicture(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A message holds no picture that can be read.
-
-    Attributes:
-        encoding: What the message says it holds.
-    """
+    """A message holds no picture that can be read."""
 
     def __init__(self, encoding: str, problem: str) -> None:
-        """Compose the text.
-
-        Args:
-            encoding: What the message says it holds.
-            problem: What is wrong.
-        """
         super().__init__(f"a picture of encoding {encoding!r} cannot be read: {problem}")
-        self.encoding = encoding
 
 
 def _as_is(rows: np.ndarray) -> Picture:
@@ -57,7 +46,7 @@ def _converted(code: str) -> Callable[[np.ndarray], Picture]:
     return lambda rows: cv2.cvtColor(rows, getattr(cv2, code))
 
 
-# Encoding of sensor_msgs/Image -> bytes a pixel, layers (0: none of their own), and how it becomes a picture.
+# Encoding of sensor_msgs/Image -> bytes a pixel, channels (0: no axis of their own), and the conversion.
 ENCODINGS: dict[str, tuple[int, int, Callable[[np.ndarray], Picture]]] = {
     "bgr8": (3, 3, _as_is),
     "rgb8": (3, 3, _converted("COLOR_RGB2BGR")),
@@ -84,19 +73,19 @@ ENCODINGS.update({
 
 
 def is_compressed(message: Any) -> bool:
-    """Whether a message is a sensor_msgs/CompressedImage."""
+    """Whether a message is a sensor_msgs/CompressedImage, not an Image."""
     return hasattr(message, "format")
 
 
 def encoding_of(message: Any) -> str:
-    """What a message says its pixels are: bgr8, ...; or how it is compressed: jpeg, png, ..."""
+    """Encoding of a message: bgr8, ...; of a compressed one its format: jpeg, png, ..."""
     if not is_compressed(message):
         return message.encoding
     return message.format.split(";")[-1].replace("compressed", " ").split()[0] if message.format.strip() else "jpeg"
 
 
 def size_rows() -> list[tuple[str, int, str, str]]:
-    """The limits as rows of a table: what, limit, unit, where it counts."""
+    """The limits as rows of a table: name, limit, unit, where it holds."""
     where = "pictures of camera topics"
     return [
         ("width, height", LARGEST, "pixels", where),
@@ -106,10 +95,7 @@ def size_rows() -> list[tuple[str, int, str, str]]:
 
 
 def picture_of(message: Any) -> Picture:
-    """The picture of a camera's message.
-
-    Args:
-        message: sensor_msgs/Image or sensor_msgs/CompressedImage.
+    """The picture of a sensor_msgs/Image or sensor_msgs/CompressedImage.
 
     Raises:
         BadPicture: If it holds none that can be read.
@@ -120,28 +106,27 @@ def picture_of(message: Any) -> Picture:
         raise BadPicture(message.encoding, f"known are {', '.join(ENCODINGS)}")
     width, height, step = message.width, message.height, message.step
     _check_size(message.encoding, width, height)
-    size, layers, convert = ENCODINGS[message.encoding]
+    size, channels, convert = ENCODINGS[message.encoding]
     step = step or width * size
     if step < width * size or len(message.data) < step * height:
         there = f"{len(message.data)} bytes in rows of {step}"
         raise BadPicture(message.encoding, f"{width}x{height} pixels need {width * size * height}, there are {there}")
-    if layers == 2 and width % 2:
+    if channels == 2 and width % 2:
         raise BadPicture(message.encoding, f"{width} pixels a row are no pairs")
     rows = np.frombuffer(message.data, np.uint8, step * height).reshape(height, step)[:, : width * size]
-    if size == 2 and not layers:
+    if size == 2 and not channels:
         fine = np.ascontiguousarray(rows).view(">u2" if message.is_bigendian else "<u2")
         return fine.astype(np.uint16)
-    if layers:
-        rows = np.ascontiguousarray(rows).reshape(height, width, layers)
+    if channels:
+        rows = np.ascontiguousarray(rows).reshape(height, width, channels)
     return convert(rows)
 
 
 def _decompressed(message: Any) -> Picture:
-    """The picture of a compressed message.
+    """Decode with Pillow, only the formats `DECODED`, after a check of the size in the header.
 
-    Pillow decodes, and only `DECODED`, after a look at the header: OpenCV 4.11, the last one for NumPy 1, has decoders
-    for much more, among them that of JPEG 2000 with a hole (CVE-2025-53644), and fills broken pictures with what it
-    decoded before.
+    OpenCV 4.11, the last one for NumPy 1, decodes many more formats, JPEG 2000 with a hole (CVE-2025-53644) among them,
+    and fills broken pictures with what it decoded before.
     """
     content = bytes(message.data)
     if len(content) > LARGEST_COMPRESSED:
@@ -172,17 +157,17 @@ def _check_size(encoding: str, width: int, height: int) -> None:
 
 
 def visible(picture: Picture) -> Picture:
-    """A picture with three layers of 8 bits, as videos and most files have them."""
+    """A picture with three channels of 8 bits, as videos and most files need it."""
     if picture.dtype == np.uint16:
         picture = (picture >> 8).astype(np.uint8)
     return picture if picture.ndim == 3 else cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR)
 
 
 def wanted_size(size: tuple[int, int], width: int, height: int) -> tuple[int, int]:
-    """Size of a picture that was asked for.
+    """Size of a scaled picture, (width, height) in pixels.
 
     Args:
-        size: Its own, (width, height) in pixels.
+        size: That of the original.
         width: Pixels; 0: in proportion to the height, or as it is.
         height: Pixels, likewise.
     """
@@ -196,10 +181,10 @@ def wanted_size(size: tuple[int, int], width: int, height: int) -> tuple[int, in
 
 
 def scaled(picture: Picture, width: int, height: int) -> Picture:
-    """A picture in another size, as `wanted_size` has it.
+    """A picture scaled to `wanted_size`.
 
     Raises:
-        BadPicture: It would be too large: a narrow one may be so in proportion.
+        BadPicture: It would be too large, as the free side of a narrow picture may be.
     """
     size = (picture.shape[1], picture.shape[0])
     wanted = wanted_size(size, width, height)
@@ -211,12 +196,12 @@ def scaled(picture: Picture, width: int, height: int) -> Picture:
 
 
 def fitted(picture: Picture, width: int, height: int) -> Picture:
-    """A picture in another size, nothing stretched: what is left over is black."""
+    """A picture scaled in proportion into a frame (pixels), the rest of which is black."""
     own_height, own_width = picture.shape[:2]
     if (own_width, own_height) == (width, height):
         return picture
-    share = min(width / own_width, height / own_height)
-    inner = scaled(picture, max(1, round(own_width * share)), max(1, round(own_height * share)))
+    scale = min(width / own_width, height / own_height)
+    inner = scaled(picture, max(1, round(own_width * scale)), max(1, round(own_height * scale)))
     left, top = (width - inner.shape[1]) // 2, (height - inner.shape[0]) // 2
     frame = np.zeros((height, width, *picture.shape[2:]), picture.dtype)
     frame[top : top + inner.shape[0], left : left + inner.shape[1]] = inner
@@ -224,7 +209,7 @@ def fitted(picture: Picture, width: int, height: int) -> Picture:
 
 
 def encoded(picture: Picture, file_type: str, quality: int = 0) -> bytes:
-    """A picture as a file holds it.
+    """The content of a file with a picture.
 
     Args:
         picture: See `Picture`; 16 bits are kept where the type can.

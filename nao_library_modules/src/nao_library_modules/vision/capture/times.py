@@ -58,7 +58,7 @@ class VideoTimes:
         return time
 
 
-class RateMeter:
+class RecentRate:
     """The rate of the latest 30 frames."""
 
     def __init__(self) -> None:

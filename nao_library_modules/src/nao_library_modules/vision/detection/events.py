@@ -1,4 +1,4 @@
-"""What the events of the robot's vision say, in angles of the camera. Pure.
+"""Detections from the events of the robot's vision, in angles of the camera. Pure.
 
 Angles are NAOqi's: alpha is positive to the left of the camera's axis, beta positive below it.
 """
@@ -26,7 +26,7 @@ class Lens(NamedTuple):
 
 
 class Region(NamedTuple):
-    """Part of a picture, in shares of its width and height: centre from the upper left corner, extent."""
+    """Part of a picture, in fractions of its width and height: centre from the upper left corner, extent."""
 
     x: float
     y: float
@@ -36,49 +36,28 @@ class Region(NamedTuple):
 
 @dataclass(frozen=True)
 class Detection:
-    """Something in a picture.
+    """Something in a picture; rad."""
 
-    Attributes:
-        kind: ball, face, landmark, code or movement.
-        name: Whose face, the number of a landmark, the text of a code; empty if it has none or nobody knows.
-        key: What it is recognised by in the next picture.
-        confidence: 0..1.
-        alpha: rad, its centre.
-        beta: rad, its centre.
-        size_x: rad, its whole width.
-        size_y: rad, its whole height.
-        heading: rad, how it is turned in the picture, anticlockwise.
-        region: Where it is in the picture, if the robot tells that itself.
-    """
-
-    kind: str
-    name: str
-    key: str
-    confidence: float
-    alpha: float
+    kind: str  # ball, face, landmark, code or movement
+    name: str  # person, number of the landmark, text of the code; empty: none, or unknown
+    key: str  # identifies the thing in the next picture
+    confidence: float  # 0..1
+    alpha: float  # of the centre
     beta: float
-    size_x: float
+    size_x: float  # the whole width
     size_y: float
-    heading: float = 0.0
-    region: Region | None = None
+    heading: float = 0.0  # rotation in the picture, anticlockwise
+    region: Region | None = None  # None: the robot has to be asked
 
 
 @dataclass(frozen=True)
 class DetectionArray:
-    """What an event says about a picture.
+    """The detections of one picture; None: the event does not say."""
 
-    Attributes:
-        time: Robot's time of the picture, s; None if it is not told.
-        camera: Index of the camera; None if it is not told.
-        in_torso: Where the camera was in the torso frame; None if it is not told.
-        in_robot: Where it was in NAOqi's FRAME_ROBOT; None if it is not told.
-        detections: What is in it.
-    """
-
-    time: float | None
-    camera: int | None
-    in_torso: Pose | None
-    in_robot: Pose | None
+    time: float | None  # the robot's time of the picture, s
+    camera: int | None  # index
+    in_torso: Pose | None  # pose of the camera
+    in_robot: Pose | None  # pose of the camera in NAOqi's FRAME_ROBOT
     detections: tuple[Detection, ...]
 
 
@@ -92,7 +71,7 @@ def ball_detections(value: Any) -> DetectionArray:
         value: [[s, us], [alpha, beta, radius, radius], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
 
     Raises:
-        ValueError: If the value is something else.
+        ValueError: The value is something else.
     """
     return _read(value, "red ball", _ball)
 
@@ -105,7 +84,7 @@ def landmark_detections(value: Any) -> DetectionArray:
             FRAME_ROBOT, camera]; rad.
 
     Raises:
-        ValueError: If the value is something else.
+        ValueError: The value is something else.
     """
     return _read(value, "landmarks", _landmarks)
 
@@ -113,14 +92,14 @@ def landmark_detections(value: Any) -> DetectionArray:
 def face_detections(value: Any) -> DetectionArray:
     """A picture with faces, from FaceDetected.
 
-    Who was recognised for some time already and has no name in this picture keeps it, if the face is the only one.
+    The only face of a picture, if it has no name, gets that of the only person who was recognised for some time.
 
     Args:
         value: [[s, us], [[[0, alpha, beta, width, height], [id, score, name, ...]], ..., recognised for some time],
             camera in the torso, camera in FRAME_ROBOT, camera]; rad.
 
     Raises:
-        ValueError: If the value is something else.
+        ValueError: The value is something else.
     """
     return _read(value, "faces", _faces)
 
@@ -129,11 +108,11 @@ def movement_detections(value: Any) -> DetectionArray:
     """A picture with movements, from the key MovementDetection/MovementInfo.
 
     Args:
-        value: [[s, us], [[[alpha, beta], [left, top, width, height], [share of the picture's pixels, of the
+        value: [[s, us], [[[alpha, beta], [left, top, width, height], [fraction of the picture's pixels, of the
             region's], ...], ...], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
 
     Raises:
-        ValueError: If the value is something else.
+        ValueError: The value is something else.
     """
     return _read(value, "movements", _movements)
 
@@ -148,7 +127,7 @@ def code_detections(value: Any, width: int, height: int, lens: Lens) -> tuple[De
         lens: Field of view of the camera.
 
     Raises:
-        ValueError: If the value is something else.
+        ValueError: The value is something else.
     """
     try:
         return tuple(
@@ -218,7 +197,7 @@ def _faces(content: Any) -> list[Detection]:
         score, name = float(extra[1]), str(extra[2])
         if not name and len(shapes) == len(known) == 1:
             name = known[0]
-        # Numbers tell faces apart from picture to picture, unless the robot gives all the same.
+        # Numbers identify faces from picture to picture, unless the robot gives all faces the same one.
         key = f"#{numbers[place]}" if numbers.count(numbers[place]) == 1 else name or f"face {place}"
         detections.append(Detection(FACE, name, key, min(max(score, 0.0), 1.0), alpha, beta, width, height))
     return detections
@@ -233,10 +212,10 @@ def _recognised(entry: Any) -> list[str]:
 
 def _movements(content: Any) -> list[Detection]:
     detections = []
-    for place, (centre, region, share, *_) in enumerate(content):
+    for place, (centre, region, moving, *_) in enumerate(content):
         alpha, beta = _finite(centre)
         *_, width, height = _finite(region)
-        of_region = share[-1] if isinstance(share, (list, tuple)) else share
+        of_region = moving[-1] if isinstance(moving, (list, tuple)) else moving
         confidence = min(max(float(of_region), 0.0), 1.0)
         detections.append(Detection(MOVEMENT, "", f"{place}", confidence, alpha, beta, abs(width), abs(height)))
     return detections

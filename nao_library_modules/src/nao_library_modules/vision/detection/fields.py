@@ -1,4 +1,4 @@
-"""What the fields of a VisionFunction mean to the functions that detect and follow something."""
+"""Fields of a VisionFunction for functions that detect and follow something."""
 
 from __future__ import annotations
 
@@ -28,7 +28,6 @@ def camera_index(camera: str) -> int | None:
 
 
 def timeout_of(timeout: float) -> float:
-    """How long a function waits, s."""
     return timeout or DEFAULT_TIMEOUT
 
 

@@ -1,4 +1,4 @@
-"""Where in space is what a camera sees: from the place in the picture, the camera's pose, and the real size. Pure.
+"""Positions of detections in space from the place in the picture, the camera's pose, and the real size. Pure.
 
 Camera frames are NAOqi's here: X along the axis, Y left, Z up. Optical frames have X right, Y down, Z along the axis.
 """
@@ -18,45 +18,32 @@ from .events import BALL, CODE, FACE, LANDMARK, Detection, Lens, Pose, Region
 Vector = Tuple[float, float, float]
 
 DEFAULT_SIZES = {BALL: 0.03, LANDMARK: 0.092, FACE: 0.16}
-"""m: a ball's radius, the diameter of a landmark's disc, the width of a head; of the rest it is not known."""
+"""m: radius of a ball, diameter of a landmark, width of a head; the size of other things is not known."""
 
 
 @dataclass(frozen=True)
 class LocalizedDetection:
-    """Something that was seen, and where it is.
-
-    Attributes:
-        detection: What is in the picture.
-        camera: Index of the camera.
-        time: ROS time of the picture, s.
-        region: Where it is in the picture.
-        distance: m, from the camera to its centre; None if its size is not known.
-        in_camera: m, in the camera's frame; 1 m away without a distance.
-        in_torso: m, in the torso frame.
-        in_robot: m, in NAOqi's FRAME_ROBOT.
-        camera_in_robot: m, where the camera was in FRAME_ROBOT.
-        looks: In how many pictures it was seen.
-    """
+    """A detection with its position; m, rad."""
 
     detection: Detection
-    camera: int
-    time: float
+    camera: int  # index
+    time: float  # ROS time of the picture, s
     region: Region
-    distance: float | None
-    in_camera: Vector
+    distance: float | None  # from the camera to its centre; None if the size is not known
+    in_camera: Vector  # 1 m away without a distance
     in_torso: Vector
-    in_robot: Vector
+    in_robot: Vector  # in NAOqi's FRAME_ROBOT
     camera_in_robot: Vector
-    looks: int = 1
+    looks: int = 1  # number of pictures that show it
 
     @property
     def label(self) -> str:
-        """What it is called: its name, else its kind."""
+        """Its name, else its kind."""
         return self.detection.name or self.detection.kind
 
     @property
     def in_optical(self) -> Vector:
-        """Where it is in the camera's optical frame, m."""
+        """Position in the camera's optical frame, m."""
         x, y, z = self.in_camera
         return -y, -z, x
 
@@ -71,14 +58,14 @@ def located(
     in_torso: Pose,
     in_robot: Pose,
 ) -> LocalizedDetection:
-    """Find where in space a detection is.
+    """Place a detection in space.
 
     Args:
-        detection: What is seen.
+        detection: From a picture.
         camera: Index of the camera.
         time: ROS time of the picture, s.
-        region: Where it is in the picture.
-        lens: The camera's field of view.
+        region: Of the detection in the picture.
+        lens: Of the camera.
         size: Real size, m: a ball's radius, else its width; 0 if it is not known.
         in_torso: The camera's pose in the torso frame.
         in_robot: The camera's pose in FRAME_ROBOT.
@@ -104,10 +91,10 @@ def located(
 
 
 def _distance(detection: Detection, size: float, ray: Vector, width: float, height: float) -> float:
-    """How far away something is, m.
+    """Distance of a detection, m.
 
     Args:
-        detection: What is seen.
+        detection: From a picture.
         size: Real size, m.
         ray: To its centre, 1 along the axis.
         width: In the picture, in units of the focal length.
@@ -126,26 +113,21 @@ def _distance(detection: Detection, size: float, ray: Vector, width: float, heig
 
 
 def moved(point: Vector, pose: Pose) -> Vector:
-    """A point of a frame, in the frame that its pose is in; m."""
+    """A point (m) of a frame in the frame that the pose of the former refers to."""
     x, y, z = turned(point, pose[3:])
     return x + pose[0], y + pose[1], z + pose[2]
 
 
 NEAR = 0.3
-"""m; what was seen so near to the same place, but never twice in one picture, is one thing: detectors begin to count
-anew when the head turns."""
+"""m; detections so near to each other, but never in one picture, are of one thing: detectors give it a new number when
+the head turns."""
 Group = List[Tuple[int, LocalizedDetection]]
 
 
 def merged(pictures: Sequence[Sequence[LocalizedDetection]]) -> list[LocalizedDetection]:
-    """What several pictures show, each thing once: the median of all numbers, the name that it had most often.
+    """Merge the detections of several pictures (oldest first), each thing once: the medians, the most frequent name.
 
-    Args:
-        pictures: What each shows, the oldest first.
-
-    Returns:
-        Those with a name first, then those that were seen most often, then those that were seen first; time is that of
-        the last picture.
+    Those with a name come first, then those of most pictures, then the oldest; the time is that of the last picture.
     """
     things: dict[tuple[str, str], Group] = {}
     for number, picture in enumerate(pictures):
@@ -163,7 +145,6 @@ def merged(pictures: Sequence[Sequence[LocalizedDetection]]) -> list[LocalizedDe
 
 
 def _one_thing(one: Group, other: Group) -> bool:
-    """Whether two groups of detections are of one thing."""
     if one[0][1].detection.kind != other[0][1].detection.kind or {n for n, _ in one} & {n for n, _ in other}:
         return False
     first, second = ({s.detection.name for _, s in group if s.detection.name} for group in (one, other))

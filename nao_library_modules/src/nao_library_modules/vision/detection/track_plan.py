@@ -1,4 +1,4 @@
-"""How the head follows what a camera sees, and where it looks for what it does not. Pure."""
+"""Head angles and speeds to follow a detection, and to search for one. Pure."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ PITCHES = {BALL: (0.2, 0.45), FACE: (0.0, -0.35, -0.65)}
 """rad, positive downwards: a ball lies on the floor, and people who come near are high above the robot."""
 USUAL_PITCHES = (0.0, -0.4, 0.3)
 REACTION = 0.2
-"""s in which the head is to get to where it should look: less is quicker, more is smoother."""
+"""s in which the head is to reach its target: less is quicker, more is smoother."""
 LEAST_FRACTION = 0.01
 STILL = math.radians(0.7)
-"""rad off the middle of the picture that the head does not turn for: pictures are not more exact than that."""
+"""rad off the middle of the picture for which the head does not turn: pictures are not more exact."""
 MIDDLE = math.radians(3.0)
-"""rad off the middle of the picture that still is the middle."""
+"""rad off the middle of the picture that count as the middle."""
 
 
 def aim(detection: LocalizedDetection) -> Angles:
-    """Head angles that bring what was seen into the middle of the camera's picture, whether the head can or not.
+    """Head angles that bring a detection into the middle of the picture, also beyond the head's limits.
 
     Raises:
         ValueError: If it is in the head.
@@ -41,58 +41,40 @@ def aim(detection: LocalizedDetection) -> Angles:
 
 
 def within(joint: JointLimits, angle: float) -> float:
-    """The angle nearest to another one that a joint can have, rad."""
+    """An angle (rad) within the limits of a joint."""
     return min(max(angle, joint.lower), joint.upper)
 
 
 def off_axis(detection: LocalizedDetection) -> float:
-    """How far off the camera's axis it was seen, rad."""
+    """Angle of a detection off the camera's axis, rad."""
     x, y, z = detection.in_camera
     return math.atan2(math.hypot(y, z), x)
 
 
 def fraction(angle: float, ranges: Sequence[JointLimits], most: float) -> float:
-    """Share of the head's top speed to turn by an angle with: the less there is to turn, the slower.
-
-    Args:
-        angle: rad.
-        ranges: Of the joints.
-        most: The share that it may have.
-    """
+    """Fraction of the head's top speed for a turn: the smaller the angle (rad), the slower; at most `most`."""
     top = min(joint.max_speed for joint in ranges)
     return min(max(angle / REACTION / top, LEAST_FRACTION), most)
 
 
-def travel_time(start: Angles, end: Angles, ranges: Sequence[JointLimits], share: float) -> float:
-    """How long the head takes from some angles to others, s.
-
-    Args:
-        start: HeadYaw and HeadPitch, rad.
-        end: Likewise.
-        ranges: Of both joints.
-        share: Of their top speeds, 0..1.
-    """
-    return max(abs(b - a) / (joint.max_speed * share) for a, b, joint in zip(start, end, ranges))
+def travel_time(start: Angles, end: Angles, ranges: Sequence[JointLimits], speed: float) -> float:
+    """Duration of a turn of the head at a fraction (0..1) of the top speeds, s."""
+    return max(abs(b - a) / (joint.max_speed * speed) for a, b, joint in zip(start, end, ranges))
 
 
 def search_angles(kind: str, ranges: Sequence[JointLimits]) -> Iterator[Angles]:
-    """Head angles to look for something with, without an end: ahead first, then to the left, then to the right.
-
-    Args:
-        kind: What is looked for.
-        ranges: Of HeadYaw and HeadPitch.
-    """
+    """Head angles of a search for a kind of thing, without end: ahead first, then to the left, then to the right."""
     rows = PITCHES.get(kind, USUAL_PITCHES)
     places = []
     for column, yaw in enumerate(YAWS):
-        # Down one column and up the next: the head has shorter ways.
+        # Down one column and up the next: shorter ways for the head.
         for pitch in rows if column % 2 == 0 else rows[::-1]:
             places.append((within(ranges[0], yaw), within(ranges[1], pitch)))
     return cycle(places)
 
 
 def the_one(detections: Sequence[LocalizedDetection], last: LocalizedDetection | None) -> LocalizedDetection:
-    """Which of several things is followed: the one that was, else the nearest to where it was, else the largest."""
+    """The detection to follow: of the same thing as the last one, else the nearest to it; at first the largest."""
     if last is None:
         return max(detections, key=lambda s: s.region.width * s.region.height)
     same = [s for s in detections if s.detection.key == last.detection.key]
