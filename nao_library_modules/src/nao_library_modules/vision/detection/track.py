@@ -43,11 +43,11 @@ from .track_plan import MIDDLE, STILL, Angles, aim, fraction, off_axis, search_a
 log = logging.getLogger(__name__)
 
 LOST = 0.7
-"""s without being seen after which it is lost: single pictures may show nothing."""
+"""s without a detection after which a thing is lost: single pictures may show nothing."""
 GLANCE = 0.5
-"""s that the head rests where it looks for something."""
+"""s that the head rests at each place of a search."""
 SETTLING = 2.0
-"""s that lookFor gives the head to bring what it found into the middle of the picture."""
+"""s that the head may take in lookFor to bring what it found into the middle of the picture."""
 DEFAULT_SPEED = 0.2
 """Fraction of the head's top speed where a message has none."""
 WAY_BACK = 0.3
