@@ -24,10 +24,10 @@ from nao_library_modules.functions.message_fields import read_fields
 from nao_library_modules.functions.offline_module import offline_module
 from nao_library_modules.functions.server_types import server_type
 from nao_library_modules.motion.facts import MotionFacts
+from nao_library_modules.motion.gait import places
 from nao_library_modules.motion.joints import _key_angles
-from nao_library_modules.motion.stiffness import check_stiffness_interpolation
+from nao_library_modules.motion.stiffness import StiffnessFunctions
 from nao_library_modules.motion.walk import WalkFunctions
-from nao_library_modules.motion.walk_checks import places
 from nao_library_msgs.msg import StepTarget
 
 OF_THE_ROBOT = {("setParameter", "values.0"), ("killTask", "values.0")}
@@ -44,7 +44,8 @@ def trajectory(count):
 
 
 BODY = {"Body": [f"J{i}" for i in range(26)]}
-PLAN = SimpleNamespace(facts=MotionFacts(BODY, {}), chains=BODY)
+FACTS = MotionFacts(BODY, {})
+STIFFNESS = SimpleNamespace(body=SimpleNamespace(joints=FACTS.joints))
 STEPS = fields_of(WalkFunctions.set_foot_steps, ["names"])
 TIMES = [0.01 * i for i in range(1, 20_002)]
 
@@ -54,10 +55,10 @@ TIMES = [0.01 * i for i in range(1, 20_002)]
     [
         ("joint_names", lambda: expand_names(["J0"] * 1001, BODY)),
         ("trajectory.points", lambda: read_trajectory(trajectory(3847), BODY)),
-        ("times", lambda: _key_angles(PLAN, ["Body"], [0.0], TIMES)),
+        ("times", lambda: _key_angles(FACTS, ["Body"], [0.0], TIMES)),
         (
             "times",
-            lambda: check_stiffness_interpolation(SimpleNamespace(plan=PLAN), ["Body"], [0.5] * len(TIMES), TIMES),
+            lambda: StiffnessFunctions._check_interpolation(STIFFNESS, ["Body"], [0.5] * len(TIMES), TIMES),
         ),
         ("times", lambda: require_rising("times", TIMES, limits.limit("duration"), limits.limit("poses"))),
         ("values", lambda: places([0.0] * 30_003)),

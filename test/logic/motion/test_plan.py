@@ -54,7 +54,7 @@ def test_targets_are_within_the_limits_as_the_robot_rounds_them():
     make().targets({"LShoulderRoll": 1.3 + 5e-8, "HeadYaw": -2.0}, relative=False)
     plan = make(HeadYaw=0.5)
     plan.move(plan.targets({"HeadYaw": 1.0}, relative=True), 0.0)
-    assert plan.angle("HeadYaw") == pytest.approx(1.5), "relative targets start where earlier functions end"
+    assert plan.angles["HeadYaw"] == pytest.approx(1.5), "relative targets start where earlier functions end"
     refused("HeadYaw cannot go to 2.5000", plan.targets, {"HeadYaw": 1.0}, relative=True)
     plan.forget(["HeadYaw"])
     assert plan.targets({"HeadYaw": 5.0}, relative=True) == {"HeadYaw": None}, "nobody knows where it is"

@@ -62,7 +62,7 @@ def test_a_goal_that_runs_or_is_preempted_goes_on_as_if_nobody_asked(to_motion, 
     began = stiff_robot.ALMotion.getAngles("HeadYaw", True)[0]
     legs = NaoMotionGoal([motion("setAngles", names=["LKneePitch"], angles=[0.5, 0.5]), motion("moveInit")])
     assert told(to_motion.module, legs) == [(0, 0, "angles")]
-    plan = to_motion.module.plan
+    plan = to_motion.module.body.plan
     assert list(plan.touched) == ["HeadYaw"] and goal.active and 0.0 < began < 1.0
     assert goal.finish().state == "succeeded"
     assert stiff_robot.ALMotion.getAngles("HeadYaw", True)[0] == pytest.approx(1.0, abs=0.02)

@@ -19,7 +19,7 @@ def play(name="turn", **fields):
 
 @pytest.fixture
 def store(motion):
-    return motion.module.store
+    return motion.module.recordings.store
 
 
 def test_what_somebody_else_moves_is_recorded_replayed_and_mirrored(stiff_robot, motion, store, angle):

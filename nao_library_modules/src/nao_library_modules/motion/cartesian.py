@@ -6,10 +6,9 @@ from collections.abc import Sequence
 
 from ..base.field_checks import require_count, require_length
 from ..functions.chain import checked_by
-from .base import DEFAULT_SPEED, MotionBase
+from .body import DEFAULT_SPEED, BodyPart
 from .facts import BODY
 from .fields import Commanded, Frame, Relative, SomeJoints, Speed, Stiffness
-from .plan import MotionPlan
 from .walk_fields import (
     EFFECTORS,
     POSES,
@@ -34,62 +33,7 @@ def _rows(values: Sequence[float], count: int, size: int) -> list[list[float]]:
     return [list(values[i * size : (i + 1) * size]) for i in range(count)]
 
 
-def _check_move(plan: MotionPlan, names: Sequence[str], stiffness: float) -> list[str]:
-    """See that effectors can move; the joints that will."""
-    joints = [joint for name in names for chain in EFFECTORS[name] for joint in plan.facts.chains[chain]]
-    joints = [joint for joint in dict.fromkeys(joints) if not joint.endswith("Hand")]
-    plan.require_stiff(joints, stiffness)
-    plan.touch(joints)
-    plan.forget(joints)
-    return joints
-
-
-def _check_targets(
-    self: MotionBase, names: Sequence[str], values: Sequence[float], size: int, stiffness: float
-) -> None:
-    self.plan.aim(_check_move(self.plan, names, stiffness))
-    _rows(values, len(names), size)
-
-
-def check_poses(self: MotionBase, names: Sequence[str], values: Sequence[float], stiffness: float) -> None:
-    """Stiff chains, a pose for each effector."""
-    _check_targets(self, names, values, POSE, stiffness)
-
-
-def check_transforms(self: MotionBase, names: Sequence[str], values: Sequence[float], stiffness: float) -> None:
-    """As setPosition, with transforms."""
-    _check_targets(self, names, values, TRANSFORM, stiffness)
-
-
-def _check_paths(
-    self: MotionBase,
-    names: Sequence[str],
-    values: Sequence[float],
-    size: int,
-    times: Sequence[float],
-    stiffness: float,
-) -> None:
-    _check_move(self.plan, names, stiffness)
-    require_length("times", len(names) * len(times), POSES)
-    _rows(values, len(names) * len(times), size)
-    self.plan.takes(times[-1])
-
-
-def check_pose_paths(
-    self: MotionBase, names: Sequence[str], values: Sequence[float], times: Sequence[float], stiffness: float
-) -> None:
-    """Stiff chains, a pose for each time of each effector."""
-    _check_paths(self, names, values, POSE, times, stiffness)
-
-
-def check_transform_paths(
-    self: MotionBase, names: Sequence[str], values: Sequence[float], times: Sequence[float], stiffness: float
-) -> None:
-    """As positionInterpolation, with transforms."""
-    _check_paths(self, names, values, TRANSFORM, times, stiffness)
-
-
-class CartesianFunctions(MotionBase):
+class CartesianFunctions(BodyPart):
     """Functions of ALMotion for effectors in space. Parameters are fields of MotionFunction."""
 
     def get_position(self, names: Parts, frame: Frame, commanded: Commanded) -> list[list[float]]:
@@ -100,7 +44,44 @@ class CartesianFunctions(MotionBase):
         """Transform of each effector, joint or sensor: 16 numbers, row by row."""
         return [list(self.motion("getTransform", name, frame, not commanded)) for name in names]
 
-    @checked_by(check_poses)
+    def _check_move(self, names: Sequence[str], stiffness: float) -> list[str]:
+        """See that effectors can move; the joints that will."""
+        plan = self.body.plan
+        joints = [joint for joint in dict.fromkeys(self._joints_of(names)) if not joint.endswith("Hand")]
+        plan.require_stiff(joints, stiffness)
+        plan.touch(joints)
+        plan.forget(joints)
+        return joints
+
+    def _check_poses(self, names: Sequence[str], values: Sequence[float], stiffness: float) -> None:
+        self._check_targets(names, values, POSE, stiffness)
+
+    def _check_transforms(self, names: Sequence[str], values: Sequence[float], stiffness: float) -> None:
+        self._check_targets(names, values, TRANSFORM, stiffness)
+
+    def _check_targets(self, names: Sequence[str], values: Sequence[float], size: int, stiffness: float) -> None:
+        self.body.plan.aim(self._check_move(names, stiffness))
+        _rows(values, len(names), size)
+
+    def _check_pose_paths(
+        self, names: Sequence[str], values: Sequence[float], times: Sequence[float], stiffness: float
+    ) -> None:
+        self._check_paths(names, values, POSE, times, stiffness)
+
+    def _check_transform_paths(
+        self, names: Sequence[str], values: Sequence[float], times: Sequence[float], stiffness: float
+    ) -> None:
+        self._check_paths(names, values, TRANSFORM, times, stiffness)
+
+    def _check_paths(
+        self, names: Sequence[str], values: Sequence[float], size: int, times: Sequence[float], stiffness: float
+    ) -> None:
+        self._check_move(names, stiffness)
+        require_length("times", len(names) * len(times), POSES)
+        _rows(values, len(names) * len(times), size)
+        self.body.plan.takes(times[-1])
+
+    @checked_by(_check_poses)
     def set_position(
         self,
         names: Effectors,
@@ -113,7 +94,7 @@ class CartesianFunctions(MotionBase):
         """Give effectors poses as targets and go on at once."""
         self._set("setPositions", names, _rows(values, len(names), POSE), frame, axis_mask, speed, stiffness)
 
-    @checked_by(check_transforms)
+    @checked_by(_check_transforms)
     def set_transform(
         self,
         names: Effectors,
@@ -126,7 +107,7 @@ class CartesianFunctions(MotionBase):
         """Give effectors transforms (12 numbers each, row by row) as targets and go on at once."""
         self._set("setTransforms", names, _rows(values, len(names), TRANSFORM), frame, axis_mask, speed, stiffness)
 
-    @checked_by(check_poses)
+    @checked_by(_check_poses)
     def change_position(
         self,
         names: Effectors,
@@ -137,11 +118,11 @@ class CartesianFunctions(MotionBase):
         stiffness: Stiffness,
     ) -> None:
         """Move effectors by differences of poses and go on at once."""
-        self._stiffen(names, stiffness)
+        self.body.stiffen(self._joints_of(names), stiffness)
         for name, change in zip(names, _rows(values, len(names), POSE)):
             self.motion("changePosition", name, frame, change, speed or DEFAULT_SPEED, axis_mask or POSITION)
 
-    @checked_by(check_pose_paths)
+    @checked_by(_check_pose_paths)
     def position_interpolation(
         self,
         names: Effectors,
@@ -155,7 +136,7 @@ class CartesianFunctions(MotionBase):
         """Move effectors through poses at given times, and wait for the end; all poses of the first one come first."""
         self._follow("positionInterpolations", names, values, POSE, times, frame, axis_mask, relative, stiffness)
 
-    @checked_by(check_transform_paths)
+    @checked_by(_check_transform_paths)
     def transform_interpolation(
         self,
         names: Effectors,
@@ -187,7 +168,7 @@ class CartesianFunctions(MotionBase):
         speed: float,
         stiffness: float,
     ) -> None:
-        self._stiffen(names, stiffness)
+        self.body.stiffen(self._joints_of(names), stiffness)
         self.motion(method, list(names), frame, rows, speed or DEFAULT_SPEED, axis_mask or POSITION)
 
     def _follow(
@@ -202,16 +183,15 @@ class CartesianFunctions(MotionBase):
         relative: bool,
         stiffness: float,
     ) -> None:
-        self._stiffen(names, stiffness)
+        self.body.stiffen(self._joints_of(names), stiffness)
         rows = _rows(values, len(names) * len(times), size)
         paths = [rows[i * len(times) : (i + 1) * len(times)] for i in range(len(names))]
         masks = [axis_mask or POSITION] * len(names)
         self.motion(method, list(names), frame, paths, masks, [list(times)] * len(names), not relative)
 
-    def _stiffen(self, names: Sequence[str], stiffness: float) -> None:
-        if stiffness > 0.0:
-            chains = self.access.facts.chains
-            self.stiffen([joint for name in names for chain in EFFECTORS[name] for joint in chains[chain]], stiffness)
+    def _joints_of(self, names: Sequence[str]) -> list[str]:
+        chains = self.body.facts.chains
+        return [joint for name in names for chain in EFFECTORS[name] for joint in chains[chain]]
 
     functions = {
         "getPosition": get_position,

@@ -4,38 +4,49 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, Tuple, TypeVar
 
 from ..base.errors import BadGoal
 from ..functions.joint_trajectory import expand_names
-from ..nao.joint_names import MOTION, JointNames
+from ..nao.joint_names import MOTION as MOTION
 
 BODY = "Body"
+LEGS = ("LLeg", "RLeg")
+ARMS = ("LArm", "RArm")
+Answer = TypeVar("Answer")
+
+
+class OncePerConnection(Generic[Answer]):
+    """An answer of the robot, asked for when it is first needed and again after each reconnection.
+
+    Any thread may ask; at worst two ask the robot at the same time.
+    """
+
+    def __init__(self, robot: Any, read: Callable[[], Answer]) -> None:
+        self._connection = robot.connection
+        self._read = read
+        self._known: Tuple[int, Answer] | None = None
+
+    def __call__(self) -> Answer:
+        generation = self._connection.generation
+        known = self._known
+        if known is None or known[0] != generation:
+            known = self._known = (generation, self._read())
+        return known[1]
 
 
 @dataclass(frozen=True)
 class JointLimits:
-    """Range of one joint.
+    """Range of one joint."""
 
-    Attributes:
-        lower: rad (hands 0..1).
-        upper: rad (hands 0..1).
-        max_speed: rad/s (hands 1/s).
-    """
-
-    lower: float
+    lower: float  # rad (hands 0..1)
     upper: float
-    max_speed: float
+    max_speed: float  # rad/s (hands 1/s)
 
 
 @dataclass(frozen=True)
 class MotionFacts:
-    """Joints of one robot.
-
-    Attributes:
-        chains: Chain -> its joints.
-        limits: Joint -> its limits.
-    """
+    """Joints of one robot: those of each chain, and the limits of each."""
 
     chains: Mapping[str, Sequence[str]]
     limits: Mapping[str, JointLimits]
@@ -51,58 +62,10 @@ class MotionFacts:
 
 @dataclass(frozen=True)
 class JointState:
-    """Where the joints are told to be, and how stiff they are.
+    """The commands of the joints, and how stiff they are."""
 
-    Attributes:
-        angles: Joint -> rad (hands 0..1); None where it is not known.
-        stiffnesses: Joint -> 0..1.
-    """
-
-    angles: Mapping[str, float | None]
-    stiffnesses: Mapping[str, float]
-
-
-class MotionAccess:
-    """Facts and state of the joints of one robot. Used from the thread that executes goals only."""
-
-    def __init__(self, robot: Any, call: Callable[..., Any]) -> None:
-        """Ask nothing yet.
-
-        Args:
-            robot: Proxies and connection.
-            call: Calls a method; preemption interrupts it.
-        """
-        self._robot = robot
-        self._call = call
-        self._names = JointNames(robot)
-        self._facts: tuple[int, MotionFacts] | None = None
-
-    @property
-    def facts(self) -> MotionFacts:
-        """What there is, asked again after each reconnection.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
-        generation = self._robot.connection.generation
-        if self._facts is None or self._facts[0] != generation:
-            chains = self._names.chains
-            rows = self._call(self._robot.proxy(MOTION), "getLimits", BODY)
-            limits = {joint: JointLimits(*map(float, row[:3])) for joint, row in zip(chains[BODY], rows)}
-            self._facts = (generation, MotionFacts(chains, limits))
-        return self._facts[1]
-
-    def state(self) -> JointState:
-        """Commands and stiffnesses of all joints now.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
-        joints = self.facts.chains[BODY]
-        motion = self._robot.proxy(MOTION)
-        angles = self._call(motion, "getAngles", BODY, False)
-        stiffnesses = self._call(motion, "getStiffnesses", BODY)
-        return JointState(dict(zip(joints, angles)), dict(zip(joints, stiffnesses)))
+    angles: Mapping[str, float | None]  # rad (hands 0..1); None where it is not known
+    stiffnesses: Mapping[str, float]  # 0..1
 
 
 def one_each(values: Sequence[float], joints: Sequence[str], field: str) -> list[float]:

@@ -11,7 +11,7 @@ from ..base.suggestion import did_you_mean
 from ..functions.describe_choices import JOINTS, POSTURES
 from ..functions.fields import Annotated, Field, flag, free, moments, number, numbers
 from ..nao.gaze import load_head
-from .base import DEFAULT_SPEED
+from .body import DEFAULT_SPEED
 from .store import NAME_ALLOWED, require_name
 
 FRAMES = ("FRAME_TORSO", "FRAME_WORLD", "FRAME_ROBOT")

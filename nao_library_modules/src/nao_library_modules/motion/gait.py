@@ -1,17 +1,19 @@
-"""Parameters of a walk: what a message asks for, within what the robot allows."""
+"""Numbers of a walk: parameters of the gait, places, footsteps; what a message asks for, within what is allowed."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, List, Tuple, Union
+from typing import Any, List, Union
 
 from ..base.errors import BadGoal
+from ..base.field_checks import degrees_hint, require_count, require_length
+from ..base.limits import limit
 from ..base.places import Place
 from ..base.suggestion import did_you_mean
 from ..nao.walk_speed import step_period
-from .facts import MOTION
+from .facts import LEGS
 
 SETTABLE = (
     "MaxStepX",
@@ -33,54 +35,37 @@ FOOT_SEPARATION = 0.1
 # From standing to the first step and from the last one to standing, about, s.
 BEGIN_AND_END = 2.0
 
+PLACE = "x, y (m), theta (rad)"
+WAY, TURN = limit("way"), limit("turn")
+"""Seen from the robot. Who asks for more has mistaken the unit; the battery would not do."""
+PLACES = limit("places")
+# Where a foot can be put beside the other one, m and rad. Source: NAOqi's documentation of the clipping of footsteps,
+# which the robot applies in detail.
+STEP_X, STEP_Y, STEP_THETA = (-0.04, 0.08), (0.088, 0.16), 0.524
+ROUNDING = 1e-6
+
 GaitPairs = List[List[Union[str, float]]]
 """What ALMotion takes: [["MaxStepX", 0.04], ...]."""
 
 
 @dataclass(frozen=True)
 class GaitRange:
-    """One parameter of a walk; m, rad, or a share 0..1.
-
-    Attributes:
-        default: Its value when nobody asks for another.
-        lower: Least allowed.
-        upper: Largest allowed.
-    """
+    """One parameter of a walk: its default, and the least and largest that is allowed; m, rad, or a share 0..1."""
 
     default: float
     lower: float
     upper: float
 
 
-class GaitAccess:
-    """Parameters of one robot, asked of it once for each connection. Used from the thread that executes goals only."""
+def read_ranges(motion: Callable[..., Any]) -> Mapping[str, GaitRange]:
+    """Parameter that can be set -> its range, with `motion` to call ALMotion.
 
-    def __init__(self, robot: Any, call: Callable[..., Any]) -> None:
-        """Ask nothing yet.
-
-        Args:
-            robot: Proxies and connection.
-            call: Calls a method; preemption interrupts it.
-        """
-        self._robot = robot
-        self._call = call
-        self._ranges: Tuple[int, Mapping[str, GaitRange]] | None = None
-
-    @property
-    def ranges(self) -> Mapping[str, GaitRange]:
-        """Parameter that can be set -> its range.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
-        generation = self._robot.connection.generation
-        if self._ranges is None or self._ranges[0] != generation:
-            proxy = self._robot.proxy(MOTION)
-            told = [{name: float(v) for name, v in self._call(proxy, "getMoveConfig", which)} for which in CONFIGS]
-            names = [name for name in SETTABLE if all(name in values for values in told)]
-            ranges = {name: GaitRange(*(values[name] for values in told)) for name in names}
-            self._ranges = (generation, ranges)
-        return self._ranges[1]
+    Raises:
+        NaoError: If the robot cannot be asked.
+    """
+    configs = [{name: float(v) for name, v in motion("getMoveConfig", which)} for which in CONFIGS]
+    names = [name for name in SETTABLE if all(name in values for values in configs)]
+    return {name: GaitRange(*(values[name] for values in configs)) for name in names}
 
 
 def read_gait(
@@ -146,3 +131,65 @@ def _unknown(name: str, allowed: Mapping[str, GaitRange], each_foot: bool) -> st
     if not each_foot and (name == FREQUENCY or name.startswith(FEET)):
         return f"{name} is for move and moveToward"
     return f"{name!r} is no parameter of a walk{did_you_mean(name, allowed)}"
+
+
+# Places and footsteps
+
+
+def require_way(way: Place, field: str = "values") -> None:
+    """See that a way makes sense.
+
+    Raises:
+        BadGoal: If it is too long, or turns by more than half a turn, or a number is none.
+    """
+    numbers = ("x", way.x, WAY), ("y", way.y, WAY), ("theta", way.yaw, TURN)
+    for name, value, (_, most, unit) in numbers:
+        if not abs(value) <= most:
+            hint = degrees_hint(value, -most, most) if unit == "rad" else ""
+            allowed = f"-{most:.5g} to {most:.5g} {unit}{hint}"
+            raise BadGoal(field, value, allowed, problem=f"{name} cannot be {value:g}")
+
+
+def places(values: Sequence[float]) -> list[Place]:
+    """Places from one flat list.
+
+    Raises:
+        BadGoal: If there is none, not three numbers for each, or too many.
+    """
+    require_length("values", len(values) // 3, PLACES)
+    if len(values) < 3:
+        require_count("values", values, 3, PLACE)
+    require_count("values", values, 3, PLACE, "place")
+    return [Place(*values[i : i + 3]) for i in range(0, len(values), 3)]
+
+
+def steps(names: Sequence[str], values: Sequence[float]) -> list[list[float]]:
+    """Footsteps of a message: x, y and theta of each, seen from the other foot.
+
+    Raises:
+        BadGoal: If there are not three numbers for each, or a leg cannot put its foot there.
+    """
+    if len(values) != 3 * len(names):
+        problem = f"3 numbers for each step are needed, {3 * len(names)} in all"
+        raise BadGoal("values", list(values), f"{PLACE}; here are {len(values)}", problem=problem)
+    rows = [list(values[i : i + 3]) for i in range(0, len(values), 3)]
+    for leg, (x, y, theta) in zip(names, rows):
+        across = STEP_Y if leg == LEGS[0] else (-STEP_Y[1], -STEP_Y[0])
+        ranges = (("x", x, STEP_X), ("y", y, across), ("theta", theta, (-STEP_THETA, STEP_THETA)))
+        for name, value, (least, most) in ranges:
+            if not least - ROUNDING <= value <= most + ROUNDING:
+                problem = f"{name} of a step of {leg} cannot be {value:g}"
+                raise BadGoal("values", value, f"{least:g} to {most:g}, seen from the other foot", problem=problem)
+    return rows
+
+
+def step_speeds(count: int, speed: float, speeds: Sequence[float]) -> list[float]:
+    """How fast each step is, as a fraction of the fastest; all of it where a message leaves it to us.
+
+    Raises:
+        BadGoal: If there are not as many as steps.
+    """
+    given = list(speeds) or [speed or 1.0]
+    if len(given) not in (1, count):
+        raise BadGoal("speeds", given, "one, or one for each step", problem=f"{len(given)} speeds for {count} steps")
+    return given if len(given) == count else given * count

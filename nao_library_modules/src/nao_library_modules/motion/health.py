@@ -23,19 +23,12 @@ EMPTY, TOO_LOW_TO_WALK = 0.02, 0.05
 
 @dataclass(frozen=True)
 class Health:
-    """How the robot was when it was asked; what it does not tell is no hindrance.
+    """How the robot was when it was asked; what it does not tell is no hindrance."""
 
-    Attributes:
-        temperatures: Joint -> degC of its motor.
-        charge: Of the battery, 0..1; None if it is not known.
-        charging: Whether a charger feeds it.
-        on_ground: Whether a foot touches the ground; None if it is not known.
-    """
-
-    temperatures: Mapping[str, float] = field(default_factory=dict)
-    charge: float | None = None
+    temperatures: Mapping[str, float] = field(default_factory=dict)  # joint -> degC of its motor
+    charge: float | None = None  # of the battery, 0..1
     charging: bool = False
-    on_ground: bool | None = None
+    on_ground: bool | None = None  # whether a foot touches the ground
 
     def require_fit(self, joints: Iterable[str]) -> None:
         """See that joints may be moved.
@@ -77,37 +70,29 @@ class Health:
         return {joint: celsius for joint, celsius in degrees.items() if celsius >= limit}
 
 
-class HealthAccess:
-    """Asks a robot for its health."""
+def read_health(call: Callable[..., Any], joints: Sequence[str]) -> Health:
+    """The health of now, with one call; all is well if a robot cannot tell.
 
-    def __init__(self, robot: Any, call: Callable[..., Any]) -> None:
-        """Ask nothing yet.
-
-        Args:
-            robot: Proxies and connection.
-            call: Calls a method; preemption interrupts it.
-        """
-        self._robot = robot
-        self._call = call
-
-    def read(self, joints: Sequence[str]) -> Health:
-        """The health of now, with one call; all is well if a robot cannot tell."""
-        keys = [CHARGE, CURRENT, FOOT_CONTACT, *map(temperature_key, joints)]
-        try:
-            values = list(self._call(self._robot.proxy(MEMORY), "getListData", keys))
-        except NaoError as error:
-            log.debug("the robot does not tell its health: %s", error)
-            return Health()
-        numbers = [float(v) if isinstance(v, (int, float)) else None for v in values]
-        if len(numbers) != len(keys):
-            return Health()
-        charge, current, contact, *degrees = numbers
-        return Health(
-            {joint: celsius for joint, celsius in zip(joints, degrees) if celsius is not None},
-            charge,
-            current is not None and current > 0.0,
-            None if contact is None else contact > 0.0,
-        )
+    Args:
+        call: Calls a module of the robot: its name, a method, arguments.
+        joints: Those whose motors are of interest.
+    """
+    keys = [CHARGE, CURRENT, FOOT_CONTACT, *map(temperature_key, joints)]
+    try:
+        values = list(call(MEMORY, "getListData", keys))
+    except NaoError as error:
+        log.debug("the robot does not tell its health: %s", error)
+        return Health()
+    numbers = [float(v) if isinstance(v, (int, float)) else None for v in values]
+    if len(numbers) != len(keys):
+        return Health()
+    charge, current, contact, *degrees = numbers
+    return Health(
+        {joint: celsius for joint, celsius in zip(joints, degrees) if celsius is not None},
+        charge,
+        current is not None and current > 0.0,
+        None if contact is None else contact > 0.0,
+    )
 
 
 def in_chain(joint: str, chain: str) -> bool:

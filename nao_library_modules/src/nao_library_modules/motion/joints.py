@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from naoqi.errors import NaoError
 
@@ -13,8 +13,8 @@ from ..base.suggestion import did_you_mean
 from ..functions.chain import checked_by
 from ..functions.joint_trajectory import KeyFrames, read_trajectory
 from ..robot.robot import wait_for_calls
-from .base import DEFAULT_SPEED, MotionBase
-from .facts import BODY, one_each
+from .body import DEFAULT_SPEED, BodyPart, RobotBody
+from .facts import BODY, MOTION, MotionFacts, one_each
 from .fields import (
     Angles,
     Changes,
@@ -36,16 +36,17 @@ from .fields import (
     Trajectory,
     TrajectoryJoints,
 )
-from .plan import MotionPlan
 from .poses import NamedPoses
 
-OPEN, CLOSED = 1.0, 0.0
+if TYPE_CHECKING:
+    from ..server.nao_basic import NaoBasic
+
 # A hand closes or opens in about this time, s.
 HAND_TIME = 0.6
 
 
-def _angles_of(plan: MotionPlan, names: Sequence[str], angles: Sequence[float]) -> dict[str, float]:
-    joints = plan.facts.joints(names)
+def _angles_of(facts: MotionFacts, names: Sequence[str], angles: Sequence[float]) -> dict[str, float]:
+    joints = facts.joints(names)
     return dict(zip(joints, one_each(angles, joints, "angles")))
 
 
@@ -56,16 +57,16 @@ def _fractions(joints: Sequence[str], speed: float, speeds: Sequence[float]) -> 
 
 
 def _key_angles(
-    plan: MotionPlan, names: Sequence[str], angles: Sequence[float], times: Sequence[float], field: str = "angles"
+    facts: MotionFacts, names: Sequence[str], angles: Sequence[float], times: Sequence[float]
 ) -> dict[str, list[float]]:
     """Joint -> its values at the times, from one flat list: one joint after the other."""
-    joints = plan.facts.joints(names)
+    joints = facts.joints(names)
     count = len(times)
     require_length("times", count * len(joints), KEY_FRAMES)
     if len(angles) == count:
         return {joint: list(angles) for joint in joints}
     if len(angles) != count * len(joints):
-        raise BadGoal(field, list(angles), *_angles_needed(len(angles), joints, count))
+        raise BadGoal("angles", list(angles), *_angles_needed(len(angles), joints, count))
     return {joint: list(angles[i * count : (i + 1) * count]) for i, joint in enumerate(joints)}
 
 
@@ -81,138 +82,60 @@ def _angles_needed(given: int, joints: Sequence[str], times: int) -> tuple[str, 
     )
 
 
-def _key_frames(plan: MotionPlan, names: Sequence[str], trajectory: Any, relative: bool) -> KeyFrames:
+def _key_frames(facts: MotionFacts, names: Sequence[str], trajectory: Any, relative: bool) -> KeyFrames:
     """The trajectory of a message; its joints are named in it, or in `names`."""
     if not trajectory.joint_names:
         trajectory.joint_names = list(names)
     elif names and list(names) != list(trajectory.joint_names):
         raise BadGoal("names", list(names), "nothing, or the joint_names of the trajectory")
-    return read_trajectory(trajectory, plan.facts.chains, relative)
+    return read_trajectory(trajectory, facts.chains, relative)
 
 
-def check_joints(self: MotionBase, names: Sequence[str]) -> None:
-    """Known joints, at least one."""
-    self.plan.touch(self.plan.facts.joints(names))
-
-
-def check_angles(
-    self: MotionBase,
-    names: Sequence[str],
-    angles: Sequence[float],
-    speeds: Sequence[float],
-    stiffness: float,
-    relative: bool,
-) -> None:
-    """Known stiff joints, angles in their limits, speeds for all or one each."""
-    wanted = _angles_of(self.plan, names, angles)
-    if speeds:
-        one_each(speeds, list(wanted), "speeds")
-    self.plan.require_stiff(list(wanted), stiffness)
-    # Nobody waits for targets: they take no time.
-    self.plan.move(self.plan.targets(wanted, relative), 0.0)
-    self.plan.aim(wanted)
-
-
-def check_changes(self: MotionBase, names: Sequence[str], angles: Sequence[float], stiffness: float) -> None:
-    """As setAngles, relative to where the joints are by then."""
-    check_angles(self, names, angles, (), stiffness, True)
-
-
-def check_with_speed(
-    self: MotionBase, names: Sequence[str], angles: Sequence[float], speed: float, stiffness: float
-) -> None:
-    """Known stiff joints, angles in their limits."""
-    wanted = _angles_of(self.plan, names, angles)
-    self.plan.require_stiff(list(wanted), stiffness)
-    self.plan.move_with_speed(self.plan.targets(wanted, False), dict.fromkeys(wanted, speed or DEFAULT_SPEED))
-
-
-def check_interpolation(
-    self: MotionBase,
-    names: Sequence[str],
-    angles: Sequence[float],
-    times: Sequence[float],
-    relative: bool,
-    stiffness: float,
-) -> None:
-    """Known stiff joints, key angles in their limits, times the joints can keep."""
-    values = _key_angles(self.plan, names, angles, times)
-    self.plan.require_stiff(list(values), stiffness)
-    self.plan.follow(values, times, relative)
-
-
-def check_trajectory(self: MotionBase, names: Sequence[str], trajectory: Any, relative: bool, stiffness: float) -> None:
-    """As angleInterpolation, the key frames in a trajectory."""
-    frames = _key_frames(self.plan, names, trajectory, relative)
-    self.plan.require_stiff(frames.joints, stiffness)
-    if frames.relative and frames.velocities is not None and any(self.plan.angle(j) is None for j in frames.joints):
-        raise BadGoal("relative", relative, "false, where the trajectory has velocities and an earlier function moves")
-    self.plan.follow(dict(zip(frames.joints, frames.values)), frames.times, frames.relative, "trajectory.points")
-
-
-def check_bezier(self: MotionBase, names: Sequence[str], trajectory: Any, stiffness: float) -> None:
-    """As setTrajectory."""
-    check_trajectory(self, names, trajectory, False, stiffness)
-
-
-def check_pose(
-    self: JointMotion,
-    names: Sequence[str],
-    angles: Sequence[float],
-    str_param: str,
-    trajectory: Any,
-    speed: float,
-    duration: float,
-    stiffness: float,
-) -> None:
-    """Known stiff joints, angles in their limits, a time they can keep."""
-    if self.is_of_driver(str_param):
-        for field, value in (("names", names), ("angles", angles), ("speed", speed), ("duration", duration)):
-            if value:
-                raise BadGoal(field, value, f"nothing: the driver's pose {str_param.strip()!r} has its own")
-        if trajectory.points:
-            raise BadGoal("trajectory.points", len(trajectory.points), "none beside the name of a pose")
-        body = list(self.plan.facts.chains[BODY])
-        self.plan.require_stiff(body, stiffness)
-        self.plan.touch(body)
-        self.plan.forget(body)
-        return
-    pose, time = self.pose(names, angles, str_param, trajectory, duration)
-    self.plan.require_stiff(list(pose), stiffness)
-    if time > 0.0:
-        self.plan.follow({joint: [angle] for joint, angle in pose.items()}, [time], False)
-        return
-    self.plan.move_with_speed(self.plan.targets(pose, False), dict.fromkeys(pose, speed or DEFAULT_SPEED))
-
-
-def check_hands(self: MotionBase, names: Sequence[str], stiffness: HandStiffness) -> None:
-    """Known hands that can move; NAOqi stiffens a hand itself."""
-    hands = self.plan.facts.joints(names)
-    known = [joint for joint in self.plan.facts.limits if joint.endswith("Hand")]
-    for hand in hands:
-        if hand not in known:
-            problem = f"{hand!r} is no hand{did_you_mean(hand, known)}"
-            raise BadGoal("names", hand, ", ".join(known), problem=problem)
-    self.plan.touch(hands)
-    self.plan.forget(hands)
-    self.plan.takes(HAND_TIME)
-
-
-class JointMotion(MotionBase):
+class JointMotion(BodyPart):
     """Functions of ALMotion for angles, and poses and trajectories. Parameters are fields of MotionFunction."""
 
-    poses: NamedPoses
-    driver_poses: Callable[[], Container[str]] = staticmethod(tuple)
-    """Names that the driver's pose_manager knows."""
-    take_driver_pose: Callable[[str], Any]
-    """Has it take one of them; gives a call."""
+    left_by_goals = frozenset({"poses"})
 
-    @checked_by(check_joints)
+    def __init__(self, module: NaoBasic, body: RobotBody, poses: NamedPoses, driver: Any = None) -> None:
+        """Keep what the functions need.
+
+        Args:
+            module: Its robot and waits.
+            body: The joints.
+            poses: Poses by name.
+            driver: NaoRobotDriver, whose pose_manager knows more poses; None: there is none.
+        """
+        super().__init__(body)
+        self._module = module
+        self.poses = poses
+        self._driver = driver
+
+    def _check_joints(self, names: Sequence[str]) -> None:
+        self.body.plan.touch(self.body.joints(names))
+
+    @checked_by(_check_joints)
     def get_angles(self, names: Joints, commanded: Commanded) -> list[float]:
         """Angles of joints and chains now, measured or as told; the result has them in `name` and `position`."""
-        return list(self.motion("getAngles", self.joints(names), not commanded))
+        return list(self.motion("getAngles", self.body.joints(names), not commanded))
 
-    @checked_by(check_angles)
+    def _check_angles(
+        self,
+        names: Sequence[str],
+        angles: Sequence[float],
+        speeds: Sequence[float],
+        stiffness: float,
+        relative: bool,
+    ) -> None:
+        plan = self.body.plan
+        wanted = _angles_of(plan.facts, names, angles)
+        if speeds:
+            one_each(speeds, list(wanted), "speeds")
+        plan.require_stiff(list(wanted), stiffness)
+        # Nobody waits for targets: they take no time.
+        plan.move(plan.targets(wanted, relative), 0.0)
+        plan.aim(wanted)
+
+    @checked_by(_check_angles)
     def set_angles(
         self,
         names: Joints,
@@ -223,22 +146,40 @@ class JointMotion(MotionBase):
         relative: Relative,
     ) -> None:
         """Give joints targets and go on at once; newer targets replace older ones."""
-        wanted = _angles_of(self.plan, names, angles)
-        fractions = [self.careful(wanted, fraction) for fraction in _fractions(list(wanted), speed, speeds)]
-        self.stiffen(list(wanted), stiffness)
+        wanted = _angles_of(self.body.facts, names, angles)
+        fractions = [self.body.careful(wanted, fraction) for fraction in _fractions(list(wanted), speed, speeds)]
+        self.body.stiffen(list(wanted), stiffness)
         if relative:
             now = self.motion("getAngles", list(wanted), False)
             wanted = {joint: angle + before for (joint, angle), before in zip(wanted.items(), now)}
         self.motion("setAngles", list(wanted), list(wanted.values()), fractions if speeds else fractions[0])
 
-    @checked_by(check_changes)
+    def _check_changes(self, names: Sequence[str], angles: Sequence[float], stiffness: float) -> None:
+        self._check_angles(names, angles, (), stiffness, True)
+
+    @checked_by(_check_changes)
     def change_angles(self, names: Joints, angles: Changes, speed: Speed, stiffness: Stiffness) -> None:
         """Change the targets of joints and go on at once."""
-        wanted = _angles_of(self.plan, names, angles)
-        self.stiffen(list(wanted), stiffness)
-        self.motion("changeAngles", list(wanted), list(wanted.values()), self.careful(wanted, speed or DEFAULT_SPEED))
+        wanted = _angles_of(self.body.facts, names, angles)
+        self.body.stiffen(list(wanted), stiffness)
+        self.motion(
+            "changeAngles", list(wanted), list(wanted.values()), self.body.careful(wanted, speed or DEFAULT_SPEED)
+        )
 
-    @checked_by(check_interpolation)
+    def _check_interpolation(
+        self,
+        names: Sequence[str],
+        angles: Sequence[float],
+        times: Sequence[float],
+        relative: bool,
+        stiffness: float,
+    ) -> None:
+        plan = self.body.plan
+        values = _key_angles(plan.facts, names, angles, times)
+        plan.require_stiff(list(values), stiffness)
+        plan.follow(values, times, relative)
+
+    @checked_by(_check_interpolation)
     def angle_interpolation(
         self,
         names: Joints,
@@ -248,41 +189,90 @@ class JointMotion(MotionBase):
         stiffness: Stiffness,
     ) -> None:
         """Move joints through key angles at given times, and wait for the end."""
-        values = _key_angles(self.plan, names, angles, times)
-        self.stiffen(list(values), stiffness)
+        values = _key_angles(self.body.facts, names, angles, times)
+        self.body.stiffen(list(values), stiffness)
         start = self.motion("getAngles", list(values), False) if relative else [0.0] * len(values)
         moments = [list(times)] * len(values)
         self.motion("angleInterpolation", list(values), list(values.values()), moments, not relative)
-        self.require_reached({joint: s + path[-1] for (joint, path), s in zip(values.items(), start)})
+        self.body.require_reached({joint: s + path[-1] for (joint, path), s in zip(values.items(), start)})
 
-    @checked_by(check_with_speed)
+    def _check_with_speed(self, names: Sequence[str], angles: Sequence[float], speed: float, stiffness: float) -> None:
+        self._check_go(_angles_of(self.body.facts, names, angles), speed, stiffness)
+
+    @checked_by(_check_with_speed)
     def angle_interpolation_with_speed(self, names: Joints, angles: Angles, speed: Speed, stiffness: Stiffness) -> None:
         """Move joints to angles at a fraction of their top speed, and wait for the end."""
-        self._go(_angles_of(self.plan, names, angles), speed, stiffness)
+        self._go(_angles_of(self.body.facts, names, angles), speed, stiffness)
 
-    @checked_by(check_trajectory)
+    def _check_trajectory(self, names: Sequence[str], trajectory: Any, relative: bool, stiffness: float) -> None:
+        plan = self.body.plan
+        frames = _key_frames(plan.facts, names, trajectory, relative)
+        plan.require_stiff(frames.joints, stiffness)
+        if frames.relative and frames.velocities is not None and any(plan.angles[j] is None for j in frames.joints):
+            allowed = "false, where the trajectory has velocities and an earlier function moves"
+            raise BadGoal("relative", relative, allowed)
+        plan.follow(dict(zip(frames.joints, frames.values)), frames.times, frames.relative, "trajectory.points")
+
+    @checked_by(_check_trajectory)
     def set_trajectory(
         self, names: TrajectoryJoints, trajectory: Trajectory, relative: Relative, stiffness: Stiffness
     ) -> None:
         """Move joints along a trajectory: through its positions, with its velocities where it has some."""
-        frames = _key_frames(self.plan, names, trajectory, relative)
-        self.stiffen(frames.joints, stiffness)
+        frames = _key_frames(self.body.facts, names, trajectory, relative)
+        self.body.stiffen(frames.joints, stiffness)
         if frames.relative:
             frames = frames.absolute(self.motion("getAngles", list(frames.joints), False))
         if frames.velocities is None:
             self.motion("angleInterpolation", *frames.interpolation_arguments())
         else:
             self.motion("angleInterpolationBezier", *frames.bezier_arguments())
-        self.require_reached(frames.targets)
+        self.body.require_reached(frames.targets)
 
-    @checked_by(check_bezier)
+    def _check_bezier(self, names: Sequence[str], trajectory: Any, stiffness: float) -> None:
+        self._check_trajectory(names, trajectory, False, stiffness)
+
+    @checked_by(_check_bezier)
     def angle_interpolation_bezier(
         self, names: TrajectoryJoints, trajectory: SmoothTrajectory, stiffness: Stiffness
     ) -> None:
         """Move joints along the smooth curves of a trajectory with velocities."""
         self.set_trajectory(names, trajectory, False, stiffness)
 
-    @checked_by(check_pose)
+    def _check_pose(
+        self,
+        names: Sequence[str],
+        angles: Sequence[float],
+        str_param: str,
+        trajectory: Any,
+        speed: float,
+        duration: float,
+        stiffness: float,
+    ) -> None:
+        plan = self.body.plan
+        if self.is_of_driver(str_param):
+            for field, value in (("names", names), ("angles", angles), ("speed", speed), ("duration", duration)):
+                if value:
+                    raise BadGoal(field, value, f"nothing: the driver's pose {str_param.strip()!r} has its own")
+            if trajectory.points:
+                raise BadGoal("trajectory.points", len(trajectory.points), "none beside the name of a pose")
+            joints = list(plan.facts.chains[BODY])
+            plan.require_stiff(joints, stiffness)
+            plan.touch(joints)
+            plan.forget(joints)
+            return
+        pose, time = self.pose(names, angles, str_param, trajectory, duration)
+        if time > 0.0:
+            plan.require_stiff(list(pose), stiffness)
+            plan.follow({joint: [angle] for joint, angle in pose.items()}, [time], False)
+        else:
+            self._check_go(pose, speed, stiffness)
+
+    def _check_go(self, pose: Mapping[str, float], speed: float, stiffness: float) -> None:
+        plan = self.body.plan
+        plan.require_stiff(list(pose), stiffness)
+        plan.move_with_speed(plan.targets(pose, False), dict.fromkeys(pose, speed or DEFAULT_SPEED))
+
+    @checked_by(_check_pose)
     def set_pose(
         self,
         names: PoseJoints,
@@ -298,26 +288,38 @@ class JointMotion(MotionBase):
         Names that only the driver's pose_manager knows are left to it.
         """
         if self.is_of_driver(str_param):
-            self.stiffen(list(self.access.facts.chains[BODY]), stiffness)
-            call = self.take_driver_pose(str_param.strip())
+            self.body.stiffen(list(self.body.facts.chains[BODY]), stiffness)
+            call = self._driver.take_pose(str_param.strip())
             if call is None:
                 raise NaoError("the driver's pose_manager has gone")
-            wait_for_calls([call], self.interrupt)
+            wait_for_calls([call], self._module.interrupt)
             return
         pose, time = self.pose(names, angles, str_param, trajectory, duration)
         if time > 0.0:
-            self.stiffen(list(pose), stiffness)
+            self.body.stiffen(list(pose), stiffness)
             self.motion("angleInterpolation", list(pose), [[a] for a in pose.values()], [[time]] * len(pose), True)
-            self.require_reached(pose)
+            self.body.require_reached(pose)
         else:
             self._go(pose, speed, stiffness)
 
-    @checked_by(check_hands)
+    def _check_hands(self, names: Sequence[str], stiffness: HandStiffness) -> None:
+        plan = self.body.plan
+        hands = self.body.joints(names)
+        known = [joint for joint in plan.facts.limits if joint.endswith("Hand")]
+        for hand in hands:
+            if hand not in known:
+                problem = f"{hand!r} is no hand{did_you_mean(hand, known)}"
+                raise BadGoal("names", hand, ", ".join(known), problem=problem)
+        plan.touch(hands)
+        plan.forget(hands)
+        plan.takes(HAND_TIME)
+
+    @checked_by(_check_hands)
     def open_hand(self, names: Hands) -> None:
         """Open hands, and wait until they are; they are limp then."""
         self._hands("openHand", names)
 
-    @checked_by(check_hands)
+    @checked_by(_check_hands)
     def close_hand(self, names: Hands) -> None:
         """Close hands, and wait until they are; they are limp then."""
         self._hands("closeHand", names)
@@ -325,7 +327,7 @@ class JointMotion(MotionBase):
     def is_of_driver(self, str_param: str) -> bool:
         """Whether only the driver knows a pose of that name."""
         name = str_param.strip()
-        return bool(name) and name in self.driver_poses() and name not in self.poses.names()
+        return bool(name and self._driver) and name in self._driver.poses() and name not in self.poses.names()
 
     def pose(
         self, names: Sequence[str], angles: Sequence[float], str_param: str, trajectory: Any, duration: float
@@ -345,28 +347,26 @@ class JointMotion(MotionBase):
                 problem=problem,
             )
         if angles:
-            return _angles_of(self.plan, names, angles), duration
+            return _angles_of(self.body.facts, names, angles), duration
         if trajectory.points:
             joints = list(trajectory.joint_names) or list(names)
             point = trajectory.points[0]
-            return _angles_of(self.plan, joints, point.positions), duration or point.time_from_start.to_sec()
-        pose = self.poses.find(str_param, self.plan.facts.limits)
+            return _angles_of(self.body.facts, joints, point.positions), duration or point.time_from_start.to_sec()
+        pose = self.poses.find(str_param, self.body.facts.limits)
         if names:
-            wanted = self.plan.facts.joints(names)
+            wanted = self.body.joints(names)
             pose = {joint: angle for joint, angle in pose.items() if joint in wanted}
         return pose, duration
 
     def _go(self, pose: Mapping[str, float], speed: float, stiffness: float) -> None:
-        self.stiffen(list(pose), stiffness)
-        fraction = self.careful(pose, speed or DEFAULT_SPEED)
+        self.body.stiffen(list(pose), stiffness)
+        fraction = self.body.careful(pose, speed or DEFAULT_SPEED)
         self.motion("angleInterpolationWithSpeed", list(pose), list(pose.values()), fraction)
-        self.require_reached(pose)
+        self.body.require_reached(pose)
 
     def _hands(self, method: str, names: Sequence[str]) -> None:
-        hands: Any = self.robot.proxy("ALMotion")
-        self.call_all(hands, method, [(hand,) for hand in self.joints(names)])
-
-    call_all: Callable[..., list[Any]]  # of NaoBasic
+        motion = self._module.robot.proxy(MOTION)
+        self._module.call_all(motion, method, [(hand,) for hand in self.body.joints(names)])
 
     functions = {
         "getAngles": get_angles,

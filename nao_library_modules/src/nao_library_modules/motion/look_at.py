@@ -8,25 +8,24 @@ from collections.abc import Sequence
 from ..base.errors import BadGoal
 from ..functions.chain import checked_by
 from ..nao.gaze import load_head, look_at
-from .base import DEFAULT_SPEED, MotionBase
+from .body import DEFAULT_SPEED, BodyPart
 from .fields import CAMERA, FRAMES, Camera, Duration, Frame, Point, Speed, Stiffness
 
 HEAD = ("HeadYaw", "HeadPitch")
 TORSO = 0
 
 
-def check_look(self: MotionBase, duration: float, stiffness: float) -> None:
-    """A stiff head."""
-    self.plan.require_stiff(HEAD, stiffness)
-    self.plan.touch(HEAD)
-    self.plan.forget(HEAD)
-    self.plan.takes(duration)
-
-
-class GazeFunctions(MotionBase):
+class GazeFunctions(BodyPart):
     """Looking at points. Parameters are fields of MotionFunction."""
 
-    @checked_by(check_look)
+    def _check_look(self, duration: float, stiffness: float) -> None:
+        plan = self.body.plan
+        plan.require_stiff(HEAD, stiffness)
+        plan.touch(HEAD)
+        plan.forget(HEAD)
+        plan.takes(duration)
+
+    @checked_by(_check_look)
     def look_at(
         self,
         values: Point,
@@ -45,9 +44,9 @@ class GazeFunctions(MotionBase):
             raise BadGoal("values", list(values), f"a point in front of the head ({FRAMES[frame]}): {error}") from error
         angles = []
         for joint, angle in zip(HEAD, wanted):
-            limits = self.access.facts.limits[joint]
+            limits = self.body.facts.limits[joint]
             angles.append(min(max(angle, limits.lower), limits.upper))
-        self.stiffen(HEAD, stiffness)
+        self.body.stiffen(HEAD, stiffness)
         if duration > 0.0:
             self.motion("angleInterpolation", list(HEAD), [[angle] for angle in angles], [[duration]] * 2, True)
         else:

@@ -9,12 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from ..base.errors import BadGoal
+from ..base.errors import BadGoal, CannotWalk
 from ..base.field_checks import degrees_hint, require_within
 from ..base.limits import limit
-from .facts import JointState, MotionFacts
+from .facts import ARMS, BODY, LEGS, JointState, MotionFacts
 from .health import Health
-from .walk_plan import LEGS, WalkPlan
 
 # The robot's numbers have 32 bits: a limit that it tells must be allowed as a target. rad.
 TOLERANCE = 1e-4
@@ -22,6 +21,10 @@ TOLERANCE = 1e-4
 SPEED_TOLERANCE = 1.001
 POSTURE_TIME = 2.0
 ANGLE = limit("angle")
+SOFTEST = 0.6
+"""A walk needs legs that are stiffer than this; NAOqi ends it otherwise."""
+NOT_ON_FEET = ("Sit", "Lying")
+"""How names of postures and families begin from which nobody walks."""
 
 
 class MotionPlan:
@@ -31,21 +34,18 @@ class MotionPlan:
         touched: Joints that the chain moves or asks for, in order, each once.
         aimed: Those that the chain gives targets without waiting for them.
         moves: Whether the chain moves anything.
+        moved: Joints that it moves; replaced as a whole, for other threads read it.
         durations: Place of each function in the chain, counted from 1 -> how long it takes as far as known, s.
         walk: What the chain does with the walk.
-        health: How the robot is; asked for when a function first needs to know.
 
     Args:
-        facts: The joints.
-        read_state: Asks the robot where they are; called when a function first needs to know.
-        read_walking: Asks the robot whether it walks.
-        read_posture: Asks the robot for the family of its posture.
-        read_health: Asks the robot how it is.
+        read_facts, read_state, read_walking, read_posture, read_health: Ask the robot, each when a function first
+            needs to know: its joints, their state, whether it walks, the family of its posture, how it is.
     """
 
     def __init__(
         self,
-        facts: Callable[[], MotionFacts],
+        read_facts: Callable[[], MotionFacts],
         read_state: Callable[[], JointState],
         read_walking: Callable[[], bool] = lambda: False,
         read_posture: Callable[[], str] = lambda: "Standing",
@@ -54,18 +54,15 @@ class MotionPlan:
         self.touched: dict[str, None] = {}
         self.aimed: dict[str, None] = {}
         self.moves = False
+        self.moved: frozenset[str] = frozenset()
         self.durations: dict[int, float] = {}
-        self._read_facts = facts
+        self._read_facts = read_facts
         self._read_state = read_state
         self._read_health = read_health
         self._health: Health | None = None
-        self._angles: dict[str, float | None] | None = None
-        self._stiffnesses: dict[str, float] | None = None
+        self._known: tuple[dict[str, float | None], dict[str, float]] | None = None
         self._position = 0
-        self._moved: frozenset[str] = frozenset()  # replaced as a whole: other threads read it
-        self.walk = WalkPlan(
-            lambda: self.facts.chains, self._stiffness, lambda joint: joint in self._moved, read_walking, read_posture
-        )
+        self.walk = WalkPlan(self, read_walking, read_posture)
 
     @property
     def facts(self) -> MotionFacts:
@@ -84,9 +81,14 @@ class MotionPlan:
         return self._health
 
     @property
-    def moved(self) -> frozenset[str]:
-        """Joints that the chain moves."""
-        return self._moved
+    def angles(self) -> dict[str, float | None]:
+        """Where joints are by then, rad; None where it is not known any more."""
+        return self._know()[0]
+
+    @property
+    def stiffnesses(self) -> dict[str, float]:
+        """How stiff joints are by then, 0..1."""
+        return self._know()[1]
 
     def begin_function(self, position: int) -> None:
         """The function at a place of the chain, counted from 1, is looked at next."""
@@ -105,32 +107,27 @@ class MotionPlan:
         """Joints get targets that nobody waits for."""
         self.aimed.update(dict.fromkeys(joints))
 
-    def angle(self, joint: str) -> float | None:
-        """Where a joint is by then, rad; None where it is not known any more."""
-        self._know()
-        assert self._angles is not None
-        return self._angles[joint]
-
     def forget(self, joints: Iterable[str]) -> None:
         """Joints go where only the robot knows."""
-        self.moves = True
-        self._know()
-        assert self._angles is not None
-        for joint in joints:
-            self._angles[joint] = None
-        self._moved |= frozenset(joints)
+        self._goes(dict.fromkeys(joints))
 
-    def set_stiffness(self, values: Mapping[str, float]) -> None:
-        """Joints get stiff or limp."""
-        self._know()
-        assert self._stiffnesses is not None
-        self._stiffnesses.update(values)
+    def change_posture(self, duration: float, posture: str | None = None) -> None:
+        """The whole robot moves as only it knows: it is stiff afterwards, and does not walk."""
+        body = list(self.facts.chains[BODY])
+        self.stiffnesses.update(dict.fromkeys(body, 1.0))
+        self.forget(body)
+        self.touch(body)
+        self.takes(duration)
+        self.walk.stands(posture)
+
+    def _goes(self, goals: Mapping[str, float | None]) -> None:
+        self.moves = True
+        self.angles.update(goals)
+        self.moved |= frozenset(goals)
 
     def limp(self, joints: Iterable[str]) -> list[str]:
         """Which of the joints have no stiffness by then."""
-        self._know()
-        assert self._stiffnesses is not None
-        return [joint for joint in joints if not self._stiffnesses[joint] > 0.0]
+        return [joint for joint in joints if not self.stiffnesses[joint] > 0.0]
 
     def require_stiff(self, joints: Sequence[str], stiffness: float) -> None:
         """See that joints can move: stiff already, or stiffened by the function; and that no walk moves them.
@@ -148,7 +145,7 @@ class MotionPlan:
                 "above 0 to 1 to stiffen them first; or call wakeUp or setStiffnesses before",
                 problem=f"no stiffness in {', '.join(limp)}: nothing would move",
             )
-        self.set_stiffness(dict.fromkeys(limp, stiffness))
+        self.stiffnesses.update(dict.fromkeys(limp, stiffness))
 
     def require_fit_legs(self) -> None:
         """See that the robot can get on its feet; an arm or a head that is too hot stays limp then.
@@ -156,8 +153,12 @@ class MotionPlan:
         Raises:
             NotFit: If a motor of the legs is too hot, or the battery empty.
         """
+        self.health.require_fit(self.legs())
+
+    def legs(self) -> list[str]:
+        """Joints of the legs."""
         chains = self.facts.chains
-        self.health.require_fit([joint for leg in LEGS for joint in chains.get(leg, ())])
+        return [joint for leg in LEGS for joint in chains.get(leg, ())]
 
     def require_angle(self, joint: str, angle: float, field: str) -> None:
         """See that an angle is within the limits of a joint.
@@ -188,7 +189,7 @@ class MotionPlan:
         """
         goals: dict[str, float | None] = {}
         for joint, angle in angles.items():
-            before = self.angle(joint) if relative else 0.0
+            before = self.angles[joint] if relative else 0.0
             goals[joint] = None if before is None else before + angle
             if goals[joint] is not None:
                 self.require_angle(joint, goals[joint], field)  # type: ignore[arg-type]
@@ -198,11 +199,7 @@ class MotionPlan:
 
     def move(self, goals: Mapping[str, float | None], duration: float) -> None:
         """Joints go to where they are to go, in a straight line; the speed is not looked at."""
-        self.moves = True
-        self._know()
-        assert self._angles is not None
-        self._angles.update(goals)
-        self._moved |= frozenset(goals)
+        self._goes(goals)
         self.touch(goals)
         self.takes(duration)
 
@@ -211,7 +208,7 @@ class MotionPlan:
         longest = 0.0
         fractions = {joint: self.health.careful(goals, fraction) for joint, fraction in fractions.items()}
         for joint, goal in goals.items():
-            before = self.angle(joint)
+            before = self.angles[joint]
             if goal is not None and before is not None:
                 top = self.facts.limits[joint].max_speed * fractions[joint]
                 longest = max(longest, abs(goal - before) / top)
@@ -233,7 +230,7 @@ class MotionPlan:
         """
         goals: dict[str, float | None] = {}
         for joint, angles in values.items():
-            start = self.angle(joint)
+            start = self.angles[joint]
             offset = start if relative else 0.0
             before, since = start, 0.0
             for angle, time in zip(angles, times):
@@ -259,15 +256,76 @@ class MotionPlan:
                 problem=f"{joint} cannot go from {before:.3f} to {goal:.3f} in {given:.3f} s",
             )
 
-    def _stiffness(self, joint: str) -> float:
-        self._know()
-        assert self._stiffnesses is not None
-        return self._stiffnesses[joint]
-
-    def _know(self) -> None:
-        if self._angles is None:
+    def _know(self) -> tuple[dict[str, float | None], dict[str, float]]:
+        if self._known is None:
             state = self._read_state()
-            self._angles, self._stiffnesses = dict(state.angles), dict(state.stiffnesses)
+            self._known = (dict(state.angles), dict(state.stiffnesses))
+        return self._known
+
+
+class WalkPlan:
+    """Where a chain of functions has the walk."""
+
+    def __init__(self, plan: MotionPlan, read_walking: Callable[[], bool], read_posture: Callable[[], str]) -> None:
+        self._plan = plan
+        self._read_walking = read_walking
+        self._read_posture = read_posture
+        self._walking: bool | None = None
+        self._posture: str | None = None
+
+    @property
+    def walking(self) -> bool:
+        """Whether the robot walks by then."""
+        if self._walking is None:
+            self._walking = self._read_walking()
+        return self._walking
+
+    def moved_joints(self) -> list[str]:
+        """What a walk moves: legs and arms."""
+        chains = self._plan.facts.chains
+        return [joint for chain in LEGS + ARMS for joint in chains.get(chain, ()) if not joint.endswith("Hand")]
+
+    def require_ready(self) -> None:
+        """See that a walk can begin: on its feet, with stiff legs.
+
+        Raises:
+            CannotWalk: If it cannot.
+        """
+        legs = self._plan.legs()
+        softest = min(legs, key=self._plan.stiffnesses.__getitem__)
+        stiffness = self._plan.stiffnesses[softest]
+        if not stiffness > SOFTEST:
+            how = f"too soft to walk: {softest} has stiffness {stiffness:.2f}, above {SOFTEST:g} is needed"
+            raise CannotWalk("the legs are limp" if stiffness == 0.0 else f"the legs are {how}", "wakeUp first")
+        posture = self._posture
+        if posture is None and self._plan.moved.isdisjoint(legs) and not self.walking:
+            posture = self._read_posture()
+        if posture is not None and posture.startswith(NOT_ON_FEET):
+            raise CannotWalk(f"the robot does not stand on its feet (posture {posture})", "goToPosture Stand first")
+
+    def require_free(self, joints: Iterable[str]) -> None:
+        """See that the walk does not move the joints.
+
+        Raises:
+            BadGoal: If the robot walks by then, and one is in a leg.
+        """
+        legs = set(self._plan.legs())
+        wanted = [joint for joint in joints if joint in legs]
+        if wanted and self.walking:
+            raise BadGoal(
+                "names",
+                wanted,
+                "stopMove or waitUntilMoveIsFinished first",
+                problem=f"the robot walks, and {', '.join(wanted)} with it",
+            )
+
+    def goes(self) -> None:
+        """The robot walks on when the function is over."""
+        self._walking, self._posture = True, None
+
+    def stands(self, posture: str | None = None) -> None:
+        """The robot does not walk when the function is over; it is in a posture, if that is known."""
+        self._walking, self._posture = False, posture
 
 
 def _unit(joint: str) -> str:

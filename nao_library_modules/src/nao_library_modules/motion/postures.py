@@ -9,78 +9,50 @@ from naoqi.errors import NaoError
 from ..base.errors import BadGoal
 from ..base.suggestion import did_you_mean
 from ..functions.chain import checked_by
-from .base import MotionBase
-from .facts import BODY
+from .body import POSTURES, BodyPart, RobotBody
+from .facts import BODY, OncePerConnection
 from .fields import POSTURE_SPEED, Posture, PostureSpeed, Stiffness, Tries
 from .plan import POSTURE_TIME
 
-POSTURES = "ALRobotPosture"
-
 
 class PostureNotReached(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """The robot gave up on its way to a posture.
-
-    Attributes:
-        posture: Where it should go.
-        now: The posture it is in.
-        family: The family of that.
-    """
+    """The robot gave up on its way to a posture; `now` is the one that it is in, of a family of postures."""
 
     def __init__(self, posture: str, now: str, family: str) -> None:
-        """Compose the text."""
         super().__init__(f"the robot did not reach {posture}: it is in posture {now} of the family {family}")
         self.posture = posture
         self.now = now
         self.family = family
 
 
-def check_posture(self: PostureFunctions, str_param: str, speed: float) -> None:
-    """A posture that the robot knows."""
-    name = str_param.strip()
-    known = self.posture_names()
-    if name not in known:
-        raise BadGoal(
-            "str_param",
-            name,
-            f"one of {', '.join(known)}",
-            problem=f"there is no posture {name!r}{did_you_mean(name, known)}",
-        )
-    body = list(self.plan.facts.chains[BODY])
-    self.plan.require_fit_legs()
-    self.plan.set_stiffness(dict.fromkeys(body, 1.0))
-    self.plan.forget(body)
-    self.plan.touch(body)
-    self.plan.takes(POSTURE_TIME / (speed or POSTURE_SPEED))
-    self.plan.walk.stands(name)
-
-
-def check_applied_posture(self: PostureFunctions, str_param: str, speed: float, stiffness: float) -> None:
-    """A posture that the robot knows, stiff joints."""
-    self.plan.require_stiff(list(self.plan.facts.chains[BODY]), stiffness)
-    check_posture(self, str_param, speed)
-
-
-class PostureFunctions(MotionBase):
+class PostureFunctions(BodyPart):
     """Functions of ALRobotPosture. Parameters are fields of MotionFunction."""
 
-    _posture_names: tuple[int, list[str]] | None = None
+    def __init__(self, body: RobotBody, robot: Any) -> None:
+        super().__init__(body)
+        self._known = OncePerConnection(robot, lambda: list(body.call(POSTURES, "getPostureList")))
 
-    def posture_names(self) -> list[str]:
-        """Postures that the robot knows, asked once for each connection."""
-        generation = self.robot.connection.generation
-        if self._posture_names is None or self._posture_names[0] != generation:
-            self._posture_names = (generation, list(self._postures("getPostureList")))
-        return self._posture_names[1]
+    def _check_posture(self, str_param: str, speed: float) -> None:
+        name, known = str_param.strip(), self._known()
+        if name not in known:
+            problem = f"there is no posture {name!r}{did_you_mean(name, known)}"
+            raise BadGoal("str_param", name, f"one of {', '.join(known)}", problem=problem)
+        self.body.plan.require_fit_legs()
+        self.body.plan.change_posture(POSTURE_TIME / (speed or POSTURE_SPEED), name)
 
-    @checked_by(check_posture)
+    def _check_applied(self, str_param: str, speed: float, stiffness: float) -> None:
+        self.body.plan.require_stiff(list(self.body.facts.chains[BODY]), stiffness)
+        self._check_posture(str_param, speed)
+
+    @checked_by(_check_posture)
     def go_to_posture(self, str_param: Posture, speed: PostureSpeed) -> None:
         """Go to a posture from wherever the robot is, getting up if need be; awake afterwards."""
         self._reach("goToPosture", str_param.strip(), speed)
 
-    @checked_by(check_applied_posture)
+    @checked_by(_check_applied)
     def apply_posture(self, str_param: Posture, speed: PostureSpeed, stiffness: Stiffness) -> None:
         """Take the angles of a posture straight away; the robot may fall."""
-        self.stiffen(list(self.access.facts.chains[BODY]), stiffness)
+        self.body.stiffen(list(self.body.facts.chains[BODY]), stiffness)
         self._reach("applyPosture", str_param.strip(), speed)
 
     def get_posture(self) -> str:
@@ -93,7 +65,7 @@ class PostureFunctions(MotionBase):
 
     def get_posture_list(self) -> list[str]:
         """Postures that goToPosture knows."""
-        return self.posture_names()
+        return self._known()
 
     def get_posture_family_list(self) -> list[str]:
         """Families that getPostureFamily tells apart."""
@@ -108,7 +80,7 @@ class PostureFunctions(MotionBase):
             raise PostureNotReached(posture, self.get_posture(), self.get_posture_family())
 
     def _postures(self, method: str, *args: Any) -> Any:
-        return self.call(self.robot.proxy(POSTURES), method, *args)
+        return self.body.call(POSTURES, method, *args)
 
     functions = {
         "goToPosture": go_to_posture,

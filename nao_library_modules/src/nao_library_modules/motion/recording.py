@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 from nao_library_msgs.msg import FunctionResult
 
@@ -12,7 +12,7 @@ from ..base.answers import values_of
 from ..base.errors import BadGoal
 from ..base.whole_file import written
 from ..functions.chain import checked_by
-from .base import DEFAULT_SPEED, MotionBase
+from .body import DEFAULT_SPEED, BodyPart, RobotBody
 from .facts import BODY
 from .fields import (
     RATE,
@@ -31,69 +31,47 @@ from .fields import (
 from .recorded_motion import RecordedMotion, recorded
 from .store import MotionStore
 
+if TYPE_CHECKING:
+    from ..server.nao_basic import NaoBasic
+
 # The way to the first pose of a motion takes that long at least, s.
 APPROACH = 0.5
 
 
-def check_recording(
-    self: MotionRecording, str_param: str, names: Sequence[str], duration: float, overwrite: bool
-) -> None:
-    """A name for the motion, free or to be overwritten, known joints."""
-    if not overwrite:
-        self.require_free(str_param, "str_param")
-    joints = self.plan.facts.joints(names or [BODY])
-    self.plan.touch(joints)
-    self.plan.forget(joints)
-    self.plan.takes(duration)
-    self.recording_names.add(str_param)
-
-
-def check_replay(self: MotionRecording, str_param: str, speed: float, mirror: bool, stiffness: float) -> None:
-    """A recorded motion that the joints can follow at that speed."""
-    if str_param in self.recording_names:
-        return  # recorded by an earlier function of this chain: nothing is known of it yet
-    motion = self.replay(str_param, speed, mirror)
-    self.plan.facts.joints(motion.joints, f"str_param ({str_param})")
-    self.plan.require_stiff(motion.joints, stiffness)
-    self.plan.move_with_speed(dict(motion.start), dict.fromkeys(motion.joints, DEFAULT_SPEED))
-    if len(motion.times) > 1:
-        values = {joint: [row[i] for row in motion.angles[1:]] for i, joint in enumerate(motion.joints)}
-        self.plan.follow(values, motion.times[1:], False, f"str_param ({str_param})")
-
-
-def check_rename(self: MotionRecording, str_param: str, texts: Sequence[str]) -> None:
-    """A recorded motion, a new name that is free."""
-    check_deletion(self, str_param)
-    self.require_free(texts[0], "texts")
-    self.recording_names.add(texts[0])
-
-
-def check_deletion(self: MotionRecording, str_param: str) -> None:
-    """A recorded motion, or one that the chain records."""
-    if str_param in self.recording_names:
-        self.recording_names.remove(str_param)
-    else:
-        self.store.require(str_param)
-
-
-class MotionRecording(MotionBase):
+class MotionRecording(BodyPart):
     """Recorded motions. Parameters are fields of MotionFunction.
 
     Attributes:
         store: Recorded motions by name.
-        recording_names: Motions that the chain records or gives these names.
         cut_short: What recordings that were interrupted have left, for the result of the chain.
     """
 
-    store: MotionStore
-    recording_names: set[str]
-    cut_short: list[FunctionResult]
-    remark: Callable[[str], None]  # of NaoBasic
-    clock: Any  # of NaoBasic
-    wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
-    after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
+    left_by_goals = frozenset({"store"})
 
-    @checked_by(check_recording)
+    def __init__(self, module: NaoBasic, body: RobotBody, store: MotionStore) -> None:
+        super().__init__(body)
+        self._module = module
+        self.store = store
+        self.begin_chain()
+
+    def begin_chain(self) -> None:
+        """Forget what the last chain did."""
+        self._new_names: set[str] = set()  # of motions that the chain records or renames
+        self.cut_short: list[FunctionResult] = []
+
+    prepare_for_checks = begin_chain
+
+    def _check_recording(self, str_param: str, names: Sequence[str], duration: float, overwrite: bool) -> None:
+        if not overwrite:
+            self._require_free(str_param, "str_param")
+        plan = self.body.plan
+        joints = self.body.joints(names or [BODY])
+        plan.touch(joints)
+        plan.forget(joints)
+        plan.takes(duration)
+        self._new_names.add(str_param)
+
+    @checked_by(_check_recording)
     def record_motion(
         self,
         str_param: NewMotion,
@@ -104,7 +82,7 @@ class MotionRecording(MotionBase):
         overwrite: Overwrite,
     ) -> dict[str, Any]:
         """Record joints for a time, or until the goal is cancelled; with `limp` they can be moved by hand."""
-        joints = self.joints(names or [BODY])
+        joints = self.body.joints(names or [BODY])
         if limp:
             self._let_go(joints)
         samples: list[tuple[float, list[float]]] = []
@@ -118,43 +96,62 @@ class MotionRecording(MotionBase):
                 self.cut_short.append(FunctionResult(function="recordMotion", values=[*values_of(answer), told]))
             raise
         answer, told = self._save(str_param, joints, samples, overwrite)
-        self.remark(told)
+        self._module.remark(told)
         return answer
 
-    @checked_by(check_replay)
+    def _check_replay(self, str_param: str, speed: float, mirror: bool, stiffness: float) -> None:
+        if str_param in self._new_names:
+            return  # recorded by an earlier function of this chain: nothing is known of it yet
+        plan = self.body.plan
+        motion = self.replay(str_param, speed, mirror)
+        where = f"str_param ({str_param})"
+        self.body.joints(motion.joints, where)
+        plan.require_stiff(motion.joints, stiffness)
+        plan.move_with_speed(dict(motion.start), dict.fromkeys(motion.joints, DEFAULT_SPEED))
+        if len(motion.times) > 1:
+            values = {joint: [row[i] for row in motion.angles[1:]] for i, joint in enumerate(motion.joints)}
+            plan.follow(values, motion.times[1:], False, where)
+
+    @checked_by(_check_replay)
     def play_motion(self, str_param: Motion, speed: ReplaySpeed, mirror: Mirror, stiffness: Stiffness) -> float:
         """Replay a recorded motion, from wherever the joints are; answers how long it took, s."""
         motion = self.replay(str_param, speed, mirror)
         joints = list(motion.joints)
-        self.stiffen(joints, stiffness)
-        began = self.clock.now()
+        self.body.stiffen(joints, stiffness)
+        began = self._module.clock.now()
         self._approach(motion)
         if len(motion.times) > 1:
             paths = [[row[i] for row in motion.angles[1:]] for i in range(len(joints))]
             self.motion("angleInterpolation", joints, paths, [list(motion.times[1:])] * len(joints), True)
-        self.require_reached(dict(zip(joints, motion.angles[-1])))
-        return self.clock.now() - began
-
-    def require_free(self, name: str, field: str) -> None:
-        """See that a motion can get this name.
-
-        Raises:
-            BadGoal: It will not do, or there is one, or will be one by then.
-        """
-        if name in self.recording_names:
-            raise BadGoal(field, name, "a name that is free", problem=f"the chain makes a motion {name!r} before")
-        self.store.require_free(name, field)
+        self.body.require_reached(dict(zip(joints, motion.angles[-1])))
+        return self._module.clock.now() - began
 
     def list_motions(self) -> list[str]:
         """Names of the recorded motions."""
         return self.store.names()
 
-    @checked_by(check_rename)
+    def _check_deletion(self, str_param: str) -> None:
+        if str_param in self._new_names:
+            self._new_names.remove(str_param)
+        else:
+            self.store.require(str_param)
+
+    def _check_rename(self, str_param: str, texts: Sequence[str]) -> None:
+        self._check_deletion(str_param)
+        self._require_free(texts[0], "texts")
+        self._new_names.add(texts[0])
+
+    def _require_free(self, name: str, field: str) -> None:
+        if name in self._new_names:
+            raise BadGoal(field, name, "a name that is free", problem=f"the chain makes a motion {name!r} before")
+        self.store.require_free(name, field)
+
+    @checked_by(_check_rename)
     def rename_motion(self, str_param: Motion, texts: NewName) -> None:
         """Give a recorded motion the name in `texts`."""
-        self.remark(f"written: {self.store.rename(str_param, texts[0])}")
+        self._module.remark(f"written: {self.store.rename(str_param, texts[0])}")
 
-    @checked_by(check_deletion)
+    @checked_by(_check_deletion)
     def delete_motion(self, str_param: Motion) -> None:
         """Delete a recorded motion."""
         self.store.delete(str_param)
@@ -162,33 +159,32 @@ class MotionRecording(MotionBase):
     def replay(self, name: str, speed: float, mirror: bool) -> RecordedMotion:
         """A recorded motion as a message wants it, thinned out to key frames, measured angles put within limits."""
         motion = self.store.load(name).key_frames().faster(speed or 1.0)
-        limits = {joint: (each.lower, each.upper) for joint, each in self.access.facts.limits.items()}
+        limits = {joint: (each.lower, each.upper) for joint, each in self.body.facts.limits.items()}
         return (motion.mirrored() if mirror else motion).within(limits)
 
     def _let_go(self, joints: list[str]) -> None:
         before = self.motion("getStiffnesses", joints)
 
         def stiffen() -> None:
-            proxy = self.robot.proxy("ALMotion")
             # Where the hand left them: stiffened joints must not jump back.
-            self.call_now(proxy, "setAngles", joints, self.call_now(proxy, "getAngles", joints, True), 1.0)
-            self.call_now(proxy, "setStiffnesses", joints, list(before))
+            self.body.motion_now("setAngles", joints, self.body.motion_now("getAngles", joints, True), 1.0)
+            self.body.motion_now("setStiffnesses", joints, list(before))
 
-        self.after_wait(stiffen)
+        self._module.after_wait(stiffen)
         self.motion("setStiffnesses", joints, [0.0] * len(joints))
 
     def _sample(
         self, joints: list[str], duration: float, period: float, samples: list[tuple[float, list[float]]]
     ) -> None:
-        began = self.clock.now()
+        began = self._module.clock.now()
         while True:
-            now = self.clock.now() - began
+            now = self._module.clock.now() - began
             samples.append((now, list(self.motion("getAngles", joints, True))))
             if now >= duration:
                 return
             # Counted from the start, so that the samples do not drift.
             due = (math.floor(now / period + 0.5) + 1) * period
-            self.wait(max(0.0, min(due, duration) - (self.clock.now() - began)))
+            self._module.wait(max(0.0, min(due, duration) - (self._module.clock.now() - began)))
 
     def _save(
         self, name: str, joints: list[str], samples: list[tuple[float, list[float]]], overwrite: bool
@@ -202,7 +198,7 @@ class MotionRecording(MotionBase):
 
     def _approach(self, motion: RecordedMotion) -> None:
         now = self.motion("getAngles", list(motion.joints), False)
-        limits = self.access.facts.limits
+        limits = self.body.facts.limits
         slowest = max(
             abs(angle - before) / (DEFAULT_SPEED * limits[joint].max_speed)
             for (joint, angle), before in zip(motion.start.items(), now)

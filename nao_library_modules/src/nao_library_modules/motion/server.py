@@ -20,22 +20,20 @@ from ..functions.memory_functions import MEMORY
 from ..processes.launcher import LaunchPath
 from ..robot.event_relay import EventRelay
 from ..server.nao_basic import NaoBasic
+from .body import RobotBody
 from .by_driver import RobotByDriver
 from .cartesian import CartesianFunctions
-from .facts import BODY, JointState, MotionAccess
-from .gait import GaitAccess
-from .health import HealthAccess, in_chain
+from .health import in_chain
 from .joints import JointMotion
 from .look_at import GazeFunctions
-from .plan import MotionPlan
 from .poses import NamedPoses
-from .postures import POSTURES, PostureFunctions
+from .postures import PostureFunctions
 from .recording import MotionRecording
 from .state import MotionState
 from .stiffness import StiffnessFunctions
 from .store import MotionStore
 from .switches import MotionSwitches
-from .walk import WalkFailure, WalkFunctions
+from .walk import WalkFunctions
 from .walk_state import WalkState
 
 log = logging.getLogger(__name__)
@@ -53,31 +51,15 @@ FALLING, MOVE_FAILED = "ALMotion/RobotIsFalling", "ALMotion/MoveFailed"
 DISABLED = "ALMotion/Protection/DisabledDevicesChanged"
 
 
-class NaoMotion(
-    NaoBasic,
-    JointMotion,
-    StiffnessFunctions,
-    PostureFunctions,
-    CartesianFunctions,
-    GazeFunctions,
-    MotionState,
-    MotionSwitches,
-    MotionRecording,
-    WalkFunctions,
-    WalkState,
-):
+class NaoMotion(NaoBasic):
     """Motion goals: ALMotion and ALRobotPosture, poses, trajectories, gaze, recorded motions, walks.
 
     A chain is checked as a whole before anything moves. With `dry_run` nothing moves at all.
 
     Attributes:
-        access: Facts and state of the joints.
-        gait: Parameters of the walk.
-        health: Heat of the motors, battery, ground under the feet.
-        walk_failure: Why the last walk ended before time.
-        plan: What the chain that is checked, or runs, does.
-        poses: Poses by name.
-        store: Recorded motions by name.
+        body: The joints, and the plan of the chain that is checked, or runs.
+        recordings: Functions of recorded motions, with their store.
+        walks: Functions that walk.
 
     ROS API:
         Action `NaoMotion` (nao_library_actions/NaoMotionAction) and what NaoBasic offers. Where there is a driver: the
@@ -88,7 +70,18 @@ class NaoMotion(
     typed_answers = ASKING
     without_robot = frozenset({"listMotions", "renameMotion", "deleteMotion"})
 
-    left_by_goals = frozenset({"store", "poses"})
+    part_types = (
+        JointMotion,
+        StiffnessFunctions,
+        PostureFunctions,
+        CartesianFunctions,
+        GazeFunctions,
+        MotionState,
+        MotionSwitches,
+        MotionRecording,
+        WalkFunctions,
+        WalkState,
+    )
 
     def __init__(
         self,
@@ -115,51 +108,39 @@ class NaoMotion(
         driver = self._node.driver() if by_driver else None
         if driver is not None:
             self.robot = RobotByDriver(self.robot, driver)
-            self.driver_poses, self.take_driver_pose = driver.poses, driver.take_pose
-            self.walk_by_plan = driver.walk_to
         folder = Path(motion_dir).expanduser()
-        self.access = MotionAccess(self.robot, self.call)
-        self.gait = GaitAccess(self.robot, self.call)
-        self.health = HealthAccess(self.robot, self.call)
-        self.walk_failure = WalkFailure()
-        self.poses = NamedPoses(folder)
-        self.store = MotionStore(folder, config_file(SHIPPED))
-        self.plan = self._new_plan()
-        self.recording_names = set()
-        self.cut_short = []
+        self.body = RobotBody(self)
+        self.recordings = MotionRecording(self, self.body, MotionStore(folder, config_file(SHIPPED)))
+        self.walks = WalkFunctions(self, self.body, lambda frame: self._node.locate(frame), driver)
+        self.add_parts(
+            self.body,
+            JointMotion(self, self.body, NamedPoses(folder), driver),
+            StiffnessFunctions(self.body),
+            PostureFunctions(self.body, self.robot),
+            CartesianFunctions(self.body),
+            GazeFunctions(self.body),
+            MotionState(self.body),
+            MotionSwitches(self.body),
+            self.recordings,
+            self.walks,
+            WalkState(self.body),
+        )
         self._dry_run = False
         self._mishaps = EventRelay(lambda: self.robot.proxy(MEMORY), self._told)
         self.serve("NaoMotion", NaoMotionAction)
 
-    # Checks without a goal
-
-    def view_for_checks(self) -> Any:
-        """As NaoBasic gives it; with a plan and names of its own."""
-        view = super().view_for_checks()
-        view.recording_names = set()
-        return view
-
     def begin_goal_check(self, now: bool) -> None:
         """Plan from where the joints are, or from where nobody knows."""
-        self.plan = self._new_plan() if now else MotionPlan(lambda: self.access.facts, self._any_state)
+        self.body.begin_chain(now)
         if not now:
-            self.locate = _frame_not_known  # type: ignore[method-assign]
-
-    def _any_state(self) -> JointState:
-        joints = self.access.facts.chains[BODY]
-        return JointState(dict.fromkeys(joints), dict.fromkeys(joints, 1.0))
+            self.walks.locate = _frame_not_known
 
     # The life of a goal
 
-    def locate(self, frame: str) -> Place:
-        """Where a frame of /tf is, seen from the robot."""
-        return self._node.locate(frame)
-
     def begin_chain(self) -> None:
         """Forget what the last chain did."""
-        self.plan = self._new_plan()
-        self.recording_names.clear()
-        self.cut_short = []
+        self.body.begin_chain()
+        self.recordings.begin_chain()
         for event in (FALLING, MOVE_FAILED, DISABLED):
             try:
                 self._mishaps.subscribe(event)
@@ -169,11 +150,11 @@ class NaoMotion(
 
     def end_chain(self, end: str) -> None:
         """See that only a chain that succeeded leaves the robot walking."""
-        self.walk_ends(end)
+        self.walks.end_chain(end == "succeeded")
 
     def begin_check(self, position: int) -> None:
         """Tell the plan which function comes."""
-        self.plan.begin_function(position)
+        self.body.plan.begin_function(position)
 
     def steps_to_run(self, goal: Any, steps: Sequence[Step], outcomes: list[Outcome]) -> Sequence[Step]:
         """Nothing for a dry run: each function answers how long it would take, with the wait after it, s."""
@@ -181,24 +162,25 @@ class NaoMotion(
         if not self._dry_run:
             return steps
         for step in steps:
-            duration = self.plan.durations[step.position] + step.sleep_time
+            duration = self.body.plan.durations[step.position] + step.sleep_time
             outcomes.append(Outcome(step.position, step.function, [f"{duration:.3f}"], 0.0))
         return []
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add the joints that the chain moved or asked for; what an interrupted chain has set going is stopped."""
         super().fill_result(result, outcomes)
-        result.results += self.cut_short
-        joints = list(self.plan.touched)
+        result.results += self.recordings.cut_short
+        joints = list(self.body.plan.touched)
         if self.interrupt.is_set():
-            self.halt()
+            self.body.halt()
         if not joints:
             return
         if self._dry_run:
-            joints = [joint for joint in joints if self.plan.angle(joint) is not None]
-            result.position = [self.plan.angle(joint) for joint in joints]
+            angles = self.body.plan.angles
+            joints = [joint for joint in joints if angles[joint] is not None]
+            result.position = [angles[joint] for joint in joints]
         else:
-            result.position = list(self.call_now(self.robot.proxy("ALMotion"), "getAngles", joints, True))
+            result.position = list(self.body.motion_now("getAngles", joints, True))
         result.name = joints
 
     def shutdown_steps(self) -> list[Callable[[], Any]]:
@@ -206,8 +188,8 @@ class NaoMotion(
         return [*super().shutdown_steps(), self.with_robot(self._stop_left_walk), self._mishaps.close]
 
     def _stop_left_walk(self) -> None:
-        if self._left_walking:
-            self.stop_walk()
+        if self.walks.left_walking:
+            self.walks.stop_walk()
 
     def _connection_changed(self, *args: Any) -> None:
         super()._connection_changed(*args)
@@ -217,30 +199,21 @@ class NaoMotion(
     def _told(self, event: str, value: Any) -> None:
         """Called from a thread of libqi."""
         if event == MOVE_FAILED:
-            self.walk_failure.tell(value)
+            self.walks.walk_failed(value)
         elif event == DISABLED:
             self._disabled(value)
-        elif value and self.plan.moves and not self._idle.is_set():
+        elif value and self.body.plan.moves and not self._idle.is_set():
             # A chain that goes on would move a robot that lies.
             self.interrupt.trigger(RobotFell())
 
     def _disabled(self, value: Any) -> None:
         """The robot has put chains to rest, or gives them back: pairs of name and whether it has."""
-        if not self.plan.moves or self._idle.is_set():
+        if not self.body.plan.moves or self._idle.is_set():
             return
         resting = [str(name) for name, rests in value or () if rests]
-        hit = [chain for chain in resting if any(in_chain(joint, chain) for joint in self.plan.moved)]
+        hit = [chain for chain in resting if any(in_chain(joint, chain) for joint in self.body.plan.moved)]
         if hit:
             self.interrupt.trigger(PutToRest(hit))
-
-    def _new_plan(self) -> MotionPlan:
-        return MotionPlan(
-            lambda: self.access.facts,
-            self.access.state,
-            lambda: bool(self.motion("moveIsActive")),
-            lambda: str(self.call(self.robot.proxy(POSTURES), "getPostureFamily")),
-            lambda: self.health.read(list(self.access.facts.limits)),
-        )
 
 
 def _frame_not_known(frame: str) -> Place:

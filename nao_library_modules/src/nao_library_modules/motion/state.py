@@ -6,34 +6,30 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..functions.chain import checked_by
-from .base import MotionBase
+from .body import BodyPart
 from .facts import BODY
 from .fields import SomeJoints, Task
 
 
-def check_kill_all(self: MotionBase) -> None:
-    """Nothing can be wrong; a walk ends with it."""
-    self.plan.walk.stands()
-
-
-def check_some_joints(self: MotionBase, names: Sequence[str]) -> None:
-    """Known joints, or nothing for the whole body."""
-    self.plan.facts.joints(names or [BODY])
-
-
-class MotionState(MotionBase):
+class MotionState(BodyPart):
     """Functions of ALMotion for facts and tasks. Parameters are fields of MotionFunction."""
 
-    @checked_by(check_some_joints)
+    def _check_joints(self, names: Sequence[str]) -> None:
+        self._joints(names)
+
+    def _joints(self, names: Sequence[str]) -> list[str]:
+        return self.body.joints(names or [BODY])
+
+    @checked_by(_check_joints)
     def get_body_names(self, names: SomeJoints) -> list[str]:
         """Joints behind chains, of the whole body if none is named."""
-        return self.joints(names or [BODY])
+        return self._joints(names)
 
-    @checked_by(check_some_joints)
+    @checked_by(_check_joints)
     def get_limits(self, names: SomeJoints) -> list[list[float]]:
         """Of each joint: lower and upper limit (rad), top speed (rad/s) and torque (N m)."""
-        rows = dict(zip(self.joints([BODY]), self.motion("getLimits", BODY)))
-        return [list(rows[joint]) for joint in self.joints(names or [BODY])]
+        rows = dict(zip(self.body.joints([BODY]), self.motion("getLimits", BODY)))
+        return [list(rows[joint]) for joint in self._joints(names)]
 
     def get_mass(self, names: SomeJoints) -> list[float]:
         """Mass of joints, chains or, if none is named, the body: kg."""
@@ -59,21 +55,24 @@ class MotionState(MotionBase):
         """Tasks that run: name, number, broker, priority, resources."""
         return [list(task) for task in self.motion("getTaskList")]
 
-    @checked_by(check_some_joints)
+    @checked_by(_check_joints)
     def are_resources_available(self, names: SomeJoints) -> bool:
         """Whether no task holds the joints."""
-        return bool(self.motion("areResourcesAvailable", self.joints(names or [BODY])))
+        return bool(self.motion("areResourcesAvailable", self._joints(names)))
 
     def kill_task(self, values: Task) -> bool:
         """End a task by its number; tells whether there was one."""
         return bool(self.motion("killTask", int(values[0])))
 
-    @checked_by(check_some_joints)
+    @checked_by(_check_joints)
     def kill_tasks_using_resources(self, names: SomeJoints) -> None:
         """End all tasks that hold the joints."""
-        self.motion("killTasksUsingResources", self.joints(names or [BODY]))
+        self.motion("killTasksUsingResources", self._joints(names))
 
-    @checked_by(check_kill_all)
+    def _check_kill_all(self) -> None:
+        self.body.plan.walk.stands()  # a walk ends with all tasks
+
+    @checked_by(_check_kill_all)
     def kill_all(self) -> None:
         """End all motion tasks."""
         self.motion("killAll")

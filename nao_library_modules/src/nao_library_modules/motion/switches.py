@@ -7,7 +7,7 @@ from typing import Any
 
 from ..base.errors import BadGoal
 from ..functions.chain import checked_by
-from .base import DEFAULT_SPEED, MotionBase
+from .body import DEFAULT_SPEED, BodyPart
 from .facts import BODY
 from .fields import Frame, Speed
 from .walk_fields import (
@@ -34,32 +34,7 @@ BALANCE_TIME = 2.0
 """s that a shift of weight is planned to take where a speed is given."""
 
 
-def check_balance(self: MotionBase, duration: float) -> None:
-    """A body that no walk moves."""
-    body = self.plan.facts.chains[BODY]
-    self.plan.walk.require_free(body)
-    self.plan.forget(body)
-    self.plan.takes(duration)
-
-
-def check_balance_speed(self: MotionBase) -> None:
-    """As wbGoToBalance."""
-    check_balance(self, BALANCE_TIME)
-
-
-def check_config(_self: object, texts: Sequence[str], values: Sequence[float]) -> None:
-    """A value for each switch."""
-    if not texts or len(values) != len(texts):
-        raise BadGoal("values", list(values), f"one for each of {', '.join(texts) or 'the names in texts'}")
-
-
-def check_breath(_self: object, texts: Sequence[str], values: Sequence[float]) -> None:
-    """A value for each setting of breathing."""
-    if not texts or len(values) != len(texts):
-        raise BadGoal("values", list(values), f"one for each of {', '.join(texts or BREATH_KEYS)}")
-
-
-class MotionSwitches(MotionBase):
+class MotionSwitches(BodyPart):
     """Functions of ALMotion for what the robot does by itself. Parameters are fields of MotionFunction."""
 
     # Life-like motion
@@ -72,7 +47,11 @@ class MotionSwitches(MotionBase):
         """Whether chains breathe."""
         return self._each("getBreathEnabled", names)
 
-    @checked_by(check_breath)
+    def _check_breath(self, texts: Sequence[str], values: Sequence[float]) -> None:
+        if not texts or len(values) != len(texts):
+            raise BadGoal("values", list(values), f"one for each of {', '.join(texts or BREATH_KEYS)}")
+
+    @checked_by(_check_breath)
     def set_breath_config(self, texts: BreathKeys, values: Settings) -> None:
         """How the robot breathes: Bpm (breaths a minute) and Amplitude (0..1)."""
         self.motion("setBreathConfig", [list(pair) for pair in zip(texts, values)])
@@ -157,7 +136,14 @@ class MotionSwitches(MotionBase):
         """Keep the centre of mass over one foot or both, or stop it."""
         self.motion("wbEnableBalanceConstraint", enable, str_param.strip())
 
-    @checked_by(check_balance)
+    def _check_balance(self, duration: float) -> None:
+        plan = self.body.plan
+        joints = plan.facts.chains[BODY]
+        plan.walk.require_free(joints)
+        plan.forget(joints)
+        plan.takes(duration)
+
+    @checked_by(_check_balance)
     def wb_go_to_balance(self, str_param: BalanceLeg, duration: BalanceTime) -> bool:
         """Move the centre of mass over one foot or both in a time; tells whether it got there."""
         return bool(self.motion("wbGoToBalance", str_param.strip(), duration))
@@ -178,14 +164,21 @@ class MotionSwitches(MotionBase):
         answers = [self.motion(method, name, *args) for name in names]
         return [answer for answer in answers if answer is not None]
 
-    @checked_by(check_balance_speed)
+    def _check_balance_speed(self) -> None:
+        self._check_balance(BALANCE_TIME)
+
+    @checked_by(_check_balance_speed)
     def wb_go_to_balance_with_speed(self, str_param: BalanceLeg, speed: Speed) -> bool:
         """Move the centre of mass over one foot or both at a fraction of the top speed; tells whether it got there."""
         return bool(self.motion("wbGoToBalanceWithSpeed", str_param.strip(), speed or DEFAULT_SPEED))
 
     # Inside the motion
 
-    @checked_by(check_config)
+    def _check_config(self, texts: Sequence[str], values: Sequence[float]) -> None:
+        if not texts or len(values) != len(texts):
+            raise BadGoal("values", list(values), f"one for each of {', '.join(texts) or 'the names in texts'}")
+
+    @checked_by(_check_config)
     def set_motion_config(self, texts: MotionSwitch, values: SwitchValues) -> None:
         """Set switches of the motion by NAOqi's names, ENABLE_FOOT_CONTACT_PROTECTION and the like: 0 off, else on."""
         self.motion("setMotionConfig", [[name, bool(value)] for name, value in zip(texts, values)])

@@ -5,30 +5,25 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from naoqi.errors import NaoError
 
-from ..base.errors import WalkStopped
+from ..base.errors import BadGoal, WalkStopped
 from ..base.places import Place
 from ..functions.chain import checked_by
 from ..robot.robot_task import wait_for_call
-from .base import NEWS_TIME
-from .facts import MOTION
-from .gait import GaitPairs
-from .walk_checks import (
-    WalkBase,
-    check_end,
-    check_fast_steps,
-    check_init,
-    check_move_to,
-    check_pace,
-    check_path,
-    check_timed_steps,
+from .body import NEWS_TIME, BodyPart, RobotBody
+from .facts import MOTION, OncePerConnection
+from .gait import (
+    GaitPairs,
     places,
+    read_gait,
+    read_ranges,
     require_way,
     step_speeds,
     steps,
+    walk_time,
 )
 from .walk_fields import (
     Gait,
@@ -51,8 +46,13 @@ from .walk_fields import (
     Ways,
 )
 
+if TYPE_CHECKING:
+    from ..server.nao_basic import NaoBasic
+
 log = logging.getLogger(__name__)
 
+WORLD = 1
+"""The frame that `frame` means by this number."""
 WAIT = "waitUntilMoveIsFinished"
 
 STANDING_LIMIT = 2.0
@@ -61,57 +61,108 @@ STOP_LIMIT = 10.0
 """s that the robot may take to stand on both feet; it takes about one."""
 
 
-class WalkFailure:
-    """Why a walk ended before time, as the robot tells in an event that may come a little after the end.
-
-    Told from a thread of libqi, asked from the one that executes goals.
-    """
-
-    def __init__(self) -> None:
-        """Nothing has failed yet."""
-        self._cause = ""
-
-    def tell(self, value: Any) -> None:
-        """Take a value of ALMotion/MoveFailed: cause, 0 not started or 1 stopped on the way, place of an obstacle."""
-        self._cause = str(value[0]) if isinstance(value, (list, tuple)) and value else str(value or "")
-
-    def forget(self) -> None:
-        """A new walk begins."""
-        self._cause = ""
-
-    @property
-    def cause(self) -> str:
-        """What the robot said last; empty if nothing since `forget`."""
-        return self._cause
-
-
-class WalkFunctions(WalkBase):
+class WalkFunctions(BodyPart):
     """Functions of ALMotion that walk. Parameters are fields of MotionFunction.
 
     A walk ends on both feet, however the goal ends. Only a goal that succeeded leaves a robot walking, when `move`,
     `moveToward` or `setFootSteps` was its wish.
     """
 
-    walk_failure: WalkFailure
-    wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
-    walk_by_plan: Callable[[Place], Any] = staticmethod(lambda place: None)
-    """Has the driver walk to a place seen from the robot, the way it plans; gives a call, or None where it cannot."""
-    _walk_begun = False  # by this chain
-    _left_walking = False  # by a chain that succeeded
+    def __init__(
+        self, module: NaoBasic, body: RobotBody, locate: Callable[[str], Sequence[float]], driver: Any = None
+    ) -> None:
+        """Nothing walks yet.
+
+        Args:
+            module: Its robot, its waits.
+            body: The joints.
+            locate: Finds a frame of /tf, seen from the robot: x and y in m, heading in rad.
+            driver: NaoRobotDriver, which plans ways; None: there is none.
+        """
+        super().__init__(body)
+        self._module = module
+        self.locate = locate
+        self._driver = driver
+        self._ranges = OncePerConnection(module.robot, lambda: read_ranges(body.motion))
+        self._walk_begun = False  # by this chain
+        self.left_walking = False  # by a chain that succeeded
+        self._cause = ""  # why the robot ended a walk; written from a thread of libqi
+
+    def walk_failed(self, value: Any) -> None:
+        """Take a value of ALMotion/MoveFailed: cause, 0 not started or 1 stopped on the way, place of an obstacle.
+
+        The event may come a little after the end of the walk, from a thread of libqi.
+        """
+        self._cause = str(value[0]) if isinstance(value, (list, tuple)) and value else str(value or "")
+
+    # What checks need
+
+    def _config(self, gait: Sequence[str], gait_values: Sequence[float], each_foot: bool = False) -> GaitPairs:
+        """Parameters of a walk as ALMotion takes them; nothing is asked of the robot if a message gives none."""
+        if not gait and not gait_values:
+            return []
+        return read_gait(gait, gait_values, self._ranges(), each_foot)
+
+    def _origin(self, frame: int, str_param: str) -> Place | None:
+        """Where the frame of a message is, seen from the robot; None for the world, that the walk itself knows."""
+        if str_param.strip():
+            return Place(*self.locate(str_param.strip()))
+        return None if frame == WORLD else Place(0.0, 0.0, 0.0)
+
+    def _check_walk(self) -> None:
+        """What all walks need and do."""
+        plan = self.body.plan
+        joints = plan.walk.moved_joints()
+        plan.walk.require_ready()
+        plan.health.require_walk(joints, plan.moves)
+        # Legs walk, arms swing: only the robot knows where they are afterwards.
+        plan.forget(joints)
+
+    def _check_way(self, points: Sequence[Place], config: GaitPairs, duration: float = 0.0) -> None:
+        self._check_walk()
+        self.body.plan.takes(max(duration, walk_time(points, config, self._ranges())))
+        self.body.plan.walk.stands()
 
     # To places
 
-    @checked_by(check_init)
+    def _check_init(self) -> None:
+        self._check_walk()
+        self.body.plan.walk.stands()
+
+    @checked_by(_check_init)
     def move_init(self) -> None:
         """Take the pose that walks begin with, and wait for the end."""
         self._walk("moveInit")
 
-    @checked_by(check_move_to)
+    def _check_move_to(
+        self, values: Sequence[float], duration: float, gait: Sequence[str], gait_values: Sequence[float]
+    ) -> None:
+        points = places(values)
+        if duration > 0.0 and len(points) > 1:
+            raise BadGoal("duration", duration, "0 where there are places on the way")
+        self._check_way(points, self._config(gait, gait_values), duration)
+
+    @checked_by(_check_move_to)
     def move_to(self, values: Ways, duration: LeastTime, gait: Gait, gait_values: GaitValues) -> list[float]:
         """Walk to a place seen from the robot, through others if there are more; answers how far it got: m, rad."""
-        return self._walk_through(places(values), self.walk_config(gait, gait_values), duration)
+        return self._walk_through(places(values), self._config(gait, gait_values), duration)
 
-    @checked_by(check_path)
+    def _check_path(
+        self,
+        values: Sequence[float],
+        frame: int,
+        str_param: str,
+        gait: Sequence[str],
+        gait_values: Sequence[float],
+    ) -> None:
+        points = places(values)
+        config = self._config(gait, gait_values)
+        origin = self._origin(frame, str_param)
+        if origin is not None:
+            points = _from(origin, points)
+        self._check_way(points, config)
+
+    @checked_by(_check_path)
     def walk_target(
         self,
         values: Target,
@@ -123,7 +174,7 @@ class WalkFunctions(WalkBase):
         """Walk to a place in the frame of /tf named in `str_param`, the world or, else, seen from the robot."""
         return self.walk_path(values, frame, str_param, gait, gait_values)
 
-    @checked_by(check_path)
+    @checked_by(_check_path)
     def walk_path(
         self,
         values: Places,
@@ -134,37 +185,59 @@ class WalkFunctions(WalkBase):
     ) -> list[float]:
         """Walk through places in the frame of /tf named in `str_param`, the world or, else, seen from the robot."""
         points = places(values)
-        origin = self.origin(frame, str_param)
+        origin = self._origin(frame, str_param)
         if origin is None:
             origin = Place(0.0, 0.0, 0.0).seen_from(self._place())
-        points = [origin.then(point) for point in points]
-        for point in points:
-            require_way(point)
-        return self._walk_through(points, self.walk_config(gait, gait_values), 0.0, planned=True)
+        points = _from(origin, points)
+        return self._walk_through(points, self._config(gait, gait_values), 0.0, planned=True)
 
     # At a speed
 
-    @checked_by(check_pace)
+    def _check_pace(self, duration: float, gait: Sequence[str], gait_values: Sequence[float]) -> None:
+        self._config(gait, gait_values, each_foot=True)
+        self._check_walk()
+        self.body.plan.takes(duration)
+        if duration > 0.0:
+            self.body.plan.walk.stands()
+        else:
+            self.body.plan.walk.goes()
+
+    @checked_by(_check_pace)
     def move(self, values: Velocity, duration: TimeOfWalk, gait: GaitOfEachFoot, gait_values: GaitValues) -> None:
         """Walk at x, y (m/s) and theta (rad/s), and go on at once; with `duration` walk that long, then stop."""
-        self._walk_at("move", values, duration, self.walk_config(gait, gait_values, each_foot=True))
+        self._walk_at("move", values, duration, self._config(gait, gait_values, each_foot=True))
 
-    @checked_by(check_pace)
+    @checked_by(_check_pace)
     def move_toward(
         self, values: VelocityShares, duration: TimeOfWalk, gait: GaitOfEachFoot, gait_values: GaitValues
     ) -> None:
         """Walk at shares -1..1 of the top speed, and go on at once; with `duration` walk that long, then stop."""
-        self._walk_at("moveToward", values, duration, self.walk_config(gait, gait_values, each_foot=True))
+        self._walk_at("moveToward", values, duration, self._config(gait, gait_values, each_foot=True))
 
     # Footsteps
 
-    @checked_by(check_timed_steps)
+    def _check_timed_steps(self, names: Sequence[str], values: Sequence[float], times: Sequence[float]) -> None:
+        steps(names, values)
+        if len(times) != len(names):
+            problem = f"{len(times)} times for {len(names)} steps"
+            raise BadGoal("times", list(times), "one for each step", problem=problem)
+        self._check_walk()
+        self.body.plan.walk.goes()
+
+    @checked_by(_check_timed_steps)
     def set_foot_steps(self, names: StepLegs, values: Steps, times: StepTimes, enable: Replace) -> None:
         """Put feet (x, y, theta seen from the other foot) where they are to be at given times, and go on at once."""
         with self._on_two_feet_if_interrupted():
             self.motion("setFootSteps", list(names), steps(names, values), list(times), enable)
 
-    @checked_by(check_fast_steps)
+    def _check_fast_steps(
+        self, names: Sequence[str], values: Sequence[float], speed: float, speeds: Sequence[float]
+    ) -> None:
+        steps(names, values)
+        step_speeds(len(names), speed, speeds)
+        self._check_init()
+
+    @checked_by(_check_fast_steps)
     def set_foot_steps_with_speed(
         self,
         names: StepLegs,
@@ -179,40 +252,40 @@ class WalkFunctions(WalkBase):
 
     # Ends
 
-    @checked_by(check_end)
+    def _check_end(self) -> None:
+        self.body.plan.moves = True  # what falls meanwhile ends the goal
+        self.body.plan.walk.stands()
+
+    @checked_by(_check_end)
     def wait_until_move_is_finished(self) -> None:
         """Wait until the robot does not walk any more."""
         self._walk(WAIT)
 
-    @checked_by(check_end)
+    @checked_by(_check_end)
     def stop_move(self) -> None:
         """Stop walking, and wait until both feet are down."""
         self._walk("stopMove")
         self._walk(WAIT)
 
-    @checked_by(check_end)
+    @checked_by(_check_end)
     def kill_move(self) -> None:
         """Stop walking in the middle of the step: the robot may fall."""
         self.motion("killMove")
 
     def stop_walk(self) -> None:
         """Have the robot stand on both feet; preemption does not interrupt this, and it raises nothing."""
-        self._walk_begun = self._left_walking = False
-        proxy = self.robot.proxy(MOTION)
+        self._walk_begun = self.left_walking = False
+        proxy = self._module.robot.proxy(MOTION)
         try:
             for method in ("stopMove", WAIT):
                 proxy.call_async(method).result(timeout=STOP_LIMIT)
         except NaoError as error:
             log.warning("the robot may go on walking: %s", error)
 
-    def walk_ends(self, end: str) -> None:
-        """A chain is over: unless it succeeded, the robot is to stand, because only a client knows where it would go.
-
-        Args:
-            end: "succeeded", "aborted" or "preempted".
-        """
-        if self._walk_begun and end == "succeeded":
-            self._left_walking = self.plan.walk.walking
+    def end_chain(self, succeeded: bool) -> None:
+        """See that only a chain that succeeded leaves the robot walking: only a client knows where it would go."""
+        if self._walk_begun and succeeded:
+            self.left_walking = self.body.plan.walk.walking
         elif self._walk_begun:
             self.stop_walk()
         self._walk_begun = False
@@ -230,8 +303,9 @@ class WalkFunctions(WalkBase):
             arguments.append(config)
 
         def begin() -> Any:
-            call = self.walk_by_plan(points[0]) if planned and len(points) == 1 and not config else None
-            return call or self.robot.proxy(MOTION).call_async("moveTo", *arguments)
+            by_driver = planned and len(points) == 1 and not config and self._driver is not None
+            call = self._driver.walk_to(points[0]) if by_driver else None
+            return call or self._module.robot.proxy(MOTION).call_async("moveTo", *arguments)
 
         if self._await_walk(begin) is False:
             self._stopped(points[-1], before)
@@ -245,7 +319,7 @@ class WalkFunctions(WalkBase):
                 return
             before = self._place()
             self.motion(method, *arguments)
-            self.wait(duration)
+            self._module.wait(duration)
             if any(values) and not self.motion("moveIsActive"):
                 self._stopped(None, before)
         self.stop_move()
@@ -258,29 +332,29 @@ class WalkFunctions(WalkBase):
             NaoError: If something else is known to have stopped it: a fall.
         """
         self._walk_begun = False
-        wait_for_call(self.robot.proxy(MOTION).call_async(WAIT), self.interrupt, STANDING_LIMIT)
+        wait_for_call(self._module.robot.proxy(MOTION).call_async(WAIT), self._module.interrupt, STANDING_LIMIT)
         # The news of a fall, or of the cause, may be on its way.
-        if self.interrupt.wait(NEWS_TIME):
-            self.interrupt.check()
-        raise WalkStopped(goal, self._place().seen_from(before), self.walk_failure.cause)
+        if self._module.interrupt.wait(NEWS_TIME):
+            self._module.interrupt.check()
+        raise WalkStopped(goal, self._place().seen_from(before), self._cause)
 
     def _walk(self, method: str, *arguments: Any) -> Any:
         """Call a method that takes as long as the robot walks; preemption stops the walk, and then ends this."""
-        return self._await_walk(lambda: self.robot.proxy(MOTION).call_async(method, *arguments))
+        return self._await_walk(lambda: self._module.robot.proxy(MOTION).call_async(method, *arguments))
 
     def _await_walk(self, begin: Callable[[], Any]) -> Any:
         with self._on_two_feet_if_interrupted():
-            self.interrupt.check()
+            self._module.interrupt.check()
             call = begin()
             # Not cancelled on preemption: a walk that is told to stop ends on both feet, and its call with it.
-            if not wait_for_call(call, self.interrupt):
-                self.interrupt.check()
+            if not wait_for_call(call, self._module.interrupt):
+                self._module.interrupt.check()
             return call.result(timeout=0)
 
     @contextmanager
     def _on_two_feet_if_interrupted(self) -> Iterator[None]:
         self._walk_begun = True
-        self.walk_failure.forget()
+        self._cause = ""
         try:
             yield
         except BaseException:
@@ -307,3 +381,11 @@ class WalkFunctions(WalkBase):
         "stopMove": stop_move,
         "killMove": kill_move,
     }
+
+
+def _from(origin: Place, points: Sequence[Place]) -> list[Place]:
+    """Places in a frame as the robot sees them; BadGoal where one is too far."""
+    points = [origin.then(point) for point in points]
+    for point in points:
+        require_way(point)
+    return points

@@ -10,10 +10,23 @@ from ..base.field_checks import require_count, require_each, require_length, req
 from ..base.limits import Limit, limit
 from ..base.suggestion import did_you_mean
 from ..functions.fields import Annotated, Field, flag, free, moments, number, numbers, word
+from .facts import ARMS, LEGS
 from .fields import FRAME, NAMES
-from .gait import CONFIGS, DEFAULT, FEET, FREQUENCY, SETTABLE
-from .walk_checks import PLACE, STEP_THETA, STEP_X, STEP_Y, TURN, WAY, places, require_way
-from .walk_plan import ARMS, LEGS
+from .gait import (
+    CONFIGS,
+    DEFAULT,
+    FEET,
+    FREQUENCY,
+    PLACE,
+    SETTABLE,
+    STEP_THETA,
+    STEP_X,
+    STEP_Y,
+    TURN,
+    WAY,
+    places,
+    require_way,
+)
 
 # Chains that an effector moves; the torso moves on both legs.
 EFFECTORS: Mapping[str, Sequence[str]] = {

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from .body import BodyPart
+from .facts import ARMS
 from .fields import Commanded
 from .gait import DEFAULT
-from .walk_checks import WalkBase
 from .walk_fields import Enable, SecurityDistance, SwingingArms, WalkLimits
-from .walk_plan import ARMS
 
 
-class WalkState(WalkBase):
+class WalkState(BodyPart):
     """Functions of ALMotion about the walk. Parameters are fields of MotionFunction."""
 
     def get_robot_position(self, commanded: Commanded) -> list[float]:
