@@ -3,17 +3,21 @@
 What has no words in nao_robot's interface (effectors, gaits, everything that only asks), none that tell what became of
 it (targets that are set and not waited for), or none that can be taken back (wakeUp, rest), goes to NAOqi, as all does
 without a driver; and so does the order to stop a walk, which must not depend on a node. The functions of the module do
-not know which way their calls take.
+not know which way their calls take. A call of the driver is what `proxy.call_async` gives: it can be waited for and
+cancelled; None where nobody takes it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from ..base.places import Place
 from ..functions.joint_trajectory import KeyFrames
+
+if TYPE_CHECKING:
+    from ..ros.nao_robot_driver import NaoRobotDriver
 
 MOTION, POSTURE = "ALMotion", "ALRobotPosture"
 WALKS = ("moveTo", "moveToward")
@@ -24,40 +28,6 @@ SAME = 1e-6
 """s and rad that a tangent may be off what velocities say."""
 
 
-class Driver(Protocol):
-    """What a driver does.
-
-    Each call gives what `proxy.call_async` gives, which can be waited for and cancelled; None where nobody takes it.
-    """
-
-    def there(self) -> bool:
-        """Whether there is one."""
-
-    def follow(self, frames: KeyFrames) -> Any:
-        """Move joints along key frames."""
-
-    def go(self, joints: Sequence[str], angles: Sequence[float], speed: float) -> Any:
-        """Move joints to angles at a fraction of their top speed."""
-
-    def stiffen(self, frames: KeyFrames) -> Any:
-        """Bring stiffnesses along key frames."""
-
-    def walk_by(self, place: Place) -> Any:
-        """Walk to a place seen from the robot by dead reckoning; False if the robot did not get there."""
-
-    def walk_at(self, x: float, y: float, theta: float) -> Any:
-        """Begin to walk at shares -1..1 of the top speed; the call is over when it does."""
-
-    def leave_walk(self) -> None:
-        """Want no walk any more that was begun."""
-
-    def walk_cure(self) -> Sequence[Any]:
-        """What stops a walk of this process when it has died; see `owners/line.py`."""
-
-    def take_posture(self, name: str, speed: float) -> Any:
-        """Take a posture; False if the robot did not get there."""
-
-
 class RobotByDriver:
     """Stands for a Robot. What it does not have, it has from the robot itself.
 
@@ -66,7 +36,7 @@ class RobotByDriver:
         driver: The driver, which may come and go.
     """
 
-    def __init__(self, robot: Any, driver: Driver) -> None:
+    def __init__(self, robot: Any, driver: NaoRobotDriver) -> None:
         self._robot = robot
         self._proxies = {
             MOTION: ProxyByDriver(robot, MOTION, driver, _MotionWays(driver).all),
@@ -91,7 +61,7 @@ class ProxyByDriver:
         ways: Name of a method -> the call of the driver for its arguments, None if nao_robot has no words for them.
     """
 
-    def __init__(self, robot: Any, module: str, driver: Driver, ways: dict[str, Callable[..., Any]]) -> None:
+    def __init__(self, robot: Any, module: str, driver: NaoRobotDriver, ways: dict[str, Callable[..., Any]]) -> None:
         self._proxy = robot.proxy(module)
         self._witness = partial(robot.owners.sending, module)
         self._driver = driver
@@ -116,7 +86,7 @@ class ProxyByDriver:
 class _MotionWays:
     """Methods of ALMotion; arguments are NAOqi's, in the forms that the functions of the module send."""
 
-    def __init__(self, driver: Driver) -> None:
+    def __init__(self, driver: NaoRobotDriver) -> None:
         self._driver = driver
         self.all = {
             "angleInterpolation": self._interpolation,

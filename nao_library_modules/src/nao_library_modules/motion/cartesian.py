@@ -83,13 +83,7 @@ class CartesianFunctions(BodyPart):
 
     @checked_by(_check_poses)
     def set_position(
-        self,
-        names: Effectors,
-        values: Poses,
-        frame: Frame,
-        axis_mask: AxisMask,
-        speed: Speed,
-        stiffness: Stiffness,
+        self, names: Effectors, values: Poses, frame: Frame, axis_mask: AxisMask, speed: Speed, stiffness: Stiffness
     ) -> None:
         """Give effectors poses as targets and go on at once."""
         self._set("setPositions", names, _rows(values, len(names), POSE), frame, axis_mask, speed, stiffness)

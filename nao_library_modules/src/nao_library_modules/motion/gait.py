@@ -74,9 +74,7 @@ def read_gait(
     """The parameters that a message gives, in the shape that ALMotion takes.
 
     Args:
-        names: NAOqi's names.
-        values: One each.
-        ranges: What the robot allows.
+        names, values, ranges: NAOqi's names, one value each, what the robot allows.
         each_foot: Whether the walk takes parameters for one foot, and a frequency.
 
     Raises:
@@ -99,13 +97,7 @@ def read_gait(
 
 
 def walk_time(points: Sequence[Place], pairs: GaitPairs, ranges: Mapping[str, GaitRange]) -> float:
-    """About how long a walk takes, s: what a dry run tells.
-
-    Args:
-        points: The way, seen from the robot.
-        pairs: Parameters that the walk changes.
-        ranges: The robot's.
-    """
+    """About how long a walk takes, s, through points seen from the robot; `pairs` are parameters that it changes."""
     gait = {name: limits.default for name, limits in ranges.items()}
     gait.update({str(name): float(value) for name, value in pairs})
     period = step_period(gait.get("MaxStepFrequency", 1.0))

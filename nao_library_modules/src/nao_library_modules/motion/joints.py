@@ -39,6 +39,7 @@ from .fields import (
 from .poses import NamedPoses
 
 if TYPE_CHECKING:
+    from ..ros.nao_robot_driver import NaoRobotDriver
     from ..server.nao_basic import NaoBasic
 
 # A hand closes or opens in about this time, s.
@@ -96,19 +97,11 @@ class JointMotion(BodyPart):
 
     left_by_goals = frozenset({"poses"})
 
-    def __init__(self, module: NaoBasic, body: RobotBody, poses: NamedPoses, driver: Any = None) -> None:
-        """Keep what the functions need.
-
-        Args:
-            module: Its robot and waits.
-            body: The joints.
-            poses: Poses by name.
-            driver: NaoRobotDriver, whose pose_manager knows more poses; None: there is none.
-        """
+    def __init__(self, module: NaoBasic, body: RobotBody, poses: NamedPoses, driver: NaoRobotDriver | None) -> None:
         super().__init__(body)
         self._module = module
         self.poses = poses
-        self._driver = driver
+        self._driver = driver  # its pose_manager knows more poses
 
     def _check_joints(self, names: Sequence[str]) -> None:
         self.body.plan.touch(self.body.joints(names))
@@ -119,12 +112,7 @@ class JointMotion(BodyPart):
         return list(self.motion("getAngles", self.body.joints(names), not commanded))
 
     def _check_angles(
-        self,
-        names: Sequence[str],
-        angles: Sequence[float],
-        speeds: Sequence[float],
-        stiffness: float,
-        relative: bool,
+        self, names: Sequence[str], angles: Sequence[float], speeds: Sequence[float], stiffness: float, relative: bool
     ) -> None:
         plan = self.body.plan
         wanted = _angles_of(plan.facts, names, angles)
@@ -137,13 +125,7 @@ class JointMotion(BodyPart):
 
     @checked_by(_check_angles)
     def set_angles(
-        self,
-        names: Joints,
-        angles: Angles,
-        speed: Speed,
-        speeds: Speeds,
-        stiffness: Stiffness,
-        relative: Relative,
+        self, names: Joints, angles: Angles, speed: Speed, speeds: Speeds, stiffness: Stiffness, relative: Relative
     ) -> None:
         """Give joints targets and go on at once; newer targets replace older ones."""
         wanted = _angles_of(self.body.facts, names, angles)
@@ -167,12 +149,7 @@ class JointMotion(BodyPart):
         )
 
     def _check_interpolation(
-        self,
-        names: Sequence[str],
-        angles: Sequence[float],
-        times: Sequence[float],
-        relative: bool,
-        stiffness: float,
+        self, names: Sequence[str], angles: Sequence[float], times: Sequence[float], relative: bool, stiffness: float
     ) -> None:
         plan = self.body.plan
         values = _key_angles(plan.facts, names, angles, times)
@@ -181,12 +158,7 @@ class JointMotion(BodyPart):
 
     @checked_by(_check_interpolation)
     def angle_interpolation(
-        self,
-        names: Joints,
-        angles: KeyAngles,
-        times: Times,
-        relative: Relative,
-        stiffness: Stiffness,
+        self, names: Joints, angles: KeyAngles, times: Times, relative: Relative, stiffness: Stiffness
     ) -> None:
         """Move joints through key angles at given times, and wait for the end."""
         values = _key_angles(self.body.facts, names, angles, times)
@@ -326,8 +298,8 @@ class JointMotion(BodyPart):
 
     def is_of_driver(self, str_param: str) -> bool:
         """Whether only the driver knows a pose of that name."""
-        name = str_param.strip()
-        return bool(name and self._driver) and name in self._driver.poses() and name not in self.poses.names()
+        name, driver = str_param.strip(), self._driver
+        return bool(name) and driver is not None and name in driver.poses() and name not in self.poses.names()
 
     def pose(
         self, names: Sequence[str], angles: Sequence[float], str_param: str, trajectory: Any, duration: float

@@ -27,13 +27,7 @@ class GazeFunctions(BodyPart):
 
     @checked_by(_check_look)
     def look_at(
-        self,
-        values: Point,
-        frame: Frame,
-        str_param: Camera,
-        speed: Speed,
-        duration: Duration,
-        stiffness: Stiffness,
+        self, values: Point, frame: Frame, str_param: Camera, speed: Speed, duration: Duration, stiffness: Stiffness
     ) -> list[float]:
         """Turn the head so that a camera looks at a point, as far as it goes; answers yaw, pitch, and rad missing."""
         head = load_head()

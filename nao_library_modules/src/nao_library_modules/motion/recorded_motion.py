@@ -23,17 +23,11 @@ TURNED = ("Roll", "Yaw")
 
 @dataclass(frozen=True)
 class RecordedMotion:
-    """Angles of joints over time.
-
-    Attributes:
-        joints: Names of the joints.
-        times: s, rising, the first is 0.
-        angles: Of each time the angles of the joints, rad (hands 0..1).
-    """
+    """Angles of joints over time."""
 
     joints: tuple[str, ...]
-    times: tuple[float, ...]
-    angles: tuple[tuple[float, ...], ...]
+    times: tuple[float, ...]  # s, rising, the first is 0
+    angles: tuple[tuple[float, ...], ...]  # of each time those of the joints, rad (hands 0..1)
 
     @property
     def duration(self) -> float:
@@ -106,15 +100,7 @@ class RecordedMotion:
 
 
 def motion_of(content: Any, where: str) -> RecordedMotion:
-    """The motion in the content of a file.
-
-    Args:
-        content: What `to_content` gave.
-        where: What errors call it.
-
-    Raises:
-        BadGoal: If it is no motion.
-    """
+    """The motion in the content of a file, as `to_content` gives it; BadGoal calls it `where` if it is none."""
     if not isinstance(content, Mapping) or not {"joints", "samples"} <= set(content):
         raise _broken(where, "it has no joints or no samples")
     if content.get("version") != VERSION:

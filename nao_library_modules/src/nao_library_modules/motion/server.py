@@ -96,9 +96,7 @@ class NaoMotion(NaoBasic):
         """Start the server.
 
         Args:
-            ip: Address of the robot.
-            port: Port of its NAOqi.
-            autostart: As NaoBasic takes it.
+            ip, port, autostart: As NaoBasic takes them.
             launchpath: As NaoBasic takes it; None stands for the driver.
             motion_dir: Folder of recorded motions and pose libraries.
             by_driver: Whether calls that nao_robot has words for go through its driver, where there is one.

@@ -19,15 +19,7 @@ NAME_ALLOWED = "letters, digits, '_', '-', '.' and blanks, the first a letter, a
 
 
 def require_name(field: str, name: str) -> None:
-    """See that a motion can have a name.
-
-    Args:
-        field: Of the message that has the name.
-        name: The name.
-
-    Raises:
-        BadGoal: It cannot.
-    """
+    """See that a motion can have a name; `field` of the message has it. Raises BadGoal if it cannot."""
     if not NAME.fullmatch(name):
         raise BadGoal(field, name, NAME_ALLOWED, problem=f"{name!r} is no name for a motion")
 
@@ -55,7 +47,11 @@ class MotionStore:
         Raises:
             BadGoal: If there is none of that name, or its file is broken.
         """
-        path = self._readable(name)
+        path: Path | None = self.path(name)
+        if not path.is_file():
+            path = self._shipped_file(name)
+            if path is None:
+                raise self._unknown(name)
         try:
             content = yaml.safe_load(path.read_text(encoding="utf-8"))
         except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
@@ -69,9 +65,6 @@ class MotionStore:
             name: Its name.
             motion: What to write.
             numbered: Whether, where there is one of that name, it becomes name-2, name-3, ... and replaces none.
-
-        Returns:
-            Its file.
 
         Raises:
             BadGoal: If the name will not do.
@@ -88,7 +81,7 @@ class MotionStore:
             BadGoal: If there is none of that name, it comes with the library, there is one of the new name already, or
                 the file cannot be renamed.
         """
-        path, target = self._existing(name), self.require_free(new_name)
+        path, target = self.require(name), self.require_free(new_name)
         try:
             given = give_name(path, target)
         except OSError as error:
@@ -102,27 +95,15 @@ class MotionStore:
         Raises:
             BadGoal: If there is none of that name, it comes with the library, or the file cannot be deleted.
         """
-        path = self._existing(name)
+        path = self.require(name)
         try:
             path.unlink()
         except OSError as error:
             problem = f"{path} cannot be deleted: {error.strerror or error}"
             raise BadGoal("str_param", name, "a folder to write to", problem) from error
 
-    def require(self, name: str) -> None:
-        """See that there is a motion that can be renamed and deleted.
-
-        Raises:
-            BadGoal: If there is none of that name, or it comes with the library.
-        """
-        self._existing(name)
-
     def require_free(self, name: str, field: str = "texts") -> Path:
-        """File of a new motion.
-
-        Args:
-            name: Its name.
-            field: Of the message that has the name.
+        """File of a new motion, whose name is in `field` of the message.
 
         Raises:
             BadGoal: If the name will not do, or there is a motion of that name already.
@@ -142,25 +123,21 @@ class MotionStore:
         require_name(field, name)
         return self.folder / f"{name}{SUFFIX}"
 
-    def _existing(self, name: str) -> Path:
+    def require(self, name: str) -> Path:
+        """File of a motion that can be renamed and deleted.
+
+        Raises:
+            BadGoal: If there is none of that name, or it comes with the library.
+        """
         path = self.path(name)
         if not path.is_file():
-            if self._coming_with_us(name) is not None:
+            if self._shipped_file(name) is not None:
                 problem = f"motion {name!r} comes with the library"
                 raise BadGoal("str_param", name, "one that was recorded", problem=problem)
             raise self._unknown(name)
         return path
 
-    def _readable(self, name: str) -> Path:
-        path = self.path(name)
-        if path.is_file():
-            return path
-        shipped = self._coming_with_us(name)
-        if shipped is None:
-            raise self._unknown(name)
-        return shipped
-
-    def _coming_with_us(self, name: str) -> Path | None:
+    def _shipped_file(self, name: str) -> Path | None:
         path = self._shipped / f"{name}{SUFFIX}" if self._shipped is not None else None
         return path if path is not None and path.is_file() else None
 

@@ -47,6 +47,7 @@ from .walk_fields import (
 )
 
 if TYPE_CHECKING:
+    from ..ros.nao_robot_driver import NaoRobotDriver
     from ..server.nao_basic import NaoBasic
 
 log = logging.getLogger(__name__)
@@ -69,16 +70,9 @@ class WalkFunctions(BodyPart):
     """
 
     def __init__(
-        self, module: NaoBasic, body: RobotBody, locate: Callable[[str], Sequence[float]], driver: Any = None
+        self, module: NaoBasic, body: RobotBody, locate: Callable[[str], Sequence[float]], driver: NaoRobotDriver | None
     ) -> None:
-        """Nothing walks yet.
-
-        Args:
-            module: Its robot, its waits.
-            body: The joints.
-            locate: Finds a frame of /tf, seen from the robot: x and y in m, heading in rad.
-            driver: NaoRobotDriver, which plans ways; None: there is none.
-        """
+        """Take what finds a frame of /tf, seen from the robot (x and y in m, heading in rad), and NaoRobotDriver."""
         super().__init__(body)
         self._module = module
         self.locate = locate
@@ -148,12 +142,7 @@ class WalkFunctions(BodyPart):
         return self._walk_through(places(values), self._config(gait, gait_values), duration)
 
     def _check_path(
-        self,
-        values: Sequence[float],
-        frame: int,
-        str_param: str,
-        gait: Sequence[str],
-        gait_values: Sequence[float],
+        self, values: Sequence[float], frame: int, str_param: str, gait: Sequence[str], gait_values: Sequence[float]
     ) -> None:
         points = places(values)
         config = self._config(gait, gait_values)
@@ -164,24 +153,14 @@ class WalkFunctions(BodyPart):
 
     @checked_by(_check_path)
     def walk_target(
-        self,
-        values: Target,
-        frame: PlaceFrame,
-        str_param: TfFrame,
-        gait: Gait,
-        gait_values: GaitValues,
+        self, values: Target, frame: PlaceFrame, str_param: TfFrame, gait: Gait, gait_values: GaitValues
     ) -> list[float]:
         """Walk to a place in the frame of /tf named in `str_param`, the world or, else, seen from the robot."""
         return self.walk_path(values, frame, str_param, gait, gait_values)
 
     @checked_by(_check_path)
     def walk_path(
-        self,
-        values: Places,
-        frame: PlaceFrame,
-        str_param: TfFrame,
-        gait: Gait,
-        gait_values: GaitValues,
+        self, values: Places, frame: PlaceFrame, str_param: TfFrame, gait: Gait, gait_values: GaitValues
     ) -> list[float]:
         """Walk through places in the frame of /tf named in `str_param`, the world or, else, seen from the robot."""
         points = places(values)
@@ -239,12 +218,7 @@ class WalkFunctions(BodyPart):
 
     @checked_by(_check_fast_steps)
     def set_foot_steps_with_speed(
-        self,
-        names: StepLegs,
-        values: Steps,
-        speed: StepSpeed,
-        speeds: StepSpeeds,
-        enable: Replace,
+        self, names: StepLegs, values: Steps, speed: StepSpeed, speeds: StepSpeeds, enable: Replace
     ) -> None:
         """Put feet (x, y, theta seen from the other foot) down, all as fast as given, and wait for the end."""
         fractions = step_speeds(len(names), speed, speeds)
@@ -303,8 +277,8 @@ class WalkFunctions(BodyPart):
             arguments.append(config)
 
         def begin() -> Any:
-            by_driver = planned and len(points) == 1 and not config and self._driver is not None
-            call = self._driver.walk_to(points[0]) if by_driver else None
+            by_driver = planned and len(points) == 1 and not config
+            call = self._driver.walk_to(points[0]) if by_driver and self._driver is not None else None
             return call or self._module.robot.proxy(MOTION).call_async("moveTo", *arguments)
 
         if self._await_walk(begin) is False:

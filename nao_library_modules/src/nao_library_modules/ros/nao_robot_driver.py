@@ -59,7 +59,7 @@ NOT_THERE = "ended before time"
 
 
 class NaoRobotDriver:
-    """Implements `motion_by_driver.Driver` by the names of nao_robot, relative to the namespace of the node.
+    """The driver by the names of nao_robot, relative to the namespace of the node, for `motion/by_driver.py`.
 
     Clients are made when the first call goes that way.
     """
