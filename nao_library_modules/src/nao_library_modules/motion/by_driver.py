@@ -29,12 +29,7 @@ SAME = 1e-6
 
 
 class RobotByDriver:
-    """Stands for a Robot. What it does not have, it has from the robot itself.
-
-    Args:
-        robot: The robot.
-        driver: The driver, which may come and go.
-    """
+    """Stands for a Robot whose driver may come and go. What it does not have, it has from the robot itself."""
 
     def __init__(self, robot: Any, driver: NaoRobotDriver) -> None:
         self._robot = robot
@@ -54,11 +49,7 @@ class RobotByDriver:
 class ProxyByDriver:
     """Stands for the proxy of a module.
 
-    Args:
-        robot: The robot.
-        module: Name of the module.
-        driver: Where methods go, if it is there.
-        ways: Name of a method -> the call of the driver for its arguments, None if nao_robot has no words for them.
+    `ways`: name of a method -> the call of the driver for its arguments, None if nao_robot has no words for them.
     """
 
     def __init__(self, robot: Any, module: str, driver: NaoRobotDriver, ways: dict[str, Callable[..., Any]]) -> None:

@@ -34,7 +34,7 @@ def _rows(values: Sequence[float], count: int, size: int) -> list[list[float]]:
 
 
 class CartesianFunctions(BodyPart):
-    """Functions of ALMotion for effectors in space. Parameters are fields of MotionFunction."""
+    """Functions of ALMotion for effectors in space."""
 
     def get_position(self, names: Parts, frame: Frame, commanded: Commanded) -> list[list[float]]:
         """Pose of each effector, joint or sensor: x, y, z in m, wx, wy, wz in rad."""
@@ -46,11 +46,9 @@ class CartesianFunctions(BodyPart):
 
     def _check_move(self, names: Sequence[str], stiffness: float) -> list[str]:
         """See that effectors can move; the joints that will."""
-        plan = self.body.plan
         joints = [joint for joint in dict.fromkeys(self._joints_of(names)) if not joint.endswith("Hand")]
-        plan.require_stiff(joints, stiffness)
-        plan.touch(joints)
-        plan.forget(joints)
+        self.body.plan.require_stiff(joints, stiffness)
+        self.body.plan.leave_to_robot(joints)
         return joints
 
     def _check_poses(self, names: Sequence[str], values: Sequence[float], stiffness: float) -> None:
@@ -86,7 +84,8 @@ class CartesianFunctions(BodyPart):
         self, names: Effectors, values: Poses, frame: Frame, axis_mask: AxisMask, speed: Speed, stiffness: Stiffness
     ) -> None:
         """Give effectors poses as targets and go on at once."""
-        self._set("setPositions", names, _rows(values, len(names), POSE), frame, axis_mask, speed, stiffness)
+        rows = self._targets(names, values, POSE, stiffness)
+        self.motion("setPositions", list(names), frame, rows, speed or DEFAULT_SPEED, axis_mask or POSITION)
 
     @checked_by(_check_transforms)
     def set_transform(
@@ -99,7 +98,8 @@ class CartesianFunctions(BodyPart):
         stiffness: Stiffness,
     ) -> None:
         """Give effectors transforms (12 numbers each, row by row) as targets and go on at once."""
-        self._set("setTransforms", names, _rows(values, len(names), TRANSFORM), frame, axis_mask, speed, stiffness)
+        rows = self._targets(names, values, TRANSFORM, stiffness)
+        self.motion("setTransforms", list(names), frame, rows, speed or DEFAULT_SPEED, axis_mask or POSITION)
 
     @checked_by(_check_poses)
     def change_position(
@@ -112,8 +112,7 @@ class CartesianFunctions(BodyPart):
         stiffness: Stiffness,
     ) -> None:
         """Move effectors by differences of poses and go on at once."""
-        self.body.stiffen(self._joints_of(names), stiffness)
-        for name, change in zip(names, _rows(values, len(names), POSE)):
+        for name, change in zip(names, self._targets(names, values, POSE, stiffness)):
             self.motion("changePosition", name, frame, change, speed or DEFAULT_SPEED, axis_mask or POSITION)
 
     @checked_by(_check_pose_paths)
@@ -128,7 +127,10 @@ class CartesianFunctions(BodyPart):
         stiffness: Stiffness,
     ) -> None:
         """Move effectors through poses at given times, and wait for the end; all poses of the first one come first."""
-        self._follow("positionInterpolations", names, values, POSE, times, frame, axis_mask, relative, stiffness)
+        paths = self._paths(names, values, POSE, times, stiffness)
+        masks = [axis_mask or POSITION] * len(names)
+        moments = [list(times)] * len(names)
+        self.motion("positionInterpolations", list(names), frame, paths, masks, moments, not relative)
 
     @checked_by(_check_transform_paths)
     def transform_interpolation(
@@ -142,7 +144,10 @@ class CartesianFunctions(BodyPart):
         stiffness: Stiffness,
     ) -> None:
         """Move effectors through transforms (12 numbers each) at given times, and wait for the end."""
-        self._follow("transformInterpolations", names, values, TRANSFORM, times, frame, axis_mask, relative, stiffness)
+        paths = self._paths(names, values, TRANSFORM, times, stiffness)
+        masks = [axis_mask or POSITION] * len(names)
+        moments = [list(times)] * len(names)
+        self.motion("transformInterpolations", list(names), frame, paths, masks, moments, not relative)
 
     def get_com(self, frame: Frame, commanded: Commanded, names: SomeJoints) -> list[list[float]]:
         """Centre of mass of the body, or of each joint or chain that is named: x, y, z in m."""
@@ -152,36 +157,18 @@ class CartesianFunctions(BodyPart):
         """Corners of the support polygon: x, y in m."""
         return [list(corner) for corner in self.motion("getSupportPolygon", frame, not commanded)]
 
-    def _set(
-        self,
-        method: str,
-        names: Sequence[str],
-        rows: list[list[float]],
-        frame: int,
-        axis_mask: int,
-        speed: float,
-        stiffness: float,
-    ) -> None:
+    def _targets(self, names: Sequence[str], values: Sequence[float], size: int, stiffness: float) -> list[list[float]]:
+        """Numbers of each effector, which is stiffened."""
         self.body.stiffen(self._joints_of(names), stiffness)
-        self.motion(method, list(names), frame, rows, speed or DEFAULT_SPEED, axis_mask or POSITION)
+        return _rows(values, len(names), size)
 
-    def _follow(
-        self,
-        method: str,
-        names: Sequence[str],
-        values: Sequence[float],
-        size: int,
-        times: Sequence[float],
-        frame: int,
-        axis_mask: int,
-        relative: bool,
-        stiffness: float,
-    ) -> None:
+    def _paths(
+        self, names: Sequence[str], values: Sequence[float], size: int, times: Sequence[float], stiffness: float
+    ) -> list[list[list[float]]]:
+        """Numbers of each effector at each time; the effectors are stiffened."""
         self.body.stiffen(self._joints_of(names), stiffness)
         rows = _rows(values, len(names) * len(times), size)
-        paths = [rows[i * len(times) : (i + 1) * len(times)] for i in range(len(names))]
-        masks = [axis_mask or POSITION] * len(names)
-        self.motion(method, list(names), frame, paths, masks, [list(times)] * len(names), not relative)
+        return [rows[i * len(times) : (i + 1) * len(times)] for i in range(len(names))]
 
     def _joints_of(self, names: Sequence[str]) -> list[str]:
         chains = self.body.facts.chains

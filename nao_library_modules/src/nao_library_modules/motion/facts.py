@@ -77,10 +77,6 @@ def one_each(values: Sequence[float], joints: Sequence[str], field: str) -> list
     if len(values) == 1:
         return list(values) * len(joints)
     if len(values) != len(joints):
-        raise BadGoal(
-            field,
-            list(values),
-            f"one value, or one for each of {', '.join(joints)}",
-            problem=f"{len(values)} values for {len(joints)} joints",
-        )
+        problem = f"{len(values)} values for {len(joints)} joints"
+        raise BadGoal(field, list(values), f"one value, or one for each of {', '.join(joints)}", problem=problem)
     return list(values)

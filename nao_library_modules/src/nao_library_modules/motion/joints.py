@@ -93,7 +93,7 @@ def _key_frames(facts: MotionFacts, names: Sequence[str], trajectory: Any, relat
 
 
 class JointMotion(BodyPart):
-    """Functions of ALMotion for angles, and poses and trajectories. Parameters are fields of MotionFunction."""
+    """Functions of ALMotion for angles, and poses and trajectories."""
 
     left_by_goals = frozenset({"poses"})
 
@@ -229,8 +229,7 @@ class JointMotion(BodyPart):
                 raise BadGoal("trajectory.points", len(trajectory.points), "none beside the name of a pose")
             joints = list(plan.facts.chains[BODY])
             plan.require_stiff(joints, stiffness)
-            plan.touch(joints)
-            plan.forget(joints)
+            plan.leave_to_robot(joints)
             return
         pose, time = self.pose(names, angles, str_param, trajectory, duration)
         if time > 0.0:
@@ -275,16 +274,13 @@ class JointMotion(BodyPart):
             self._go(pose, speed, stiffness)
 
     def _check_hands(self, names: Sequence[str], stiffness: HandStiffness) -> None:
-        plan = self.body.plan
         hands = self.body.joints(names)
-        known = [joint for joint in plan.facts.limits if joint.endswith("Hand")]
+        known = [joint for joint in self.body.facts.limits if joint.endswith("Hand")]
         for hand in hands:
             if hand not in known:
                 problem = f"{hand!r} is no hand{did_you_mean(hand, known)}"
                 raise BadGoal("names", hand, ", ".join(known), problem=problem)
-        plan.touch(hands)
-        plan.forget(hands)
-        plan.takes(HAND_TIME)
+        self.body.plan.leave_to_robot(hands, HAND_TIME)
 
     @checked_by(_check_hands)
     def open_hand(self, names: Hands) -> None:
@@ -312,12 +308,8 @@ class JointMotion(BodyPart):
         given = [bool(angles), bool(trajectory.points), bool(str_param.strip())]
         if sum(given) != 1:
             problem = "there is no pose" if not any(given) else "there is more than one pose"
-            raise BadGoal(
-                "angles",
-                list(angles),
-                "either angles, or one point in trajectory, or a pose's name in str_param",
-                problem=problem,
-            )
+            allowed = "either angles, or one point in trajectory, or a pose's name in str_param"
+            raise BadGoal("angles", list(angles), allowed, problem=problem)
         if angles:
             return _angles_of(self.body.facts, names, angles), duration
         if trajectory.points:

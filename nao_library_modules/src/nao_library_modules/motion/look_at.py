@@ -16,14 +16,11 @@ TORSO = 0
 
 
 class GazeFunctions(BodyPart):
-    """Looking at points. Parameters are fields of MotionFunction."""
+    """Looking at points."""
 
     def _check_look(self, duration: float, stiffness: float) -> None:
-        plan = self.body.plan
-        plan.require_stiff(HEAD, stiffness)
-        plan.touch(HEAD)
-        plan.forget(HEAD)
-        plan.takes(duration)
+        self.body.plan.require_stiff(HEAD, stiffness)
+        self.body.plan.leave_to_robot(HEAD, duration)
 
     @checked_by(_check_look)
     def look_at(

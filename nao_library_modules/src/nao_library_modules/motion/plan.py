@@ -111,13 +111,17 @@ class MotionPlan:
         """Joints go where only the robot knows."""
         self._goes(dict.fromkeys(joints))
 
+    def leave_to_robot(self, joints: Sequence[str], duration: float = 0.0) -> None:
+        """Joints that the result names go where only the robot knows, in a time, s."""
+        self.touch(joints)
+        self.forget(joints)
+        self.takes(duration)
+
     def change_posture(self, duration: float, posture: str | None = None) -> None:
         """The whole robot moves as only it knows: it is stiff afterwards, and does not walk."""
         body = list(self.facts.chains[BODY])
         self.stiffnesses.update(dict.fromkeys(body, 1.0))
-        self.forget(body)
-        self.touch(body)
-        self.takes(duration)
+        self.leave_to_robot(body, duration)
         self.walk.stands(posture)
 
     def _goes(self, goals: Mapping[str, float | None]) -> None:
@@ -168,13 +172,9 @@ class MotionPlan:
         """
         limits = self.facts.limits[joint]
         if not (math.isfinite(angle) and limits.lower - TOLERANCE <= angle <= limits.upper + TOLERANCE):
-            hint = degrees_hint(angle, limits.lower, limits.upper)
-            raise BadGoal(
-                field,
-                angle,
-                f"{limits.lower:.4f} to {limits.upper:.4f}{_unit(joint)}{hint}",
-                problem=f"{joint} cannot go to {angle:.4f}{_unit(joint)}",
-            )
+            unit, hint = _unit(joint), degrees_hint(angle, limits.lower, limits.upper)
+            allowed = f"{limits.lower:.4f} to {limits.upper:.4f}{unit}{hint}"
+            raise BadGoal(field, angle, allowed, problem=f"{joint} cannot go to {angle:.4f}{unit}")
 
     def targets(self, angles: Mapping[str, float], relative: bool, field: str = "angles") -> dict[str, float | None]:
         """Where joints are to go.
@@ -189,12 +189,7 @@ class MotionPlan:
         """
         goals: dict[str, float | None] = {}
         for joint, angle in angles.items():
-            before = self.angles[joint] if relative else 0.0
-            goals[joint] = None if before is None else before + angle
-            if goals[joint] is not None:
-                self.require_angle(joint, goals[joint], field)  # type: ignore[arg-type]
-            else:
-                require_within(field, angle, ANGLE)
+            goals[joint] = self._goal(joint, angle, self.angles[joint] if relative else 0.0, field)
         return goals
 
     def move(self, goals: Mapping[str, float | None], duration: float) -> None:
@@ -234,27 +229,27 @@ class MotionPlan:
             offset = start if relative else 0.0
             before, since = start, 0.0
             for angle, time in zip(angles, times):
-                goal = None if offset is None else offset + angle
-                if goal is not None:
-                    self.require_angle(joint, goal, field)
-                    self._require_time(joint, before, goal, time - since, time)
-                else:
-                    require_within(field, angle, ANGLE)
+                goal = self._goal(joint, angle, offset, field)
+                self._require_time(joint, before, goal, time - since, time)
                 before, since = goal, time
             goals[joint] = before
         self.move(goals, times[-1])
 
-    def _require_time(self, joint: str, before: float | None, goal: float, given: float, time: float) -> None:
-        if before is None:
+    def _goal(self, joint: str, angle: float, offset: float | None, field: str) -> float | None:
+        """Where a joint gets to that goes to `angle` from `offset`, within its limits; None where that is not known."""
+        if offset is None:
+            require_within(field, angle, ANGLE)
+            return None
+        self.require_angle(joint, offset + angle, field)
+        return offset + angle
+
+    def _require_time(self, joint: str, before: float | None, goal: float | None, given: float, time: float) -> None:
+        if before is None or goal is None:
             return
         least = abs(goal - before) / self.facts.limits[joint].max_speed
         if given * SPEED_TOLERANCE < least:
-            raise BadGoal(
-                "times",
-                time,
-                f"at least {least:.3f} s for this step",
-                problem=f"{joint} cannot go from {before:.3f} to {goal:.3f} in {given:.3f} s",
-            )
+            problem = f"{joint} cannot go from {before:.3f} to {goal:.3f} in {given:.3f} s"
+            raise BadGoal("times", time, f"at least {least:.3f} s for this step", problem=problem)
 
     def _know(self) -> tuple[dict[str, float | None], dict[str, float]]:
         if self._known is None:
@@ -312,12 +307,8 @@ class WalkPlan:
         legs = set(self._plan.legs())
         wanted = [joint for joint in joints if joint in legs]
         if wanted and self.walking:
-            raise BadGoal(
-                "names",
-                wanted,
-                "stopMove or waitUntilMoveIsFinished first",
-                problem=f"the robot walks, and {', '.join(wanted)} with it",
-            )
+            problem = f"the robot walks, and {', '.join(wanted)} with it"
+            raise BadGoal("names", wanted, "stopMove or waitUntilMoveIsFinished first", problem=problem)
 
     def goes(self) -> None:
         """The robot walks on when the function is over."""

@@ -38,12 +38,8 @@ class NamedPoses:
         file, separator, pose = name.strip().rpartition(SEPARATOR)
         poses = self._of_file(file) if separator else self._all()
         if pose not in poses:
-            raise BadGoal(
-                "str_param",
-                name,
-                f"one of {', '.join(poses)}",
-                problem=f"there is no pose {pose!r}{did_you_mean(pose, poses)}",
-            )
+            problem = f"there is no pose {pose!r}{did_you_mean(pose, poses)}"
+            raise BadGoal("str_param", name, f"one of {', '.join(poses)}", problem=problem)
         return {joint: angle for joint, angle in poses[pose].items() if joint in joints}
 
     def names(self) -> list[str]:
@@ -59,12 +55,8 @@ class NamedPoses:
     def _of_file(self, file: str) -> dict[str, dict[str, float]]:
         files = self._files()
         if file not in files:
-            raise BadGoal(
-                "str_param",
-                file,
-                f"one of {', '.join(files)}{did_you_mean(file, files)}",
-                problem=f"no pose library {file!r} in {self._folder}",
-            )
+            allowed = f"one of {', '.join(files)}{did_you_mean(file, files)}"
+            raise BadGoal("str_param", file, allowed, problem=f"no pose library {file!r} in {self._folder}")
         return self._read(files[file])
 
     def _all(self) -> dict[str, dict[str, float]]:

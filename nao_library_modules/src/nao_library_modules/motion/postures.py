@@ -26,7 +26,7 @@ class PostureNotReached(NaoError):  # noqa: N818  named like the errors of the p
 
 
 class PostureFunctions(BodyPart):
-    """Functions of ALRobotPosture. Parameters are fields of MotionFunction."""
+    """Functions of ALRobotPosture."""
 
     def __init__(self, body: RobotBody, robot: Any) -> None:
         super().__init__(body)

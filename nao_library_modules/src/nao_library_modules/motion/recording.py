@@ -39,7 +39,7 @@ APPROACH = 0.5
 
 
 class MotionRecording(BodyPart):
-    """Recorded motions. Parameters are fields of MotionFunction.
+    """Recorded motions.
 
     Attributes:
         store: Recorded motions by name.
@@ -64,11 +64,7 @@ class MotionRecording(BodyPart):
     def _check_recording(self, str_param: str, names: Sequence[str], duration: float, overwrite: bool) -> None:
         if not overwrite:
             self._require_free(str_param, "str_param")
-        plan = self.body.plan
-        joints = self.body.joints(names or [BODY])
-        plan.touch(joints)
-        plan.forget(joints)
-        plan.takes(duration)
+        self.body.plan.leave_to_robot(self.body.joints(names or [BODY]), duration)
         self._new_names.add(str_param)
 
     @checked_by(_check_recording)

@@ -12,7 +12,7 @@ from .fields import SomeJoints, Task
 
 
 class MotionState(BodyPart):
-    """Functions of ALMotion for facts and tasks. Parameters are fields of MotionFunction."""
+    """Functions of ALMotion for facts and tasks."""
 
     def _check_joints(self, names: Sequence[str]) -> None:
         self._joints(names)

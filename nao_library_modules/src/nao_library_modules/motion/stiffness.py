@@ -14,7 +14,7 @@ from .plan import POSTURE_TIME
 
 
 class StiffnessFunctions(BodyPart):
-    """Functions of ALMotion for stiffness. Parameters are fields of MotionFunction."""
+    """Functions of ALMotion for stiffness."""
 
     def _check_wake_up(self) -> None:
         self.body.plan.require_fit_legs()

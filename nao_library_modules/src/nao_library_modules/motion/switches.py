@@ -35,7 +35,7 @@ BALANCE_TIME = 2.0
 
 
 class MotionSwitches(BodyPart):
-    """Functions of ALMotion for what the robot does by itself. Parameters are fields of MotionFunction."""
+    """Functions of ALMotion for what the robot does by itself."""
 
     # Life-like motion
 

@@ -63,7 +63,7 @@ STOP_LIMIT = 10.0
 
 
 class WalkFunctions(BodyPart):
-    """Functions of ALMotion that walk. Parameters are fields of MotionFunction.
+    """Functions of ALMotion that walk.
 
     A walk ends on both feet, however the goal ends. Only a goal that succeeded leaves a robot walking, when `move`,
     `moveToward` or `setFootSteps` was its wish.

@@ -57,15 +57,7 @@ BREATH_KEYS = ("Bpm", "Amplitude")
 def _words(
     choices: Sequence[str], meaning: str, kind: str = "", nothing: str | None = "nothing is named", allowed: str = ""
 ) -> Field:
-    """Some of several words.
-
-    Args:
-        choices: They.
-        meaning: The help.
-        kind: What they name, in words: "arm".
-        nothing: What is wrong with none of them; None: nothing is.
-        allowed: In words, where not just they.
-    """
+    """Some of several words that name a `kind` ("arm"); `nothing` says what is wrong with none of them, if anything."""
     listed = ", ".join(choices)
 
     def check(name: str, words: Sequence[str]) -> None:

@@ -13,7 +13,7 @@ from .walk_fields import Enable, SecurityDistance, SwingingArms, WalkLimits
 
 
 class WalkState(BodyPart):
-    """Functions of ALMotion about the walk. Parameters are fields of MotionFunction."""
+    """Functions of ALMotion about the walk."""
 
     def get_robot_position(self, commanded: Commanded) -> list[float]:
         """Where the robot is in the world by its odometry: x, y (m), theta (rad)."""
