@@ -163,10 +163,10 @@ def test_the_end_of_the_server_ends_what_goals_have_left_and_so_does_the_next_of
     assert robot.ALAudioDevice.getFrontMicEnergy() == 0.0
     robot.ALAudioRecorder.startMicrophonesRecording("free.wav", "wav", 16000, [0, 0, 1, 0])
     robot.ALAudioRecorder.stopMicrophonesRecording()
-    killed = ears.module.subscriber_for("listen")
+    killed = ears.module.hearing.subscriber_for("listen")
     for name in (killed, "another program"):
         robot.ALSpeechRecognition.subscribe(name)
-    robot.ALSoundLocalization.subscribe(ears.module.subscriber_for("localize"))
+    robot.ALSoundLocalization.subscribe(ears.module.hearing.subscriber_for("localize"))
     goals_to(NaoAudioInput, NaoAudioInGoal).succeed(f("ping"))
     assert subscribers() == ["another program"]
     robot.ALSpeechRecognition.unsubscribe("another program")

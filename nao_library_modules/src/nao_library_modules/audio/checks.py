@@ -55,7 +55,7 @@ def require_rate(field: str, values: Sequence[float]) -> None:
         raise BadGoal(field, list(values), RATES)
 
 
-def check_device_setting(_self: object, str_param: str, values: Sequence[float]) -> None:
+def check_device_setting(str_param: str, values: Sequence[float]) -> None:
     """The sample rate of the outputs, which is all that can be set."""
     require_known("str_param", str_param, SET_PARAMETERS, SETTABLE)
     require_rate("values", values)

@@ -1,33 +1,48 @@
-"""What the audio modules share: the robot's sound card, ALAudioDevice. To be mixed into NaoBasic."""
+"""What the audio modules share: the robot's sound card, ALAudioDevice."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
+from ..functions.parts import Part
+from ..server.nao_basic import NaoBasic
 from .fields import DeviceParameter, DeviceSetting, Mute, OutputRate, OutputVolume, Revert
 
 DEVICE = "ALAudioDevice"
-DECIMALS = 6
 
 
-class NaoAudio:
+def decimal(value: Any) -> float:
+    """A number of the robot as it was meant: it keeps 32-bit numbers, and 0.3 comes back as 0.30000001192092896."""
+    return round(float(value), 6)
+
+
+def put_back(module: NaoBasic, name: str, method: str, *args: Any) -> None:
+    """Call a quick method of a NAOqi module when the running function and the wait after it are over, however they end.
+
+    Args:
+        module: Whose function runs.
+        name: Name of the NAOqi module.
+        method: Its method, which restores a setting.
+        args: The former setting.
+    """
+    module.after_wait(lambda: module.call_now(module.robot.proxy(name), method, *args))
+
+
+class NaoAudio(Part):
     """Functions of ALAudioDevice. Parameters are fields of the function message; it need not have those with defaults.
 
     `revert` puts back what a function has changed, after the wait that follows it, however the goal ends.
     """
 
-    robot: Any  # Robot
-    call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts
-    call_now: Callable[..., Any]  # of NaoBasic: a call that it does not
-    after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
+    def __init__(self, module: NaoBasic) -> None:
+        self._module = module
 
     # Volume
 
     def set_output_volume(self, volume: OutputVolume, revert: Revert = False) -> None:
         """Set the volume of everything that sounds, 0..100."""
         if revert:
-            self.put_back(DEVICE, "setOutputVolume", int(self.device("getOutputVolume")))
+            put_back(self._module, DEVICE, "setOutputVolume", int(self.device("getOutputVolume")))
         self.device("setOutputVolume", int(volume))
 
     def get_output_volume(self) -> int:
@@ -37,7 +52,7 @@ class NaoAudio:
     def mute_audio_out(self, enable: Mute, revert: Revert = False) -> None:
         """Silence the loudspeakers (`enable` true), or let them sound again."""
         if revert:
-            self.put_back(DEVICE, "muteAudioOut", bool(self.device("isAudioOutMuted")))
+            put_back(self._module, DEVICE, "muteAudioOut", bool(self.device("isAudioOutMuted")))
         self.device("muteAudioOut", bool(enable))
 
     def is_audio_out_muted(self) -> bool:
@@ -88,22 +103,16 @@ class NaoAudio:
         """Set a parameter of the sound card named in `str_param`: outputSampleRate, Hz."""
         name = str_param.strip()
         if revert:
-            self.put_back(DEVICE, "setParameter", name, int(self.device("getParameter", name)))
+            put_back(self._module, DEVICE, "setParameter", name, int(self.device("getParameter", name)))
         self.device("setParameter", name, int(values[0]))
 
     def get_device_parameter(self, str_param: DeviceParameter) -> int:
         """A parameter of the sound card named in `str_param`: outputSampleRate, inputBufferSize."""
         return int(self.device("getParameter", str_param.strip()))
 
-    # For library functions
-
     def device(self, method: str, *args: Any) -> Any:
         """Call ALAudioDevice; preemption ends the call."""
-        return self.call(self.robot.proxy(DEVICE), method, *args)
-
-    def put_back(self, module: str, method: str, *args: Any) -> None:
-        """Have a quick method called when the running function and the wait after it are over, however they end."""
-        self.after_wait(lambda: self.call_now(self.robot.proxy(module), method, *args))
+        return self._module.call(self._module.robot.proxy(DEVICE), method, *args)
 
     functions = {
         "setOutputVolume": set_output_volume,
@@ -119,11 +128,4 @@ class NaoAudio:
         "isInputClosed": is_input_closed,
         "listOutputs": list_outputs,
         "listInputs": list_inputs,
-        "setParameter": set_device_parameter,
-        "getParameter": get_device_parameter,
     }
-
-
-def decimal(value: Any) -> float:
-    """A number of the robot as it was meant: it keeps 32-bit numbers, and 0.3 comes back as 0.30000001192092896."""
-    return round(float(value), DECIMALS)

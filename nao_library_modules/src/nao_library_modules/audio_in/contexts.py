@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from ..base.errors import BadGoal
 from ..functions.chain import checked_by
+from ..functions.parts import Part
 from .fields import (
     CompiledGrammar,
     Context,
@@ -22,34 +23,11 @@ from .fields import (
     Slot,
     SlotWords,
 )
-from .recogniser import RecogniserAccess
+from .recogniser import Recogniser
+from .recording import RecordingFunctions
 
 
-def check_compile(self: ContextFunctions, vocabulary: Sequence[str], overwrite: bool, context: dict[str, Any]) -> None:
-    """A file to write that is new or may be replaced."""
-    file, written = vocabulary[1], context.setdefault("grammars", set())
-    self.require_new_file(file, overwrite, "vocabulary")
-    if file in written and not overwrite:
-        problem = f"an earlier function writes {file}"
-        raise BadGoal("vocabulary", file, "another name, or overwrite", problem=problem)
-    written.add(file)
-
-
-def check_new_set(self: ContextFunctions, str_param: str, overwrite: bool, context: dict[str, Any]) -> None:
-    """A name that this server has saved no contexts under, or that may be replaced."""
-    name, sets = str_param.strip(), context.setdefault("sets", {})
-    if not overwrite and (sets[name] if name in sets else name in self.saved_sets):
-        problem = f"{name!r} is saved already"
-        raise BadGoal("str_param", str_param, "another name, or overwrite", problem=problem)
-    sets[name] = True
-
-
-def check_erased_set(_self: object, str_param: str, context: dict[str, Any]) -> None:
-    """Nothing can be wrong; the name is free then."""
-    context.setdefault("sets", {})[str_param.strip()] = False
-
-
-class ContextFunctions(RecogniserAccess):
+class ContextFunctions(Part):
     """Grammars. `str_param` names the context; further names are in `vocabulary`, in NAOqi's order.
 
     What a running recognition would refuse is done in a pause of it. Contexts stay until they are removed.
@@ -58,78 +36,103 @@ class ContextFunctions(RecogniserAccess):
         saved_sets: Names under which this server has saved contexts; NAOqi does not tell which there are.
     """
 
-    saved_sets: set[str]
-    require_new_file: Callable[..., None]  # of RecordingFunctions
+    left_by_goals = frozenset({"saved_sets"})
 
-    @checked_by(check_compile)
+    def __init__(self, recogniser: Recogniser, recordings: RecordingFunctions) -> None:
+        self._recogniser = recogniser
+        self._recordings = recordings
+        self.saved_sets: set[str] = set()
+
+    def _check_compile(self, vocabulary: Sequence[str], overwrite: bool, context: dict[str, Any]) -> None:
+        """A file to write that is new or may be replaced."""
+        file, written = vocabulary[1], context.setdefault("grammars", set())
+        self._recordings.require_new_file(file, overwrite, "vocabulary")
+        if file in written and not overwrite:
+            problem = f"an earlier function writes {file}"
+            raise BadGoal("vocabulary", file, "another name, or overwrite", problem=problem)
+        written.add(file)
+
+    @checked_by(_check_compile)
     def compile(self, str_param: GrammarLanguage, vocabulary: GrammarFiles, overwrite: Overwrite) -> None:
         """Check a grammar file (BNF) of a language and write it in the form that `addContext` takes."""
-        self.require_new_file(vocabulary[1], overwrite, "vocabulary")
-        self.recogniser("compile", *vocabulary, str_param.strip())
+        self._recordings.require_new_file(vocabulary[1], overwrite, "vocabulary")
+        self._recogniser.call("compile", *vocabulary, str_param.strip())
 
     def add_context(self, str_param: Context, vocabulary: CompiledGrammar) -> None:
         """Listen for what a compiled grammar has, too."""
-        self.idly("addContext", vocabulary[0], str_param.strip())
+        self._recogniser.idly("addContext", vocabulary[0], str_param.strip())
 
     def remove_context(self, str_param: Context) -> None:
         """Forget a context."""
-        self.idly("removeContext", str_param.strip())
+        self._recogniser.idly("removeContext", str_param.strip())
 
     def remove_all_context(self) -> None:
         """Forget all contexts."""
-        self.idly("removeAllContext")
+        self._recogniser.idly("removeAllContext")
 
-    @checked_by(check_new_set)
+    def _check_new_set(self, str_param: str, overwrite: bool, context: dict[str, Any]) -> None:
+        """A name that this server has saved no contexts under, or that may be replaced."""
+        name, sets = str_param.strip(), context.setdefault("sets", {})
+        if not overwrite and (sets[name] if name in sets else name in self.saved_sets):
+            problem = f"{name!r} is saved already"
+            raise BadGoal("str_param", str_param, "another name, or overwrite", problem=problem)
+        sets[name] = True
+
+    @checked_by(_check_new_set)
     def save_context_set(self, str_param: ContextSet, overwrite: ReplacedSet) -> None:
         """Keep the contexts as they are under a name; `overwrite` replaces those that this server saved."""
-        self.recogniser("saveContextSet", str_param.strip())
+        self._recogniser.call("saveContextSet", str_param.strip())
         self.saved_sets.add(str_param.strip())
 
     def load_context_set(self, str_param: ContextSet) -> None:
         """Put saved contexts in the place of those there are."""
-        self.idly("loadContextSet", str_param.strip())
+        self._recogniser.idly("loadContextSet", str_param.strip())
 
-    @checked_by(check_erased_set)
+    def _check_erased_set(self, str_param: str, context: dict[str, Any]) -> None:
+        """Nothing can be wrong; the name is free then."""
+        context.setdefault("sets", {})[str_param.strip()] = False
+
+    @checked_by(_check_erased_set)
     def erase_context_set(self, str_param: ContextSet) -> None:
         """Forget saved contexts."""
-        self.recogniser("eraseContextSet", str_param.strip())
+        self._recogniser.call("eraseContextSet", str_param.strip())
         self.saved_sets.discard(str_param.strip())
 
     def get_rules(self, str_param: Context, vocabulary: RuleType) -> list[str]:
         """Names of the rules of a type."""
-        return list(self.recogniser("getRules", str_param.strip(), vocabulary[0]))
+        return list(self._recogniser.call("getRules", str_param.strip(), vocabulary[0]))
 
     def activate_rule(self, str_param: Context, vocabulary: Rule) -> None:
         """Switch a rule on."""
-        self.idly("activateRule", str_param.strip(), vocabulary[0])
+        self._recogniser.idly("activateRule", str_param.strip(), vocabulary[0])
 
     def deactivate_rule(self, str_param: Context, vocabulary: Rule) -> None:
         """Switch a rule off."""
-        self.idly("deactivateRule", str_param.strip(), vocabulary[0])
+        self._recogniser.idly("deactivateRule", str_param.strip(), vocabulary[0])
 
     def activate_all_rules(self, str_param: Context) -> None:
         """Switch all rules of a context on."""
-        self.idly("activateAllRules", str_param.strip())
+        self._recogniser.idly("activateAllRules", str_param.strip())
 
     def deactivate_all_rules(self, str_param: Context) -> None:
         """Switch all rules of a context off."""
-        self.idly("deactivateAllRules", str_param.strip())
+        self._recogniser.idly("deactivateAllRules", str_param.strip())
 
     def add_word_list_to_slot(self, str_param: Context, vocabulary: SlotWords) -> None:
         """Fill a slot with words, beside those that it has."""
-        self.idly("addWordListToSlot", str_param.strip(), vocabulary[0], list(vocabulary[1:]))
+        self._recogniser.idly("addWordListToSlot", str_param.strip(), vocabulary[0], list(vocabulary[1:]))
 
     def remove_word_list_from_slot(self, str_param: Context, vocabulary: Slot) -> None:
         """Empty a slot."""
-        self.idly("removeWordListFromSlot", str_param.strip(), vocabulary[0])
+        self._recogniser.idly("removeWordListFromSlot", str_param.strip(), vocabulary[0])
 
     def set_context_param(self, str_param: Context, vocabulary: ContextParameter, values: ContextValue) -> None:
         """Change a parameter of a context: ConfidenceThreshold, 0..1, below which it tells nothing."""
-        self.recogniser("setContextParam", str_param.strip(), vocabulary[0], float(values[0]))
+        self._recogniser.call("setContextParam", str_param.strip(), vocabulary[0], float(values[0]))
 
     def get_context_param(self, str_param: Context, vocabulary: ContextParameter) -> float:
         """A parameter of a context."""
-        return float(self.recogniser("getContextParam", str_param.strip(), vocabulary[0]))
+        return float(self._recogniser.call("getContextParam", str_param.strip(), vocabulary[0]))
 
     functions = {
         "compile": compile,

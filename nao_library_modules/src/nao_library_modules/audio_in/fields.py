@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import unicodedata
 from collections.abc import Sequence
+from pathlib import PurePosixPath
 from typing import List
 
 from ..audio.checks import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SOUND_FILES
@@ -12,26 +15,75 @@ from ..base.field_checks import require_known
 from ..base.limits import limit
 from ..functions.describe_choices import HEARD_LANGUAGES
 from ..functions.fields import Annotated, Field, flag, free, number, numbers, text, word
-from .base import DEFAULT_TIMEOUT
-from .checks import (
-    ALL_CHANNELS,
-    CHANNELS,
-    DEFAULT_MICROPHONE,
-    FILE_TYPES,
-    LONGEST_PHRASE,
-    MICROPHONES,
-    ONE_CHANNEL,
-    PHRASE,
-    PHRASES,
-    PHRASES_OR_SET,
-    SENSES,
-    require_phrases,
-)
 
+MICROPHONES = ("left", "right", "front", "rear")
+"""In the order in which NAOqi has them in recordings."""
+ONE_CHANNEL, ALL_CHANNELS = 16000, 48000
+"""Rates in Hz of recordings of one microphone, and of all."""
+CHANNELS = f"one of {', '.join(MICROPHONES)} at {ONE_CHANNEL} Hz, or all of them at {ALL_CHANNELS} Hz"
+DEFAULT_MICROPHONE = "front"
+FILE_TYPES = ("wav", "ogg")
+PHRASES = "at least one word or phrase"
+PHRASES_OR_SET = f"{PHRASES}, here or by setVocabulary before"
+PHRASE = "words of letters, digits, apostrophes, hyphens, with blanks in between"
+LONGEST_PHRASE = 200
+# What grammars of speech recognisers are written with, and what nobody can say.
+STRANGE = re.compile(r"[<>|{}\[\]()*+=;:#$%^~_@\"/\\\x00-\x1f\x7f]")
+SENSES = {"speech": "ALSpeechRecognition", "detection": "ALSoundDetection", "localization": "ALSoundLocalization"}
+"""What hears, and its NAOqi module."""
+DEFAULT_TIMEOUT = 10.0
+"""s that functions wait for something to be heard, where a message leaves it to us."""
 ABOVE_ZERO = "above 0 to 1"
 RECORDING_RATES = f"{ONE_CHANNEL}, {ALL_CHANNELS} (Hz), or 0: as the channels need"
 RECOGNITION_PARAMETERS = ("Sensitivity", "NbHypotheses")
 RULE_TYPES = ("start", "active", "activatable", "slot")
+RULE_TYPE = f"{', '.join(RULE_TYPES[:-1])} or {RULE_TYPES[-1]}"
+
+
+def require_phrases(vocabulary: Sequence[str]) -> list[str]:
+    """Words and phrases that can be said, at least one, without blanks around them."""
+    if not vocabulary:
+        raise BadGoal("vocabulary", [], PHRASES, problem="it is empty")
+    return [_phrase(phrase) for phrase in vocabulary]
+
+
+def _phrase(phrase: str) -> str:
+    bare = " ".join(phrase.split())
+    if not bare:
+        raise BadGoal("vocabulary", phrase, PHRASE, problem="there is an empty phrase in it")
+    if len(bare) > LONGEST_PHRASE:
+        problem = f"{bare[:20]!r}... is too long"
+        raise BadGoal("vocabulary", phrase, f"phrases of up to {LONGEST_PHRASE} characters", problem=problem)
+    strange = STRANGE.search(bare)
+    if strange or any(unicodedata.category(character) in ("Cc", "Cs", "Co", "Cn", "So") for character in bare):
+        what = f"{strange.group()!r} in {bare!r}" if strange else f"a character of {bare!r}"
+        raise BadGoal("vocabulary", phrase, PHRASE, problem=f"{what} cannot be said")
+    if not any(character.isalnum() for character in bare):
+        raise BadGoal("vocabulary", phrase, PHRASE, problem=f"there is nothing to say in {bare!r}")
+    return bare
+
+
+def recording_format(rate: int, channels: Sequence[str]) -> tuple[int, list[str]]:
+    """Rate in Hz and microphones of a recording, in NAOqi's order.
+
+    The robot records one microphone at 16000 Hz, or all at 48000 Hz.
+    """
+    if not channels:
+        channels = MICROPHONES if rate == ALL_CHANNELS else (DEFAULT_MICROPHONE,)
+    wanted = {1: ONE_CHANNEL, len(MICROPHONES): ALL_CHANNELS}.get(len(channels))
+    if wanted is None or rate not in (0, wanted):
+        at = f" at {rate} Hz" if rate else ""
+        raise BadGoal("channels", list(channels), CHANNELS, problem=f"{len(channels)} channel(s){at}")
+    return wanted, [name for name in MICROPHONES if name in channels]
+
+
+def recording_file(name: str, file_type: str) -> tuple[str, str]:
+    """Name of a recording and what kind of file it is: wav or ogg."""
+    path, wanted = name.strip(), file_type.strip()
+    kind = PurePosixPath(path).suffix.lower()[1:]
+    if wanted and wanted != kind:
+        raise BadGoal("file_type", file_type, f"{kind}, as the file's name ends", problem=f"{path!r} is no {wanted}")
+    return path, kind
 
 
 def _require_rate(name: str, rate: int) -> None:
@@ -155,10 +207,7 @@ GrammarFiles = Annotated[
     ),
 ]
 CompiledGrammar = Annotated[List[str], _names("file of the compiled grammar", "file that compile has written")]
-RuleType = Annotated[
-    List[str],
-    _names(f"{', '.join(RULE_TYPES[:-1])} or {RULE_TYPES[-1]}", "type of the rules").but(choices=RULE_TYPES),
-]
+RuleType = Annotated[List[str], _names(RULE_TYPE, "type of the rules").but(choices=RULE_TYPES)]
 Rule = Annotated[List[str], _names("name of the rule", "rule of the context")]
 SlotWords = Annotated[
     List[str], _names("name of the slot, words", "slot of the context, and what it takes", least=2, more=True)
@@ -176,3 +225,8 @@ Sense = Annotated[str, word(tuple(SENSES), "what becomes so sensitive", "sense",
 Parameter = Annotated[str, _PARAMETER.but(choices=(*RECOGNITION_PARAMETERS, *DEVICE_PARAMETERS))]
 SetParameter = Annotated[str, _PARAMETER.but(choices=(*RECOGNITION_PARAMETERS, *SET_PARAMETERS))]
 Value = Annotated[List[float], _setting("one number", f"value of the parameter; of {SET_PARAMETERS[0]}: {RATES}")]
+
+
+def timeout_of(timeout: float) -> float:
+    """How long a function waits, s."""
+    return timeout or DEFAULT_TIMEOUT

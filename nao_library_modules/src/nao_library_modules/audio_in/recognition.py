@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
 
 from ..audio.fields import Revert
+from ..audio.sound_card import put_back
+from ..base.errors import BadGoal
+from ..base.field_checks import require_known
 from ..functions.chain import checked_by
-from .base import Events, timeout_of
-from .checks import (
-    check_language,
-    check_listen,
-    check_pause,
-    check_recognition,
-    check_resume,
-    check_vocabulary,
-    require_phrases,
-)
+from ..functions.parts import Part
+from ..server.extractor_use import Events
+from ..server.nao_basic import NaoBasic
 from .events import recognised
 from .fields import (
+    PHRASES_OR_SET,
     AudioExpression,
     Confidence,
     Language,
@@ -33,10 +29,11 @@ from .fields import (
     Timeout,
     VisualExpression,
     WordSpotting,
+    require_phrases,
+    timeout_of,
 )
-from .heard import HeardWord
-from .recogniser import DEAF, HEARS, RECOGNITION, STATUS, RecogniserAccess
-from .times import SPEECH, WordTimes
+from .hearing import HeardWord, Hearing, LeftGoing, Recognition
+from .recogniser import DEAF, HEARS, RECOGNITION, SPEECH, STATUS, Recogniser, WordTimes
 
 log = logging.getLogger(__name__)
 
@@ -45,45 +42,37 @@ LISTENING = "listening"
 """Status in the feedback: what is said from now on is heard."""
 
 
-@dataclass
-class Recognition:
-    """A recognition that a goal left running.
-
-    Attributes:
-        vocabulary: Its words and phrases; empty for those that were set before.
-        word_spotting: Whether they are also found within longer sentences.
-        kept: Whether the robot keeps what was set before, to be put back.
-        told: Whether it passes events on that nobody had passed on before.
-    """
-
-    vocabulary: list[str]
-    word_spotting: bool
-    kept: bool
-    told: bool
-
-
-class RecognitionFunctions(RecogniserAccess):
+class RecognitionFunctions(Part):
     """Recognition of words. Parameters are fields of AudioInFunction.
 
     Whatever another program has set (vocabulary, grammars, language) is back when a function that changed it for
     itself is over.
-
-    Attributes:
-        vocabulary_is_set: Whether setVocabulary has been called, so that functions need not bring words.
-        paused: Whether this server has paused the recognition.
     """
 
-    events: Any  # EventRelay of NaoBasic: what it subscribes is published
-    put_back: Callable[..., None]  # of NaoAudio
-    after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
-    vocabulary_is_set = False
-    paused = False
-    keep_left: Callable[[], None]  # of NaoAudioInput
-    _recognition: Recognition | None = None
+    def __init__(self, module: NaoBasic, hearing: Hearing, left: LeftGoing, recogniser: Recogniser) -> None:
+        self._module = module
+        self._hearing = hearing
+        self._left = left
+        self._recogniser = recogniser
 
-    # Functions
+    def _check_recognition(self, vocabulary: Sequence[str], context: dict[str, Any]) -> None:
+        """Words and phrases here, or those of setVocabulary."""
+        if not vocabulary and not context.get("vocabulary", self._left.vocabulary_is_set):
+            raise BadGoal("vocabulary", [], PHRASES_OR_SET, problem="it is empty")
 
-    @checked_by(check_listen)
+    def _check_listen(self, vocabulary: Sequence[str], str_param: str, context: dict[str, Any]) -> None:
+        """Words and phrases, no pause, and a language that the robot knows if one is named."""
+        self._check_recognition(vocabulary, context)
+        if context.get("paused", self._left.paused):
+            raise BadGoal("function", "listen", "resume comes first", problem="the recognition is paused")
+        if str_param.strip():
+            self._check_language(str_param)
+
+    def _check_language(self, str_param: str) -> None:
+        """A language that the robot recognises."""
+        require_known("str_param", str_param, self._recogniser.languages(), "language that the robot recognises")
+
+    @checked_by(_check_listen)
     def listen(
         self,
         vocabulary: PhrasesOrSet,
@@ -94,120 +83,133 @@ class RecognitionFunctions(RecogniserAccess):
     ) -> list[Any]:
         """Wait until something is recognised; answers words and confidences, the best first, nothing if none came."""
         with self._settings_for(vocabulary, word_spotting, str_param.strip()):
-            times = self.word_times()
-            with self.events_of(WORDS, STATUS, *times.events) as events, self.subscribed(RECOGNITION, "listen"):
-                words = self._first_words(events, self.clock.now() + timeout_of(timeout), confidence, times)
+            times = self._recogniser.word_times()
+            names = (WORDS, STATUS, *times.events)
+            with self._hearing.events_of(*names) as events, self._hearing.subscribed(RECOGNITION, "listen"):
+                words = self._first_words(events, self._module.clock.now() + timeout_of(timeout), confidence, times)
         if words:
-            self.happened = words[0].span
+            self._module.happened = words[0].span
         else:
-            self.remark(f"nothing recognised within {timeout_of(timeout):g} s")
-        self.heard.add_words(words)
+            self._module.remark(f"nothing recognised within {timeout_of(timeout):g} s")
+        self._hearing.heard.words += words
         return [part for heard in words for part in (heard.word, heard.confidence)]
 
-    @checked_by(check_recognition)
+    @checked_by(_check_recognition)
     def start_recognition(self, vocabulary: PhrasesOrSet, word_spotting: WordSpotting) -> None:
         """Recognise words also beyond the end of the goal; they come as event WordRecognized on `memory_events`."""
         self.stop_recognition()  # one that runs already is replaced
         phrases = require_phrases(vocabulary) if vocabulary else []
-        kept = bool(phrases) and self.keep_settings()
-        recognition = Recognition(phrases, word_spotting, kept, WORDS not in self.events.names)
+        kept = bool(phrases) and self._recogniser.keep_settings()
+        recognition = Recognition(phrases, word_spotting, kept, WORDS not in self._module.events.names)
         try:
             if phrases:
-                self.idly("setVocabulary", phrases, word_spotting)
+                self._recogniser.idly("setVocabulary", phrases, word_spotting)
             if recognition.told:
-                self.events.subscribe(WORDS)
-            self.start_extractor(RECOGNITION, "recognition")
+                self._module.events.subscribe(WORDS)
+            self._hearing.start_extractor(RECOGNITION, "recognition")
         except BaseException:
-            with suppress(NaoError):  # the error that ended it is the one to tell
+            with suppress(NaoError):  # the error that ended it is raised
                 self._put_back(recognition)
             raise
-        self._recognition = recognition
-        self.keep_left()
+        self._left.recognition = recognition
+        self._left.keep()
 
     def stop_recognition(self) -> None:
         """End what startRecognition began, and put back what was set before; no effect if nothing runs."""
-        recognition, self._recognition = self._recognition, None
+        recognition, self._left.recognition = self._left.recognition, None
         if recognition is None:
             return
-        self.keep_left()
-        with self.ended_by(lambda: self._put_back(recognition), "another vocabulary may be lost"):
-            self.stop_extractor(RECOGNITION, "recognition")
+        self._left.keep()
+        with self._hearing.ended_by(lambda: self._put_back(recognition), "another vocabulary may be lost"):
+            self._hearing.stop_extractor(RECOGNITION, "recognition")
 
-    @checked_by(check_vocabulary)
+    def _check_vocabulary(self, context: dict[str, Any]) -> None:
+        """Nothing can be wrong; later functions of the chain may recognise the words."""
+        context["vocabulary"] = True
+
+    @checked_by(_check_vocabulary)
     def set_vocabulary(self, vocabulary: Phrases, word_spotting: WordSpotting) -> None:
         """Set the words and phrases to recognise, for good."""
-        self.idly("setVocabulary", require_phrases(vocabulary), word_spotting)
-        self.vocabulary_is_set = True
-        self.keep_left()
+        self._recogniser.idly("setVocabulary", require_phrases(vocabulary), word_spotting)
+        self._left.vocabulary_is_set = True
+        self._left.keep()
 
-    @checked_by(check_pause)
+    def _check_pause(self, context: dict[str, Any]) -> None:
+        """Nothing can be wrong; later functions of the chain would hear nothing."""
+        context["paused"] = True
+
+    @checked_by(_check_pause)
     def pause(self) -> None:
         """Recognise nothing for the time being, whoever wants it; until `resume` or the end of the server."""
-        self.begin(RECOGNITION, "pause", [True], "pause", False)
-        self.paused = True
-        self.keep_left()
+        self._hearing.begin(RECOGNITION, "pause", [True], "pause", False)
+        self._left.paused = True
+        self._left.keep()
 
-    @checked_by(check_resume)
+    def _check_resume(self, context: dict[str, Any]) -> None:
+        """Nothing can be wrong; later functions of the chain hear again."""
+        context["paused"] = False
+
+    @checked_by(_check_resume)
     def resume(self) -> None:
         """Recognise again."""
-        self.recogniser("pause", False)
-        self.paused = False
-        self.keep_left()
+        self._recogniser.call("pause", False)
+        self._left.paused = False
+        self._left.keep()
 
-    @checked_by(check_language)
+    @checked_by(_check_language)
     def set_language(self, str_param: Language, revert: Revert) -> None:
         """Set the language that is recognised."""
         if revert:
             former = self.get_language()
-            self.after_wait(lambda: self.idly_now("setLanguage", former))
-        self.idly("setLanguage", str_param.strip())
+            self._module.after_wait(lambda: self._recogniser.idly_now("setLanguage", former))
+        self._recogniser.idly("setLanguage", str_param.strip())
 
     def get_language(self) -> str:
         """The language that is recognised."""
-        return str(self.recogniser("getLanguage"))
+        return str(self._recogniser.call("getLanguage"))
 
     def get_available_languages(self) -> list[str]:
         """Languages that the robot recognises."""
-        return list(self.recogniser("getAvailableLanguages"))
+        return list(self._recogniser.call("getAvailableLanguages"))
 
     def set_audio_expression(self, enable: AudioExpression, revert: Revert) -> None:
         """Have the robot bip when it begins and ends to listen, or not."""
         if revert:
-            self.put_back(RECOGNITION, "setAudioExpression", bool(self.recogniser("getAudioExpression")))
-        self.recogniser("setAudioExpression", bool(enable))
+            put_back(self._module, RECOGNITION, "setAudioExpression", bool(self._recogniser.call("getAudioExpression")))
+        self._recogniser.call("setAudioExpression", bool(enable))
 
     def get_audio_expression(self) -> bool:
         """Whether the robot bips when it begins and ends to listen."""
-        return bool(self.recogniser("getAudioExpression"))
+        return bool(self._recogniser.call("getAudioExpression"))
 
     def set_visual_expression(self, enable: VisualExpression) -> None:
         """Have the eyes show that the robot listens, or not."""
-        self.recogniser("setVisualExpression", bool(enable))
+        self._recogniser.call("setVisualExpression", bool(enable))
 
     # For the module
 
-    def drop_recognition(self) -> None:
+    def drop(self) -> None:
         """End what goals have left, a recognition and a pause; raises nothing."""
         try:
             self.stop_recognition()
-            if self.paused:
-                self.paused = False
-                self.call_now(self.robot.proxy(RECOGNITION), "pause", False)
+            if self._left.paused:
+                self._left.paused = False
+                self._recogniser.call_now("pause", False)
         except NaoError as error:
             log.warning("the speech recognition is not as it was: %s", error)
 
-    def take_up_recognition(self, recognition: Recognition) -> None:
+    def take_up(self, recognition: Recognition) -> None:
         """Go on with a recognition that this node had left running before it died.
 
         Raises:
             NaoError: The robot does not answer.
         """
         if recognition.told:
-            self.events.subscribe(WORDS)
+            self._module.events.subscribe(WORDS)
         if recognition.vocabulary:
-            self.idly_now("setVocabulary", recognition.vocabulary, recognition.word_spotting)
-        self.call_now(self.robot.proxy(RECOGNITION), "subscribe", self.subscriber_for("recognition"))
-        self._recognition = recognition
+            self._recogniser.idly_now("setVocabulary", recognition.vocabulary, recognition.word_spotting)
+        self._recogniser.call_now("subscribe", self._hearing.subscriber_for("recognition"))
+        self._left.recognition = recognition
 
     def pause_again(self) -> None:
         """Be paused as this node was before it died.
@@ -215,22 +217,22 @@ class RecognitionFunctions(RecogniserAccess):
         Raises:
             NaoError: The robot does not answer.
         """
-        self.call_now(self.robot.proxy(RECOGNITION), "pause", True)
-        self.paused = True
+        self._recogniser.call_now("pause", True)
+        self._left.paused = True
 
-    def renew_recognition(self) -> None:
+    def renew(self) -> None:
         """Begin again what a goal left running: the robot behind a new connection may know nothing of it."""
-        recognition = self._recognition
+        recognition = self._left.recognition
         if recognition is None:
             return
         try:
-            proxy = self.robot.proxy(RECOGNITION)
-            if self.subscriber_for("recognition") in [row[0] for row in self.call_now(proxy, "getSubscribersInfo")]:
+            subscriber = self._hearing.subscriber_for("recognition")
+            if subscriber in [row[0] for row in self._recogniser.call_now("getSubscribersInfo")]:
                 return
             if recognition.vocabulary:
                 recognition.kept = False
-                self.call_now(proxy, "setVocabulary", recognition.vocabulary, recognition.word_spotting)
-            self.call_now(proxy, "subscribe", self.subscriber_for("recognition"))
+                self._recogniser.call_now("setVocabulary", recognition.vocabulary, recognition.word_spotting)
+            self._recogniser.call_now("subscribe", subscriber)
         except NaoError as error:
             log.warning("the recognition that a goal began does not run any more: %s", error)
         else:
@@ -239,22 +241,22 @@ class RecognitionFunctions(RecogniserAccess):
     # Inside
 
     def _first_words(self, events: Events, end: float, confidence: float, times: WordTimes) -> list[HeardWord]:
-        hears = self.hears()
+        hears = self._recogniser.hears()
         if hears:
-            self.tell(LISTENING)
+            self._hearing.publish(LISTENING)
         for event in events.until(end):
             if event.name == STATUS:
-                when = self.event_time(event)
-                self.tell(str(event.value), stamp=when)
+                when = self._hearing.event_time(event)
+                self._hearing.publish(str(event.value), stamp=when)
                 if event.value in HEARS and not hears:
-                    self.tell(LISTENING, stamp=when)
+                    self._hearing.publish(LISTENING, stamp=when)
                 hears = (hears or event.value in HEARS) and event.value not in DEAF
             elif event.name == SPEECH:
                 times.note(event)
             else:
                 words = self._heard_words(event.value, times)
                 if words:
-                    self.tell(WORDS, words, words[0].span.onset or self.event_time(event))
+                    self._hearing.publish(WORDS, words, words[0].span.onset or self._hearing.event_time(event))
                 words = [heard for heard in words if heard.confidence >= confidence]
                 if words:
                     return words
@@ -275,29 +277,29 @@ class RecognitionFunctions(RecogniserAccess):
         if not vocabulary and not language:
             yield
             return
-        former = str(self.recogniser("getLanguage")) if language else ""
+        former = str(self._recogniser.call("getLanguage")) if language else ""
         if former == language:
             former = ""
-        kept = bool(vocabulary) and self.keep_settings()
+        kept = bool(vocabulary) and self._recogniser.keep_settings()
 
         def restore() -> None:
             if former:
-                self.idly_now("setLanguage", former)
+                self._recogniser.idly_now("setLanguage", former)
             if kept:
-                self.restore_settings()
+                self._recogniser.restore_settings()
 
-        with self.ended_by(restore, "the speech recognition is not as it was"):
+        with self._hearing.ended_by(restore, "the speech recognition is not as it was"):
             if former:
-                self.idly("setLanguage", language)
+                self._recogniser.idly("setLanguage", language)
             if vocabulary:
-                self.idly("setVocabulary", require_phrases(vocabulary), word_spotting)
+                self._recogniser.idly("setVocabulary", require_phrases(vocabulary), word_spotting)
             yield
 
     def _put_back(self, recognition: Recognition) -> None:
         if recognition.told:
-            self.events.unsubscribe(WORDS)
+            self._module.events.unsubscribe(WORDS)
         if recognition.kept:
-            self.restore_settings()
+            self._recogniser.restore_settings()
 
     functions = {
         "listen": listen,

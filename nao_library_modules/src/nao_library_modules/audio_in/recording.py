@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -15,48 +15,30 @@ from nao_library_msgs.msg import RecordedFile
 from naoqi.errors import NaoError, RobotError
 
 from ..audio.checks import HOME
+from ..audio.sound_card import NaoAudio
 from ..base.errors import BadGoal
 from ..functions.chain import checked_by
-from .base import AudioInBase
-from .checks import (
+from ..functions.parts import Part
+from ..server.nao_basic import NaoBasic
+from .fields import (
     MICROPHONES,
-    check_record,
-    check_recording_begin,
-    check_recording_end,
+    Channels,
+    FileType,
+    HeardFile,
+    Length,
+    Overwrite,
+    RecordingFile,
+    RecordingRate,
     recording_file,
     recording_format,
 )
-from .fields import Channels, FileType, HeardFile, Length, Overwrite, RecordingFile, RecordingRate
+from .hearing import Hearing, LeftGoing, Recording
 
 log = logging.getLogger(__name__)
 
-RECORDER, DEVICE = "ALAudioRecorder", "ALAudioDevice"
+RECORDER = "ALAudioRecorder"
 RECORDING = "recording"
 """Status in the feedback."""
-
-
-@dataclass(frozen=True)
-class Recording:
-    """A recording that runs.
-
-    Attributes:
-        path: Name of the file.
-        file_type: wav or ogg.
-        rate: Hz.
-        channels: Microphones in it.
-        began: ROS time, s.
-    """
-
-    path: str
-    file_type: str
-    rate: int
-    channels: Sequence[str]
-    began: float
-
-    def wanted(self) -> list[Any]:
-        """Arguments of `ALAudioRecorder.startMicrophonesRecording`."""
-        flags = [int(microphone in self.channels) for microphone in MICROPHONES]
-        return [robot_path(self.path), self.file_type, self.rate, flags]
 
 
 def robot_path(name: str) -> str:
@@ -69,6 +51,12 @@ def _further(path: PurePosixPath) -> PurePosixPath:
     return path.with_name(f"{path.stem}-2{path.suffix}")
 
 
+def _arguments(recording: Recording) -> list[Any]:
+    """Arguments of `ALAudioRecorder.startMicrophonesRecording`."""
+    flags = [int(microphone in recording.channels) for microphone in MICROPHONES]
+    return [robot_path(recording.path), recording.file_type, recording.rate, flags]
+
+
 def length_of(file: Path) -> float | None:
     """Length of a sound file, s: its frames by its rate; None if it cannot be read."""
     try:
@@ -78,21 +66,54 @@ def length_of(file: Path) -> float | None:
     return info.frames / info.samplerate
 
 
-class RecordingFunctions(AudioInBase):
+class RecordingFunctions(Part):
     """Recordings. Parameters are fields of AudioInFunction."""
 
-    device: Callable[..., Any]  # of NaoAudio: a call of ALAudioDevice
-    robot_home: Path | None = None
-    """Folder of this computer that is the home of the robot's user; None: it is on the robot alone."""
-    keep_left: Callable[[], None]  # of NaoAudioInput
-    _recording: Recording | None = None
+    def __init__(
+        self, module: NaoBasic, hearing: Hearing, left: LeftGoing, card: NaoAudio, robot_home: Path | None
+    ) -> None:
+        self._module = module
+        self._hearing = hearing
+        self._left = left
+        self._card = card
+        self._robot_home = robot_home  # a folder of this computer; None: it is on the robot alone
 
-    @property
-    def recording_runs(self) -> bool:
-        """Whether a recording runs that this server began."""
-        return self._recording is not None
+    def _check_recording_begin(
+        self,
+        str_param: str,
+        rate: int,
+        channels: Sequence[str],
+        file_type: str,
+        overwrite: bool,
+        context: dict[str, Any],
+    ) -> None:
+        """A file that is new or may be replaced, of its type, a format, and no recording that runs."""
+        path, _ = recording_file(str_param, file_type)
+        self.require_new_file(path, overwrite)
+        recording_format(rate, channels)
+        if context.get("recording", self._left.recording):
+            problem = "a recording of this server runs already"
+            raise BadGoal("function", "startRecording", "stopRecording comes first", problem=problem)
+        context["recording"] = True
 
-    @checked_by(check_record)
+    def _check_record(
+        self,
+        str_param: str,
+        rate: int,
+        channels: Sequence[str],
+        file_type: str,
+        overwrite: bool,
+        context: dict[str, Any],
+    ) -> None:
+        """As startRecording; later functions of the chain may record."""
+        self._check_recording_begin(str_param, rate, channels, file_type, overwrite, context)
+        context["recording"] = False
+
+    def _check_recording_end(self, context: dict[str, Any]) -> None:
+        """Nothing can be wrong; later functions of the chain may record."""
+        context["recording"] = False
+
+    @checked_by(_check_record)
     def record(
         self,
         str_param: RecordingFile,
@@ -104,12 +125,12 @@ class RecordingFunctions(AudioInBase):
     ) -> list[Any]:
         """Record for `duration`, and wait for the end; answers file and length (s). Interrupted, the file is valid."""
         self._begin_recording(str_param, rate, channels, file_type, overwrite)
-        with self.ended_by(self._end_recording, "the recording may go on"):
-            self.wait(duration)
-        file = self.heard.files[-1]
+        with self._hearing.ended_by(self._end_recording, "the recording may go on"):
+            self._module.wait(duration)
+        file = self._hearing.heard.files[-1]
         return [file.path, file.duration]
 
-    @checked_by(check_recording_begin)
+    @checked_by(_check_recording_begin)
     def start_recording(
         self,
         str_param: RecordingFile,
@@ -120,33 +141,33 @@ class RecordingFunctions(AudioInBase):
     ) -> None:
         """Begin to record, also beyond the end of the goal: until stopRecording or the end of the server."""
         self._begin_recording(str_param, rate, channels, file_type, overwrite)
-        self.keep_left()
+        self._left.keep()
 
-    @checked_by(check_recording_end)
+    @checked_by(_check_recording_end)
     def stop_recording(self) -> list[Any]:
         """End a recording; answers file and length (s) if it is one of this server."""
-        if self._recording is None:
-            self.call(self.robot.proxy(RECORDER), "stopMicrophonesRecording")  # another program's
+        if self._left.recording is None:
+            self._module.call(self._module.robot.proxy(RECORDER), "stopMicrophonesRecording")  # another program's
             return []
         self._end_recording()
-        self.keep_left()
-        file = self.heard.files[-1]
+        self._left.keep()
+        file = self._hearing.heard.files[-1]
         return [file.path, file.duration]
 
     def set_file_as_input(self, str_param: HeardFile) -> None:
         """Have the robot hear a file instead of its microphones."""
-        self.device("setFileAsInput", robot_path(str_param.strip()))
+        self._card.device("setFileAsInput", robot_path(str_param.strip()))
 
-    def drop_recording(self) -> None:
+    def drop(self) -> None:
         """End the recording that runs, if one does; raises nothing."""
-        if self._recording is None:
+        if self._left.recording is None:
             return
         try:
             self._end_recording()
         except NaoError as error:
             log.warning("the recording may go on: %s", error)
 
-    def renew_recording(self, former: Recording) -> None:
+    def renew(self, former: Recording) -> None:
         """Go on with a recording of this node before it died, in a further file.
 
         Raises:
@@ -155,12 +176,12 @@ class RecordingFunctions(AudioInBase):
         path = _further(PurePosixPath(former.path))
         while (file := self._file_here(str(path))) is not None and file.exists():
             path = _further(path)
-        recorder = self.robot.proxy(RECORDER)
+        recorder = self._module.robot.proxy(RECORDER)
         with suppress(RobotError):  # it has been stopped already
-            self.call_now(recorder, "stopMicrophonesRecording")
-        further = replace(former, path=str(path), began=self.clock.now())
-        self.call_now(recorder, "startMicrophonesRecording", *further.wanted())
-        self._recording = further
+            self._module.call_now(recorder, "stopMicrophonesRecording")
+        further = replace(former, path=str(path), began=self._module.clock.now())
+        self._module.call_now(recorder, "startMicrophonesRecording", *_arguments(further))
+        self._left.recording = further
         log.info("the recording %s goes on in %s", former.path, path)
 
     def require_new_file(self, path: str, overwrite: bool, field: str = "str_param") -> None:
@@ -176,31 +197,32 @@ class RecordingFunctions(AudioInBase):
     def _file_here(self, path: str) -> Path | None:
         """A file of the robot as this computer has it; None where it has none of them, or not those of that folder."""
         full = robot_path(path)
-        if self.robot_home is None or not full.startswith(HOME):
+        if self._robot_home is None or not full.startswith(HOME):
             return None
-        return self.robot_home / PurePosixPath(full).relative_to(HOME)
+        return self._robot_home / PurePosixPath(full).relative_to(HOME)
 
     def _begin_recording(self, name: str, rate: int, channels: Sequence[str], file_type: str, overwrite: bool) -> None:
         path, kind = recording_file(name, file_type)
         self.require_new_file(path, overwrite)
         rate, channels = recording_format(rate, channels)
-        recording = Recording(path, kind, rate, channels, self.clock.now())
-        self.begin(RECORDER, "startMicrophonesRecording", recording.wanted(), "stopMicrophonesRecording")
-        self._recording = replace(recording, began=self.clock.now())
-        self.happened = (self._recording.began, 0.0)
-        self.tell(RECORDING)
+        recording = Recording(path, kind, rate, channels, self._module.clock.now())
+        self._hearing.begin(RECORDER, "startMicrophonesRecording", _arguments(recording), "stopMicrophonesRecording")
+        self._left.recording = replace(recording, began=self._module.clock.now())
+        self._module.happened = (self._left.recording.began, 0.0)
+        self._hearing.publish(RECORDING)
 
     def _end_recording(self) -> None:
-        recording, self._recording = self._recording, None
+        recording, self._left.recording = self._left.recording, None
         if recording is None:
             return
-        end = self.clock.now()
+        end = self._module.clock.now()
         by_clock = max(0.0, end - recording.began)
-        self.happened = (recording.began, end)
-        self.call_now(self.robot.proxy(RECORDER), "stopMicrophonesRecording")  # answered when the file is complete
+        self._module.happened = (recording.began, end)
+        # It is answered when the file is complete.
+        self._module.call_now(self._module.robot.proxy(RECORDER), "stopMicrophonesRecording")
         file = self._file_here(recording.path)
         length = length_of(file) if file is not None else None
-        self.heard.files.append(
+        self._hearing.heard.files.append(
             RecordedFile(
                 path=recording.path,
                 duration=by_clock if length is None else length,

@@ -5,51 +5,36 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from nao_library_actions.msg import NaoAudioInAction
 from naoqi.errors import NaoError
 
-from ..audio.checks import DEVICE_PARAMETERS
+from ..audio.checks import DEVICE_PARAMETERS, check_device_setting
 from ..audio.fields import Revert
-from ..audio.sound_card import NaoAudio
+from ..audio.sound_card import NaoAudio, put_back
 from ..base.answers import Outcome
 from ..functions.chain import checked_by
 from ..processes.launcher import LaunchPath
 from ..server.nao_basic import NaoBasic
-from .base import subscriber_name
-from .checks import SENSES, check_setting
 from .contexts import ContextFunctions
 from .energy import EnergyFunctions
-from .fields import Parameter, SetParameter, Value
-from .heard import Heard, HeardWord, times_of
-from .recognition import RECOGNITION, Recognition, RecognitionFunctions
-from .recording import Recording, RecordingFunctions
+from .fields import SENSES, Parameter, SetParameter, Value
+from .hearing import Heard, Hearing, LeftGoing, Recognition, Recording
+from .recogniser import RECOGNITION, Recogniser
+from .recognition import RecognitionFunctions
+from .recording import RecordingFunctions
 from .sounds import SoundFunctions
 
 log = logging.getLogger(__name__)
 
 
-class NaoAudioInput(
-    NaoBasic,
-    NaoAudio,
-    RecordingFunctions,
-    RecognitionFunctions,
-    ContextFunctions,
-    SoundFunctions,
-    EnergyFunctions,
-):
+class NaoAudioInput(NaoBasic):
     """Hearing goals: recordings, words, sounds and where they come from, and NAOqi's sound card.
 
     What a function begins ends with it, however it ends; only what startRecording, startRecognition,
     enableEnergyComputation and pause begin goes on beyond the goal, until they are stopped or the server ends.
-
-    Attributes:
-        heard: What the chain heard so far.
-        subscriber: What NAOqi knows this server by.
-        frame_prefix: Prefix of the robot's frames, with its slash; may be empty.
 
     ROS API:
         Action `nao_audio_in` (nao_library_actions/NaoAudioInAction) and what NaoBasic offers. Parameters `~robot_home`:
@@ -73,7 +58,7 @@ class NaoAudioInput(
         }
     )
 
-    left_by_goals = frozenset({"vocabulary_is_set", "paused", "recording_runs", "saved_sets"})
+    part_types = (NaoAudio, RecordingFunctions, RecognitionFunctions, ContextFunctions, SoundFunctions, EnergyFunctions)
 
     def __init__(
         self,
@@ -95,41 +80,53 @@ class NaoAudioInput(
                 robot is; "~" stands for the home of this computer's user. Empty: it is on the robot alone.
             options: As NaoBasic takes them.
         """
+        # The connection's listener, which `super().__init__` adds, may be called before the rest of the constructor.
         self._taking_up = threading.Lock()
-        super().__init__(ip, port, autostart, launchpath, **options)
-        self.heard = Heard()
-        self.robot_home = Path(robot_home).expanduser().absolute() if robot_home else None
-        self.speech_onset_delay = self._node.seconds("speech_onset_delay", 0.0)
-        self.speech_end_delay = self._node.seconds("speech_end_delay", 0.0)
-        self.subscriber = subscriber_name(str(self._node.namespace))
-        self.frame_prefix = self._node.frame_prefix()
-        self.saved_sets = set()
+        self._unrestored: dict[str, Any] | None = None  # what goals had left going, which is not taken up yet
         self._took_over = False
-        self._left = self.kept.load()
+        super().__init__(ip, port, autostart, launchpath, **options)
+        home = Path(robot_home).expanduser().absolute() if robot_home else None
+        delays = [self._node.seconds(name, 0.0) for name in ("speech_onset_delay", "speech_end_delay")]
+        self.hearing = Hearing(self, str(self._node.namespace))
+        self.left = LeftGoing(self.kept)
+        self.card = NaoAudio(self)
+        self.recogniser = Recogniser(self, self.hearing, *delays)
+        self.recordings = RecordingFunctions(self, self.hearing, self.left, self.card, home)
+        self.recognition = RecognitionFunctions(self, self.hearing, self.left, self.recogniser)
+        self.energies = EnergyFunctions(self, self.hearing, self.left, self.card)
+        contexts = ContextFunctions(self.recogniser, self.recordings)
+        sounds = SoundFunctions(self, self.hearing, self._node.frame_prefix())
+        self.add_parts(self.hearing, self.left, self.recogniser, self.card)
+        self.add_parts(self.recordings, self.recognition, contexts, sounds, self.energies)
+        self._unrestored = self.kept.load()
         self.serve("nao_audio_in", NaoAudioInAction)
-        if self._left:
+        if self._unrestored:
             self.robot.connection.in_background(self._take_up)
 
     # Functions that two of NAOqi's modules have
 
-    @checked_by(check_setting)
+    def _check_setting(self, str_param: str, values: Sequence[float]) -> None:
+        """A value that the parameter may have, where it is one of the sound card; others the robot knows."""
+        if str_param.strip() in DEVICE_PARAMETERS:
+            check_device_setting(str_param, values)
+
+    @checked_by(_check_setting)
     def set_parameter(self, str_param: SetParameter, values: Value, revert: Revert) -> None:
         """Set a parameter of the speech recognition (Sensitivity, NbHypotheses, ...) or of the sound card."""
         name = str_param.strip()
         if name in DEVICE_PARAMETERS:
-            self.set_device_parameter(name, list(values), revert)
+            self.card.set_device_parameter(name, list(values), revert)
             return
-        proxy = self.robot.proxy(RECOGNITION)
         if revert:
-            self.put_back(RECOGNITION, "setParameter", name, float(self.call(proxy, "getParameter", name)))
-        self.call(proxy, "setParameter", name, float(values[0]))
+            put_back(self, RECOGNITION, "setParameter", name, float(self.recogniser.call("getParameter", name)))
+        self.recogniser.call("setParameter", name, float(values[0]))
 
     def get_parameter(self, str_param: Parameter) -> float:
         """A parameter of the speech recognition (Sensitivity, NbHypotheses, ...) or of the sound card."""
         name = str_param.strip()
         if name in DEVICE_PARAMETERS:
-            return self.get_device_parameter(name)
-        return float(self.call(self.robot.proxy(RECOGNITION), "getParameter", name))
+            return self.card.get_device_parameter(name)
+        return float(self.recogniser.call("getParameter", name))
 
     function_table = {"setParameter": set_parameter, "getParameter": get_parameter}
 
@@ -137,46 +134,28 @@ class NaoAudioInput(
 
     def begin_chain(self) -> None:
         """Forget what the last chain heard."""
-        self.heard = Heard()
+        self.hearing.heard = Heard()
         self._take_up()
         if not self._took_over:
             self._took_over = self._end_leftovers()
 
-    def tell(self, status: str, words: Sequence[HeardWord] = (), stamp: float | None = None) -> None:
-        """Publish what is heard meanwhile. Called from the thread that executes goals.
-
-        Args:
-            status: What the robot is doing.
-            words: What was heard last.
-            stamp: ROS time at which it was so, s; None: now.
-        """
-        onsets, ends = times_of([heard.span for heard in words])
-        self.publish_feedback(
-            stamp=stamp,
-            status=status,
-            words=[heard.word for heard in words],
-            confidences=[heard.confidence for heard in words],
-            onsets=onsets,
-            ends=ends,
-        )
-
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add what was heard."""
         super().fill_result(result, outcomes)
-        self.heard.fill(result)
+        self.hearing.heard.fill(result)
 
     def shutdown_steps(self) -> list[Callable[[], Any]]:
         """As NaoBasic has them; what goals have left going ends."""
-        left = (self.drop_recording, self.drop_recognition, self.drop_energy_computation)
+        left = (self.recordings.drop, self.recognition.drop, self.energies.drop)
         return [*super().shutdown_steps(), *map(self.with_robot, left)]
 
     def _end_leftovers(self) -> bool:
-        """End what a server of this name could not end, for it was killed; tells whether the robot was asked."""
+        """End what a server of this name could not end, for it was killed; returns whether the robot was asked."""
         for module in SENSES.values():
             try:
                 proxy = self.robot.proxy(module)
                 for name, *_ in self.call_now(proxy, "getSubscribersInfo"):
-                    if name.startswith(self.subscriber_for("")):
+                    if name.startswith(self.hearing.subscriber_for("")):
                         self.call_now(proxy, "unsubscribe", name)
             except NaoError as error:
                 log.debug("%s may work for nobody: %s", module, error)
@@ -184,43 +163,30 @@ class NaoAudioInput(
 
     # After the death of the node
 
-    _left: dict[str, Any] | None = None  # what goals had left going, which is not taken up yet
-
-    def keep_left(self) -> None:
-        """Keep what goals have left going."""
-        self.kept.save(
-            {
-                "recording": self._recording and asdict(self._recording),
-                "recognition": self._recognition and asdict(self._recognition),
-                "paused": self.paused,
-                "vocabulary_is_set": self.vocabulary_is_set,
-                "computing": self._computing,
-            }
-        )
-
     def _take_up(self) -> None:
         """Go on with what the goals of this node had left going before it died, as soon as the robot is there."""
         with self._taking_up:
-            if not self._left or self.robot.connection.state != "connected":
+            if not self._unrestored or self.robot.connection.state != "connected":
                 return
-            left, self._left = self._left, None
+            left, self._unrestored = self._unrestored, None
             self._took_over = self._end_leftovers()
-            self.vocabulary_is_set = bool(left.get("vocabulary_is_set"))
+            self.left.vocabulary_is_set = bool(left.get("vocabulary_is_set"))
             for name, take_up in (
-                ("recording", lambda told: self.renew_recording(Recording(**told))),
-                ("recognition", lambda told: self.take_up_recognition(Recognition(**told))),
-                ("paused", lambda _: self.pause_again()),
-                ("computing", lambda _: self.renew_energy_computation()),
+                ("recording", lambda told: self.recordings.renew(Recording(**told))),
+                ("recognition", lambda told: self.recognition.take_up(Recognition(**told))),
+                ("paused", lambda _: self.recognition.pause_again()),
+                ("computing", lambda _: self.energies.renew()),
             ):
                 try:
                     if left.get(name):
                         take_up(left[name])
                 except (NaoError, TypeError) as error:
                     log.warning("%s of the server that died does not go on: %s", name, error)
-            self.keep_left()
+            self.left.keep()
 
     def _connection_changed(self, *args: Any) -> None:
         super()._connection_changed(*args)
         self._take_up()
-        if self.robot.connection.state == "connected" and self.robot.connection.generation > 1:
-            self.renew_recognition()
+        connection = self.robot.connection
+        if self.server is not None and connection.state == "connected" and connection.generation > 1:
+            self.recognition.renew()

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from collections.abc import Sequence
 
-from ..audio.checks import DEVICE_PARAMETERS
+from ..audio.checks import DEVICE_PARAMETERS, check_device_setting
 from ..audio.fields import Revert
-from ..audio.sound_card import NaoAudio, decimal
+from ..audio.sound_card import NaoAudio, decimal, put_back
+from ..base.errors import BadGoal
+from ..base.field_checks import require_known
 from ..functions.chain import checked_by
+from ..functions.parts import Part
+from ..server.nao_basic import NaoBasic
 from .fields import (
+    ALL_PARAMETERS,
+    EFFECTS,
+    PARAMETERS,
+    VOICE_PARAMETERS,
     DeletedTexts,
     Language,
     ParameterNames,
@@ -20,125 +29,153 @@ from .fields import (
     VoiceOfLanguage,
     Word,
     WordTexts,
+    range_of,
 )
-from .speech_checks import check_default_voice, check_language, check_parameter_names, check_parameters, check_voice
-from .voices import SPEECH, Voices
+from .synthesiser import SPEECH, Synthesiser
 
 
-class VoiceFunctions(NaoAudio):
-    """Settings of ALTextToSpeech. Parameters are fields of AudioOutFunction.
+class VoiceFunctions(Part):
+    """Settings of ALTextToSpeech. Parameters are fields of AudioOutFunction."""
 
-    Attributes:
-        voices: Voices and languages of the robot.
-    """
-
-    voices: Voices
+    def __init__(self, module: NaoBasic, synthesiser: Synthesiser, card: NaoAudio) -> None:
+        self._module = module
+        self._synthesiser = synthesiser
+        self._card = card
 
     # Voices and languages
 
-    @checked_by(check_voice)
+    def _check_voice(self, str_param: str) -> None:
+        """A voice of the robot."""
+        self._synthesiser.require_voice("str_param", str_param.strip())
+
+    @checked_by(_check_voice)
     def set_voice(self, str_param: Voice, revert: Revert) -> None:
         """Change the voice."""
         if revert:
             self._put_back_voice()
-        self.speech("setVoice", str_param.strip())
+        self._synthesiser.call("setVoice", str_param.strip())
 
     def get_voice(self) -> str:
         """Voice that speaks."""
-        return str(self.speech("getVoice"))
+        return str(self._synthesiser.call("getVoice"))
 
     def get_available_voices(self) -> list[str]:
         """Voices that the robot has."""
-        return list(self.speech("getAvailableVoices"))
+        return list(self._synthesiser.call("getAvailableVoices"))
 
-    @checked_by(check_language)
+    def _check_language(self, str_param: str) -> None:
+        """A language that the robot speaks."""
+        self._synthesiser.require_language("str_param", str_param.strip())
+
+    @checked_by(_check_language)
     def set_language(self, str_param: Language, revert: Revert) -> None:
         """Change the language."""
         if revert:
             self._put_back_voice()
-        self.speech("setLanguage", str_param.strip())
+        self._synthesiser.call("setLanguage", str_param.strip())
 
     def get_language(self) -> str:
         """Language that is spoken."""
-        return str(self.speech("getLanguage"))
+        return str(self._synthesiser.call("getLanguage"))
 
     def get_available_languages(self) -> list[str]:
         """Languages that the robot speaks."""
-        return list(self.speech("getAvailableLanguages"))
+        return list(self._synthesiser.call("getAvailableLanguages"))
 
     def get_supported_languages(self) -> list[str]:
         """Languages that there are, installed or not."""
-        return list(self.speech("getSupportedLanguages"))
+        return list(self._synthesiser.call("getSupportedLanguages"))
 
-    @checked_by(check_default_voice)
+    def _check_default_voice(self, str_param: str, voice: str) -> None:
+        """A language and a voice of the robot."""
+        self._check_language(str_param)
+        self._synthesiser.require_voice("voice", voice.strip())
+
+    @checked_by(_check_default_voice)
     def set_language_default_voice(self, str_param: Language, voice: VoiceOfLanguage) -> None:
         """Choose the voice that a language is spoken with."""
-        self.speech("setLanguageDefaultVoice", str_param.strip(), voice.strip())
+        self._synthesiser.call("setLanguageDefaultVoice", str_param.strip(), voice.strip())
 
     def locale(self) -> str:
         """Locale of the language, as en_US."""
-        return str(self.speech("locale"))
+        return str(self._synthesiser.call("locale"))
 
     # Parameters
 
-    @checked_by(check_parameters)
+    def _check_parameters(self, str_param: str, names: Sequence[str], values: Sequence[float]) -> None:
+        """A value for each parameter of the voice; or, named in `str_param`, for the one of the sound card."""
+        if not names and str_param.strip() in DEVICE_PARAMETERS:
+            check_device_setting(str_param, values)
+            return
+        _require_some(names)
+        if len(values) != len(names):
+            raise BadGoal("values", list(values), f"{len(names)}: one for each of {', '.join(names)}")
+        for name, value in zip(map(str.strip, names), values):
+            lowest, highest = PARAMETERS[name]
+            off = name in EFFECTS and value == 0.0
+            if not (off or math.isfinite(value) and lowest <= value <= highest):
+                raise BadGoal("values", value, f"{name} is {range_of(name)}")
+
+    @checked_by(_check_parameters)
     def set_parameter(
         self, str_param: SetParameter, names: ParameterNames, values: ParameterValues, revert: Revert
     ) -> None:
         """Set parameters of the voice; or outputSampleRate of the sound card, named in `str_param`."""
         if not names:
-            self.set_device_parameter(str_param, values, revert)
+            self._card.set_device_parameter(str_param, values, revert)
             return
-        for name, value in zip(names, values):
+        for name, value in zip(map(str.strip, names), values):
             if revert:
-                self.put_back(SPEECH, "setParameter", name.strip(), decimal(self.speech("getParameter", name.strip())))
-            self.speech("setParameter", name.strip(), float(value))
+                put_back(self._module, SPEECH, "setParameter", name, self._parameter(name))
+            self._synthesiser.call("setParameter", name, float(value))
 
-    @checked_by(check_parameter_names)
+    def _check_parameter_names(self, str_param: str, names: Sequence[str]) -> None:
+        """Parameters of the voice; or, named in `str_param`, one of it or of the sound card."""
+        if names or not str_param.strip():
+            _require_some(names)
+        else:
+            require_known("str_param", str_param, ALL_PARAMETERS, "parameter")
+
+    @checked_by(_check_parameter_names)
     def get_parameter(self, str_param: ReadParameter, names: ParameterNames) -> list[float]:
         """Parameters of the voice; or one, also of the sound card, named in `str_param`."""
         if not names and str_param.strip() in DEVICE_PARAMETERS:
-            return [self.get_device_parameter(str_param)]
-        return [decimal(self.speech("getParameter", name.strip())) for name in names or [str_param]]
+            return [self._card.get_device_parameter(str_param)]
+        return [self._parameter(name.strip()) for name in names or [str_param]]
 
     def reset_speed(self) -> None:
         """Speak at the usual speed again."""
-        self.speech("resetSpeed")
+        self._synthesiser.call("resetSpeed")
 
     def reset(self) -> None:
         """Speak as the robot usually does again."""
-        self.speech("reset")
+        self._synthesiser.call("reset")
 
     def load_voice_preference(self, str_param: Preference) -> None:
         """Set the parameters of the voice as a preference of the robot says."""
-        self.speech("loadVoicePreference", str_param.strip())
+        self._synthesiser.call("loadVoicePreference", str_param.strip())
 
     # The dictionary
 
     def add_to_dictionary(self, str_param: Word, texts: WordTexts) -> bool:
         """Teach how a word is spoken."""
-        return bool(self.speech("addToDictionary", str_param.strip(), *texts))
+        return bool(self._synthesiser.call("addToDictionary", str_param.strip(), *texts))
 
     def delete_from_dictionary(self, str_param: Word, texts: DeletedTexts) -> bool:
         """Forget how a word is spoken."""
-        return bool(self.speech("deleteFromDictionary", str_param.strip(), *texts))
+        return bool(self._synthesiser.call("deleteFromDictionary", str_param.strip(), *texts))
 
     def show_dictionary(self) -> None:
         """Have the robot write the words that it was taught to its log."""
-        self.speech("showDictionary")
+        self._synthesiser.call("showDictionary")
 
-    # For library functions
-
-    def speech(self, method: str, *args: Any) -> Any:
-        """Call ALTextToSpeech; preemption ends the call."""
-        return self.call(self.robot.proxy(SPEECH), method, *args)
-
-    # Inside
+    def _parameter(self, name: str) -> float:
+        return decimal(self._synthesiser.call("getParameter", name))
 
     def _put_back_voice(self) -> None:
-        language, voice = self.speech("getLanguage"), self.speech("getVoice")
-        self.put_back(SPEECH, "setVoice", voice)
-        self.put_back(SPEECH, "setLanguage", language)  # the last one left is done first
+        language, voice = self._synthesiser.call("getLanguage"), self._synthesiser.call("getVoice")
+        put_back(self._module, SPEECH, "setVoice", voice)
+        put_back(self._module, SPEECH, "setLanguage", language)  # the last one left is done first
 
     functions = {
         "setVoice": set_voice,
@@ -159,3 +196,8 @@ class VoiceFunctions(NaoAudio):
         "deleteFromDictionary": delete_from_dictionary,
         "showDictionary": show_dictionary,
     }
+
+
+def _require_some(names: Sequence[str]) -> None:
+    if not names:
+        raise BadGoal("names", [], VOICE_PARAMETERS, problem="nothing is named")

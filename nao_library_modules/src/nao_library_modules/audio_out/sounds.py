@@ -1,4 +1,4 @@
-"""Calls to the robot that last as long as something sounds: waited for, ended, left to go on."""
+"""Calls to the robot that last as long as something sounds: waited for, ended, left to go on. Loaded sounds."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from typing import Any
 
 from naoqi.errors import CallCanceled, NaoError
 
-from ..audio.sound_card import NaoAudio
 from ..base.cancellation import CancellationToken
+from ..base.errors import BadGoal
+from ..functions.parts import Part
 from ..robot.robot import QUICK_ANSWER
-from ..robot.robot_clock import RobotClock
 from ..robot.robot_task import end_call, wait_for_call
+from ..server.nao_basic import NaoBasic
 from ..server.simulated_keys import SimulatedKey
-from .voices import SPEECH
+from .synthesiser import SPEECH
 
 log = logging.getLogger(__name__)
 
@@ -31,34 +32,35 @@ FALSE_START = 0.05
 
 @dataclass(frozen=True)
 class Sounding:
-    """Something that sounds in the background.
+    """Something that sounds in the background."""
 
-    Attributes:
-        module: NAOqi module that it is of.
-        call: The call that ends with it.
-    """
-
-    module: str
-    call: Any
+    module: str  # of NAOqi
+    call: Any  # ends with the sound
 
 
-class Sounds(NaoAudio):
-    """Sounds of a module, each a call that ends with it. To be mixed into NaoBasic.
+class Sounds(Part):
+    """Sounds of a module, each a call that ends with it, and account of the files that the chain played or wrote.
 
     The thread that executes goals begins sounds; the end of the node silences them from another.
+
+    Attributes:
+        file_names: Files that the chain played or wrote, in order.
+        durations: How long each was to be heard, or of a file that was written, how long it is, s.
     """
 
-    interrupt: CancellationToken  # of NaoBasic
-    clock: Any  # of NaoBasic
-    happened: tuple[float, float]  # of NaoBasic
-    robot_clock: RobotClock  # of NaoBasic
-
-    def start_sounds(self) -> None:
-        """Nothing sounds yet: for the constructor of the module."""
-        self._player_times = SimulatedKey(self.robot, TIMES)
+    def __init__(self, module: NaoBasic) -> None:
+        self._module = module
+        self._player_times = SimulatedKey(module.robot, TIMES)
         self._lock = threading.Lock()  # guards the two lists
         self._begun: list[Sounding] = []  # in the background, by this chain
         self._left: list[Sounding] = []  # by chains that succeeded
+        self.file_names: list[str] = []
+        self.durations: list[float] = []
+
+    def note_file(self, name: str, duration: float) -> None:
+        """Note a file that was played or written."""
+        self.file_names.append(name)
+        self.durations.append(max(0.0, duration))
 
     def sound(
         self,
@@ -86,54 +88,52 @@ class Sounds(NaoAudio):
             NaoError: If the call fails.
             Preempted: Or whatever reason the interrupt has.
         """
-        self.interrupt.check()
-        call = self.robot.proxy(module).call_async(method, *args)
+        self._module.interrupt.check()
+        call = self._module.robot.proxy(module).call_async(method, *args)
         sounding = Sounding(module, call)
         if background:
             call.add_done_callback(lambda _: ended())
             self._leave(sounding)
             return 0.0
-        began = self.clock.now()
+        began = self._module.clock.now()
         if not call.wait(QUICK_ANSWER):  # quicker than to set up the wait for both
             self._wait(call, began, duration)
         if not call.done():
             self._end(sounding)
-            self.interrupt.check()
+            self._module.interrupt.check()
         else:
             call.result(timeout=0)
-        ended = max(began, self.clock.now())
+        ended = max(began, self._module.clock.now())
         if module == PLAYER:
-            began, ended = self.happened = self._played(began, ended)
+            began, ended = self._module.happened = self._played(began, ended)
         return ended - began
 
-    def wait_for_sounds(self) -> None:
+    def wait_for_background(self) -> None:
         """Wait until nothing sounds that goals of this server have left in the background.
 
         Raises:
             NaoError: Of a sound that failed.
             Preempted: Or whatever reason the interrupt has.
         """
-        for sounding in self._background():
-            if not wait_for_call(sounding.call, self.interrupt):
-                self.interrupt.check()
+        with self._lock:
+            background = [*self._left, *self._begun]
+        for sounding in background:
+            if not wait_for_call(sounding.call, self._module.interrupt):
+                self._module.interrupt.check()
             sounding.call.result(timeout=0)
 
-    def begin_sounds(self) -> None:
-        """A chain begins: what earlier ones left sounds on."""
+    def begin_chain(self) -> None:
+        """Forget the files of the last chain; what it left in the background sounds on."""
+        self.file_names, self.durations = [], []
         with self._lock:
             self._left = [sounding for sounding in self._left + self._begun if not sounding.call.done()]
             self._begun = []
 
-    def end_sounds(self, keep: bool) -> None:
-        """A chain is over.
-
-        Args:
-            keep: Whether what it began in the background sounds on.
-        """
-        if not keep:
-            with self._lock:
-                begun, self._begun = self._begun, []
-            self._silence(begun)
+    def silence_chain(self) -> None:
+        """Silence what the chain has left in the background."""
+        with self._lock:
+            begun, self._begun = self._begun, []
+        self._silence(begun)
 
     def silence(self) -> None:
         """Silence everything that goals of this server have left in the background; raises nothing."""
@@ -146,13 +146,9 @@ class Sounds(NaoAudio):
     def _played(self, began: float, ended: float) -> tuple[float, float]:
         """When a sound was played, ROS times, s: no robot tells that, so its call counts, with what loading takes."""
         onset = offset = 0.0
-        if self._player_times.known(self.call):
-            onset, offset = self._player_times.span(self.call, self.robot_clock, began)
+        if self._player_times.known(self._module.call):
+            onset, offset = self._player_times.span(self._module.call, self._module.robot_clock, began)
         return onset or began, offset or ended
-
-    def _background(self) -> list[Sounding]:
-        with self._lock:
-            return [*self._left, *self._begun]
 
     def _leave(self, sounding: Sounding) -> None:
         """Let a sound go on; a file that is not there is told at once."""
@@ -161,17 +157,17 @@ class Sounds(NaoAudio):
         if sounding.call.wait(FALSE_START):
             sounding.call.result(timeout=0)
         else:
-            sounding.call.add_done_callback(_tell_failure)
+            sounding.call.add_done_callback(_log_failure)
 
     def _wait(self, call: Any, began: float, duration: float) -> None:
         if duration <= 0.0:
-            wait_for_call(call, self.interrupt)
+            wait_for_call(call, self._module.interrupt)
             return
         news = CancellationToken()
         call.add_done_callback(lambda _: news.trigger())
-        with self.interrupt.waking(news.trigger):
-            left = began + duration - self.clock.now()
-            self.clock.wait(min(duration, max(0.0, left)), news)  # not longer where the clock was set back
+        with self._module.interrupt.waking(news.trigger):
+            left = began + duration - self._module.clock.now()
+            self._module.clock.wait(min(duration, max(0.0, left)), news)  # not longer where the clock was set back
 
     def _silence(self, soundings: list[Sounding]) -> None:
         for sounding in soundings:
@@ -181,10 +177,60 @@ class Sounds(NaoAudio):
     def _end(self, sounding: Sounding) -> None:
         """Cancel the call and see it end; on a robot whose calls go on, everything of the module is silenced."""
         module = SILENCED_BY.get(sounding.module, sounding.module)
-        end_call(sounding.call, lambda: self.call_now(self.robot.proxy(module), "stopAll"))
+        end_call(sounding.call, lambda: self._module.call_now(self._module.robot.proxy(module), "stopAll"))
 
 
-def _tell_failure(call: Any) -> None:
+class LoadedSounds:
+    """Ids of sounds that this server has loaded, by the names of their files; forgotten with the connection.
+
+    A new connection may lead to a robot that has loaded nothing.
+    """
+
+    def __init__(self, connection: Any) -> None:
+        self._connection = connection
+        self._generation: int | None = None
+        self._ids: dict[str, int] = {}
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the loaded files, the last one loaded last."""
+        if self._generation != self._connection.generation:
+            self._ids.clear()
+            self._generation = self._connection.generation
+        return list(self._ids)
+
+    def add(self, name: str, number: int) -> None:
+        """A file was loaded; of a name that was loaded before, the new id counts."""
+        self.remove(name)
+        self._ids[name] = number
+
+    def remove(self, name: str) -> None:
+        """A file was unloaded."""
+        if name in self.names:
+            del self._ids[name]
+
+    def clear(self) -> None:
+        """All were unloaded."""
+        self._ids.clear()
+
+    def number(self, name: str) -> int:
+        """Id of a loaded file; of the one loaded last without a name.
+
+        Raises:
+            BadGoal: If there is none: the chain was checked, but the robot may have been exchanged since.
+        """
+        names = self.names
+        if not names or (name and name not in names):
+            problem = f"{name!r} is not loaded any more" if name else "no sound is loaded any more"
+            raise BadGoal("str_param", name, "loadFile comes first", problem=problem)
+        return self._ids[name or names[-1]]
+
+    def name(self, number: int) -> str:
+        """Name of the loaded file of an id; the id as text if others have loaded it."""
+        return next((name for name in self.names if self._ids[name] == number), str(number))
+
+
+def _log_failure(call: Any) -> None:
     """Say in the log that a sound in the background failed; runs in a thread of libqi."""
     try:
         call.result(timeout=0)

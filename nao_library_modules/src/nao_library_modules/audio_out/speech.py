@@ -10,9 +10,11 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ..audio.fields import Revert
-from ..audio.sound_card import decimal
+from ..audio.sound_card import decimal, put_back
 from ..base.errors import BadGoal
 from ..functions.chain import checked_by
+from ..functions.parts import Part
+from ..server.nao_basic import NaoBasic
 from .fields import (
     Background,
     Gestures,
@@ -30,30 +32,37 @@ from .fields import (
     TextVolume,
     WrittenFile,
 )
-from .files import FileNotes
-from .settings import VoiceFunctions
 from .sounds import ANIMATED, PLAYER, Sounds
-from .speech_checks import check_animated_say, check_say, check_say_to_file, check_spoken
-from .voices import SPEECH
+from .synthesiser import SPEECH, Synthesiser
 from .words import SpokenWords
 
 log = logging.getLogger(__name__)
 
 
-class SpeechFunctions(VoiceFunctions, Sounds):
-    """Functions of ALTextToSpeech and ALAnimatedSpeech. Parameters are fields of AudioOutFunction.
+class SpeechFunctions(Part):
+    """Functions of ALTextToSpeech and ALAnimatedSpeech. Parameters are fields of AudioOutFunction."""
 
-    Attributes:
-        words: Words as they are spoken.
-        files: Files that the chain played or wrote.
-    """
-
-    words: SpokenWords
-    files: FileNotes
+    def __init__(self, module: NaoBasic, synthesiser: Synthesiser, sounds: Sounds, words: SpokenWords) -> None:
+        self._module = module
+        self._synthesiser = synthesiser
+        self._sounds = sounds
+        self._words = words
 
     # Speaking
 
-    @checked_by(check_say)
+    def _check_spoken(self, language: str, voice: str) -> None:
+        """A language and a voice of the robot, or none."""
+        if language.strip():
+            self._synthesiser.require_language("language", language)
+        if voice.strip():
+            self._synthesiser.require_voice("voice", voice)
+
+    def _check_say(self, language: str, voice: str, volume: float, background: bool) -> None:
+        """How a text is spoken."""
+        _require_no_changes(background, voice=voice.strip(), volume=volume)
+        self._check_spoken(language, voice)
+
+    @checked_by(_check_say)
     def say(
         self,
         str_param: SpokenText,
@@ -72,7 +81,12 @@ class SpeechFunctions(VoiceFunctions, Sounds):
         with self._spoken_with(language, voice, volume):
             self._speak(SPEECH, "say", *arguments, background=background)
 
-    @checked_by(check_animated_say)
+    def _check_animated_say(self, language: str, voice: str, volume: float, background: bool) -> None:
+        """How a text is spoken."""
+        _require_no_changes(background, language=language.strip(), voice=voice.strip(), volume=volume)
+        self._check_spoken(language, voice)
+
+    @checked_by(_check_animated_say)
     def animated_say(
         self,
         str_param: SpokenText,
@@ -91,7 +105,12 @@ class SpeechFunctions(VoiceFunctions, Sounds):
         with self._spoken_with(language, voice, volume):
             self._speak(ANIMATED, "say", *arguments, background=background)
 
-    @checked_by(check_say_to_file)
+    def _check_say_to_file(self, file_name: str, language: str, voice: str, overwrite: bool) -> None:
+        """How a text is spoken, and that it replaces no file unasked."""
+        self._require_new_file(file_name.strip(), overwrite)
+        self._check_spoken(language, voice)
+
+    @checked_by(_check_say_to_file)
     def say_to_file(
         self,
         str_param: SpokenText,
@@ -105,14 +124,14 @@ class SpeechFunctions(VoiceFunctions, Sounds):
     ) -> float:
         """Write a text as speech to a file, unheard; answers how long it is, s, 0 if the robot does not tell."""
         file = file_name.strip()
-        self.require_new_file(file, overwrite)  # which an earlier function may have written
+        self._require_new_file(file, overwrite)  # which an earlier function may have written
         with self._spoken_with(language, voice, volume):
-            self.sound(SPEECH, "sayToFile", _tagged(str_param, speed, pitch), file)
+            self._sounds.sound(SPEECH, "sayToFile", _tagged(str_param, speed, pitch), file)
         duration = self._length(file)
-        self.files.note(file, duration)
+        self._sounds.note_file(file, duration)
         return duration
 
-    @checked_by(check_spoken)
+    @checked_by(_check_spoken)
     def say_to_file_and_play(
         self,
         str_param: SpokenText,
@@ -131,36 +150,39 @@ class SpeechFunctions(VoiceFunctions, Sounds):
     def set_body_language_mode(self, body_language: Gestures, revert: Revert) -> None:
         """Choose the gestures that go with animatedSay."""
         if revert:
-            self.put_back(ANIMATED, "setBodyLanguageModeFromStr", self.get_body_language_mode())
-        self.call(self.robot.proxy(ANIMATED), "setBodyLanguageModeFromStr", body_language.strip())
+            put_back(self._module, ANIMATED, "setBodyLanguageModeFromStr", self.get_body_language_mode())
+        self._animated("setBodyLanguageModeFromStr", body_language.strip())
 
     def get_body_language_mode(self) -> str:
         """Gestures that go with animatedSay: disabled, random or contextual."""
-        return str(self.call(self.robot.proxy(ANIMATED), "getBodyLanguageModeToStr"))
+        return str(self._animated("getBodyLanguageModeToStr"))
 
     def add_tags_to_words(self, str_param: Tag, texts: TagWords) -> None:
         """Link words to a tag, whose animations then go with them."""
-        self.call(self.robot.proxy(ANIMATED), "addTagsToWords", {str_param.strip(): list(texts)})
+        self._animated("addTagsToWords", {str_param.strip(): list(texts)})
 
     def declare_tag_for_animations(self, str_param: Tag, texts: TagAnimations) -> None:
         """Link animations to a tag."""
-        self.call(self.robot.proxy(ANIMATED), "declareTagForAnimations", {str_param.strip(): list(texts)})
+        self._animated("declareTagForAnimations", {str_param.strip(): list(texts)})
 
     def declare_animations_package(self, str_param: Package) -> None:
         """Add a package of animations."""
-        self.call(self.robot.proxy(ANIMATED), "declareAnimationsPackage", str_param.strip())
+        self._animated("declareAnimationsPackage", str_param.strip())
 
     # Inside
 
+    def _animated(self, method: str, *args: Any) -> Any:
+        return self._module.call(self._module.robot.proxy(ANIMATED), method, *args)
+
     def _speak(self, module: str, method: str, *args: Any, background: bool = False) -> None:
         if background:
-            said = self.words.begin()
-            self.sound(module, method, *args, background=True, ended=lambda: self.words.end(said))
+            said = self._words.begin()
+            self._sounds.sound(module, method, *args, background=True, ended=lambda: self._words.end(said))
         else:
-            began = self.clock.now()
-            with self.words.told():
-                self.sound(module, method, *args)
-            self.happened = self.words.span(began)
+            began = self._module.clock.now()
+            with self._words.published():
+                self._sounds.sound(module, method, *args)
+            self._module.happened = self._words.span(began)
 
     @contextmanager
     def _spoken_with(self, language: str, voice: str, volume: float) -> Iterator[None]:
@@ -168,16 +190,16 @@ class SpeechFunctions(VoiceFunctions, Sounds):
         undo: list[tuple[str, Any]] = []
         try:
             if language.strip() or voice.strip():
-                undo = [("setLanguage", self.speech("getLanguage")), ("setVoice", self.speech("getVoice"))]
+                undo = [(f"set{what}", self._synthesiser.call(f"get{what}")) for what in ("Language", "Voice")]
             if volume:
-                undo.append(("setVolume", decimal(self.speech("getVolume"))))
+                undo.append(("setVolume", decimal(self._synthesiser.call("getVolume"))))
             for method, value in (
                 ("setLanguage", language.strip()),
                 ("setVoice", voice.strip()),
                 ("setVolume", volume),
             ):
                 if value:
-                    self.speech(method, value)
+                    self._synthesiser.call(method, value)
             yield
         except BaseException:
             self._undo_settings(undo, quietly=True)
@@ -187,13 +209,13 @@ class SpeechFunctions(VoiceFunctions, Sounds):
     def _undo_settings(self, undo: Sequence[tuple[str, Any]], quietly: bool) -> None:
         for method, value in undo:
             try:
-                self.call_now(self.robot.proxy(SPEECH), method, value)
+                self._module.call_now(self._module.robot.proxy(SPEECH), method, value)
             except NaoError as error:
                 if not quietly:
                     raise
                 log.warning("clean-up failed: %s", error)
 
-    def require_new_file(self, file: str, overwrite: bool) -> None:
+    def _require_new_file(self, file: str, overwrite: bool) -> None:
         """Check that a text replaces no sound file of the robot unasked.
 
         Raises:
@@ -201,24 +223,24 @@ class SpeechFunctions(VoiceFunctions, Sounds):
         """
         if overwrite:
             return
-        player = self.robot.proxy(PLAYER)
+        player = self._module.robot.proxy(PLAYER)
         try:
-            sound = self.call(player, "loadFile", file)
+            sound = self._module.call(player, "loadFile", file)
         except NaoError:  # there is none that could be played
             return
-        self.call_now(player, "unloadFile", sound)
+        self._module.call_now(player, "unloadFile", sound)
         problem = f"{file} is there already, in the robot's folder"
         raise BadGoal("file_name", file, "another name, or overwrite", problem=problem)
 
     def _length(self, file: str) -> float:
         """Length of a file on the robot, s; 0 if the robot does not tell."""
-        player = self.robot.proxy(PLAYER)
+        player = self._module.robot.proxy(PLAYER)
         try:
-            sound = self.call(player, "loadFile", file)
+            sound = self._module.call(player, "loadFile", file)
             try:
-                return decimal(self.call(player, "getFileLength", sound))
+                return decimal(self._module.call(player, "getFileLength", sound))
             finally:
-                self.call_now(player, "unloadFile", sound)
+                self._module.call_now(player, "unloadFile", sound)
         except NaoError as error:
             log.warning("the length of %s is not known: %s", file, error)  # it is written all the same
             return 0.0
@@ -240,3 +262,10 @@ def _tagged(text: str, speed: float, pitch: float) -> str:
     """A text with NAOqi's tags for speed and pitch in front, %; 0 leaves one out."""
     tags = [f"\\{tag}={value:.0f}\\" for tag, value in (("rspd", speed), ("vct", pitch)) if value]
     return "".join(tags) + (" " if tags else "") + text
+
+
+def _require_no_changes(background: bool, **fields: object) -> None:
+    """What is set for one text must be put back at its end: somebody has to wait for that."""
+    for field, value in fields.items():
+        if background and value:
+            raise BadGoal(field, value, "nothing, for a text in the background; or set it before")

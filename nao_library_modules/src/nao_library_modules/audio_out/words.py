@@ -1,10 +1,10 @@
-"""Speech as the robot speaks it: words told while this server has something said, and when it was to be heard."""
+"""Speech as the robot speaks it: its words, published as they are spoken, and when a text was to be heard."""
 
 from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -12,7 +12,7 @@ from naoqi.errors import NaoError
 
 from ..functions.memory_functions import MEMORY
 from ..robot.event_relay import EventRelay
-from ..robot.robot_clock import RobotClock
+from ..server.nao_basic import NaoBasic
 from ..server.simulated_keys import SimulatedKey, checked_span
 
 log = logging.getLogger(__name__)
@@ -27,46 +27,32 @@ ANSWER_LIMIT = 0.5
 
 
 class SpokenWords:
-    """Tells words while something is said, and when a text was to be heard.
+    """Publishes words while something is said, and knows when a text was to be heard.
 
     A simulated robot knows when the first and the last sound of a text were. Of any other, the times of the events
     TextStarted and TextDone or TextInterrupted count.
 
     Events come from threads of libqi, the rest from the thread that executes goals. The lock is held while a word is
-    told, so that none is told after `stop`.
+    published, so that none is published after `stop`.
     """
 
-    def __init__(
-        self, robot: Any, clock: Any, robot_clock: RobotClock, call: Callable[..., Any], tell: Callable[..., None]
-    ) -> None:
-        """Begin without subscriptions.
-
-        Args:
-            robot: Robot.
-            clock: ROS time.
-            robot_clock: Turns times of the robot into ROS time.
-            call: `call` of the module: proxy, method, arguments.
-            tell: Called with each word, the sentence that it belongs to, and its ROS time, s; it must not block.
-        """
-        self._robot = robot
-        self._clock = clock
-        self._robot_clock = robot_clock
-        self._call = call
-        self._exact = SimulatedKey(robot, TIMES)
-        self._events = EventRelay(lambda: robot.proxy(MEMORY), self._take)
-        self._tell = tell
+    def __init__(self, module: NaoBasic) -> None:
+        """Begin without subscriptions; words are published as feedback of the module."""
+        self._module = module
+        self._exact = SimulatedKey(module.robot, TIMES)
+        self._events = EventRelay(lambda: module.robot.proxy(MEMORY), self._take)
         self._lock = threading.Lock()
         self._answered = threading.Condition(self._lock)
         self._texts: set[object] = set()  # under way
         self._sentence = ""
-        self._asked = 0  # events whose times the robot has not told yet
+        self._asked = 0  # events whose times the robot has not answered yet
         self._started = self._ended = 0.0  # the last text, ROS time, s
 
     def begin(self) -> object:
-        """Something is said from now on; what is returned tells `end` what."""
+        """Something is said from now on; returns what `end` takes."""
         try:
-            events = (SENTENCE, WORD) if self._exact.known(self._call) else (SENTENCE, WORD, STARTED, *ENDS)
-            self._robot_clock.compare(self._call)
+            events = (SENTENCE, WORD) if self._exact.known(self._module.call) else (SENTENCE, WORD, STARTED, *ENDS)
+            self._module.robot_clock.compare(self._module.call)
         except NaoError as error:
             log.debug("times of speech are not known: %s", error)
             events = (SENTENCE, WORD)
@@ -81,14 +67,14 @@ class SpokenWords:
         return text
 
     def end(self, text: object) -> None:
-        """It is said; when nothing else is, no more words are told."""
+        """It is said; when nothing else is, no more words are published."""
         with self._lock:
             self._texts.discard(text)
 
     @contextmanager
-    def told(self) -> Iterator[None]:
-        """Tell words while the block runs."""
-        text, begun = self.begin(), self._clock.now()
+    def published(self) -> Iterator[None]:
+        """Publish words while the block runs."""
+        text, begun = self.begin(), self._module.clock.now()
         try:
             yield
             self._await_times(begun)
@@ -104,13 +90,13 @@ class SpokenWords:
         Raises:
             NaoError: The robot cannot be asked.
         """
-        if self._exact.known(self._call):
-            return self._exact.span(self._call, self._robot_clock, began)
+        if self._exact.known(self._module.call):
+            return self._exact.span(self._module.call, self._module.robot_clock, began)
         with self._lock:
             return checked_span([self._started, self._ended], began)
 
     def stop(self) -> None:
-        """Tell no more of what has begun."""
+        """Publish no more of what has begun."""
         with self._lock:
             self._texts.clear()
 
@@ -135,8 +121,8 @@ class SpokenWords:
             sentence, wanted = self._sentence, bool(self._texts)
         if not wanted or not value or (event == WORD and not text):
             return
-        arrived = self._clock.now()
-        call = self._robot.proxy(MEMORY).call_async("getTimestamp", event)
+        arrived = self._module.clock.now()
+        call = self._module.robot.proxy(MEMORY).call_async("getTimestamp", event)
         with self._lock:
             self._asked += 1
         call.add_done_callback(lambda answer: self._dated(answer, event, value, sentence, arrived))
@@ -147,7 +133,7 @@ class SpokenWords:
         try:
             last, seconds, microseconds = answer.result(timeout=0)
             if last == value:
-                when = self._robot_clock.mapped(seconds + 1e-6 * microseconds, arrived)
+                when = self._module.robot_clock.mapped(seconds + 1e-6 * microseconds, arrived)
         except (NaoError, ValueError, TypeError) as error:
             log.debug("the time of %s is not known: %s", event, error)
         with self._lock:
@@ -158,11 +144,11 @@ class SpokenWords:
             elif event in ENDS:
                 self._ended = when
             elif self._texts:
-                self._tell(str(value).strip(), sentence, when)
+                self._module.publish_feedback(stamp=when, word=str(value).strip(), sentence=sentence)
 
     # In the thread that executes goals
 
     def _await_times(self, begun: float) -> None:
-        told = not set(ENDS).intersection(self._events.names)  # nothing will tell the end
+        unknown = not set(ENDS).intersection(self._events.names)  # no event comes at the end
         with self._lock:
-            self._answered.wait_for(lambda: not self._asked and (told or self._ended > begun), ANSWER_LIMIT)
+            self._answered.wait_for(lambda: not self._asked and (unknown or self._ended > begun), ANSWER_LIMIT)

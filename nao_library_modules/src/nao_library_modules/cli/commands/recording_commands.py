@@ -113,7 +113,7 @@ def sound(context: click.Context, file: str, seconds: float | None, channels: st
 
     A real robot keeps it there in any case.
     """
-    from ...audio_in.checks import FILE_TYPES
+    from ...audio_in.fields import FILE_TYPES
     from ...audio_in.recording import robot_path
 
     settings = settings_of(context)
