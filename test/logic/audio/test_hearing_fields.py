@@ -65,6 +65,7 @@ def refusals():
             "file of the grammar, file to write",
         ),
         ("getRules", HOUSE, "vocabulary", [[], ["start", "slot"]], "start, active, activatable or slot"),
+        ("getRules", HOUSE, "vocabulary", [["strat"]], "'strat' is no type of rules: did you mean 'start'"),
         ("activateRule", HOUSE, "vocabulary", [[], [""], ["order", "answer"]], "name of the rule"),
         ("addWordListToSlot", HOUSE, "vocabulary", [[], ["slot"], ["slot", ""]], "name of the slot, words"),
         ("setContextParam", {**HOUSE, "vocabulary": ["p"]}, "values", [[], [1.0, 2.0]], "the value of the parameter"),

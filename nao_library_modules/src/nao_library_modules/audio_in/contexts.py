@@ -100,7 +100,7 @@ class ContextFunctions(Part):
 
     def get_rules(self, str_param: Context, vocabulary: RuleType) -> list[str]:
         """Names of the rules of a type."""
-        return list(self._recogniser.call("getRules", str_param.strip(), vocabulary[0]))
+        return list(self._recogniser.call("getRules", str_param.strip(), vocabulary[0].strip()))
 
     def activate_rule(self, str_param: Context, vocabulary: Rule) -> None:
         """Switch a rule on."""

@@ -105,6 +105,12 @@ def _require_sensitivity(name: str, sensitivity: float) -> None:
         raise BadGoal(name, sensitivity, ABOVE_ZERO)
 
 
+def _require_rule_type(name: str, types: Sequence[str]) -> None:
+    if len(types) != 1:
+        raise BadGoal(name, list(types), RULE_TYPE)
+    require_known(name, types[0], RULE_TYPES, "type of rules")
+
+
 def _names(wanted: str, meaning: str, least: int = 1, more: bool = False) -> Field:
     """Names in NAOqi's order, none of them empty.
 
@@ -207,7 +213,9 @@ GrammarFiles = Annotated[
     ),
 ]
 CompiledGrammar = Annotated[List[str], _names("file of the compiled grammar", "file that compile has written")]
-RuleType = Annotated[List[str], _names(RULE_TYPE, "type of the rules").but(choices=RULE_TYPES)]
+RuleType = Annotated[
+    List[str], _names(RULE_TYPE, "type of the rules").but(choices=RULE_TYPES, check=_require_rule_type)
+]
 Rule = Annotated[List[str], _names("name of the rule", "rule of the context")]
 SlotWords = Annotated[
     List[str], _names("name of the slot, words", "slot of the context, and what it takes", least=2, more=True)
