@@ -33,7 +33,7 @@ class ContextFunctions(Part):
     What a running recognition would refuse is done in a pause of it. Contexts stay until they are removed.
 
     Attributes:
-        saved_sets: Names under which this server has saved contexts; NAOqi does not tell which there are.
+        saved_sets: Names under which this server has saved contexts; NAOqi does not report which there are.
     """
 
     left_by_goals = frozenset({"saved_sets"})

@@ -25,7 +25,7 @@ NEXT_VALUE, FIRST_VALUE = 3, 6
 class EnergyFunctions(Part):
     """Energies of the microphones, 0..32768. Parameters are fields of AudioInFunction.
 
-    The robot computes them only when it is told to; what a function switches on for itself, it switches off again.
+    The robot computes them on demand only; what a function switches on for itself, it switches off again.
     """
 
     def __init__(self, module: NaoBasic, hearing: Hearing, left: LeftGoing, card: NaoAudio) -> None:

@@ -12,15 +12,10 @@ Vector = Tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Bearing:
-    """A direction.
+    """A direction."""
 
-    Attributes:
-        azimuth: rad, positive to the left.
-        elevation: rad, positive upwards.
-    """
-
-    azimuth: float
-    elevation: float
+    azimuth: float  # rad, positive to the left
+    elevation: float  # rad, positive upwards
 
     @property
     def vector(self) -> Vector:
@@ -37,36 +32,22 @@ class Bearing:
 
 @dataclass(frozen=True)
 class BegunSound:
-    """A sound that began.
+    """A sound that began."""
 
-    Attributes:
-        confidence: 0..1.
-        time: When it began, s of the robot; 0 if the robot does not tell.
-    """
-
-    confidence: float
-    time: float
+    confidence: float  # 0..1
+    time: float  # when it began, s of the robot; 0 if the robot does not report that
 
 
 @dataclass(frozen=True)
 class LocatedSound:
-    """A sound and where it came from.
+    """A sound and where it came from."""
 
-    Attributes:
-        in_head: Its direction in the frame of the head.
-        in_base: Its direction in NAOqi's FRAME_ROBOT.
-        head: Where the head was in FRAME_ROBOT, m.
-        confidence: 0..1.
-        energy: Loudness as the robot reports it; 0 if it does not.
-        time: When it was located, s of the robot.
-    """
-
-    in_head: Bearing
-    in_base: Bearing
-    head: Vector
-    confidence: float
-    energy: float
-    time: float
+    in_head: Bearing  # in the frame of the head
+    in_base: Bearing  # in NAOqi's FRAME_ROBOT
+    head: Vector  # where the head was in FRAME_ROBOT, m
+    confidence: float  # 0..1
+    energy: float  # loudness as the robot reports it; 0 if it does not
+    time: float  # when it was located, s of the robot
 
 
 def turned(vector: Vector, angles: Sequence[float]) -> Vector:

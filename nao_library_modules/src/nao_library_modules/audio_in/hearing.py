@@ -17,12 +17,7 @@ from ..server.nao_basic import NaoBasic
 
 
 class Span(NamedTuple):
-    """From when to when something was heard.
-
-    Attributes:
-        onset: ROS time of its first sound, s; 0: not known.
-        end: ROS time of its last sound, s; 0: not known, or it has not ended.
-    """
+    """ROS times, s, of the first and the last sound of what was heard; 0: not known, or it has not ended."""
 
     onset: float = 0.0
     end: float = 0.0
@@ -103,38 +98,24 @@ class Recording:
 
 @dataclass
 class Recognition:
-    """A recognition that a goal left running.
+    """A recognition that a goal left running."""
 
-    Attributes:
-        vocabulary: Its words and phrases; empty for those that were set before.
-        word_spotting: Whether they are also found within longer sentences.
-        kept: Whether the robot keeps what was set before, to be put back.
-        told: Whether it passes events on that nobody had passed on before.
-    """
-
-    vocabulary: list[str]
-    word_spotting: bool
-    kept: bool
-    told: bool
+    vocabulary: list[str]  # words and phrases; empty for those that were set before
+    word_spotting: bool  # whether they are also found within longer sentences
+    kept: bool  # whether the robot keeps what was set before, to be put back
+    publishes: bool  # whether it publishes events that were not published before
 
 
 @dataclass
 class LeftGoing(Part):
-    """What goals leave going beyond their end, also for the next server when this one dies.
-
-    Attributes:
-        recording: The recording that runs, of this server; also that of a goal that is not over.
-        paused: Whether this server has paused the recognition.
-        vocabulary_is_set: Whether setVocabulary has been called, so that functions need not bring words.
-        computing: Whether energies are computed, since enableEnergyComputation.
-    """
+    """What goals leave going beyond their end, also for the next server when this one dies."""
 
     kept: InitVar[Kept]
-    recording: Recording | None = None
+    recording: Recording | None = None  # also that of a goal that is not over
     recognition: Recognition | None = None
-    paused: bool = False
-    vocabulary_is_set: bool = False
-    computing: bool = False
+    paused: bool = False  # the recognition, by this server
+    vocabulary_is_set: bool = False  # by setVocabulary, so that functions need no words of their own
+    computing: bool = False  # energies, since enableEnergyComputation
 
     left_by_goals = frozenset({"recording", "paused", "vocabulary_is_set"})
 

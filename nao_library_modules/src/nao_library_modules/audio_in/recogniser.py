@@ -31,14 +31,7 @@ class Recogniser(Part):
     """Calls of ALSpeechRecognition."""
 
     def __init__(self, module: NaoBasic, hearing: Hearing, onset_delay: float, end_delay: float) -> None:
-        """Ask nothing yet.
-
-        Args:
-            module: The server.
-            hearing: Begins and ends what the recogniser does.
-            onset_delay: s from the begin of speech to the robot's event.
-            end_delay: s from the end of speech to the robot's event.
-        """
+        """Delays: s from the begin and the end of speech to the robot's events."""
         self._module = module
         self._hearing = hearing
         self._delays = (onset_delay, end_delay)
@@ -58,7 +51,7 @@ class Recogniser(Part):
         return WordTimes(self._hearing, self._times_key, *self._delays)
 
     def hears(self) -> bool:
-        """Whether what is said now is heard, when somebody is subscribed; a robot that does not tell hears at once."""
+        """Whether what is said now is heard, when somebody is subscribed; a robot that hides it hears at once."""
         for key, heard in ((STATUS, HEARS), (RUNNING, (True,))):
             try:
                 return self._module.call(self._module.robot.proxy(MEMORY), "getData", key) in heard
@@ -67,7 +60,7 @@ class Recogniser(Part):
         return True
 
     def keep_settings(self) -> bool:
-        """Have the robot keep vocabulary and grammars until `restore_settings`; returns whether it can."""
+        """Have the robot keep vocabulary and grammars until popContexts; returns whether it can."""
         try:
             # The first recogniser of a busy robot takes its time to start.
             self._idly_with(
@@ -77,10 +70,6 @@ class Recogniser(Part):
             log.info("this robot cannot keep the vocabulary that was set before: it is replaced for good")
             return False
         return True
-
-    def restore_settings(self) -> None:
-        """Put back what `keep_settings` had kept; preemption does not interrupt this."""
-        self.idly_now("popContexts")
 
     def call(self, method: str, *args: Any) -> Any:
         """Call ALSpeechRecognition; preemption ends the call."""

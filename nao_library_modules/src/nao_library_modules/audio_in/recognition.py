@@ -104,7 +104,7 @@ class RecognitionFunctions(Part):
         try:
             if phrases:
                 self._recogniser.idly("setVocabulary", phrases, word_spotting)
-            if recognition.told:
+            if recognition.publishes:
                 self._module.events.subscribe(WORDS)
             self._hearing.start_extractor(RECOGNITION, "recognition")
         except BaseException:
@@ -204,7 +204,7 @@ class RecognitionFunctions(Part):
         Raises:
             NaoError: The robot does not answer.
         """
-        if recognition.told:
+        if recognition.publishes:
             self._module.events.subscribe(WORDS)
         if recognition.vocabulary:
             self._recogniser.idly_now("setVocabulary", recognition.vocabulary, recognition.word_spotting)
@@ -286,7 +286,7 @@ class RecognitionFunctions(Part):
             if former:
                 self._recogniser.idly_now("setLanguage", former)
             if kept:
-                self._recogniser.restore_settings()
+                self._recogniser.idly_now("popContexts")
 
         with self._hearing.ended_by(restore, "the speech recognition is not as it was"):
             if former:
@@ -296,10 +296,10 @@ class RecognitionFunctions(Part):
             yield
 
     def _put_back(self, recognition: Recognition) -> None:
-        if recognition.told:
+        if recognition.publishes:
             self._module.events.unsubscribe(WORDS)
         if recognition.kept:
-            self._recogniser.restore_settings()
+            self._recogniser.idly_now("popContexts")
 
     functions = {
         "listen": listen,

@@ -43,21 +43,9 @@ class NaoAudioInput(NaoBasic):
     """
 
     typed_answers = frozenset(
-        {
-            "listen",
-            "record",
-            "stopRecording",
-            "stopMicrophonesRecording",
-            "detectSound",
-            "localizeSound",
-            "getEnergy",
-            "getLeftMicEnergy",
-            "getRightMicEnergy",
-            "getFrontMicEnergy",
-            "getRearMicEnergy",
-        }
+        "listen record stopRecording stopMicrophonesRecording detectSound localizeSound "
+        "getEnergy getLeftMicEnergy getRightMicEnergy getFrontMicEnergy getRearMicEnergy".split()
     )
-
     part_types = (NaoAudio, RecordingFunctions, RecognitionFunctions, ContextFunctions, SoundFunctions, EnergyFunctions)
 
     def __init__(
@@ -69,16 +57,11 @@ class NaoAudioInput(NaoBasic):
         robot_home: str = "",
         **options: Any,
     ) -> None:
-        """Start the server.
+        """Start the server; arguments as NaoBasic takes them, but for one.
 
         Args:
-            ip: Address of the robot.
-            port: Port of its NAOqi.
-            autostart: As NaoBasic takes it.
-            launchpath: As NaoBasic takes it.
             robot_home: Folder of this computer that is the home of the robot's user, as the `record_dir` of a simulated
                 robot is; "~" stands for the home of this computer's user. Empty: it is on the robot alone.
-            options: As NaoBasic takes them.
         """
         # The connection's listener, which `super().__init__` adds, may be called before the rest of the constructor.
         self._taking_up = threading.Lock()
@@ -133,14 +116,12 @@ class NaoAudioInput(NaoBasic):
     # The life of a goal
 
     def begin_chain(self) -> None:
-        """Forget what the last chain heard."""
         self.hearing.heard = Heard()
         self._take_up()
         if not self._took_over:
             self._took_over = self._end_leftovers()
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
-        """Add what was heard."""
         super().fill_result(result, outcomes)
         self.hearing.heard.fill(result)
 
@@ -172,8 +153,8 @@ class NaoAudioInput(NaoBasic):
             self._took_over = self._end_leftovers()
             self.left.vocabulary_is_set = bool(left.get("vocabulary_is_set"))
             for name, take_up in (
-                ("recording", lambda told: self.recordings.renew(Recording(**told))),
-                ("recognition", lambda told: self.recognition.take_up(Recognition(**told))),
+                ("recording", lambda kept: self.recordings.renew(Recording(**kept))),
+                ("recognition", lambda kept: self.recognition.take_up(Recognition(**kept))),
                 ("paused", lambda _: self.recognition.pause_again()),
                 ("computing", lambda _: self.energies.renew()),
             ):

@@ -32,16 +32,9 @@ class SoundFunctions(Part):
     """Sounds and their directions. Parameters are fields of AudioInFunction."""
 
     def __init__(self, module: NaoBasic, hearing: Hearing, frame_prefix: str) -> None:
-        """Hear nothing yet.
-
-        Args:
-            module: The server.
-            hearing: Takes what is heard.
-            frame_prefix: Prefix of the robot's frames, with its slash; may be empty.
-        """
         self._module = module
         self._hearing = hearing
-        self._frame_prefix = frame_prefix
+        self._frame_prefix = frame_prefix  # with its slash; may be empty
 
     def detect_sound(self, timeout: Timeout, confidence: Confidence) -> list[float]:
         """Wait for a sound to begin; answers its confidence and after how long it came (s), nothing if none did."""

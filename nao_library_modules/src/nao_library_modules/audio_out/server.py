@@ -30,7 +30,7 @@ class NaoAudioOutput(NaoBasic):
     """Audio goals: ALTextToSpeech, ALAnimatedSpeech, ALAudioPlayer, and of ALAudioDevice what NaoAudio offers.
 
     A function ends when what it plays has ended, unless it is in the `background`. A goal that fails or is preempted
-    silences what it began, and nothing else. The feedback tells each word as it is spoken.
+    silences what it began, and nothing else. The feedback has each word as it is spoken.
 
     ROS API:
         Action `nao_audio_out` (nao_library_actions/NaoAudioOutAction) and what NaoBasic offers.
@@ -41,15 +41,7 @@ class NaoAudioOutput(NaoBasic):
     def __init__(
         self, ip: str, port: int, autostart: bool = False, launchpath: LaunchPath | None = None, **options: Any
     ) -> None:
-        """Start the server.
-
-        Args:
-            ip: Address of the robot.
-            port: Port of its NAOqi.
-            autostart: As NaoBasic takes it.
-            launchpath: As NaoBasic takes it.
-            options: As NaoBasic takes them.
-        """
+        """Start the server; arguments as NaoBasic takes them."""
         super().__init__(ip, port, autostart, launchpath, **options)
         self.sounds = Sounds(self)
         self.synthesiser = Synthesiser(self)
@@ -79,7 +71,6 @@ class NaoAudioOutput(NaoBasic):
     # The life of a goal
 
     def begin_chain(self) -> None:
-        """Forget what the last chain did; what it left in the background sounds on."""
         self.sounds.begin_chain()
 
     def end_chain(self, end: str) -> None:

@@ -1,4 +1,4 @@
-"""Functions that set and tell how the robot speaks: voices, languages, parameters, the dictionary."""
+"""Functions for how the robot speaks: voices, languages, parameters, the dictionary."""
 
 from __future__ import annotations
 
@@ -45,7 +45,6 @@ class VoiceFunctions(Part):
     # Voices and languages
 
     def _check_voice(self, str_param: str) -> None:
-        """A voice of the robot."""
         self._synthesiser.require_voice("str_param", str_param.strip())
 
     @checked_by(_check_voice)
@@ -64,7 +63,6 @@ class VoiceFunctions(Part):
         return list(self._synthesiser.call("getAvailableVoices"))
 
     def _check_language(self, str_param: str) -> None:
-        """A language that the robot speaks."""
         self._synthesiser.require_language("str_param", str_param.strip())
 
     @checked_by(_check_language)
@@ -87,7 +85,6 @@ class VoiceFunctions(Part):
         return list(self._synthesiser.call("getSupportedLanguages"))
 
     def _check_default_voice(self, str_param: str, voice: str) -> None:
-        """A language and a voice of the robot."""
         self._check_language(str_param)
         self._synthesiser.require_voice("voice", voice.strip())
 

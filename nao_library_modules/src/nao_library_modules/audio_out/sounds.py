@@ -144,14 +144,14 @@ class Sounds(Part):
     # Inside
 
     def _played(self, began: float, ended: float) -> tuple[float, float]:
-        """When a sound was played, ROS times, s: no robot tells that, so its call counts, with what loading takes."""
+        """When a sound was played, ROS times, s: no robot reports that, so its call counts, with what loading takes."""
         onset = offset = 0.0
         if self._player_times.known(self._module.call):
             onset, offset = self._player_times.span(self._module.call, self._module.robot_clock, began)
         return onset or began, offset or ended
 
     def _leave(self, sounding: Sounding) -> None:
-        """Let a sound go on; a file that is not there is told at once."""
+        """Let a sound go on; a file that is not there fails at once."""
         with self._lock:
             self._begun.append(sounding)
         if sounding.call.wait(FALSE_START):
@@ -200,17 +200,15 @@ class LoadedSounds:
         return list(self._ids)
 
     def add(self, name: str, number: int) -> None:
-        """A file was loaded; of a name that was loaded before, the new id counts."""
+        """Add a file; of a name that was loaded before, the new id counts."""
         self.remove(name)
         self._ids[name] = number
 
     def remove(self, name: str) -> None:
-        """A file was unloaded."""
         if name in self.names:
             del self._ids[name]
 
     def clear(self) -> None:
-        """All were unloaded."""
         self._ids.clear()
 
     def number(self, name: str) -> int:

@@ -51,14 +51,12 @@ class SpeechFunctions(Part):
     # Speaking
 
     def _check_spoken(self, language: str, voice: str) -> None:
-        """A language and a voice of the robot, or none."""
         if language.strip():
             self._synthesiser.require_language("language", language)
         if voice.strip():
             self._synthesiser.require_voice("voice", voice)
 
     def _check_say(self, language: str, voice: str, volume: float, background: bool) -> None:
-        """How a text is spoken."""
         _require_no_changes(background, voice=voice.strip(), volume=volume)
         self._check_spoken(language, voice)
 
@@ -82,7 +80,6 @@ class SpeechFunctions(Part):
             self._speak(SPEECH, "say", *arguments, background=background)
 
     def _check_animated_say(self, language: str, voice: str, volume: float, background: bool) -> None:
-        """How a text is spoken."""
         _require_no_changes(background, language=language.strip(), voice=voice.strip(), volume=volume)
         self._check_spoken(language, voice)
 
@@ -106,7 +103,6 @@ class SpeechFunctions(Part):
             self._speak(ANIMATED, "say", *arguments, background=background)
 
     def _check_say_to_file(self, file_name: str, language: str, voice: str, overwrite: bool) -> None:
-        """How a text is spoken, and that it replaces no file unasked."""
         self._require_new_file(file_name.strip(), overwrite)
         self._check_spoken(language, voice)
 
@@ -216,11 +212,7 @@ class SpeechFunctions(Part):
                 log.warning("clean-up failed: %s", error)
 
     def _require_new_file(self, file: str, overwrite: bool) -> None:
-        """Check that a text replaces no sound file of the robot unasked.
-
-        Raises:
-            BadGoal: There is such a file.
-        """
+        """Raise BadGoal where a text would replace a sound file of the robot unasked."""
         if overwrite:
             return
         player = self._module.robot.proxy(PLAYER)
@@ -233,7 +225,7 @@ class SpeechFunctions(Part):
         raise BadGoal("file_name", file, "another name, or overwrite", problem=problem)
 
     def _length(self, file: str) -> float:
-        """Length of a file on the robot, s; 0 if the robot does not tell."""
+        """Length of a file on the robot, s; 0 if the robot does not report it."""
         player = self._module.robot.proxy(PLAYER)
         try:
             sound = self._module.call(player, "loadFile", file)

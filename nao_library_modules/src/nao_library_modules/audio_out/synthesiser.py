@@ -33,21 +33,11 @@ class Synthesiser(Part):
         return self._module.call(self._module.robot.proxy(SPEECH), method, *args)
 
     def require_voice(self, field: str, voice: str) -> str:
-        """A voice that the robot has.
-
-        Raises:
-            BadGoal: If it has no such voice; the text names those it has.
-            NaoError: If the robot cannot be asked.
-        """
+        """A voice that the robot has; BadGoal names those it has."""
         return self._require(field, voice, "getAvailableVoices", "voice of the robot")
 
     def require_language(self, field: str, language: str) -> str:
-        """A language that the robot speaks.
-
-        Raises:
-            BadGoal: If it does not; the text names those it speaks.
-            NaoError: If the robot cannot be asked.
-        """
+        """A language that the robot speaks; BadGoal names those it speaks."""
         return self._require(field, language, "getAvailableLanguages", "language that the robot speaks")
 
     def _require(self, field: str, name: str, method: str, kind: str) -> str:

@@ -128,7 +128,7 @@ class SpokenWords:
         call.add_done_callback(lambda answer: self._dated(answer, event, value, sentence, arrived))
 
     def _dated(self, answer: Any, event: str, value: Any, sentence: str, arrived: float) -> None:
-        """An event whose time the robot has told, or could not tell."""
+        """Take an event whose time the robot has answered, or could not answer."""
         when = arrived
         try:
             last, seconds, microseconds = answer.result(timeout=0)
