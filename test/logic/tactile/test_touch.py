@@ -10,7 +10,7 @@ from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.functions.fields import fields_of
 from nao_library_modules.nao import body_devices as devices
 from nao_library_modules.nao.touch_names import GROUPS, SENSORS, names_of, sensors_of
-from nao_library_modules.tactile.checks import check_touch
+from nao_library_modules.tactile.fields import require_touch
 from nao_library_modules.tactile.touch import COUNT, HOLD, PRESS, RELEASE, TouchWatch, Wanted
 from nao_library_modules.tactile.waiting import WaitingFunctions
 
@@ -90,12 +90,12 @@ def test_numbers_are_looked_at_for_the_kinds_of_touch_that_have_them():
     declared = fields_of(WaitingFunctions.wait_for_touch, ("count", "duration"))
     assert (declared["count"].maximum, declared["duration"].maximum) == (20, 60.0)
     for kind in ("", PRESS, RELEASE):
-        check_touch(None, kind, 21, 61.0)
-    check_touch(None, HOLD, 21, 60.0)
+        require_touch(kind, 21, 61.0)
+    require_touch(HOLD, 21, 60.0)
     for kind, count, duration, told in (
         (COUNT, 21, 0.0, "0..20"),
         (COUNT, 2, 61.0, "0..60 s"),
         (HOLD, 0, -1.0, "0..60"),
     ):
         with pytest.raises(BadGoal, match=told):
-            check_touch(None, kind, count, duration)
+            require_touch(kind, count, duration)

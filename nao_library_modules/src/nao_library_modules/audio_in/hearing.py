@@ -59,7 +59,7 @@ def _fields_of(words: Sequence[HeardWord]) -> dict[str, list[Any]]:
     }
 
 
-class Hearing(ExtractorUse, Part):
+class Hearing(ExtractorUse):
     """What the chain has heard, feedback, and how functions use NAOqi's extractors.
 
     Attributes:
@@ -67,10 +67,7 @@ class Hearing(ExtractorUse, Part):
     """
 
     def __init__(self, module: NaoBasic, namespace: str) -> None:
-        self.robot, self.robot_clock = module.robot, module.robot_clock
-        self.clock, self.interrupt = module.clock, module.interrupt
-        self.call, self.call_now, self.wait = module.call, module.call_now, module.wait
-        self.subscriber = subscriber_name("nao_audio_in", namespace)
+        super().__init__(module, subscriber_name("nao_audio_in", namespace))
         self.heard = Heard()
         self._publish_feedback = module.publish_feedback
 

@@ -14,10 +14,11 @@ from naoqi.errors import NaoError
 
 from ..base.cancellation import CancellationToken
 from ..functions.memory_functions import MEMORY
+from ..functions.parts import Part
 from ..robot.event_relay import EventRelay
 from ..robot.robot import CLEAN_UP_LIMIT
-from ..robot.robot_clock import RobotClock
 from ..robot.robot_task import wait_for_call
+from .nao_basic import NaoBasic
 
 log = logging.getLogger(__name__)
 
@@ -83,21 +84,18 @@ class Events:
                 self._clock.wait(remaining, self._news)
 
 
-class ExtractorUse:
-    """To be mixed into NaoBasic.
+class ExtractorUse(Part):
+    """How the functions of one server use extractors.
 
     Attributes:
         subscriber: What NAOqi knows this server by: of each robot's clients no two have the same name.
     """
 
-    robot: Any  # Robot
-    robot_clock: RobotClock
-    interrupt: CancellationToken
-    clock: Any  # WallClock or RosClock
-    call: Callable[..., Any]  # of NaoBasic: a call that preemption interrupts
-    call_now: Callable[..., Any]  # of NaoBasic: a call that it does not
-    wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
-    subscriber: str
+    def __init__(self, module: NaoBasic, subscriber: str) -> None:
+        self.robot, self.robot_clock = module.robot, module.robot_clock
+        self.clock, self.interrupt = module.clock, module.interrupt
+        self.call, self.call_now, self.wait = module.call, module.call_now, module.wait
+        self.subscriber = subscriber
 
     def begin(self, module: str, method: str, args: Sequence[Any], undo: str, *undo_args: Any) -> Any:
         """Call a method that begins something which has to be ended.

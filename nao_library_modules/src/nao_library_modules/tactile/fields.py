@@ -11,7 +11,7 @@ from ..base.field_checks import require_known
 from ..functions.fields import Annotated, flag, free, number, text, whole, word
 from ..nao.body_devices import SIDES
 from ..nao.touch_names import BUMPERS, GROUPS, SENSORS, names_of, sensors_of
-from .touch import COUNT, KINDS, PRESS, Wanted
+from .touch import COUNT, HOLD, KINDS, PRESS, Wanted
 
 DEFAULT_TIMEOUT, DEFAULT_HOLD = 10.0, 1.0
 DEFAULT_WINDOW, DEFAULT_COUNT = 2.0, 2
@@ -116,3 +116,12 @@ Link = Annotated[str, free("name of a link between a touch and a behaviour; empt
 BehaviorName = Annotated[str, text("the name of a stored behaviour", "name of the behaviour to run")]
 Parameters = Annotated[List[str], free("parameters of the behaviour", allowed=ASSIGNMENT, check=_require_assignments)]
 Cooldown = Annotated[float, number("timeout", "time after the end of the behaviour in which touches do not count")]
+
+
+def require_touch(touch: str, count: int, duration: float) -> None:
+    """See that the numbers that a kind of touch has will do; raises BadGoal."""
+    kind = touch.strip() or PRESS
+    if kind == COUNT:
+        PRESSES.require("count", count)
+    if kind in (COUNT, HOLD):
+        TOUCH_TIME.require("duration", duration)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
+from genpy import Time
 from sensor_msgs.msg import BatteryState
 
 from naoqi.errors import RobotError
@@ -13,6 +14,7 @@ from naoqi.errors import RobotError
 from ..base.errors import BadGoal
 from ..base.suggestion import did_you_mean
 from ..functions.memory_functions import MEMORY
+from ..functions.parts import Part
 from ..nao.body_devices import (
     BATTERY_STATUS,
     CHARGE,
@@ -28,7 +30,8 @@ from ..nao.body_devices import (
     weight_keys,
 )
 from ..nao.touch_names import Sensor, sensors_of
-from ..server.extractor_use import Event, ExtractorUse
+from ..server.extractor_use import Event, ExtractorUse, subscriber_name
+from ..server.nao_basic import NaoBasic
 from .fields import FEET, Bumpers, Enable, Feet, Revert, Sensors, Sonars, Warm, words_of
 from .measurements import Measurements
 from .touch import Contact
@@ -46,87 +49,37 @@ SONAR_START = 0.35
 """s until a sonar that was switched on has measured: it does ten times a second."""
 
 
-class ReadingFunctions(ExtractorUse):
-    """Parameters are fields of TactileFunction.
+class Senses(ExtractorUse):
+    """What the robot feels now, and what the chain has felt.
 
     Attributes:
-        felt: What the chain has felt so far.
+        measurements: What the chain has felt so far; new for each goal.
         sonar_on: Whether a goal has switched the sonars on for longer.
     """
 
-    felt: Measurements
-    sonar_on: bool
-    after_wait: Callable[[Callable[[], None]], None]  # of NaoBasic
+    def __init__(self, module: NaoBasic, namespace: str) -> None:
+        super().__init__(module, subscriber_name("NaoTactile", namespace))
+        self.measurements = Measurements()
+        self.sonar_on = False
+        self._publish_feedback = module.publish_feedback
 
-    def get_touched(self, sensors: Sensors) -> list[str]:
-        """Which sensors are touched now."""
-        return self.measurements.touch(self.contacts(sensors_of(sensors)))
+    def publish(
+        self, status: str, touched: Sequence[str] = (), sonar: Sequence[float] = (), stamp: float | None = None
+    ) -> None:
+        """Publish what is felt meanwhile. Called from the thread that executes goals.
 
-    def get_bumpers(self, sensors: Bumpers) -> list[str]:
-        """Which bumpers are pressed now."""
-        return self.measurements.touch(self.contacts(sensors_of(sensors or ["bumpers"])))
-
-    def get_sonar(self, sensors: Sonars) -> list[float]:
-        """How far away what the sonars hear is, m, infinite if they hear nothing; they are switched on for it."""
-        sides = words_of(sensors, SIDES, "sonar")
-        if self.sonar_on:
-            distances = self.sonar(sides)
-        else:
-            with self.subscribed(SONAR, "read"):
-                self.wait(SONAR_START)
-                distances = self.sonar(sides)
-        self.measurements.sonars += zip(sides, distances)
-        return distances
-
-    def get_fsr(self, sensors: Feet) -> list[float]:
-        """What rests on the corners of the feet and on each of them, kg."""
-        names, keys = [], []
-        for foot in words_of(sensors, FEET, "foot"):
-            names += [f"{foot} {_words(corner)}" for corner in CORNERS] + [foot]
-            keys += weight_keys(foot.split()[0])
-        weights = [_number(value) for value in self._values(keys)]
-        self.measurements.weights += zip(names, weights)
-        return weights
-
-    def get_battery(self) -> float:
-        """Charge of the battery, 0..1; current, voltage and what else is known are in the result."""
-        charge, current, temperature, voltage, rest, full, status = self._values(BATTERY_KEYS)
-        state = BatteryState(present=charge is not None, percentage=_number(charge), current=_number(current))
-        state.header.stamp = self.stamp()
-        state.temperature = _number(temperature)
-        state.voltage = _number(voltage) / 1000.0  # mV
-        state.charge, state.capacity = _number(rest) / 1000.0, _number(full) / 1000.0  # mAh
-        state.design_capacity = math.nan
-        state.power_supply_technology = BatteryState.POWER_SUPPLY_TECHNOLOGY_LION
-        state.power_supply_status = _supply(status, state.current)
-        self.measurements.batteries.append(state)
-        return _number(charge)
-
-    def get_temperatures(self, sensors: Warm) -> list[float]:
-        """How warm motors, the computer in the head and the battery are, degrees Celsius."""
-        joints = self._joints(sensors)
-        names = [name for name in (*joints, HEAD, PACK) if not sensors or name in joints or name in sensors]
-        devices = [{HEAD: "Head", PACK: "Battery"}.get(name, name) for name in names]
-        warmths = [_number(value) for value in self._values([temperature_key(device) for device in devices])]
-        states = self._values([sensor_key(f"{device}/Temperature", "Status") for device in devices])
-        self.measurements.heat += [
-            (name, warmth, int(state or 0)) for name, warmth, state in zip(names, warmths, states)
-        ]
-        return warmths
-
-    def set_sonar_enabled(self, enable: Enable, revert: Revert) -> None:
-        """Keep the sonars measuring until they are switched off again, or let them be silent."""
-        before = self.sonar_on
-        self._switch_sonar(enable)
-        if revert:
-            self.after_wait(lambda: self._switch_sonar(before))
-        if enable and not before:
-            self.wait(SONAR_START)  # what follows finds no old distances
+        Args:
+            status: What the function does.
+            touched: What is pressed.
+            sonar: m, left and right.
+            stamp: ROS time of the change, s; None for now.
+        """
+        self._publish_feedback(stamp=stamp, status=status, touched=list(touched), sonar=list(sonar))
 
     def pressed(self, sensors: Sequence[Sensor]) -> list[str]:
         """Short names of those that are pressed now."""
         keys = [key for sensor in sensors for key in sensor.keys]
-        values = dict(zip(keys, self._values(keys)))
+        values = dict(zip(keys, self.values(keys)))
         return [sensor.name for sensor in sensors if any(_number(values[key]) > 0.5 for key in sensor.keys)]
 
     def contacts(self, sensors: Sequence[Sensor]) -> list[Contact]:
@@ -151,7 +104,7 @@ class ReadingFunctions(ExtractorUse):
 
     def sonar(self, sides: Sequence[str]) -> list[float]:
         """Distances in m; infinite where nothing is heard, not a number where a sonar failed."""
-        return [echo_of(value) for value in self._values([SONARS[side] for side in sides])]
+        return [echo_of(value) for value in self.values([SONARS[side] for side in sides])]
 
     def renew_sonar(self) -> None:
         """Switch the sonars of a robot on that has come back, if they were to be on."""
@@ -164,20 +117,93 @@ class ReadingFunctions(ExtractorUse):
             self.sonar_on = False
             self.stop_extractor(SONAR, "goals")
 
-    def _switch_sonar(self, enable: bool) -> None:
+    def switch_sonar(self, enable: bool) -> None:
         if enable and not self.sonar_on:
             self.start_extractor(SONAR, "goals")
             self.sonar_on = True
         elif not enable:
             self.drop_sonar()
 
-    def _values(self, keys: Sequence[str]) -> list[Any]:
+    def values(self, keys: Sequence[str]) -> list[Any]:
         return list(self.call(self.robot.proxy(MEMORY), "getListData", list(keys)))
+
+
+class ReadingFunctions(Part):
+    """Parameters are fields of TactileFunction."""
+
+    def __init__(self, module: NaoBasic, senses: Senses) -> None:
+        self._module = module
+        self._senses = senses
+
+    def get_touched(self, sensors: Sensors) -> list[str]:
+        """Which sensors are touched now."""
+        return self._senses.measurements.touch(self._senses.contacts(sensors_of(sensors)))
+
+    def get_bumpers(self, sensors: Bumpers) -> list[str]:
+        """Which bumpers are pressed now."""
+        return self._senses.measurements.touch(self._senses.contacts(sensors_of(sensors or ["bumpers"])))
+
+    def get_sonar(self, sensors: Sonars) -> list[float]:
+        """How far away what the sonars hear is, m, infinite if they hear nothing; they are switched on for it."""
+        sides = words_of(sensors, SIDES, "sonar")
+        if self._senses.sonar_on:
+            distances = self._senses.sonar(sides)
+        else:
+            with self._senses.subscribed(SONAR, "read"):
+                self._senses.wait(SONAR_START)
+                distances = self._senses.sonar(sides)
+        self._senses.measurements.sonars += zip(sides, distances)
+        return distances
+
+    def get_fsr(self, sensors: Feet) -> list[float]:
+        """What rests on the corners of the feet and on each of them, kg."""
+        names, keys = [], []
+        for foot in words_of(sensors, FEET, "foot"):
+            names += [f"{foot} {_words(corner)}" for corner in CORNERS] + [foot]
+            keys += weight_keys(foot.split()[0])
+        weights = [_number(value) for value in self._senses.values(keys)]
+        self._senses.measurements.weights += zip(names, weights)
+        return weights
+
+    def get_battery(self) -> float:
+        """Charge of the battery, 0..1; current, voltage and what else is known are in the result."""
+        charge, current, temperature, voltage, rest, full, status = self._senses.values(BATTERY_KEYS)
+        state = BatteryState(present=charge is not None, percentage=_number(charge), current=_number(current))
+        state.header.stamp = Time.from_sec(self._module.clock.now())
+        state.temperature = _number(temperature)
+        state.voltage = _number(voltage) / 1000.0  # mV
+        state.charge, state.capacity = _number(rest) / 1000.0, _number(full) / 1000.0  # mAh
+        state.design_capacity = math.nan
+        state.power_supply_technology = BatteryState.POWER_SUPPLY_TECHNOLOGY_LION
+        state.power_supply_status = _supply(status, state.current)
+        self._senses.measurements.batteries.append(state)
+        return _number(charge)
+
+    def get_temperatures(self, sensors: Warm) -> list[float]:
+        """How warm motors, the computer in the head and the battery are, degrees Celsius."""
+        joints = self._joints(sensors)
+        names = [name for name in (*joints, HEAD, PACK) if not sensors or name in joints or name in sensors]
+        devices = [{HEAD: "Head", PACK: "Battery"}.get(name, name) for name in names]
+        warmths = [_number(value) for value in self._senses.values([temperature_key(device) for device in devices])]
+        states = self._senses.values([sensor_key(f"{device}/Temperature", "Status") for device in devices])
+        self._senses.measurements.heat += [
+            (name, warmth, int(state or 0)) for name, warmth, state in zip(names, warmths, states)
+        ]
+        return warmths
+
+    def set_sonar_enabled(self, enable: Enable, revert: Revert) -> None:
+        """Keep the sonars measuring until they are switched off again, or let them be silent."""
+        before = self._senses.sonar_on
+        self._senses.switch_sonar(enable)
+        if revert:
+            self._module.after_wait(lambda: self._senses.switch_sonar(before))
+        if enable and not before:
+            self._senses.wait(SONAR_START)  # what follows finds no old distances
 
     def _joints(self, sensors: Sequence[str]) -> list[str]:
         """Joints behind names of joints and chains."""
-        motion = self.robot.proxy("ALMotion")
-        body = [name for name in self.call(motion, "getBodyNames", "Body")]
+        motion = self._module.robot.proxy("ALMotion")
+        body = [name for name in self._module.call(motion, "getBodyNames", "Body")]
         if not sensors:
             return body
         found: list[str] = []
@@ -193,13 +219,7 @@ class ReadingFunctions(ExtractorUse):
         if name not in known:
             problem = f"{name!r} is nothing whose temperature is known{did_you_mean(name, known)}"
             raise BadGoal("sensors", name, f"one of {', '.join(known)}", problem=problem)
-        return list(self.call(motion, "getBodyNames", name))
-
-    def stamp(self) -> Any:
-        """ROS time of now, as messages have it."""
-        from genpy import Time
-
-        return Time.from_sec(self.clock.now())
+        return list(self._module.call(motion, "getBodyNames", name))
 
     functions = {
         "getTouched": get_touched,

@@ -153,11 +153,8 @@ class Detectors(ExtractorUse):
             subscriber: Begin of the names of subscriptions: of each robot's clients no two have the same.
             frame_prefix: Prefix of the robot's frames, with its slash; may be empty.
         """
+        super().__init__(module, subscriber)
         self.module = module
-        self.robot, self.robot_clock = module.robot, module.robot_clock
-        self.clock, self.interrupt = module.clock, module.interrupt
-        self.call, self.call_now = module.call, module.call_now
-        self.subscriber = subscriber
         self._cameras = cameras
         self._results = results
         self._prefix = frame_prefix
