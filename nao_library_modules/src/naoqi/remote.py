@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from threading import get_ident
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, List, Optional
 
 from . import wire
 from .calls import Call
@@ -135,12 +135,12 @@ class RemoteMethod:
                 that is interrupted from the keyboard, is cancelled on the robot too.
         """
         try:
-            return self._wait_for(self._send(arguments))
+            return self._wait_for(RemoteMethod.start(self, *arguments))
         except RobotUnreachable as error:
             if str(error.__cause__) not in NOT_SENT or self.module.connection.live is None:
                 raise
         # The module had left and perhaps come back. Nothing had been sent, so that sending it again is safe.
-        return self._wait_for(self._send(arguments))
+        return self._wait_for(RemoteMethod.start(self, *arguments))
 
     def start(self, *arguments: Any) -> Call:
         """Call it without waiting.
@@ -151,30 +151,25 @@ class RemoteMethod:
             UnknownModule: If the robot does not have the module.
             BadArguments: If an argument cannot travel.
         """
-        return self._send(arguments)
-
-    def _send(self, arguments: Tuple[Any, ...]) -> Call:
         connection = self.module.connection
         presence, thread = connection.presence, get_ident()
         presence.enter(thread)  # before looking for the session: when that is closed, nobody new comes in
         try:
-            return self._sent(connection.live, arguments)
+            live = connection.live
+            if live is None or live is not self._live or live.services.get(self.module.name) is not self._service:
+                self._bind(live)
+            try:
+                sent = wire.to_wire(arguments, self._takes_raw)
+            except wire.UnsendableError as error:
+                raise BadArguments(self.module.name, self.name, arguments, self._readable(), str(error)) from None
+            witness = connection.witness
+            seen = witness(self.module.name, self.name, arguments) if witness is not None else None
+            call = Call(self._bound(*sent, _async=True), self, arguments)
+            if seen is not None:
+                call.add_done_callback(seen)
+            return call
         finally:
             presence.leave(thread)
-
-    def _sent(self, live: Optional[Live], arguments: Tuple[Any, ...]) -> Call:
-        if live is None or live is not self._live or live.services.get(self.module.name) is not self._service:
-            self._bind(live)
-        try:
-            sent = wire.to_wire(arguments, self._takes_raw)
-        except wire.UnsendableError as error:
-            raise BadArguments(self.module.name, self.name, arguments, self._readable(), str(error)) from None
-        witness = self.module.connection.witness
-        seen = witness(self.module.name, self.name, arguments) if witness is not None else None
-        call = Call(self._bound(*sent, _async=True), self, arguments)
-        if seen is not None:
-            call.add_done_callback(seen)
-        return call
 
     def _wait_for(self, call: Call) -> Any:
         try:
@@ -243,6 +238,6 @@ class SubscribingMethod(RemoteMethod):
                 return  # whoever made the call hears of it
             self.module.connection.subscriptions.note(self.name, arguments)
 
-        call = self._send(arguments)
+        call = super().start(*arguments)
         call.add_done_callback(note)
         return call

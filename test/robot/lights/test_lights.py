@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import traceback
+
 import pytest
 from goal_functions import led as f
+
+from naoqi.remote import RemoteMethod
 
 EYES = [f"Face/Led/{{}}/{side}/{angle}Deg" for side in ("Left", "Right") for angle in range(0, 360, 45)]
 PARTS = ("Red", "Green", "Blue")
@@ -212,3 +216,18 @@ def test_a_bad_function_in_a_chain_changes_nothing_and_says_what_is_wrong(robot,
         assert goal.text.startswith(f"function 2 ({message.function}): ") and text in goal.text
     assert robot.led(BRAIN0) == 1.0
     lights.succeed(f("off", lights=["Brain0"]))
+
+
+def test_the_way_of_a_goal_to_the_robot_is_short(lights, monkeypatch):
+    ways = []
+    start = RemoteMethod.start
+
+    def seen(method, *arguments):
+        frames = [frame.name for frame in traceback.extract_stack() if "/src/" in frame.filename]
+        if method.name == "fadeRGB":
+            ways.append(frames[frames.index("execute_cb") :])
+        return start(method, *arguments)
+
+    monkeypatch.setattr(RemoteMethod, "start", seen)
+    lights.succeed(f("setColor", lights=["FaceLeds"], str_param="green"))
+    assert ways == [["execute_cb", "_run_chain", "_run_step", "run", "set_color", "_act", "call", "call_async"]]

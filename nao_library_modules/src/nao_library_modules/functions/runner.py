@@ -58,7 +58,9 @@ class FunctionRunner:
             NaoError: If the call fails.
             Preempted: If a new goal, a cancel or the end of the node came first.
         """
-        return self.call_all(proxy, method, [args])[0]
+        interrupt = getattr(self._asking, "interrupt", self.interrupt)
+        interrupt.check()
+        return wait_for_calls([proxy.call_async(method, *args)], interrupt)[0]
 
     def call_all(self, proxy: Any, method: str, arguments: Sequence[Sequence[Any]]) -> list[Any]:
         """Call a method several times at once and wait for all, as `call` does for one.
@@ -108,18 +110,17 @@ class FunctionRunner:
         binding.run_check(message, context)
         return list(args)
 
+    def before_run(self) -> None:
+        """Called before each function."""
+
     @staticmethod
-    def _called(function: Callable[..., Any], args: Sequence[Any]) -> Any:
+    def _require_arguments(function: Callable[..., Any], args: Sequence[Any]) -> None:
+        signature = inspect.signature(function)
         try:
-            return function(*args)
-        except TypeError:
-            signature = inspect.signature(function)
-            try:
-                signature.bind(*args)
-            except TypeError as error:
-                taken = f"{signature}: `args_of(message)` gives what the function takes of a message"
-                raise BadGoal("args", list(args), taken, problem=str(error)) from None
-            raise
+            signature.bind(*args)
+        except TypeError as error:
+            taken = f"{signature}: `args_of(message)` gives what the function takes of a message"
+            raise BadGoal("args", list(args), taken, problem=str(error)) from None
 
     def run(
         self,
@@ -144,12 +145,17 @@ class FunctionRunner:
             BadGoal: If it takes other arguments.
             Preempted: If a new goal, a cancel or the end of the node interrupts it.
         """
+        self.before_run()
         callable_ = self.chain.look_up(function)
         outer = getattr(self._clean_up, "actions", None)  # a function may run another one
         actions: list[Callable[[], None]] = []
         self._clean_up.actions = actions
         try:
-            answer = self._called(callable_, args)
+            try:
+                answer = callable_(*args)
+            except TypeError:
+                self._require_arguments(callable_, args)
+                raise
             if on_answer is not None:
                 on_answer(answer)
             self.wait(seconds(sleep_time))

@@ -68,7 +68,7 @@ class LedAccess:
             NaoError: If the robot cannot be asked.
         """
         generation = self._robot.connection.generation
-        proxy = self._proxy()
+        proxy = self.proxy
         short_names = self._call(proxy, "listLEDs")
         group_names = self._call(proxy, "listGroups")
         # All at once: one after the other, well over a hundred calls take a second on a wireless network.
@@ -81,16 +81,8 @@ class LedAccess:
     def create_group(self, name: str, lights: Sequence[str]) -> None:
         """Make a group on the robot; groups in it are resolved, for ALLeds promises to take lights only."""
         names = self.names.with_group(name, lights)
-        self._call(self._proxy(), "createGroup", name, list(names.groups[name]))
+        self._call(self.proxy, "createGroup", name, list(names.groups[name]))
         self._names = names
-
-    def call(self, method: str, arguments: Sequence[tuple[Any, ...]], together: bool) -> None:
-        """Call ALLeds once for each tuple of arguments, in order or at the same time."""
-        if together:
-            self._call_all(self._proxy(), method, arguments)
-        else:
-            for values in arguments:
-                self._call(self._proxy(), method, *values)
 
     def list_names(self, method: str) -> list[str]:
         """Names as the robot lists them.
@@ -98,7 +90,7 @@ class LedAccess:
         Args:
             method: listLEDs or listGroups.
         """
-        return list(self._call(self._proxy(), method))
+        return list(self._call(self.proxy, method))
 
     def read(self, lights: Iterable[str]) -> Values:
         """Values of the LEDs behind lights and groups, 0..1.
@@ -134,12 +126,14 @@ class LedAccess:
         values = self.read(lights)
 
         def restore() -> None:
-            proxy = self._proxy()
+            proxy = self.proxy
             pending = [proxy.call_async(method, *args) for method, args in restoring_calls(names, lights, values)]
             for call in pending:
                 call.result(timeout=CLEAN_UP_LIMIT)
 
         return restore
 
-    def _proxy(self) -> Any:
+    @property
+    def proxy(self) -> Any:
+        """The proxy of ALLeds."""
         return self._robot.proxy(LEDS)

@@ -115,7 +115,8 @@ class NaoLights(NaoBasic):
     @checked_by(check_colours)
     def set_color(self, lights: ColouredLights, i_values: Colours, str_param: ColourText, revert: Revert) -> None:
         """Set colours at once; one for all lights, or one a light."""
-        self.fade_rgb(lights, i_values, str_param, 0.0, revert)
+        fades = [(*colour, 0.0) for colour in colours(lights, i_values, str_param)]
+        self._act(lights, revert, "fadeRGB", self._each(lights, fades))
 
     @checked_by(check_readable_colours)
     def get_color(self, lights: ColouredLights) -> list[list[float]]:
@@ -246,7 +247,11 @@ class NaoLights(NaoBasic):
         self._touch(lights)
         if revert:
             self.after_wait(self.leds.restorer(lights))
-        self.leds.call(method, arguments, together)
+        if together:
+            self.call_all(self.leds.proxy, method, arguments)
+            return
+        for values in arguments:
+            self.call(self.leds.proxy, method, *values)
 
     # Checks and results
 

@@ -305,7 +305,7 @@ class NaoBasic(FunctionRunner):
 
     def execute_cb(self, goal: Any) -> None:
         """Carry out a goal: check the whole chain, run its functions, set the end state and the result."""
-        self._heed_own_server()
+        self.before_run()
         self._await_robot(goal)
         self.begin_chain()
         outcomes: list[Outcome] = []
@@ -324,12 +324,8 @@ class NaoBasic(FunctionRunner):
         self._goals.ended(end, text)
         getattr(self.server, f"set_{end}")(result, text)
 
-    def run(self, function: str, args: Sequence[Any], sleep_time: Any, *more: Any) -> Any:
-        """As FunctionRunner.run; a preemption of an action server that the module has made itself ends it as well."""
-        self._heed_own_server()
-        return super().run(function, args, sleep_time, *more)
-
-    def _heed_own_server(self) -> None:
+    def before_run(self) -> None:
+        """Have preemption of an action server that the module has made itself end what runs."""
         server = self.server
         if server is self._served:
             return
