@@ -78,7 +78,8 @@ def servers(robot, goals_to, lights):
 @pytest.fixture
 def behaviors(goals_to, servers, tmp_path):
     goals = goals_to(NaoBehavior, NaoBehaviorGoal, behavior_dir=tmp_path, clients=servers)
-    goals.module.tables = TABLES  # looking them up takes a while
+    for owner in (goals.module, *goals.module.parts):
+        owner.tables = TABLES  # looking them up takes a while
     for name, text in TEXTS.items():
         goals.module.store.save(name, text)
     return goals
@@ -178,7 +179,7 @@ def test_what_cannot_be_done_is_refused_before_anything_happens(behaviors, robot
     before = {name: store.text(name) for name in store.names()}
     for functions, told in REFUSED:
         assert told in behaviors.refused(f("runBehavior", "lights"), *functions), told
-        assert behaviors.module.recording is None
+        assert behaviors.module.recordings.recording is None
     assert value(robot, BRAIN) == 1.0 and {name: store.text(name) for name in store.names()} == before
     assert "got no goal so far" in behaviors.refused(f("storeBehavior", "x", server="NaoLights"))
 
@@ -231,7 +232,7 @@ def test_a_recording_that_is_preempted_or_that_the_node_ends_keeps_what_came(beh
     told = [(each.what, each.state) for each in goal.feedback if each.behavior]
     assert goal.state == "preempted"
     assert told == [("recordBehavior", "recording"), ("NaoLights.setColor", "recorded")]
-    assert "setColor" in behaviors.module.store.text("taken") and behaviors.module.recording is None
+    assert "setColor" in behaviors.module.store.text("taken") and behaviors.module.recordings.recording is None
     (result,) = goal.result.results
     assert list(result.values) == ["taken", "1", f"written: {behaviors.module.store.path('taken')}"]
     behaviors.succeed(f("recordBehavior", "other"))

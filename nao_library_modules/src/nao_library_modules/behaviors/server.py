@@ -7,33 +7,29 @@ from pathlib import Path
 from typing import Any
 
 from nao_library_actions.msg import NaoBehaviorAction
-from nao_library_msgs.msg import FunctionResult
 from nao_library_msgs.srv import ListBehaviors, ListBehaviorsResponse
 
 from ..base.answers import Outcome
 from ..base.paths import config_file
+from ..functions.parts import joined
 from ..processes.launcher import LaunchPath
 from ..server.nao_basic import NaoBasic
-from .language.checking import Facts, facts_of
+from .language.checking import facts_of
 from .language.reader import NAME
 from .language.servers import NAMES, FunctionTables
 from .language.store import BehaviorStore
 from .run.clients import Clients, GoalLog, describe, running
-from .run.library_functions import KeepingFunctions
-from .run.recording import Recording
-from .run.recording_functions import NotingFunctions
-from .run.report import Event, Record
+from .run.library_functions import LibraryFunctions
+from .run.recording_functions import RecordingFunctions
 from .run.running import RunningFunctions, info_message, step_message
 
 PARAMETERS = {"behavior_dir": "~/.ros/nao_behaviors"}
 """Private parameters of the node -> default."""
-LONGEST_NAMES = 200
-"""Characters that tell of a goal that was recorded."""
 SHIPPED = "behaviors"
 """Folder in `config` with those that come with the library."""
 
 
-class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions):
+class NaoBehavior(NaoBasic):
     """Behaviour goals: run what is written down for all modules together; store it, list it, record it.
 
     A behaviour sends goals to the other servers, as any client does. Preempted, it cancels all of them at once, and
@@ -42,7 +38,8 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
     Attributes:
         store: Behaviours by name.
         tables: Functions of the servers.
-        recording: The one that goes on; None if none does.
+        runs: Runs behaviours.
+        recordings: Records them.
 
     ROS API:
         Action `NaoBehavior` (nao_library_actions/NaoBehaviorAction) and what NaoBasic offers. Service
@@ -50,7 +47,8 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
         others send. Parameter `~behavior_dir`: folder of the user's behaviours.
     """
 
-    without_robot = frozenset({**RunningFunctions.functions, **KeepingFunctions.functions, **NotingFunctions.functions})
+    part_types = (RunningFunctions, LibraryFunctions, RecordingFunctions)
+    without_robot = frozenset(joined(part_types))
     """The servers of the steps need it."""
 
     def __init__(
@@ -63,74 +61,38 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
         clients: Any = None,
         **options: Any,
     ) -> None:
-        """Start the server.
+        """Start the server; arguments as NaoBasic takes them, but for two.
 
         Args:
-            ip: Address of the robot.
-            port: Port of its NAOqi.
-            autostart: As NaoBasic takes it.
-            launchpath: As NaoBasic takes it.
             behavior_dir: Folder of the user's behaviours; under ROS_HOME if relative, "~" stands for the home.
             clients: Clients of the servers by name, where not those of this process's node.
-            options: As NaoBasic takes them.
         """
         super().__init__(ip, port, autostart, launchpath, **options)
         self.store = BehaviorStore(Path(behavior_dir).expanduser(), config_file(SHIPPED))
         self.tables = FunctionTables(describe, running)
-        self.clients = clients or Clients(self.tables.server)
-        self.goals = GoalLog(self._node, map(self.tables.server, NAMES))
-        self.recording: Recording | None = None
-        self.steps: list[Record] = []
-        self.shown: list[Facts] = []
-        self.cut_short: list[FunctionResult] = []
-        self.replaced = self.ended_behavior = ""
+        goals = GoalLog(self._node, map(self.tables.server, NAMES))
+        self.runs = RunningFunctions(self, self.store, self.tables, clients or Clients(self.tables.server))
+        self.recordings = RecordingFunctions(self, self.store, self.tables, goals)
+        self.add_parts(self.runs, LibraryFunctions(self, self.store, self.tables, goals), self.recordings)
         self._node.serve("NaoBehavior/list", ListBehaviors, self.answer_list)
         self.serve("NaoBehavior", NaoBehaviorAction)
 
     # The life of a goal
 
     def begin_chain(self) -> None:
-        """Forget what the last chain did, but for what it was doing when this one came."""
-        self.steps, self.shown, self.cut_short = [], [], []
-        self.replaced, self.ended_behavior = self.ended_behavior, ""
-
-    def tell(self, event: Event) -> None:
-        """Publish what happens to a step. Called from threads of the plan, one after the other."""
-        node = event.node
-        self.publish_feedback(
-            behavior=node.behavior,
-            path=node.where,
-            label=node.label,
-            what=node.what,
-            state=event.state,
-            time=event.time,
-            text=event.text,
-        )
-
-    def tell_recording(self) -> None:
-        """Publish that what is sent from now on is recorded."""
-        if self.recording is not None:
-            self.publish_feedback(behavior=self.recording.name, what="recordBehavior", state="recording")
-
-    def tell_recorded(self, server: str, goal: Any) -> None:
-        """Publish that a goal was recorded, while a goal records. Called from threads of subscribers."""
-        _, function, _ = self._progress
-        if self._idle.is_set() or self.recording is None or function != "recordBehavior":
-            return
-        names = ", ".join(each.function for each in getattr(goal, goal.__slots__[0]))
-        what = f"{server}.{names}"[:LONGEST_NAMES]
-        self.publish_feedback(behavior=self.recording.name, what=what, state="recorded")
+        self.runs.begin_goal()
+        self.recordings.cut_short = []
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add what became of the steps, and what was asked about behaviours."""
         super().fill_result(result, outcomes)
-        result.results += self.cut_short
-        result.steps = [step_message(record) for record in self.steps]
-        result.behaviors = [info_message(facts, self._is_shipped(facts.name)) for facts in self.shown]
+        result.results += self.recordings.cut_short
+        result.steps = [step_message(record) for record in self.runs.steps]
+        result.behaviors = [info_message(facts, self._is_shipped(facts.name)) for facts in self.runs.shown]
 
     def shutdown_steps(self) -> list[Callable[[], Any]]:
         """As NaoBasic has them; a recording that goes on is stored."""
-        return [*super().shutdown_steps(), self.keep_recording]
+        return [*super().shutdown_steps(), self.recordings.keep_recording]
 
     def argument_choices(self, function: str, field: str) -> Sequence[str]:
         """Names of the behaviours, for the description of the functions."""
@@ -142,7 +104,7 @@ class NaoBehavior(NaoBasic, RunningFunctions, KeepingFunctions, NotingFunctions)
         if request.name or request.text:
             there = request.text or request.name in self.store.names()
             asked = (request.name, request.text, request.file, request.parameters, request.validate)
-            facts = [self.preview(*asked)] if there else []
+            facts = [self.runs.preview(*asked)] if there else []
         else:
             facts = [facts_of(name, self.store.load, self.tables) for name in self.store.names()]
         return ListBehaviorsResponse(

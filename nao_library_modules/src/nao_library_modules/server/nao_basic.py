@@ -405,6 +405,12 @@ class NaoBasic(FunctionRunner):
         """
         return steps
 
+    @property
+    def running_function(self) -> str:
+        """Name of the function that a goal runs; empty while none does."""
+        names, index = self._running
+        return names[index] if names else ""
+
     def remark(self, text: str) -> None:
         """Have the text of the goal say something if it succeeds, of the function that runs."""
         names, index = self._running

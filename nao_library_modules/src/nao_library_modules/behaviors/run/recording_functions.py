@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from nao_library_msgs.msg import FunctionResult
@@ -13,12 +13,15 @@ from naoqi.errors import NaoError
 from ...base.errors import BadGoal
 from ...base.whole_file import written
 from ...functions.chain import checked_by
+from ...functions.parts import Part
+from ...server.nao_basic import NaoBasic
 from ..language.binder import bind
 from ..language.planned import PlannedStore
 from ..language.reader import read
 from ..language.servers import NAMES, FunctionTables
 from ..language.store import BehaviorStore
 from ..language.writer import text_of
+from .clients import GoalLog
 from .fields import Length, Overwrite, Servers, StoredName
 from .recording import Recording
 
@@ -28,36 +31,11 @@ ON_THE_WAY = 0.2
 """s of the computer that a goal may take to be heard of."""
 TAG = "recorded"
 BEGUN = "recording"
+LONGEST_NAMES = 200
+"""Characters of the feedback for a goal that was recorded."""
 
 
-def check_recording(
-    self: NotingFunctions,
-    str_param: str,
-    servers: Sequence[str],
-    duration: float,
-    overwrite: bool,
-    context: dict[str, Any],
-) -> None:
-    """A name that is free, servers, and no other recording."""
-    planned = PlannedStore.of(self.store, context)
-    planned.require_free(str_param, overwrite)
-    for server in servers:
-        self.tables.server(server, "servers")
-    if context.get(BEGUN, self.recording is not None):
-        name = self.recording.name if self.recording is not None else "of this chain"
-        raise BadGoal("function", "recordBehavior", "stopRecording before", problem=f"the recording {name} goes on")
-    context[BEGUN] = duration == 0.0
-    planned.put(str_param, None)
-
-
-def check_stop(self: NotingFunctions, context: dict[str, Any]) -> None:
-    """A recording that goes on."""
-    if not context.get(BEGUN, self.recording is not None):
-        raise BadGoal("function", "stopRecording", "recordBehavior before", problem="nothing is recorded")
-    context[BEGUN] = False
-
-
-class NotingFunctions:
+class RecordingFunctions(Part):
     """Functions that record behaviours. Parameters are fields of BehaviorFunction.
 
     Attributes:
@@ -65,30 +43,47 @@ class NotingFunctions:
         cut_short: What a recording that was interrupted has left, for the result of the chain.
     """
 
-    store: BehaviorStore
-    tables: FunctionTables
-    recording: Recording | None
-    cut_short: list[FunctionResult]
-    remark: Callable[[str], None]  # of NaoBasic
-    goals: Any  # GoalLog
-    tell_recording: Callable[[], None]  # of NaoBehavior
-    tell_recorded: Callable[[str, Any], None]  # of NaoBehavior
-    wait: Callable[[float], None]  # of NaoBasic: a wait that preemption ends
+    def __init__(self, module: NaoBasic, store: BehaviorStore, tables: FunctionTables, goals: GoalLog) -> None:
+        self._module = module
+        self._store = store
+        self.tables = tables
+        self._goals = goals
+        self.recording: Recording | None = None
+        self.cut_short: list[FunctionResult] = []
 
-    @checked_by(check_recording)
+    def _check_recording(
+        self,
+        str_param: str,
+        servers: Sequence[str],
+        duration: float,
+        overwrite: bool,
+        context: dict[str, Any],
+    ) -> None:
+        """A name that is free, servers, and no other recording."""
+        planned = PlannedStore.of(self._store, context)
+        planned.require_free(str_param, overwrite)
+        for server in servers:
+            self.tables.server(server, "servers")
+        if context.get(BEGUN, self.recording is not None):
+            name = self.recording.name if self.recording is not None else "of this chain"
+            raise BadGoal("function", "recordBehavior", "stopRecording before", problem=f"the recording {name} goes on")
+        context[BEGUN] = duration == 0.0
+        planned.put(str_param, None)
+
+    @checked_by(_check_recording)
     def record_behavior(
         self, str_param: StoredName, servers: Servers, duration: Length, overwrite: Overwrite
     ) -> list[str] | None:
         """Record what anybody sends to the servers, for `duration`, or on until stopRecording; answers as that does."""
         for server in servers:
-            self.goals.listen(self.tables.server(server, "servers"))
-        self.recording = Recording(str_param, servers or NAMES, overwrite, self.tell_recorded)
-        self.goals.record(self.recording)
-        self.tell_recording()
+            self._goals.listen(self.tables.server(server, "servers"))
+        self.recording = Recording(str_param, servers or NAMES, overwrite, self._publish_recorded)
+        self._goals.record(self.recording)
+        self._module.publish_feedback(behavior=str_param, what="recordBehavior", state="recording")
         if duration == 0.0:
             return None
         try:
-            self.wait(duration)
+            self._module.wait(duration)
         except BaseException:
             # What came until then is kept; why it ends is what the goal tells.
             kept = self.keep_recording()
@@ -97,11 +92,17 @@ class NotingFunctions:
             raise
         return self.stop_recording()
 
-    @checked_by(check_stop)
+    def _check_stop(self, context: dict[str, Any]) -> None:
+        """A recording that goes on."""
+        if not context.get(BEGUN, self.recording is not None):
+            raise BadGoal("function", "stopRecording", "recordBehavior before", problem="nothing is recorded")
+        context[BEGUN] = False
+
+    @checked_by(_check_stop)
     def stop_recording(self) -> list[str]:
         """End a recording and store it; answers its name, how many goals it has, and what was left out."""
         answer, told = self._store_recording()
-        self.remark(told)
+        self._module.remark(told)
         return answer
 
     def keep_recording(self) -> list[str]:
@@ -129,17 +130,26 @@ class NotingFunctions:
         # among each other, and only the senders know how many messages they have handed to their connections.
         time.sleep(ON_THE_WAY)
         recording, self.recording = self.recording, None
-        self.goals.record(None)
+        self._goals.record(None)
         if recording is None:
             raise BadGoal("function", "stopRecording", "recordBehavior before", problem="nothing is recorded")
         entries, left_out = recording.timeline(self._check_step)
         length = max(entry["at"] for entry in entries)
         text = text_of(f"Recorded: {len(entries)} goals in {length:.1f} s.", [{"timeline": entries}], [TAG])
-        path = self.store.save(recording.name, text, recording.overwrite, numbered=True)
-        return [path.stem, str(len(entries)), *left_out], written(path, self.store.path(recording.name))
+        path = self._store.save(recording.name, text, recording.overwrite, numbered=True)
+        return [path.stem, str(len(entries)), *left_out], written(path, self._store.path(recording.name))
 
     def _check_step(self, step: dict[str, Any]) -> None:
-        bind(read(text_of("A step.", [step]), "recording"), {}, self.store.load, self.tables)
+        bind(read(text_of("A step.", [step]), "recording"), {}, self._store.load, self.tables)
+
+    def _publish_recorded(self, server: str, goal: Any) -> None:
+        """Publish that a goal was recorded, while a goal records. Called from threads of subscribers."""
+        recording = self.recording
+        if recording is None or self._module.running_function != "recordBehavior":
+            return
+        names = ", ".join(each.function for each in getattr(goal, goal.__slots__[0]))
+        what = f"{server}.{names}"[:LONGEST_NAMES]
+        self._module.publish_feedback(behavior=recording.name, what=what, state="recorded")
 
     functions = {
         "recordBehavior": record_behavior,

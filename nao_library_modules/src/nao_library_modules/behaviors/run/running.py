@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import PurePath
 from typing import Any
 
 from nao_library_msgs.msg import BehaviorInfo, BehaviorParameter, BehaviorProblem, BehaviorStep
 
-from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
 from ...functions.chain import checked_by
 from ...functions.check_service import NotValidated
 from ...functions.goal_checks import GoalCheck
+from ...functions.parts import Part
 from ...process_modules.language.failures import PlanFailure
+from ...server.nao_basic import NaoBasic
 from ..language.binder import Library
 from ..language.checking import Facts, check_given, facts_of, outlook_facts
 from ..language.model import Behavior
@@ -31,32 +32,6 @@ UNNAMED = "text"
 """What a behaviour is called that has no name yet."""
 
 
-def check_run(
-    self: RunningFunctions, str_param: str, text: str, file: str, parameters: Sequence[str], context: dict[str, Any]
-) -> None:
-    """A behaviour, stored or in `text`, that can be run with these values; its servers look at all of its goals."""
-    if text.strip():
-        _require_one(str_param, text)
-    planned = PlannedStore.of(self.store, context)
-    try:
-        behavior = _behavior(planned.load, str_param, text, file)
-        check_given(behavior, planned.load, parameters, self.tables, self.ask)
-    except UnknownYet:
-        pass  # an earlier function of this chain records it
-
-
-def check_name(self: RunningFunctions, str_param: str, context: dict[str, Any]) -> None:
-    """A behaviour that is there."""
-    PlannedStore.of(self.store, context).text(str_param)
-
-
-def check_what(self: RunningFunctions, str_param: str, text: str, context: dict[str, Any]) -> None:
-    """A name or a text."""
-    _require_one(str_param, text)
-    if str_param.strip():
-        check_name(self, str_param, context)
-
-
 def _require_one(str_param: str, text: str) -> None:
     if bool(str_param.strip()) == bool(text.strip()):
         raise BadGoal("text", text[:200], EITHER)
@@ -66,41 +41,64 @@ def _behavior(load: Library, str_param: str, text: str, file: str) -> Behavior:
     return read(text, PurePath(file).stem or UNNAMED, file) if text.strip() else load(str_param)
 
 
-class RunningFunctions:
+class RunningFunctions(Part):
     """Functions that run and show behaviours. Parameters are fields of BehaviorFunction.
 
     Attributes:
         steps: What became of the steps of behaviours that this goal has run.
         shown: Behaviours that this goal has asked for.
-        replaced: Behaviour that the goal before ran when this one came; empty if none.
-        ended_behavior: Behaviour that this goal ran when the next one came.
     """
 
-    store: BehaviorStore
-    tables: FunctionTables
-    steps: list[Record]
-    shown: list[Facts]
-    replaced: str
-    ended_behavior: str
-    clients: Any  # Clients
-    interrupt: CancellationToken  # of NaoBasic
-    clock: Any  # of NaoBasic
-    tell: Callable[[Event], None]  # of NaoBehavior
+    def __init__(self, module: NaoBasic, store: BehaviorStore, tables: FunctionTables, clients: Any) -> None:
+        """Keep what the functions need.
 
-    @checked_by(check_run)
+        Args:
+            module: Publishes what happens to the steps.
+            store: Behaviours by name.
+            tables: Functions of the servers.
+            clients: Name of a server -> its client.
+        """
+        self._module = module
+        self._store = store
+        self.tables = tables
+        self._clients = clients
+        self.steps: list[Record] = []
+        self.shown: list[Facts] = []
+        self._replaced = ""  # behaviour that the goal before ran when this one came
+        self._ended = ""  # behaviour that this goal ran when the next one came
+
+    def begin_goal(self) -> None:
+        """Forget what the last goal did, but for what it was doing when this one came."""
+        self.steps, self.shown = [], []
+        self._replaced, self._ended = self._ended, ""
+
+    def _check_run(
+        self, str_param: str, text: str, file: str, parameters: Sequence[str], context: dict[str, Any]
+    ) -> None:
+        """A behaviour, stored or in `text`, that can be run with these values; its servers look at all of its goals."""
+        if text.strip():
+            _require_one(str_param, text)
+        planned = PlannedStore.of(self._store, context)
+        try:
+            behavior = _behavior(planned.load, str_param, text, file)
+            check_given(behavior, planned.load, parameters, self.tables, self.ask)
+        except UnknownYet:
+            pass  # an earlier function of this chain records it
+
+    @checked_by(_check_run)
     def run_behavior(self, str_param: NameOrNone, text: Text, file: File, parameters: Values) -> float:
         """Run a behaviour, stored or in `text`, and wait for its end; answers how long it took, s of ROS time."""
-        self.ended_behavior = ""
-        behavior = _behavior(self.store.load, str_param, text, file)
-        program, _ = check_given(behavior, self.store.load, parameters, self.tables)
-        execution = Execution(program, self.clients, self.clock, self.tell)
+        self._ended = ""
+        behavior = _behavior(self._store.load, str_param, text, file)
+        program, _ = check_given(behavior, self._store.load, parameters, self.tables)
+        execution = Execution(program, self._clients, self._module.clock, self._publish)
         try:
-            execution.run(self.interrupt)
+            execution.run(self._module.interrupt)
         except PlanFailure:
             try:
-                self.interrupt.check()
+                self._module.interrupt.check()
             except Preempted:
-                self.ended_behavior = behavior.name
+                self._ended = behavior.name
                 raise
             raise
         finally:
@@ -110,22 +108,32 @@ class RunningFunctions:
     def stop_behavior(self) -> list[str]:
         """End the behaviour that runs, and with it what it does; answers which one that was, nothing if none ran."""
         # Every goal replaces the one before: it was ended when this one came.
-        return [self.replaced] if self.replaced else []
+        return [self._replaced] if self._replaced else []
 
     def list_behaviors(self) -> list[str]:
         """Names of the behaviours, those that come with the library and one's own."""
-        names = self.store.names()
-        self.shown += [facts_of(name, self.store.load, self.tables) for name in names]
+        names = self._store.names()
+        self.shown += [facts_of(name, self._store.load, self.tables) for name in names]
         return names
 
-    @checked_by(check_name)
+    def _check_name(self, str_param: str, context: dict[str, Any]) -> None:
+        """A behaviour that is there."""
+        PlannedStore.of(self._store, context).text(str_param)
+
+    @checked_by(_check_name)
     def describe_behavior(self, str_param: Name) -> str:
         """The text of a behaviour; what it does, its parameters and servers are in the result as well."""
-        text = self.store.text(str_param)
+        text = self._store.text(str_param)
         self.shown.append(self.preview(str_param))
         return text
 
-    @checked_by(check_what)
+    def _check_what(self, str_param: str, text: str, context: dict[str, Any]) -> None:
+        """A name or a text."""
+        _require_one(str_param, text)
+        if str_param.strip():
+            self._check_name(str_param, context)
+
+    @checked_by(_check_what)
     def check_behavior(self, str_param: NameOrNone, text: Text, file: File, parameters: Values) -> list[str]:
         """What is wrong with a behaviour, stored or in `text`; nothing if it can be run; then the result tells more."""
         facts = self.preview(str_param.strip(), text, file, parameters, validate=True)
@@ -145,8 +153,8 @@ class RunningFunctions:
         """
         return outlook_facts(
             PurePath(file).stem or UNNAMED if text.strip() else name,
-            lambda: _behavior(self.store.load, name, text, file),
-            self.store.load,
+            lambda: _behavior(self._store.load, name, text, file),
+            self._store.load,
             self.tables,
             parameters,
             self.ask if validate else None,
@@ -158,10 +166,23 @@ class RunningFunctions:
         Raises:
             NotValidated: It does not.
         """
-        check = getattr(self.clients(server), "check", None)
+        check = getattr(self._clients(server), "check", None)
         if check is None:
             raise NotValidated("it cannot be asked")
         return check(goals)
+
+    def _publish(self, event: Event) -> None:
+        """Publish what happens to a step. Called from threads of the plan, one after the other."""
+        node = event.node
+        self._module.publish_feedback(
+            behavior=node.behavior,
+            path=node.where,
+            label=node.label,
+            what=node.what,
+            state=event.state,
+            time=event.time,
+            text=event.text,
+        )
 
     functions = {
         "runBehavior": run_behavior,
