@@ -7,7 +7,7 @@ from wrong_behaviors import GOOD, LINE, START, WRONG, wrong_text
 
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.behaviors import BehaviorError, BehaviorStore, check, problems_of, read
-from nao_library_modules.behaviors.language.checking import outlook_facts
+from nao_library_modules.behaviors.language.checking import preview_facts
 from nao_library_modules.behaviors.language.validation import ask_nobody
 from nao_library_modules.functions.check_service import CheckService, NotValidated, check_request, read_response
 from nao_library_modules.functions.goal_checks import GoalCheck, GoalProblem
@@ -96,14 +96,14 @@ do:
 
 def test_a_step_that_may_fail_ends_nothing_and_is_told(shipped, tables):
     text = "help: x\ndo:\n- {do: [{NaoLights.on: {lights: [FaceLed]}}, {wait: 0}], on_error: retry 1 skip}"
-    facts = outlook_facts("mine", lambda: read(text, "mine"), shipped.load, tables, (), ask_nobody)
+    facts = preview_facts("mine", lambda: read(text, "mine"), shipped.load, tables, (), ask_nobody)
     (told,) = facts.preview.unchecked
     assert facts.problem == "" and told.startswith("1.1 NaoLights.on: it would be skipped: field lights: unknown light")
 
 
 def test_the_behaviours_that_come_along_pass_without_servers(shipped, tables):
     for name in shipped.names():
-        facts = outlook_facts(name, lambda name=name: shipped.load(name), shipped.load, tables, (), ask_nobody)
+        facts = preview_facts(name, lambda name=name: shipped.load(name), shipped.load, tables, (), ask_nobody)
         assert facts.behavior is not None and facts.problems == () and facts.unvalidated, name
 
 
@@ -116,7 +116,7 @@ def test_a_server_that_answers_counts_and_one_that_does_not_is_told(shipped, tab
             raise NotValidated("it sleeps")
         return GoalCheck([GoalProblem(0, 0, "on", "lights", "it is broken")])
 
-    facts = outlook_facts("mine", lambda: read(wrong_text("light"), "mine", "mine.yaml"), shipped.load, tables, (), ask)
+    facts = preview_facts("mine", lambda: read(wrong_text("light"), "mine", "mine.yaml"), shipped.load, tables, (), ask)
     assert [str(problem) for problem in facts.problems] == [f"mine.yaml:{LINE}: step 2: it is broken"]
     assert asked == [("NaoMotion", ["goToPosture"]), ("NaoLights", ["on"])]
     other = "help: x\ndo:\n- repeat: 3\n  as: i\n  do: [{NaoLights.on: {lights: [FaceLeds], time: '${i}'}}]"
@@ -124,7 +124,7 @@ def test_a_server_that_answers_counts_and_one_that_does_not_is_told(shipped, tab
     problems_of(lambda: read(other, "mine"), shipped.load, tables, (), ask)
     assert asked == [("NaoLights", ["on", "on"])], "the first round and the last"
     good = "help: x\ndo: [{NaoMotion.goToPosture: {str_param: Stand}}]"
-    facts = outlook_facts("mine", lambda: read(good, "mine"), shipped.load, tables, (), ask)
+    facts = preview_facts("mine", lambda: read(good, "mine"), shipped.load, tables, (), ask)
     assert (facts.problem, facts.unvalidated) == ("", ("NaoMotion: it sleeps",))
 
 

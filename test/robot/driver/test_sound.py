@@ -14,7 +14,7 @@ from nao_library_modules.driver.audio.audio_player import AudioPlayer
 from nao_library_modules.driver.audio.audio_requests import read_recording
 from nao_library_modules.driver.audio.microphone import Microphone
 from nao_library_modules.driver.audio.speech import LONGEST_QUEUE, Speech
-from nao_library_modules.driver.audio.speech_recognition import Heard, Recognition, RecognitionInUse
+from nao_library_modules.driver.audio.speech_recognition import Recognition, RecognitionInUse, RecognizedWords
 from nao_library_modules.driver.audio.speech_settings import SpeechSettings
 from nao_library_modules.driver.base import lazy_subscription
 from naoqi.errors import NaoError, RobotError
@@ -280,7 +280,7 @@ def test_words_are_passed_on_whoever_listens_and_once_after_a_loss(recognition, 
     for value in (["", 0.0], ["yes", 0.7, "no", 0.1], ["<...> no <...>", 0.5]):
         robot.ALMemory.raiseEvent("WordRecognized", value)
     eventually(lambda: len(words()) == 2)
-    assert sorted(words(), key=str) == [Heard(("no",), (0.5,)), Heard(("yes", "no"), (0.7, 0.1))]
+    assert sorted(words(), key=str) == [RecognizedWords(("no",), (0.5,)), RecognizedWords(("yes", "no"), (0.7, 0.1))]
     recognition.start()
     driver_robot.lose()
     eventually(lambda: listeners(robot) == ["ros_nao_speech"] and recognition.report().message == "listens")

@@ -13,7 +13,7 @@ from nao_library_msgs.srv import DescribeFunctionsResponse, ListBehaviorsRespons
 
 from ..base.paths import config_file
 from ..behaviors import BehaviorStore, read
-from ..behaviors.language.checking import outlook_facts
+from ..behaviors.language.checking import preview_facts
 from ..behaviors.language.servers import FunctionTables, NotDescribed
 from ..behaviors.run.running import info_message
 from ..behaviors.server import PARAMETERS, SHIPPED
@@ -27,7 +27,7 @@ def check_offline(stack: Stack, request: Any) -> Any:
     name = PurePath(request.file).stem if request.text else request.name
     load = (lambda: read(request.text, name, request.file)) if request.text else (lambda: store.load(name))
     tables = FunctionTables(partial(_describe, stack), partial(_running, stack))
-    facts = outlook_facts(name, load, store.load, tables, request.parameters, partial(ask, stack))
+    facts = preview_facts(name, load, store.load, tables, request.parameters, partial(ask, stack))
     return ListBehaviorsResponse([info_message(facts, shipped=False)])
 
 

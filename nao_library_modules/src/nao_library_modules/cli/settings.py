@@ -26,14 +26,14 @@ class Settings:
         namespace: Of the robot; None: none was chosen.
         timeout: s of this computer that a goal may take; None for ever.
         completing: Whether the shell asks how a word can go on.
-        told_offline: Whether it was told that the answers come from the code.
+        described_offline: Whether it was told that the answers come from the code.
     """
 
     json: bool = False
     namespace: str | None = None
     timeout: float | None = None
     completing: bool = False
-    told_offline: bool = False
+    described_offline: bool = False
     _stack: Stack | None = field(default=None, repr=False)
 
     @property

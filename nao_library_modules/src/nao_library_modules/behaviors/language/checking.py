@@ -146,7 +146,7 @@ def facts_of(name: str, library: Library, tables: FunctionTables) -> Facts:
         return Facts(name, behavior, (), str(error), _problems(error))
 
 
-def outlook_facts(
+def preview_facts(
     name: str,
     load: Callable[[], Behavior],
     library: Library,

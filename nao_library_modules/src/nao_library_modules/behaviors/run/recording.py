@@ -21,7 +21,7 @@ MOST_GOALS = 10_000
 
 
 @dataclass
-class Heard:
+class HeardGoal:
     """A goal that was sent.
 
     Attributes:
@@ -55,7 +55,7 @@ class Recording:
         self.overwrite = overwrite
         self._tell = tell
         self._servers = frozenset(servers)
-        self._heard: dict[str, Heard] = {}
+        self._heard: dict[str, HeardGoal] = {}
         self._lock = threading.Lock()
 
     def sent(self, server: str, goal_id: str, goal: Any, time: float) -> None:
@@ -67,7 +67,7 @@ class Recording:
         with self._lock:
             if server not in self._servers or goal_id in self._heard or len(self._heard) >= MOST_GOALS:
                 return
-            self._heard[goal_id] = Heard(server, goal, time)
+            self._heard[goal_id] = HeardGoal(server, goal, time)
         self._tell(server, goal)
 
     def ended(self, goal_id: str, status: int, time: float) -> None:

@@ -16,7 +16,7 @@ from ...functions.parts import Part
 from ...process_modules.language.failures import PlanFailure
 from ...server.nao_basic import NaoBasic
 from ..language.binder import Library
-from ..language.checking import Facts, check_given, facts_of, outlook_facts
+from ..language.checking import Facts, check_given, facts_of, preview_facts
 from ..language.model import Behavior
 from ..language.parameters import Parameter
 from ..language.planned import PlannedStore, UnknownYet
@@ -151,7 +151,7 @@ class RunningFunctions(Part):
             parameters: Values as "name=value".
             validate: Whether its servers look at its goals.
         """
-        return outlook_facts(
+        return preview_facts(
             PurePath(file).stem or UNNAMED if text.strip() else name,
             lambda: _behavior(self._store.load, name, text, file),
             self._store.load,

@@ -135,9 +135,9 @@ def described_servers(
             raise
         from ..offline import described_by_code
 
-        if not settings.told_offline:
+        if not settings.described_offline:
             click.echo(f"{missing.message}\nthis is what the code says:", err=True)
-            settings.told_offline = True
+            settings.described_offline = True
         return described_by_code(server, brief, names, functions)
 
 

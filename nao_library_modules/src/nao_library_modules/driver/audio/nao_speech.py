@@ -31,7 +31,7 @@ from ...ros.ros_clock import RosClock
 from ..base.node import name_for_robot, publish
 from ..base.reconfigure import Field, serve, update
 from .speech import Speech
-from .speech_recognition import Heard, Recognition
+from .speech_recognition import Recognition, RecognizedWords
 from .speech_settings import (
     FORMER_NAMES,
     FULL_VOLUME,
@@ -149,7 +149,7 @@ class NaoSpeech:
         update(self._server, {"vocabulary": join_vocabulary(goal.words)})
         return Outcome(SetSpeechVocabularyResult(success=True))
 
-    def _publish(self, heard: Heard) -> None:
+    def _publish(self, heard: RecognizedWords) -> None:
         publish(self._words, WordRecognized(list(heard.words), list(heard.confidences)))
 
     # --- parameters -----------------------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ SPOTTED = re.compile(r"<\.\.\.>")
 
 
 @dataclass(frozen=True)
-class Heard:
+class RecognizedWords:
     """Recognised words or phrases, the best first."""
 
     words: tuple[str, ...]
@@ -44,7 +44,11 @@ class Recognition:
     """Has the robot listen for words on behalf of one subscriber. Any thread may call."""
 
     def __init__(
-        self, robot: Any, subscriber: str, settings: Callable[[], SpeechSettings], sink: Callable[[Heard], None]
+        self,
+        robot: Any,
+        subscriber: str,
+        settings: Callable[[], SpeechSettings],
+        sink: Callable[[RecognizedWords], None],
     ) -> None:
         """Start without listening; the robot need not be connected yet.
 
@@ -149,7 +153,7 @@ class Recognition:
             self._sink(heard)
 
 
-def read_heard(value: Any) -> Heard | None:
+def read_heard(value: Any) -> RecognizedWords | None:
     """Words from an event: [phrase, confidence, ...], the best first; "<...> phrase <...>" if spotted.
 
     None for an event that only takes back earlier words.
@@ -161,4 +165,4 @@ def read_heard(value: Any) -> Heard | None:
     if not pairs:
         return None
     words, confidences = zip(*pairs)
-    return Heard(words, confidences)
+    return RecognizedWords(words, confidences)
