@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import threading
+from concurrent.futures import Future
 from types import SimpleNamespace
 from unittest.mock import MagicMock, call
 
@@ -14,6 +16,7 @@ from hypothesis import strategies as st
 from rospy import Time
 
 from almath import Pose2D, areTwoBoxesInCollision, computeBox
+from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.kept import Kept
 from nao_library_modules.base.places import Place
@@ -33,6 +36,7 @@ from nao_library_modules.driver.walk.walk_inhibition import NotInhibited, WalkIn
 from nao_library_modules.driver.walk.walk_orders import Mailbox, Order, Stop, WalkEnded
 from nao_library_modules.driver.walk.walk_report import WalkJournal
 from nao_library_modules.driver.walk.walk_timing import PACE, REFRESH, WalkPace, WalkWatchdog
+from nao_library_modules.driver.walk.walker import Walker
 from nao_library_modules.ros.health import Level
 from nao_library_msgs.msg import StepTarget
 from naoqi.errors import NaoError
@@ -361,3 +365,27 @@ def test_the_heading_of_the_inertial_unit_is_that_of_odometry_or_unknown():
     message = messages.joint_state(STAMP, ("HeadYaw", "LHand"), READING, [0.2, 0.0])
     assert (message.header.stamp, message.effort[0]) == (STAMP, 0.1)
     assert (message.name, message.position, message.velocity) == (["HeadYaw", "LHand"], (0.5, -0.25), [0.2, 0.0])
+
+
+def walker_threads():
+    return [thread for thread in threading.enumerate() if thread.name == "walker"]
+
+
+@pytest.mark.parametrize("ordered", [False, True])
+def test_a_walker_whose_node_cannot_be_made_ends_and_stops_only_a_walk_of_its_own(ordered):
+    calls, before = [], walker_threads()
+
+    def call_async(method, *arguments):
+        calls.append(method)
+        future = Future()
+        future.set_result(None)
+        return future
+
+    connection = MagicMock()
+    robot = SimpleNamespace(connection=connection, proxy=lambda _: SimpleNamespace(call_async=call_async))
+    walker = Walker(robot, WallClock(), 0.5)
+    if ordered:
+        walker.order(FORWARD, "cmd_vel_srv").answer.result(5.0)
+    walker.close(5.0, only_own=True)
+    assert walker_threads() == before and connection.remove_listener.called
+    assert ("stopMove" in calls) == ordered

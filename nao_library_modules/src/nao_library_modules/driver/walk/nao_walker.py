@@ -77,6 +77,8 @@ class NaoWalker:
         self._inhibition = WalkInhibition(self._kept, rospy.get_name())
         self._journal = WalkJournal()
         self._walker = Walker(robot, RosClock(), timeout)
+        # Where another node has the services, it may be walking the robot.
+        node.if_it_fails(lambda: self._walker.close(CLOSE_LIMIT, only_own=True))
         self._walker.frequency = frequency
         self._walker.gait = gait
         self._walker.needs_walk_pose = bool(self._node.param("~use_walk_pose", False))
@@ -86,6 +88,7 @@ class NaoWalker:
         self._offer_services()
         # After the services: a part that cannot offer them sets nothing on the robot.
         robot.connection.add_listener(self._connection_changed)
+        node.if_it_fails(lambda: robot.connection.remove_listener(self._connection_changed))
         self._connection_changed()
         self._listen("cmd_vel", Twist, partial(self._velocity, "cmd_vel"), watched=True, queue_size=1, tcp_nodelay=True)
         self._listen("cmd_pose", Pose2D, read_target, queue_size=1, tcp_nodelay=True)

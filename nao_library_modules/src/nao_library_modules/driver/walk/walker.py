@@ -88,10 +88,19 @@ class Walker:
             self._put(order)
         return order
 
-    def close(self, limit: float) -> None:
-        """Stop the walk, wait up to `limit` s of real time until the robot stands, and take no orders any more."""
+    def close(self, limit: float, only_own: bool = False) -> None:
+        """Stop the walk, wait up to `limit` s of real time until the robot stands, and take no orders any more.
+
+        With `only_own`, a walk goes on unless an order to this object began it.
+        """
         self._robot.connection.remove_listener(self._connection_changed)
         self._closed.set()
+        if not only_own or self._box.first is not None or self.doing != STANDS:
+            self._stop_at_the_end(limit)
+        self._news.stop()
+        self._thread.join(QUICK_LIMIT)
+
+    def _stop_at_the_end(self, limit: float) -> None:
         last = Order(Stop(), CLOSED)
         self._put(last)
         try:
@@ -100,8 +109,6 @@ class Walker:
             log.warning("the walk cannot be stopped: %s", error)
         except concurrent.futures.TimeoutError:
             log.warning("the robot does not stand after %g s", limit)
-        self._news.stop()
-        self._thread.join(QUICK_LIMIT)
 
     def _put(self, order: Order) -> None:
         self._box.put(order)
