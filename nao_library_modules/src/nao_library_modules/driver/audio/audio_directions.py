@@ -83,8 +83,7 @@ class SoundDirections:
         self._ask("setParameter", ENERGY, True)
         if self._sensitivity >= 0.0:
             self._ask("setParameter", "Sensitivity", self._sensitivity)
-        for event in self._relay.names:  # those of a connection that was lost
-            self._relay.unsubscribe(event)
+        self._relay.close()  # events of a connection that was lost
         self._relay.subscribe(f"{self._module}/SoundLocated")
         self._ask("subscribe", self._subscriber)
 

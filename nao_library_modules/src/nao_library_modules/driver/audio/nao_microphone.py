@@ -12,15 +12,13 @@ from nao_library_msgs.msg import AudioBuffer
 
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.lazy_topic import LazyTopic
-from ..base.node import name_for_robot, publish
+from ..base.node import frame_parameter, name_for_robot, publish
 from ..base.reconfigure import Field, serve
 from .microphone import Block, Microphone
 from .microphone_blocks import FORMATS, RATES
 
-HEAD = "Head"
 QUEUE = 50
 
 
@@ -37,7 +35,7 @@ class NaoMicrophone:
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._use_ros_time = True
-        self._frame = tf_prefix() + str(node.param("~frame_id", HEAD)).lstrip("/")
+        self._frame = frame_parameter(node, "~frame_id", "Head")
         self._microphone = Microphone(robot, name_for_robot(node.name), RosClock(), self._publish)
         node.if_it_fails(self._microphone.close)
         fields = (

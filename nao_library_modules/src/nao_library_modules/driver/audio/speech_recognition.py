@@ -140,8 +140,7 @@ class Recognition:
             self._ask("setAudioExpression", self._former_audio)
 
     def _hear(self) -> None:
-        if HEARD in self._relay.names:
-            self._relay.unsubscribe(HEARD)  # that one went with the connection
+        self._relay.close()  # events of a connection that was lost
         self._relay.subscribe(HEARD)
 
     def _ask(self, method: str, *arguments: Any) -> Any:

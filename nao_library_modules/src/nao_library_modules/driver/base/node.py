@@ -120,7 +120,7 @@ def publish(publisher: rospy.Publisher, message: Any) -> None:
 
 def frame_parameter(node: NodeInterface, name: str, default: str) -> str:
     """A parameter that names a frame, with the prefix of the robot's frames before it."""
-    return tf_prefix() + node.param(name, default).lstrip("/")
+    return tf_prefix() + str(node.param(name, default)).lstrip("/")
 
 
 def rate_parameter(node: NodeInterface, name: str, default: float) -> float:

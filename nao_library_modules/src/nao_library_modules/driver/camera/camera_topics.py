@@ -20,10 +20,9 @@ from ...base.suggestion import did_you_mean
 from ...nao.camera_facts import CAMERA_NAMES, CAMERAS, SIZES
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.lazy_topic import LazyTopic
-from ..base.node import name_for_robot, publish
+from ..base.node import frame_parameter, name_for_robot, publish
 from ..base.reconfigure import Field, serve, update
 from .camera_formats import Picture
 from .camera_info_files import camera_name
@@ -216,8 +215,7 @@ class CameraTopics:
 
 
 def _frame(node: NodeInterface, camera: int) -> str:
-    given = node.param(f"~camera_{CAMERAS[camera]}_frame", f"{CAMERA_NAMES[camera]}_optical_frame")
-    return tf_prefix() + str(given).lstrip("/")
+    return frame_parameter(node, f"~camera_{CAMERAS[camera]}_frame", f"{CAMERA_NAMES[camera]}_optical_frame")
 
 
 def _camera_name(node: NodeInterface, camera: int) -> str:

@@ -84,8 +84,7 @@ class AutonomousLife:
         self._listening.close(CLOSE_LIMIT)
 
     def _begin(self) -> None:
-        for event in self._relay.names:  # those of a connection that was lost
-            self._relay.unsubscribe(event)
+        self._relay.close()  # events of a connection that was lost
         self._relay.subscribe(STATE)
         try:
             self._note(self._ask(LIFE, "getState"))

@@ -9,10 +9,10 @@ from nao_library_actions.msg import RunBehaviorAction, RunBehaviorResult
 from nao_library_msgs.srv import GetInstalledBehaviors, GetInstalledBehaviorsResponse
 
 from ...base.cancellation import CancellationToken
-from ...base.errors import RobotLost
 from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
+from ..base.node import interrupt_when_lost
 from .behaviors import Behaviors
 
 ROBOT = frozenset({"the robot"})
@@ -30,18 +30,17 @@ class NaoBehaviors:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        self._robot = robot
         self._behaviors = Behaviors(robot)
         self._server = ConcurrentActionServer(lambda _: ROBOT, self._run, robot=robot)
         node.action("run_behavior", RunBehaviorAction, self._server)
-        robot.connection.add_listener(self._connection_changed)
+        self._stop_watching = interrupt_when_lost(robot, self._server)
         node.offer("get_installed_behaviors", GetInstalledBehaviors, self._installed)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         return {"goals run_behavior": self._server.counter.report}
 
     def close(self) -> None:
-        self._robot.connection.remove_listener(self._connection_changed)
+        self._stop_watching()
         self._server.close(SHUTDOWN_LIMIT)
 
     def _installed(self, _request: Any) -> GetInstalledBehaviorsResponse:
@@ -50,9 +49,3 @@ class NaoBehaviors:
     def _run(self, goal: Any, interrupt: CancellationToken) -> Outcome:
         self._behaviors.run(goal.behavior, interrupt)
         return Outcome(RunBehaviorResult())
-
-    def _connection_changed(self, state: Any) -> None:
-        """Called from the connection's thread for listeners."""
-        if state == "lost":
-            reason = self._robot.connection.last_error or "no answer"
-            self._server.interrupt_all(RobotLost(self._robot.address, reason))

@@ -14,12 +14,13 @@ from nao_library_msgs.msg import FadeRGB
 from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
-from ...base.errors import BadGoal, Preempted, RobotLost
+from ...base.errors import BadGoal, Preempted
 from ...base.field_checks import require_zero_or
 from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
+from ..base.node import interrupt_when_lost
 from .blinking import DURATION, EYES, Blinks, Colour, blink, fade
 
 QUEUE = 100
@@ -43,14 +44,14 @@ class NaoLeds:
         self._interrupt = CancellationToken()
         self._server = ConcurrentActionServer(lambda _: frozenset({EYES}), self._blink, with_feedback=True, robot=robot)
         node.action("blink", BlinkAction, self._server)
-        robot.connection.add_listener(self._connection_changed)
+        self._stop_watching = interrupt_when_lost(robot, self._server)
         node.subscriber("fade_rgb", FadeRGB, self._fade, queue_size=QUEUE)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         return {"goals blink": self._server.counter.report}
 
     def close(self) -> None:
-        self._robot.connection.remove_listener(self._connection_changed)
+        self._stop_watching()
         self._interrupt.stop()
         self._server.close(SHUTDOWN_LIMIT)
 
@@ -81,12 +82,6 @@ class NaoLeds:
 
         replaced = blink(self._robot, blinks, self._clock, interrupt, tell, self._chance)
         return Outcome(BlinkResult(still_blinking=replaced), preempted=True)
-
-    def _connection_changed(self, state: Any) -> None:
-        """Called from the connection's thread for listeners."""
-        if state == "lost":
-            reason = self._robot.connection.last_error or "no answer"
-            self._server.interrupt_all(RobotLost(self._robot.address, reason))
 
 
 def _rgb(color: ColorRGBA) -> tuple[float, float, float]:

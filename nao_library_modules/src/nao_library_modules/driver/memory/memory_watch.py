@@ -209,8 +209,7 @@ class MemoryWatch:
     def _keep_up(self) -> None:
         generation = self._robot.connection.generation
         if generation != self._generation:  # the robot behind a new connection knows nothing of what was
-            for name in self._relay.names:
-                self._relay.unsubscribe(name)
+            self._relay.close()
             for key in self._keys.values():
                 key.subscribed = False
             self._stale = True

@@ -107,8 +107,7 @@ class TouchSensors:
     # --- in the thread of the demand ------------------------------------------------------------------------------
 
     def _begin(self) -> None:
-        for event in self._relay.names:  # those of a connection that was lost
-            self._relay.unsubscribe(event)
+        self._relay.close()  # events of a connection that was lost
         with self._lock:
             self._heard.clear()
         for event in (*self._sensors, *CLICKS):

@@ -95,8 +95,7 @@ class VisionModule:
 
     def _begin(self) -> None:
         self._prepare()
-        for event in self._relay.names:  # those of a connection that was lost
-            self._relay.unsubscribe(event)
+        self._relay.close()  # events of a connection that was lost
         self._relay.subscribe(self._kind.event)
         try:
             self.call("subscribe", self._subscriber)
