@@ -9,7 +9,7 @@ from typing import Any
 from naoqi.errors import NaoError, UnknownModule
 
 from ...robot.event_relay import EventRelay
-from ...ros.health import Level, Report
+from ...ros.health import Report
 from ..base.lazy_subscription import LazySubscription
 
 MODULES = ("ALSoundLocalization", "ALAudioSourceLocalization")
@@ -67,13 +67,8 @@ class SoundDirections:
         self._locating.want(wanted)
 
     def report(self) -> Report:
-        values = {"module": self._module, "last error": self._locating.problem}
-        if not self._locating.wanted:
-            return Report(Level.OK, "nobody listens", values)
-        if self._locating.running:
-            return Report(Level.OK, "sounds are located", values)
-        problem = self._locating.problem or "the robot is not connected"
-        return Report(Level.ERROR, f"sounds cannot be located: {problem}", values)
+        values = {"module": self._module}
+        return self._locating.report("nobody listens", "sounds are located", "sounds cannot be located", values)
 
     def close(self) -> None:
         self._locating.close(CLOSE_LIMIT)

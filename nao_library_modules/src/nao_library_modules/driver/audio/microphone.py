@@ -109,16 +109,11 @@ class Microphone:
                 "frequency (Hz)": str(self._rate),
                 "blocks": str(self._count),
                 "lost blocks": str(self._blocks.lost),
-                "last error": self._hearing.problem,
             }
-        if not self._hearing.wanted:
-            return Report(Level.OK, "nobody listens", values)
-        if not self._hearing.running:
-            problem = self._hearing.problem or "the robot is not connected"
-            return Report(Level.ERROR, f"the microphones cannot be heard: {problem}", values)
-        if self._silent:
-            return Report(Level.ERROR, self._silence(), values)
-        return Report(Level.OK, "heard", values)
+        report = self._hearing.report("nobody listens", "heard", "the microphones cannot be heard", values)
+        if self._silent and report.message == "heard":
+            return Report(Level.ERROR, self._silence(), report.values)
+        return report
 
     def close(self) -> None:
         self._hearing.close(CLOSE_LIMIT)

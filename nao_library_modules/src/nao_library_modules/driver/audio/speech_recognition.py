@@ -11,7 +11,7 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ...robot.event_relay import EventRelay
-from ...ros.health import Level, Report
+from ...ros.health import Report
 from ..base.lazy_subscription import LazySubscription
 from .speech_settings import SpeechSettings
 
@@ -102,11 +102,7 @@ class Recognition:
     def report(self) -> Report:
         words = " / ".join(self._settings().vocabulary)
         values = {"vocabulary": words, "last error": self._listening.problem or self._hearing.problem}
-        if not self._listening.wanted:
-            return Report(Level.OK, "does not listen", values)
-        if self._listening.running:
-            return Report(Level.OK, "listens", values)
-        return Report(Level.ERROR, f"cannot listen: {self._listening.problem or 'the robot is not connected'}", values)
+        return self._listening.report("does not listen", "listens", "cannot listen", values)
 
     def close(self) -> None:
         self._listening.close(CLOSE_LIMIT)

@@ -9,6 +9,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ...ros.health import Level, Report
+
 log = logging.getLogger(__name__)
 
 FIRST_RETRY, RETRY = 0.1, 1.0
@@ -71,6 +73,15 @@ class LazySubscription:
     def problem(self) -> str:
         """Why it does not run although it is wanted; empty if it does."""
         return self._problem
+
+    def report(self, idle: str, runs: str, fails: str, values: dict[str, str]) -> Report:
+        """State for diagnostics, by the text that fits: it is not wanted, it runs, or it fails (the reason follows)."""
+        values.setdefault("last error", self._problem)
+        if not self._wanted:
+            return Report(Level.OK, idle, values)
+        if self.running:
+            return Report(Level.OK, runs, values)
+        return Report(Level.ERROR, f"{fails}: {self._problem or 'the robot is not connected'}", values)
 
     def want(self, wanted: bool) -> None:
         with self._condition:

@@ -13,7 +13,7 @@ from naoqi.errors import NaoError
 from ...nao.body_devices import FOOT_CONTACT
 from ...nao.touch_names import BY_EVENT
 from ...robot.event_relay import EventRelay
-from ...ros.health import Level, Report
+from ...ros.health import Report
 from ..base.lazy_subscription import LazySubscription
 
 log = logging.getLogger(__name__)
@@ -96,10 +96,7 @@ class TouchSensors:
     def report(self) -> Report:
         with self._lock:
             values = {event: {None: "unknown", True: "touched", False: ""}[now] for event, now in self._touched.items()}
-        values["last error"] = self._listening.problem
-        if self._listening.running:
-            return Report(Level.OK, "touches are told", values)
-        return Report(Level.ERROR, f"deaf: {self._listening.problem or 'the robot is not connected'}", values)
+        return self._listening.report("closed", "touches are told", "deaf", values)
 
     def close(self) -> None:
         self._listening.close(CLOSE_LIMIT)

@@ -10,7 +10,7 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ...robot.event_relay import EventRelay
-from ...ros.health import Level, Report
+from ...ros.health import Report
 from ..base.lazy_subscription import LazySubscription
 
 log = logging.getLogger(__name__)
@@ -83,12 +83,7 @@ class VisionModule:
         return self._robot.proxy(self._kind.module).call_async(method, *arguments).result(timeout=limit)
 
     def report(self) -> Report:
-        values = {"module": self._kind.module, "last error": self._looking.problem}
-        if not self._looking.wanted:
-            return Report(Level.OK, "off", values)
-        if self._looking.running:
-            return Report(Level.OK, "on", values)
-        return Report(Level.ERROR, f"cannot run: {self._looking.problem or 'the robot is not connected'}", values)
+        return self._looking.report("off", "on", "cannot run", {"module": self._kind.module})
 
     def close(self) -> None:
         self._looking.close(CLOSE_LIMIT)

@@ -7,11 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from ..walk.walk_commands import Velocity
+from ..walk.walk_commands import STANDSTILL, Velocity
 
 UNUSED = -1
 """Index of an axis or button that the gamepad does not have."""
-STANDSTILL = Velocity(0.0, 0.0, 0.0)
 
 
 class JoyRequest(Enum):

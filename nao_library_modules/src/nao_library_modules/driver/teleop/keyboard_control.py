@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
-from ..walk.walk_commands import Velocity
+from ..walk.walk_commands import STANDSTILL, Velocity
 
-STANDSTILL = Velocity(0.0, 0.0, 0.0)
 FIRST_HOLD = 0.7
 """s that a key counts as held after it was pressed: terminals repeat a key only after half a second or so."""
 REPEAT_HOLD = 0.25

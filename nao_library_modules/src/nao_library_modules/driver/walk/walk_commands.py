@@ -15,7 +15,7 @@ from ...base.limits import limit
 from ...base.places import Place
 
 WAY, ANGLE = limit("way"), limit("angle")
-STANDSTILL = 1e-3
+NO_VELOCITY = 1e-3
 """A velocity below this (fraction of the top speed) in all directions is none."""
 LEFT, RIGHT = "LLeg", "RLeg"
 LEGS = {0: RIGHT, 1: LEFT}
@@ -35,10 +35,13 @@ class Velocity:
 
     @property
     def is_zero(self) -> bool:
-        return max(abs(self.x), abs(self.y), abs(self.theta)) < STANDSTILL
+        return max(abs(self.x), abs(self.y), abs(self.theta)) < NO_VELOCITY
 
     def __str__(self) -> str:
         return f"walking at ({self.x:.2f}, {self.y:.2f}, {self.theta:.2f}) of the top speed"
+
+
+STANDSTILL = Velocity(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
