@@ -60,6 +60,7 @@ class NaoAudioServices:
         self._frame = tf_prefix() + TORSO
         self._player = AudioPlayer(robot, RosClock(), self._interrupt)
         self._directions = SoundDirections(robot, name_for_robot(node.name), sensitivity, self._publish)
+        node.if_it_fails(self._directions.close)
         name = "nao_audio/audio_source_localization"
         self._topic = node.publisher(name, AudioSourceLocalization, queue_size=10)
         self._lazy = LazyTopic(self._topic, self._directions.want)

@@ -92,7 +92,9 @@ class NaoSpeech:
         self._settings = SpeechSettings()
         self._words = self._node.publisher("word_recognized", WordRecognized, queue_size=10)
         self._speech = Speech(robot, RosClock(), lambda: self._settings)
+        node.if_it_fails(self._speech.close)
         self._recognition = Recognition(robot, name_for_robot(self._node.name), lambda: self._settings, self._publish)
+        node.if_it_fails(self._recognition.close)
         self._server = serve(node, PARAMETERS, self._changed)
         self._goals = {
             "speech_action": ConcurrentActionServer(lambda _: VOICE, self._say, with_feedback=True, robot=robot),
@@ -101,6 +103,7 @@ class NaoSpeech:
         for (name, server), action in zip(self._goals.items(), (SpeechWithFeedbackAction, SetSpeechVocabularyAction)):
             self._node.action(name, action, server)
         robot.connection.add_listener(self._connection_changed)
+        node.if_it_fails(lambda: robot.connection.remove_listener(self._connection_changed))
         self._node.subscriber("speech", String, self._on_text, queue_size=100)
         self._node.offer("stop_recognition", Empty, lambda _: self._recognition.stop())
         self._node.offer("reconfigure", Empty, lambda _: update(self._server, self._read_parameters()))

@@ -31,6 +31,7 @@ class NaoAlife:
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         self._state = node.publisher("~state", String, queue_size=1, latch=True)
         self._life = AutonomousLife(robot, lambda state: publish(self._state, String(data=state)))
+        node.if_it_fails(self._life.close)
         for state in STATES:
             node.offer(f"~{state}", Empty, lambda _, state=state: self._life.set_state(state))
         for ability in ABILITIES:

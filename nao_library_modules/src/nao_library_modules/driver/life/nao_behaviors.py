@@ -33,8 +33,9 @@ class NaoBehaviors:
         self._behaviors = Behaviors(robot)
         self._server = ConcurrentActionServer(lambda _: ROBOT, self._run, robot=robot)
         node.action("run_behavior", RunBehaviorAction, self._server)
-        self._stop_watching = interrupt_when_lost(robot, self._server)
         node.offer("get_installed_behaviors", GetInstalledBehaviors, self._installed)
+        # After the service: a part that cannot offer it leaves no listener.
+        self._stop_watching = interrupt_when_lost(robot, self._server)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         return {"goals run_behavior": self._server.counter.report}

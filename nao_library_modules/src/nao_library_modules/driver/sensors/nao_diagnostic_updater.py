@@ -78,9 +78,10 @@ class NaoDiagnosticUpdater:
         self._diagnostics = self._node.publisher("/diagnostics", DiagnosticArray, queue_size=10)
         self._info = self._node.publisher("info", StringStamped, queue_size=1, latch=True)
         self._connection = self._node.publisher("connection", ConnectionState, queue_size=10, latch=True)
+        self._node.offer("get_robot_config", GetRobotInfo, self._robot_config)
+        # After the service: a part that cannot offer it leaves no listener.
         robot.connection.add_listener(self._on_state)
         self._on_state(robot.connection.state)
-        self._node.offer("get_robot_config", GetRobotInfo, self._robot_config)
         self._thread = threading.Thread(target=self._run, name="diagnosis", daemon=True)
         self._thread.start()
 

@@ -68,6 +68,7 @@ class NaoVisionServices:
         self._landmarks = VisionModule(robot, LANDMARKS, subscriber, self._on_landmarks)
         self._movement = VisionModule(robot, MOVEMENT, subscriber, self._on_movement, self._send_sensitivity)
         self._detections = {"face": self._faces, "motion": self._movement, "landmark": self._landmarks}
+        node.if_it_fails(self.close)
         for name, detection in self._detections.items():
             folder = f"nao_vision/{name}_detection"
             node.offer(f"{folder}/enable", Empty, lambda _, detection=detection: detection.enable())
